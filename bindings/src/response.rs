@@ -1,0 +1,375 @@
+//! Forced response: settings in, curves out, progress and Ctrl-C in between.
+
+use crate::arrays::{block, is_half_wave, refused, series, table, vector};
+use crate::problem::Problem;
+use numpy::{
+    Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::time::{Duration, Instant};
+use stickslip_core::balance::{
+    refine_peak, sweep, sweep_range, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
+};
+use stickslip_core::contact::{Motion, Residual};
+use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
+use stickslip_core::solve::NewtonSettings;
+
+/// Time between two looks at Python: often enough for Ctrl-C, rare enough to cost nothing.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Frequencies: a grid, or a range whose steps the core chooses.
+#[derive(FromPyObject)]
+pub enum Frequencies<'py> {
+    Range((f64, f64)),
+    Grid(PyReadonlyArray1<'py, f64>),
+}
+
+/// The assumed mean force of contacts that never slip: a name or a force in N.
+#[derive(FromPyObject)]
+pub enum ResidualArgument {
+    Force(f64),
+    Name(String),
+}
+
+impl ResidualArgument {
+    fn parse(&self) -> PyResult<Residual> {
+        match self {
+            Self::Force(force) => Ok(Residual::Value(*force)),
+            Self::Name(name) if name == "centred" => Ok(Residual::Centred),
+            Self::Name(name) if name == "from_rest" => Ok(Residual::FromRest),
+            Self::Name(name) => Err(PyValueError::new_err(format!(
+                "residual = \"{name}\": must be \"centred\", \"from_rest\" or a force in N"
+            ))),
+        }
+    }
+}
+
+fn settings(
+    harmonics: Option<usize>,
+    tolerance: f64,
+    residual: &ResidualArgument,
+    max_harmonics: usize,
+    max_iterations: usize,
+) -> PyResult<Settings> {
+    Ok(Settings {
+        harmonics: harmonics.map_or(HarmonicChoice::Auto, HarmonicChoice::Fixed),
+        tolerance,
+        residual: residual.parse()?,
+        max_harmonics,
+        newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
+    })
+}
+
+/// A curve of periodic responses.
+#[pyclass(frozen, module = "stickslip._core")]
+pub struct Solution {
+    inner: stickslip_core::balance::Solution,
+    observed: usize,
+    contacts: usize,
+}
+
+impl Solution {
+    fn points(&self) -> &[Point] {
+        &self.inner.points
+    }
+
+    /// Pads the amplitudes of every point to the highest order of the curve.
+    fn amplitudes<'py>(
+        &self,
+        py: Python<'py>,
+        columns: usize,
+        of: impl Fn(&Point) -> &[Complex64],
+    ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
+        let orders = 1 + self.points().iter().map(|p| p.harmonics).max().unwrap_or(0);
+        let mut values = vec![Complex64::new(0.0, 0.0); self.points().len() * orders * columns];
+        for (n, point) in self.points().iter().enumerate() {
+            let own = point.harmonics + 1;
+            for (column, series) in of(point).chunks_exact(own).enumerate() {
+                for (order, value) in series.iter().enumerate() {
+                    values[(n * orders + order) * columns + column] = *value;
+                }
+            }
+        }
+        block(py, [self.points().len(), orders, columns], values)
+    }
+
+    fn rows<'py>(
+        &self,
+        py: Python<'py>,
+        columns: usize,
+        of: impl Fn(&Point) -> Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let values = self.points().iter().flat_map(of).collect();
+        table(py, self.points().len(), columns, values)
+    }
+}
+
+#[pymethods]
+impl Solution {
+    #[getter]
+    fn omega<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, self.points().iter().map(|p| p.omega))
+    }
+
+    #[getter]
+    fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
+        self.amplitudes(py, self.observed, |p| &p.displacement)
+    }
+
+    #[getter]
+    fn contact_displacement<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
+        self.amplitudes(py, self.contacts, |p| &p.contact_displacement)
+    }
+
+    #[getter]
+    fn contact_force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
+        self.amplitudes(py, self.contacts, |p| &p.contact_force)
+    }
+
+    #[getter]
+    fn harmonics<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        vector(py, self.points().iter().map(|p| p.harmonics as i64))
+    }
+
+    #[getter]
+    fn half_wave(&self) -> bool {
+        self.inner.half_wave
+    }
+
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
+        vector(
+            py,
+            self.points().iter().map(|p| match p.status {
+                PointStatus::Converged => 0,
+                PointStatus::Stalled => 1,
+                PointStatus::Singular => 2,
+                PointStatus::NotComputed => 3,
+                PointStatus::HarmonicsLimit => 4,
+            }),
+        )
+    }
+
+    #[getter]
+    fn residual<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, self.points().iter().map(|p| p.residual))
+    }
+
+    #[getter]
+    fn iterations<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        vector(py, self.points().iter().map(|p| p.iterations as i64))
+    }
+
+    #[getter]
+    fn error_estimate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.rows(py, self.observed, |p| p.error_estimate.clone())
+    }
+
+    #[getter]
+    fn slip_fraction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let share = |p: &Point| p.contacts.iter().map(|c| c.slip_fraction).collect();
+        self.rows(py, self.contacts, share)
+    }
+
+    #[getter]
+    fn dissipation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let work = |p: &Point| p.contacts.iter().map(|c| c.dissipation).collect();
+        self.rows(py, self.contacts, work)
+    }
+
+    #[getter]
+    fn interrupted(&self) -> bool {
+        self.inner.interrupted
+    }
+
+    #[getter]
+    fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let profile = &self.inner.profile;
+        let timings = PyDict::new(py);
+        for (stage, time) in [
+            ("compliance", profile.compliance),
+            ("law", profile.law),
+            ("linear_solve", profile.linear_solve),
+            ("recovery", profile.recovery),
+            ("total", profile.total),
+        ] {
+            timings.set_item(stage, time.as_secs_f64())?;
+        }
+        Ok(timings)
+    }
+
+    #[getter]
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let profile = &self.inner.profile;
+        let counters = PyDict::new(py);
+        counters.set_item("iterations", self.points().iter().map(|p| p.iterations).sum::<usize>())?;
+        counters.set_item("evaluations", profile.evaluations)?;
+        counters.set_item("factorisations", profile.factorisations)?;
+        counters.set_item("homotopies", profile.homotopies)?;
+        Ok(counters)
+    }
+}
+
+/// Harmonic balance over a grid or a range of frequencies.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub fn forced_response(
+    py: Python<'_>,
+    problem: &Problem,
+    omega: Frequencies<'_>,
+    observe: PyReadonlyArray1<'_, i64>,
+    harmonics: Option<usize>,
+    tolerance: f64,
+    residual: ResidualArgument,
+    method: &str,
+    max_harmonics: usize,
+    max_iterations: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Solution> {
+    if method != "newton" {
+        return Err(PyValueError::new_err(format!(
+            "method = \"{method}\": must be \"newton\""
+        )));
+    }
+    let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
+    let observe: Vec<usize> = observe
+        .as_array()
+        .iter()
+        .map(|&dof| usize::try_from(dof))
+        .collect::<Result<_, _>>()
+        .map_err(|_| PyValueError::new_err("observe: DOF indices must not be negative"))?;
+    let grid = match &omega {
+        Frequencies::Grid(grid) => grid.as_array().to_vec(),
+        Frequencies::Range(_) => Vec::new(),
+    };
+    let range = match omega {
+        Frequencies::Range(range) => Some(range),
+        Frequencies::Grid(_) => None,
+    };
+    let model = &problem.model;
+    let mut raised = None;
+    let inner = py.detach(|| {
+        let mut last = Instant::now();
+        let mut look = |share: f64| {
+            if last.elapsed() < LOOK {
+                return true;
+            }
+            last = Instant::now();
+            Python::attach(|py| {
+                let told = progress.as_ref().map_or(Ok(()), |call| call.call1(py, (share,)).map(drop));
+                match told.and_then(|()| py.check_signals()) {
+                    Ok(()) => true,
+                    Err(error) => {
+                        raised = Some(error);
+                        false
+                    }
+                }
+            })
+        };
+        let balance = ForcedBalance::new(model, settings, &observe)?;
+        match range {
+            Some((from, to)) => sweep_range(balance, from, to, &mut look),
+            None => sweep(balance, &grid, &mut look),
+        }
+    });
+    // Ctrl-C keeps what was solved; anything else a progress callback raises is its own.
+    if let Some(error) = raised {
+        if !error.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) {
+            return Err(error);
+        }
+    }
+    Ok(Solution {
+        inner: inner.map_err(refused)?,
+        observed: observe.len(),
+        contacts: model.compliance().contacts(),
+    })
+}
+
+/// Frequency and amplitude at the true maximum of one DOF in a bracket.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub fn peak(
+    py: Python<'_>,
+    problem: &Problem,
+    omega_lo: f64,
+    omega_hi: f64,
+    omega_guess: f64,
+    dof: usize,
+    measure: &str,
+    harmonics: Option<usize>,
+    tolerance: f64,
+    residual: ResidualArgument,
+    max_harmonics: usize,
+    max_iterations: usize,
+) -> PyResult<(f64, f64)> {
+    let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
+    let measure: Measure = measure.parse().map_err(refused)?;
+    let bracket = [omega_lo, omega_guess, omega_hi];
+    py.detach(|| refine_peak(&problem.model, settings, dof, measure, bracket))
+        .map_err(refused)
+}
+
+/// Amplitudes of series `X_0, X_1, …`, one per row, with the exact extrema of their polynomials.
+#[pyfunction]
+pub fn amplitude<'py>(
+    py: Python<'py>,
+    coefficients: PyReadonlyArray2<'py, Complex64>,
+    measure: &str,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let measure: Measure = measure.parse().map_err(refused)?;
+    let view = coefficients.as_array();
+    let (rows, orders) = (view.nrows(), view.ncols());
+    if orders < 2 {
+        return Err(PyValueError::new_err("coefficients: at least X_0 and X_1 are needed"));
+    }
+    let half_wave = (0..rows).all(|n| is_half_wave(orders, |k| view[[n, k]]));
+    let table = SampleTable::new(Harmonics::new(orders - 1, half_wave));
+    let amplitudes = (0..rows).map(|n| {
+        let row = series(table.harmonics(), |k| view[[n, k]]);
+        if row.iter().any(|value| value.is_nan()) {
+            return f64::NAN;
+        }
+        fourier::amplitude(&table, &row, measure)
+    });
+    Ok(vector(py, amplitudes))
+}
+
+/// Contact force over one period as the law gives it for displacements `(points, H+1)`.
+#[pyfunction]
+pub fn contact_force<'py>(
+    py: Python<'py>,
+    problem: &Problem,
+    contact: usize,
+    displacement: PyReadonlyArray2<'py, Complex64>,
+    residual: ResidualArgument,
+    samples: usize,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let Some(law) = problem.model.laws().get(contact) else {
+        return Err(PyValueError::new_err(format!(
+            "contact = {contact}: the model has {} contacts",
+            problem.model.laws().len()
+        )));
+    };
+    let view = displacement.as_array();
+    let (points, orders) = (view.nrows(), view.ncols());
+    if points != law.points() || orders < 2 {
+        return Err(PyValueError::new_err(format!(
+            "displacement: expected {} rows of at least X_0 and X_1, got {points} x {orders}",
+            law.points()
+        )));
+    }
+    let residual = residual.parse()?;
+    let half_wave = residual.is_symmetric()
+        && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
+    let sample_table = SampleTable::new(Harmonics::new(orders - 1, half_wave));
+    let coefficients: Vec<f64> = (0..points)
+        .flat_map(|n| series(sample_table.harmonics(), |k| view[[n, k]]))
+        .collect();
+    let motion = Motion { table: &sample_table, displacement: &coefficients, residual };
+    table(py, samples, points, law.force_history(motion, samples))
+}

@@ -1,0 +1,138 @@
+//! A curve over a range of frequencies, with steps chosen to the tolerance.
+
+use super::condensed::{Condensed, Unknowns};
+use super::forced::ForcedBalance;
+use super::solution::{Point, PointStatus, Solution};
+use super::sweep::{check_frequency, finish};
+use super::Progress;
+use crate::fourier::SampleTable;
+use crate::solve::{norm, System as _};
+use crate::Error;
+use std::time::Instant;
+
+/// A straight line between two points misses the curve by a quarter of what the tangent at one
+/// misses at the other.
+const LINE_TO_TANGENT: f64 = 4.0;
+/// Longest step as a share of the range: a curve needs points to be looked at.
+const LONGEST: f64 = 1.0 / 60.0;
+/// Shortest step relative to the frequency.
+const SHORTEST: f64 = 1e-9;
+
+/// Solves from `from` to `to` [rad/s], in either direction, with steps such that straight lines
+/// between the points stay within the tolerance of the curve.
+///
+/// Steps follow the error of the tangent predictor, which a narrow resonance between two points
+/// could escape; so each stuck and each free natural frequency in the range is a point, and
+/// steps beside it start at the bandwidth of the least damped mode.
+///
+/// # Errors
+/// As for a sweep over given frequencies; a range of no length.
+pub fn sweep_range(
+    mut balance: ForcedBalance<'_>,
+    from: f64,
+    to: f64,
+    progress: &mut Progress<'_>,
+) -> Result<Solution, Error> {
+    let start = Instant::now();
+    check_frequency("omega range: start", from)?;
+    check_frequency("omega range: end", to)?;
+    if from == to {
+        return Err(Error::value("omega range: end", to, "must differ from its start"));
+    }
+    let direction = (to - from).signum();
+    let stops = stops(&balance, from, to);
+    let longest = LONGEST * (to - from).abs();
+    let fine = balance.model.compliance().narrowest_bandwidth().clamp(1e-6 * longest, longest);
+    let mut points = vec![balance.solve(from, None)?];
+    let mut step = 0.1 * longest;
+    let mut interrupted = false;
+    for stop in stops {
+        step = step.min(fine);
+        while (stop - points[points.len() - 1].omega) * direction > 0.0 {
+            let last = &points[points.len() - 1];
+            if !progress((last.omega - from) / (to - from)) {
+                interrupted = true;
+                break;
+            }
+            let room = (stop - last.omega).abs();
+            // Two even steps instead of a long and a tiny one.
+            let length = if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * stop) };
+            let omega = if step >= room { stop } else { last.omega + direction * length };
+            let guess = tangent(&mut balance, last, omega);
+            let point = balance.solve(omega, guess.as_ref())?;
+            let error = prediction_error(&balance, guess.as_ref(), &point) / LINE_TO_TANGENT;
+            let target = balance.settings.tolerance;
+            let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
+            let too_long = error > 2.0 * target && length > SHORTEST * omega;
+            step = (length * factor).min(longest);
+            if !too_long {
+                points.push(point);
+            }
+        }
+    }
+    Ok(finish(balance, points, interrupted, start))
+}
+
+/// Natural frequencies inside the range, and its end, in the order of the sweep.
+fn stops(balance: &ForcedBalance<'_>, from: f64, to: f64) -> Vec<f64> {
+    let compliance = balance.model.compliance();
+    let (low, high) = (from.min(to), from.max(to));
+    let mut stops: Vec<f64> = compliance
+        .stuck_frequencies()
+        .iter()
+        .chain(compliance.free_frequencies())
+        // A relative shift by 1e-7 keeps an undamped resonance at a distance.
+        .map(|w| w * (1.0 - 1e-7))
+        .filter(|w| *w > low && *w < high)
+        .collect();
+    stops.sort_by(f64::total_cmp);
+    stops.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * b.abs());
+    stops.push(high);
+    if to < from {
+        stops.reverse();
+        stops.remove(0);
+        stops.push(low);
+    }
+    stops
+}
+
+/// Extrapolation along the tangent `dU/dω = J⁻¹ (dU^stuck/dω + dG/dω Q)`.
+fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<Unknowns> {
+    if !is_solved(last) {
+        return None;
+    }
+    let unknowns = last.unknowns.as_ref()?;
+    let table = SampleTable::new(unknowns.harmonics.clone());
+    let residual = balance.settings.residual;
+    let mut equations = Condensed::new(balance.model, &table, residual, true);
+    equations.set_omega(last.omega).ok()?;
+    let (mut ignored, mut rate) = (vec![0.0; equations.size()], vec![0.0; equations.size()]);
+    equations.residual(&unknowns.values, &mut ignored);
+    let frequency_rate = equations.frequency_rate();
+    if !equations.solve(&frequency_rate, &mut rate) {
+        return Some(unknowns.clone());
+    }
+    balance.add_profile(&equations.profile);
+    let mut predicted = unknowns.clone();
+    for (value, rate) in predicted.values.iter_mut().zip(&rate) {
+        *value += (omega - last.omega) * rate;
+    }
+    Some(predicted)
+}
+
+/// Distance of the prediction from the solution, relative to it.
+fn prediction_error(balance: &ForcedBalance<'_>, guess: Option<&Unknowns>, point: &Point) -> f64 {
+    let (Some(guess), Some(solved)) = (guess, point.unknowns.as_ref()) else {
+        return balance.settings.tolerance * LINE_TO_TANGENT;
+    };
+    if !is_solved(point) {
+        return balance.settings.tolerance * LINE_TO_TANGENT;
+    }
+    let guess = guess.recast(&solved.harmonics);
+    let difference: Vec<f64> = guess.iter().zip(&solved.values).map(|(a, b)| a - b).collect();
+    norm(&difference) / norm(&solved.values).max(f64::MIN_POSITIVE)
+}
+
+fn is_solved(point: &Point) -> bool {
+    matches!(point.status, PointStatus::Converged | PointStatus::HarmonicsLimit)
+}

@@ -1,0 +1,369 @@
+//! The condensed equations at one frequency: `R(U) = U − μ U^stuck − G Q(U)`.
+//!
+//! The Jacobian `I − G ∂Q` has nontrivial columns only for contacts that slip; the Newton
+//! direction is found from their block and carried to the stuck contacts by substitution.
+
+use crate::contact::{Motion, Residual, SlipLoad};
+use crate::fourier::{Harmonics, SampleTable};
+use crate::model::Model;
+use crate::solve::{Parametrised, System};
+use crate::structure::Receptance;
+use crate::timing::Profile;
+use crate::Error;
+use faer::linalg::solvers::{PartialPivLu, Solve as _};
+use faer::{c64, Mat};
+
+/// Real coefficients of the contact displacements, point after point, with their harmonics.
+#[derive(Debug, Clone)]
+pub struct Unknowns {
+    pub(super) harmonics: Harmonics,
+    pub(super) values: Vec<f64>,
+}
+
+impl Unknowns {
+    /// The same series in another set of harmonics: common ones are kept, new ones are zero.
+    pub(super) fn recast(&self, harmonics: &Harmonics) -> Vec<f64> {
+        let (from, to) = (self.harmonics.slots(), harmonics.slots());
+        if self.harmonics == *harmonics {
+            return self.values.clone();
+        }
+        let points = self.values.len() / from.max(1);
+        let mut values = vec![0.0; points * to];
+        for order in self.harmonics.orders() {
+            let (Some(source), Some(target)) = (self.harmonics.slot(order), harmonics.slot(order))
+            else {
+                continue;
+            };
+            let width = if order == 0 { 1 } else { 2 };
+            for point in 0..points {
+                values[point * to + target..][..width]
+                    .copy_from_slice(&self.values[point * from + source..][..width]);
+            }
+        }
+        values
+    }
+}
+
+/// The equations at one frequency and set of harmonics.
+pub struct Condensed<'a> {
+    model: &'a Model,
+    table: &'a SampleTable,
+    residual: Residual,
+    /// One receptance per kept order.
+    receptances: Vec<Receptance>,
+    stuck: Vec<f64>,
+    loads: Vec<SlipLoad>,
+    scale: f64,
+    factor: Option<PartialPivLu<f64>>,
+    /// Points of contacts with a tangent, of the last factorisation.
+    active: Vec<usize>,
+    pub(super) profile: Profile,
+}
+
+impl<'a> Condensed<'a> {
+    /// Equations of a model in the harmonics of a table; call [`Condensed::set_omega`] next.
+    pub fn new(model: &'a Model, table: &'a SampleTable, residual: Residual, slopes: bool) -> Self {
+        let blank = Receptance {
+            slope: slopes.then(Default::default),
+            ..Receptance::default()
+        };
+        Self {
+            model,
+            table,
+            residual,
+            receptances: vec![blank; table.harmonics().orders().count()],
+            stuck: Vec::new(),
+            loads: vec![SlipLoad::default(); model.laws().len()],
+            scale: 1.0,
+            factor: None,
+            active: Vec::new(),
+            profile: Profile::default(),
+        }
+    }
+
+    /// Evaluates the compliances at a frequency.
+    ///
+    /// # Errors
+    /// Singular static stiffness or an undamped resonance, with the harmonic concerned.
+    pub fn set_omega(&mut self, omega: f64) -> Result<(), (usize, Error)> {
+        let harmonics = self.table.harmonics();
+        let contacts = self.model.compliance().contacts();
+        let slots = harmonics.slots();
+        self.stuck.clear();
+        self.stuck.resize(contacts * slots, 0.0);
+        self.factor = None;
+        let (receptances, model) = (&mut self.receptances, self.model);
+        Profile::time(&mut self.profile.compliance, || {
+            for (receptance, order) in receptances.iter_mut().zip(harmonics.orders()) {
+                model
+                    .compliance()
+                    .receptance(order, omega, receptance)
+                    .map_err(|error| (order, error))?;
+            }
+            Ok(())
+        })?;
+        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
+            scatter(harmonics, order, &receptance.stuck, &mut self.stuck);
+        }
+        Ok(())
+    }
+
+    /// The stuck response, which is the solution as long as nothing slips.
+    pub fn stuck_response(&self) -> &[f64] {
+        &self.stuck
+    }
+
+    /// Harmonics of the equations.
+    pub fn harmonics(&self) -> &'a Harmonics {
+        self.table.harmonics()
+    }
+
+    /// Motion of the points of contact `index`.
+    pub fn motion<'b>(&'b self, index: usize, x: &'b [f64]) -> Motion<'b> {
+        let slots = self.table.harmonics().slots();
+        let points = &self.model.points()[index];
+        Motion {
+            table: self.table,
+            displacement: &x[points.start * slots..points.end * slots],
+            residual: self.residual,
+        }
+    }
+
+    /// Slip load of all points at the last evaluated unknowns.
+    pub fn slip_load(&self) -> Vec<f64> {
+        self.loads.iter().flat_map(|load| load.value.iter().copied()).collect()
+    }
+
+    /// Whether any contact has a tangent at the last evaluated unknowns.
+    pub fn is_linear(&self) -> bool {
+        self.loads.iter().all(|load| !load.active)
+    }
+
+    /// `out += G q` over all kept harmonics.
+    pub fn add_response(&self, slip_load: &[f64], out: &mut [f64]) {
+        self.add_product(slip_load, out, |receptance| &receptance.contact);
+    }
+
+    /// Rate of change of the residual with frequency at fixed unknowns, sign reversed.
+    pub fn frequency_rate(&self) -> Vec<f64> {
+        let harmonics = self.table.harmonics();
+        let mut rate = vec![0.0; self.stuck.len()];
+        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
+            if let Some((_, stuck)) = &receptance.slope {
+                scatter(harmonics, order, stuck, &mut rate);
+            }
+        }
+        self.add_product(&self.slip_load(), &mut rate, |receptance| {
+            receptance.slope.as_ref().map_or(&[], |(contact, _)| contact)
+        });
+        rate
+    }
+
+    /// `out += ∂Q x` at the last evaluated unknowns.
+    pub fn add_tangent_product(&self, x: &[f64], out: &mut [f64]) {
+        let slots = self.table.harmonics().slots();
+        for (load, points) in self.loads.iter().zip(self.model.points()) {
+            if !load.active {
+                continue;
+            }
+            let range = points.start * slots..points.end * slots;
+            let rows = load.tangent.chunks_exact(range.len());
+            for (row, value) in rows.zip(&mut out[range.clone()]) {
+                *value += row.iter().zip(&x[range.clone()]).map(|(t, x)| t * x).sum::<f64>();
+            }
+        }
+    }
+
+    fn add_product(
+        &self,
+        slip_load: &[f64],
+        out: &mut [f64],
+        matrix: impl Fn(&Receptance) -> &[c64],
+    ) {
+        let harmonics = self.table.harmonics();
+        let slots = harmonics.slots();
+        let contacts = self.model.compliance().contacts();
+        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
+            let Some(slot) = harmonics.slot(order) else { continue };
+            let g = matrix(receptance);
+            if g.is_empty() {
+                continue;
+            }
+            for column in 0..contacts {
+                let at = column * slots + slot;
+                let q = if order == 0 {
+                    c64::new(slip_load[at], 0.0)
+                } else {
+                    c64::new(slip_load[at], -slip_load[at + 1])
+                };
+                if q == c64::new(0.0, 0.0) {
+                    continue;
+                }
+                for row in 0..contacts {
+                    let u = g[column * contacts + row] * q;
+                    out[row * slots + slot] += u.re;
+                    if order > 0 {
+                        out[row * slots + slot + 1] -= u.im;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Assembles and factors `I − G_AA ∂Q_A` of the active points.
+    fn factorise(&mut self) {
+        let slots = self.table.harmonics().slots();
+        self.active.clear();
+        for (load, points) in self.loads.iter().zip(self.model.points()) {
+            if load.active {
+                self.active.extend(points.clone());
+            }
+        }
+        let mut matrix = Mat::<f64>::identity(self.active.len() * slots, self.active.len() * slots);
+        let mut first = 0;
+        for (load, points) in self.loads.iter().zip(self.model.points()) {
+            if load.active {
+                self.subtract_contact(load, points.clone(), first, &mut matrix);
+                first += points.len();
+            }
+        }
+        self.factor = Some(matrix.partial_piv_lu());
+    }
+
+    /// Subtracts `G ∂Q` of one contact, whose first active column block is `first`.
+    fn subtract_contact(
+        &self,
+        load: &SlipLoad,
+        points: std::ops::Range<usize>,
+        first: usize,
+        matrix: &mut Mat<f64>,
+    ) {
+        let harmonics = self.table.harmonics();
+        let slots = harmonics.slots();
+        let contacts = self.model.compliance().contacts();
+        let size = points.len() * slots;
+        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
+            let Some(slot) = harmonics.slot(order) else { continue };
+            for (row, &point) in self.active.iter().enumerate() {
+                let target = row * slots + slot;
+                for (local, source) in points.clone().enumerate() {
+                    let g = receptance.contact[source * contacts + point];
+                    let cosines = &load.tangent[(local * slots + slot) * size..][..size];
+                    if order == 0 {
+                        for (j, dq) in cosines.iter().enumerate() {
+                            matrix[(target, first * slots + j)] -= g.re * dq;
+                        }
+                        continue;
+                    }
+                    let sines = &load.tangent[(local * slots + slot + 1) * size..][..size];
+                    for (j, (a, b)) in cosines.iter().zip(sines).enumerate() {
+                        let column = first * slots + j;
+                        matrix[(target, column)] -= g.re * a + g.im * b;
+                        matrix[(target + 1, column)] -= g.re * b - g.im * a;
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl System for Condensed<'_> {
+    fn size(&self) -> usize {
+        self.stuck.len()
+    }
+
+    fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+        let mut loads = std::mem::take(&mut self.loads);
+        let mut law_time = std::time::Duration::ZERO;
+        Profile::time(&mut law_time, || {
+            for (index, load) in loads.iter_mut().enumerate() {
+                self.model.laws()[index].slip_load(self.motion(index, x), true, load);
+            }
+        });
+        self.profile.law += law_time;
+        self.profile.evaluations += 1;
+        self.loads = loads;
+        self.factor = None;
+        out.fill(0.0);
+        self.add_response(&self.slip_load(), out);
+        for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
+            *r = x - self.scale * stuck - *r;
+        }
+    }
+
+    fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
+        let start = std::time::Instant::now();
+        let slots = self.table.harmonics().slots();
+        step.copy_from_slice(rhs);
+        if self.is_linear() {
+            return true;
+        }
+        if self.factor.is_none() {
+            self.factorise();
+            self.profile.factorisations += 1;
+        }
+        let Some(factor) = &self.factor else { return false };
+        let mut block = Mat::from_fn(self.active.len() * slots, 1, |i, _| {
+            rhs[self.active[i / slots] * slots + i % slots]
+        });
+        factor.solve_in_place(&mut block);
+        // Active points take the block's solution; the others follow from step = rhs + G ∂Q step.
+        let mut active_step = vec![0.0; step.len()];
+        for i in 0..block.nrows() {
+            active_step[self.active[i / slots] * slots + i % slots] = block[(i, 0)];
+        }
+        if self.active.len() * slots < step.len() {
+            let mut change = vec![0.0; step.len()];
+            self.add_tangent_product(&active_step, &mut change);
+            self.add_response(&change, step);
+        }
+        for &point in &self.active {
+            let range = point * slots..(point + 1) * slots;
+            step[range.clone()].copy_from_slice(&active_step[range]);
+        }
+        self.profile.linear_solve += start.elapsed();
+        step.iter().all(|s| s.is_finite())
+    }
+}
+
+impl Parametrised for Condensed<'_> {
+    fn set_scale(&mut self, scale: f64) {
+        self.scale = scale;
+    }
+
+    fn easy_start(&self, x: &mut [f64]) {
+        x.iter_mut().zip(&self.stuck).for_each(|(x, stuck)| *x = self.scale * stuck);
+    }
+}
+
+/// Writes complex amplitudes of all points at one order into a real layout.
+pub fn scatter(harmonics: &Harmonics, order: usize, amplitudes: &[c64], out: &mut [f64]) {
+    let slots = harmonics.slots();
+    let Some(slot) = harmonics.slot(order) else { return };
+    for (point, amplitude) in amplitudes.iter().enumerate() {
+        out[point * slots + slot] = amplitude.re;
+        if order > 0 {
+            out[point * slots + slot + 1] = -amplitude.im;
+        }
+    }
+}
+
+/// Reads the complex amplitudes of all points at one order from a real layout.
+pub fn gather(harmonics: &Harmonics, order: usize, series: &[f64], out: &mut Vec<c64>) {
+    out.clear();
+    let slots = harmonics.slots();
+    let Some(slot) = harmonics.slot(order) else { return };
+    out.extend(series.chunks_exact(slots).map(|point| {
+        let imaginary = if order > 0 { -point[slot + 1] } else { 0.0 };
+        c64::new(point[slot], imaginary)
+    }));
+}
+
+/// Writes the amplitudes X_0, X_1, … of one series into its real layout.
+pub fn scatter_series(harmonics: &Harmonics, amplitudes: &[c64], out: &mut [f64]) {
+    for order in harmonics.orders() {
+        if let Some(amplitude) = amplitudes.get(order) {
+            scatter(harmonics, order, std::slice::from_ref(amplitude), out);
+        }
+    }
+}

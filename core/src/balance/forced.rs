@@ -1,0 +1,269 @@
+//! The forced response at one frequency.
+
+use super::accuracy::{discarded_harmonics, Correction};
+use super::condensed::{gather, Condensed, Unknowns};
+use super::settings::{HarmonicChoice, Settings};
+use super::solution::{Point, PointStatus};
+use crate::contact::PointSummary;
+use crate::fourier::{Harmonics, SampleTable};
+use crate::model::Model;
+use crate::solve::{homotopy, newton, Outcome, System as _};
+use crate::timing::Profile;
+use crate::Error;
+use faer::c64;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Orders that automatic harmonics climb: half as many again from rung to rung.
+const LADDER: [usize; 17] = [
+    1, 3, 5, 7, 9, 13, 19, 27, 39, 57, 83, 121, 177, 261, 387, 575, 857,
+];
+/// Automatic harmonics start here: enough for a smooth slip cycle.
+const FIRST_RUNG: usize = 3;
+/// An estimate this far below the tolerance lets the next point try one rung less.
+const GENEROUS: f64 = 0.05;
+
+/// The harmonic balance of a model under its loads, from point to point.
+pub struct ForcedBalance<'a> {
+    pub(super) model: &'a Model,
+    pub(super) settings: Settings,
+    observe: &'a [usize],
+    half_wave: bool,
+    forced: Vec<usize>,
+    tables: BTreeMap<usize, Arc<SampleTable>>,
+    rung: usize,
+    pub(super) profile: Profile,
+}
+
+impl<'a> ForcedBalance<'a> {
+    /// Prepares the balance; displacements are recovered at the DOFs `observe`.
+    ///
+    /// # Errors
+    /// Settings outside their range, a DOF that does not exist, or a mean displacement that
+    /// rigid-body motion leaves undefined.
+    pub fn new(model: &'a Model, settings: Settings, observe: &'a [usize]) -> Result<Self, Error> {
+        let forced = model.compliance().forced_harmonics();
+        settings.check(&forced)?;
+        if let Some(&dof) = observe.iter().find(|&&dof| dof >= model.compliance().dofs()) {
+            return Err(Error::value(
+                "observe",
+                dof as f64,
+                &format!("the structure has {} DOFs", model.compliance().dofs()),
+            ));
+        }
+        let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
+        if !half_wave {
+            let mut receptance = crate::structure::Receptance::default();
+            model.compliance().receptance(0, 0.0, &mut receptance)?;
+        }
+        Ok(Self {
+            model,
+            settings,
+            observe,
+            half_wave,
+            forced,
+            tables: BTreeMap::new(),
+            rung: FIRST_RUNG,
+            profile: Profile::default(),
+        })
+    }
+
+    /// Whether only odd harmonics are solved for.
+    #[must_use]
+    pub fn half_wave(&self) -> bool {
+        self.half_wave
+    }
+
+    pub(super) fn observed(&self) -> usize {
+        self.observe.len()
+    }
+
+    fn table(&mut self, highest: usize) -> Arc<SampleTable> {
+        let half_wave = self.half_wave;
+        let table = self
+            .tables
+            .entry(highest)
+            .or_insert_with(|| Arc::new(SampleTable::new(Harmonics::new(highest, half_wave))));
+        Arc::clone(table)
+    }
+
+    /// Solves at one frequency [rad/s] from a start, or from the stuck response.
+    ///
+    /// # Errors
+    /// The loads themselves excite an undamped resonance.
+    pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
+        match self.settings.harmonics {
+            HarmonicChoice::Fixed(highest) => self.solve_with(highest, omega, start),
+            HarmonicChoice::Auto => self.solve_automatically(omega, start),
+        }
+    }
+
+    /// Climbs the ladder of orders until the discarded harmonics matter less than the tolerance.
+    fn solve_automatically(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
+        let limit = self.settings.max_harmonics;
+        let lowest = self.forced.last().copied().unwrap_or(1).max(1);
+        let rungs: Vec<usize> = LADDER
+            .iter()
+            .copied()
+            .filter(|&h| h >= lowest && h < limit)
+            .chain([limit])
+            .collect();
+        let mut rung = self.rung.min(rungs.len() - 1);
+        let mut start = start.cloned();
+        let mut iterations = 0;
+        loop {
+            let mut point = self.solve_with(rungs[rung], omega, start.as_ref())?;
+            iterations += point.iterations;
+            point.iterations = iterations;
+            let error = self.relative_error(&point);
+            if point.status == PointStatus::Converged && error <= self.settings.tolerance {
+                let generous = error <= GENEROUS * self.settings.tolerance;
+                self.rung = rung - usize::from(generous && rung > 0);
+                return Ok(point);
+            }
+            if rung + 1 == rungs.len() {
+                self.rung = rung;
+                if point.status == PointStatus::Converged {
+                    point.status = PointStatus::HarmonicsLimit;
+                }
+                return Ok(point);
+            }
+            if point.status == PointStatus::Converged {
+                start = point.unknowns;
+            }
+            rung += 1;
+        }
+    }
+
+    /// Largest estimated error of an observed DOF relative to its own amplitude.
+    fn relative_error(&self, point: &Point) -> f64 {
+        let orders = point.harmonics + 1;
+        point
+            .error_estimate
+            .iter()
+            .zip(point.displacement.chunks_exact(orders))
+            .map(|(&error, series)| {
+                let amplitude = series[1..].iter().map(|x| x.norm()).fold(0.0, f64::max);
+                if error == 0.0 { 0.0 } else { error / amplitude.max(f64::MIN_POSITIVE) }
+            })
+            .fold(0.0, f64::max)
+    }
+
+    fn solve_with(
+        &mut self,
+        highest: usize,
+        omega: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Point, Error> {
+        let table = self.table(highest);
+        let mut equations = Condensed::new(self.model, &table, self.settings.residual, false);
+        let solved = self.solve_equations(&mut equations, omega, start)?;
+        self.add_profile(&equations.profile);
+        Ok(solved)
+    }
+
+    pub(super) fn add_profile(&mut self, profile: &Profile) {
+        self.profile.compliance += profile.compliance;
+        self.profile.law += profile.law;
+        self.profile.linear_solve += profile.linear_solve;
+        self.profile.evaluations += profile.evaluations;
+        self.profile.factorisations += profile.factorisations;
+    }
+
+    /// Newton's method from the start, then homotopy in the load, then a status that says so.
+    fn solve_equations(
+        &mut self,
+        equations: &mut Condensed<'_>,
+        omega: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Point, Error> {
+        let contacts = self.model.compliance().contacts();
+        if let Err((order, error)) = equations.set_omega(omega) {
+            if order == 0 || self.forced.contains(&order) {
+                return Err(error);
+            }
+            return Ok(Point::empty(omega, PointStatus::Singular, self.observe.len(), contacts));
+        }
+        let harmonics = equations.harmonics();
+        let mut x = start.map_or_else(
+            || equations.stuck_response().to_vec(),
+            |unknowns| unknowns.recast(harmonics),
+        );
+        let mut report = newton(equations, &mut x, self.settings.newton);
+        if report.outcome != Outcome::Converged {
+            self.profile.homotopies += 1;
+            let mut along = x.clone();
+            let second = homotopy(equations, &mut along, self.settings.newton);
+            report.iterations += second.iterations;
+            if second.outcome == Outcome::Converged {
+                (report.outcome, report.residual) = (second.outcome, second.residual);
+                x = along;
+            }
+            let mut residual = vec![0.0; equations.size()];
+            equations.residual(&x, &mut residual);
+        }
+        let status = match report.outcome {
+            Outcome::Converged => PointStatus::Converged,
+            Outcome::Stalled => PointStatus::Stalled,
+            Outcome::Singular => PointStatus::Singular,
+        };
+        let start = std::time::Instant::now();
+        let mut point = self.recover(equations, omega, &x, status)?;
+        self.profile.recovery += start.elapsed();
+        point.residual = report.residual;
+        point.iterations = report.iterations;
+        point.unknowns = Some(Unknowns {
+            harmonics: harmonics.clone(),
+            values: x,
+        });
+        Ok(point)
+    }
+
+    /// Displacements, contact forces, slip shares and the error estimate of a solution.
+    fn recover(
+        &self,
+        equations: &mut Condensed<'_>,
+        omega: f64,
+        x: &[f64],
+        status: PointStatus,
+    ) -> Result<Point, Error> {
+        let harmonics = equations.harmonics();
+        let contacts = self.model.compliance().contacts();
+        let orders = harmonics.highest() + 1;
+        let mut point = Point::empty(omega, status, self.observe.len(), contacts);
+        point.harmonics = harmonics.highest();
+        let zero = c64::new(0.0, 0.0);
+        point.displacement = vec![zero; self.observe.len() * orders];
+        point.contact_displacement = vec![zero; contacts * orders];
+        point.contact_force = vec![zero; contacts * orders];
+        let slip_load = equations.slip_load();
+        let stiffness = self.model.contact_stiffness();
+        let (mut u, mut q) = (Vec::new(), Vec::new());
+        let mut observed = vec![zero; self.observe.len()];
+        for order in harmonics.orders() {
+            gather(harmonics, order, x, &mut u);
+            gather(harmonics, order, &slip_load, &mut q);
+            self.model
+                .compliance()
+                .displacement(order, omega, &u, &q, self.observe, &mut observed)?;
+            for (i, value) in observed.iter().enumerate() {
+                point.displacement[i * orders + order] = *value;
+            }
+            for i in 0..contacts {
+                let stuck: c64 = (0..contacts).map(|j| u[j] * stiffness[(i, j)]).sum();
+                point.contact_displacement[i * orders + order] = u[i];
+                point.contact_force[i * orders + order] = stuck - q[i];
+            }
+        }
+        let mut summaries = vec![PointSummary::default(); contacts];
+        for (index, law) in self.model.laws().iter().enumerate() {
+            let range = self.model.points()[index].clone();
+            law.summary(equations.motion(index, x), &mut summaries[range]);
+        }
+        point.contacts = summaries;
+        let discarded = discarded_harmonics(harmonics, omega, self.model);
+        let correction = Correction::new(self.model, equations, &discarded, omega, x)?;
+        point.error_estimate = correction.errors(self.model, omega, self.observe, &point)?;
+        Ok(point)
+    }
+}

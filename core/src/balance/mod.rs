@@ -1,0 +1,21 @@
+//! The harmonic balance equations, condensed to the relative contact displacements:
+//! `U_k = U_k^stuck + G_k Q_k(U)` for every kept harmonic k.
+
+mod accuracy;
+mod adaptive;
+mod condensed;
+mod forced;
+mod peak;
+mod settings;
+mod solution;
+mod sweep;
+
+pub use adaptive::sweep_range;
+pub use forced::ForcedBalance;
+pub use peak::refine_peak;
+pub use settings::{HarmonicChoice, Settings};
+pub use solution::{Point, PointStatus, Solution};
+pub use sweep::sweep;
+
+/// Called between points with the share of the work done; `false` ends the analysis.
+pub type Progress<'a> = dyn FnMut(f64) -> bool + 'a;

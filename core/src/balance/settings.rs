@@ -1,0 +1,74 @@
+//! Settings of a forced response, each with its default.
+
+use crate::contact::Residual;
+use crate::solve::NewtonSettings;
+use crate::Error;
+
+/// How many harmonics a balance keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HarmonicChoice {
+    /// Harmonics up to a fixed order.
+    Fixed(usize),
+    /// As many at each point as the tolerance demands.
+    Auto,
+}
+
+/// Settings of a forced response.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Harmonics kept; default [`HarmonicChoice::Auto`].
+    pub harmonics: HarmonicChoice,
+    /// Relative error of the amplitudes, for automatic harmonics and steps; default 1e-3.
+    pub tolerance: f64,
+    /// Mean force of contacts that never slip; default [`Residual::Centred`].
+    pub residual: Residual,
+    /// Highest order that automatic harmonics may reach; default 255.
+    pub max_harmonics: usize,
+    /// Newton's method at each point.
+    pub newton: NewtonSettings,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            harmonics: HarmonicChoice::Auto,
+            tolerance: 1e-3,
+            residual: Residual::Centred,
+            max_harmonics: 255,
+            newton: NewtonSettings::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// Checks the settings against the loads of a model.
+    ///
+    /// # Errors
+    /// A setting outside its range, or a load at a harmonic that would not be kept.
+    pub fn check(&self, forced: &[usize]) -> Result<(), Error> {
+        let highest_forced = forced.last().copied().unwrap_or(0).max(1);
+        let (entry, kept) = match self.harmonics {
+            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
+            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
+        };
+        if kept < highest_forced {
+            return Err(Error::value(
+                entry,
+                kept as f64,
+                &format!("must be at least {highest_forced}, the highest forced harmonic"),
+            ));
+        }
+        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
+            return Err(Error::value("tolerance", self.tolerance, "must lie between 0 and 1"));
+        }
+        if self.newton.max_iterations == 0 {
+            return Err(Error::value("max_iterations", 0.0, "must be at least 1"));
+        }
+        if let Residual::Value(force) = self.residual {
+            if !force.is_finite() {
+                return Err(Error::value("residual", force, "must be a finite force in N"));
+            }
+        }
+        Ok(())
+    }
+}

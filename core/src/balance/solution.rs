@@ -1,0 +1,84 @@
+//! What a forced response returns.
+
+use super::condensed::Unknowns;
+use crate::contact::PointSummary;
+use crate::timing::Profile;
+use faer::c64;
+
+/// How the solution at one frequency ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PointStatus {
+    /// Solved.
+    Converged,
+    /// Newton's method and homotopy both failed.
+    Stalled,
+    /// A discarded-free equation is singular: an undamped resonance at one of the harmonics.
+    Singular,
+    /// The analysis was ended before.
+    NotComputed,
+    /// Solved, but automatic harmonics reached their limit above the tolerance.
+    HarmonicsLimit,
+}
+
+/// Solution at one frequency.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Excitation frequency [rad/s].
+    pub omega: f64,
+    /// How it ended.
+    pub status: PointStatus,
+    /// Highest harmonic kept.
+    pub harmonics: usize,
+    /// Residual, relative to the contact displacements.
+    pub residual: f64,
+    /// Newton iterations, homotopy included.
+    pub iterations: usize,
+    /// Amplitudes X_k of the observed DOFs, DOF after DOF, k = 0..=harmonics.
+    pub displacement: Vec<c64>,
+    /// Amplitudes U_k of the contact displacements, laid out likewise.
+    pub contact_displacement: Vec<c64>,
+    /// Amplitudes F_k of the contact forces, laid out likewise.
+    pub contact_force: Vec<c64>,
+    /// What the discarded harmonics could change at each observed DOF [m].
+    pub error_estimate: Vec<f64>,
+    /// Slip share and friction work per contact point.
+    pub contacts: Vec<PointSummary>,
+    pub(super) unknowns: Option<Unknowns>,
+}
+
+impl Point {
+    pub(super) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {
+        Self {
+            omega,
+            status,
+            harmonics: 0,
+            residual: f64::NAN,
+            iterations: 0,
+            displacement: vec![c64::new(f64::NAN, 0.0); observed],
+            contact_displacement: vec![c64::new(f64::NAN, 0.0); contacts],
+            contact_force: vec![c64::new(f64::NAN, 0.0); contacts],
+            error_estimate: vec![f64::NAN; observed],
+            contacts: vec![
+                PointSummary {
+                    slip_fraction: f64::NAN,
+                    dissipation: f64::NAN,
+                };
+                contacts
+            ],
+            unknowns: None,
+        }
+    }
+}
+
+/// A whole curve.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// Points in the order of the sweep.
+    pub points: Vec<Point>,
+    /// Whether only odd harmonics were solved for.
+    pub half_wave: bool,
+    /// Whether the analysis was ended before its last point.
+    pub interrupted: bool,
+    /// Where the time went.
+    pub profile: Profile,
+}

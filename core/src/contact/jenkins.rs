@@ -1,0 +1,304 @@
+//! The Jenkins element: a spring k_d in series with a slider of limit F_d.
+//!
+//! It is the stop operator `f_j = clip(f_{j−1} + k_d Δu, ±F_d)` (Guillen 1999, Table 3.1,
+//! corrected: the printed update never unloads). Here it is followed from event to event: between
+//! the turning points of u, each located exactly, the element sticks, or sticks and then slips.
+//! The Fourier integrals over the intervals are exact, so that no sampling error enters, and
+//! their derivative is exact with them: f is continuous, hence moving interval ends add nothing.
+
+use super::cycle::{union_of, Cycle, Slip, Stick};
+use super::{scalar, FrictionLaw, Motion, Parameters, PointSummary, Residual, SlipLoad};
+use crate::fourier::{Harmonics, IntervalSums};
+use crate::Error;
+use faer::Mat;
+use std::f64::consts::PI;
+
+/// Elastic, perfectly plastic friction element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jenkins {
+    stiffness: f64,
+    slip_force: f64,
+}
+
+impl Jenkins {
+    /// An element of stiffness k_d [N/m] and slip force F_d [N]; an infinite slip force never
+    /// slips.
+    ///
+    /// # Errors
+    /// Negative or NaN parameters, infinite stiffness.
+    pub fn new(stiffness: f64, slip_force: f64) -> Result<Self, Error> {
+        if !(stiffness.is_finite() && stiffness >= 0.0) {
+            return Err(Error::value(
+                "jenkins: stiffness",
+                stiffness,
+                "must be finite and not negative; take about 1000 times the local stiffness of the structure for a rigid damper",
+            ));
+        }
+        if slip_force.is_nan() || slip_force < 0.0 {
+            return Err(Error::value(
+                "jenkins: slip_force",
+                slip_force,
+                "must not be negative; infinity means that the contact never slips",
+            ));
+        }
+        Ok(Self { stiffness, slip_force })
+    }
+
+    pub(super) fn from_parameters(parameters: &Parameters) -> Result<Self, Error> {
+        Self::new(
+            scalar("jenkins", parameters, "stiffness")?,
+            scalar("jenkins", parameters, "slip_force")?,
+        )
+    }
+
+    /// Slip load of a stuck contact and its derivatives in the middle and in half the range of u.
+    fn stuck_load(&self, residual: Residual, middle: f64, half_range: f64) -> (f64, f64, f64) {
+        let k = self.stiffness;
+        let (wanted, wanted_slope) = match residual {
+            Residual::Centred => (0.0, 0.0),
+            Residual::FromRest => (k * middle, k),
+            Residual::Value(force) => (force, 0.0),
+        };
+        let room = self.slip_force - k * half_range;
+        if wanted.abs() <= room {
+            (k * middle - wanted, k - wanted_slope, 0.0)
+        } else {
+            (k * middle - room.copysign(wanted), k, k.copysign(wanted))
+        }
+    }
+}
+
+impl FrictionLaw for Jenkins {
+    fn points(&self) -> usize {
+        1
+    }
+
+    fn stiffness(&self) -> Mat<f64> {
+        Mat::from_fn(1, 1, |_, _| self.stiffness)
+    }
+
+    fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
+        let harmonics = motion.table.harmonics();
+        let size = harmonics.slots();
+        out.reset(size, tangent);
+        let k = self.stiffness;
+        match Cycle::new(motion, self.stiffness, self.slip_force) {
+            Cycle::Free => {
+                for (i, u) in motion.displacement.iter().enumerate() {
+                    out.value[i] = k * u;
+                    if tangent {
+                        out.tangent[i * size + i] = k;
+                    }
+                }
+                out.active = k > 0.0;
+            }
+            Cycle::Stuck { crest, trough } => {
+                if !harmonics.has_mean() {
+                    return;
+                }
+                let middle = 0.5 * (crest.value + trough.value);
+                let half_range = 0.5 * (crest.value - trough.value);
+                let (load, by_middle, by_range) =
+                    self.stuck_load(motion.residual, middle, half_range);
+                out.value[0] = load;
+                out.active = by_middle != 0.0 || by_range != 0.0;
+                if tangent && out.active {
+                    let (mut high, mut low) = (vec![0.0; size], vec![0.0; size]);
+                    harmonics.basis(crest.theta, &mut high);
+                    harmonics.basis(trough.theta, &mut low);
+                    for (j, slope) in out.tangent[..size].iter_mut().enumerate() {
+                        *slope = 0.5 * (by_middle * (high[j] + low[j]) + by_range * (high[j] - low[j]));
+                    }
+                }
+            }
+            Cycle::Slipping { sticks, slips } => {
+                out.active = true;
+                let weight = 2.0 / harmonics.span();
+                self.integrate_value(motion, harmonics, &sticks, &slips, out, tangent);
+                if tangent {
+                    add_anchors(harmonics, &sticks, k * weight, out);
+                }
+                halve_mean_row(harmonics, size, out, tangent);
+            }
+        }
+    }
+
+    fn slip_load_at(&self, motion: Motion<'_>, harmonics: &Harmonics, out: &mut [f64]) {
+        out.fill(0.0);
+        let Cycle::Slipping { sticks, slips } = Cycle::new(motion, self.stiffness, self.slip_force) else {
+            return;
+        };
+        let kept = motion.table.harmonics();
+        let weight = 2.0 / kept.span();
+        let highest = harmonics.highest() + kept.highest();
+        let union = union_of(&slips, highest);
+        union.products(harmonics, kept, weight * self.stiffness, |i, j, v| {
+            out[i] += v * motion.displacement[j];
+        });
+        self.add_constants(harmonics, &sticks, &slips, weight, out);
+    }
+
+    fn slip_load_change(
+        &self,
+        motion: Motion<'_>,
+        harmonics: &Harmonics,
+        change: &[f64],
+        out: &mut [f64],
+    ) {
+        out.fill(0.0);
+        let kept = motion.table.harmonics();
+        let k = self.stiffness;
+        let Cycle::Slipping { sticks, slips } = Cycle::new(motion, self.stiffness, self.slip_force) else {
+            return;
+        };
+        let weight = 2.0 / kept.span();
+        let union = union_of(&slips, harmonics.highest() + kept.highest());
+        union.products(kept, harmonics, weight * k, |i, j, v| out[i] += v * change[j]);
+        let mut sums = IntervalSums::default();
+        for stick in &sticks {
+            sums.reset(kept.highest());
+            sums.add(stick.start, stick.end);
+            let at_anchor = harmonics.jet(change, stick.anchor)[0];
+            sums.add_basis(kept, weight * k * at_anchor, out);
+        }
+        if kept.has_mean() {
+            out[0] *= 0.5;
+        }
+    }
+
+    fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
+        let span = motion.table.harmonics().span();
+        out[0] = match Cycle::new(motion, self.stiffness, self.slip_force) {
+            Cycle::Free => PointSummary {
+                slip_fraction: f64::from(u8::from(self.slip_force == 0.0)),
+                dissipation: 0.0,
+            },
+            Cycle::Stuck { .. } => PointSummary::default(),
+            Cycle::Slipping { slips, .. } => {
+                let length: f64 = slips.iter().map(|slip| slip.end - slip.start).sum();
+                let travel: f64 = slips.iter().map(|slip| slip.travel).sum();
+                PointSummary {
+                    slip_fraction: length / span,
+                    dissipation: self.slip_force * travel * 2.0 * PI / span,
+                }
+            }
+        };
+    }
+
+    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+        let harmonics = motion.table.harmonics();
+        let k = self.stiffness;
+        let cycle = Cycle::new(motion, self.stiffness, self.slip_force);
+        (0..samples)
+            .map(|n| {
+                let theta = 2.0 * PI * n as f64 / samples as f64;
+                let u = harmonics.jet(motion.displacement, theta)[0];
+                match &cycle {
+                    Cycle::Free => 0.0,
+                    Cycle::Stuck { crest, trough } => {
+                        let middle = 0.5 * (crest.value + trough.value);
+                        let half_range = 0.5 * (crest.value - trough.value);
+                        k * u - self.stuck_load(motion.residual, middle, half_range).0
+                    }
+                    Cycle::Slipping { sticks, slips } => {
+                        let span = harmonics.span();
+                        let start = sticks[0].start;
+                        let turns = ((theta - start) / span).floor();
+                        let folded = theta - turns * span;
+                        let mirror = harmonics.half_wave() && turns.rem_euclid(2.0) != 0.0;
+                        let sign = if mirror { -1.0 } else { 1.0 };
+                        sign * self.force_at(sticks, slips, folded, sign * u)
+                    }
+                }
+            })
+            .collect()
+    }
+}
+
+impl Jenkins {
+    /// Adds the integrals of the slip load to `out.value`, and those of its derivative within
+    /// slip intervals to `out.tangent`.
+    fn integrate_value(
+        &self,
+        motion: Motion<'_>,
+        harmonics: &Harmonics,
+        sticks: &[Stick],
+        slips: &[Slip],
+        out: &mut SlipLoad,
+        tangent: bool,
+    ) {
+        let size = harmonics.slots();
+        let weight = 2.0 / harmonics.span();
+        let union = union_of(slips, 2 * harmonics.highest());
+        let SlipLoad { value, tangent: matrix, .. } = out;
+        union.products(harmonics, harmonics, weight * self.stiffness, |i, j, v| {
+            value[i] += v * motion.displacement[j];
+            if tangent {
+                matrix[i * size + j] = v;
+            }
+        });
+        self.add_constants(harmonics, sticks, slips, weight, value);
+    }
+
+    /// Integrals of the constant parts: the slip load of each stick interval, and `−(±F_d)` of
+    /// each slip interval.
+    fn add_constants(
+        &self,
+        harmonics: &Harmonics,
+        sticks: &[Stick],
+        slips: &[Slip],
+        weight: f64,
+        out: &mut [f64],
+    ) {
+        let mut sums = IntervalSums::default();
+        let constants = sticks
+            .iter()
+            .map(|stick| (stick.start, stick.end, stick.slip_load))
+            .chain(slips.iter().map(|slip| (slip.start, slip.end, -slip.sign * self.slip_force)));
+        for (start, end, constant) in constants {
+            sums.reset(harmonics.highest());
+            sums.add(start, end);
+            sums.add_basis(harmonics, weight * constant, out);
+        }
+    }
+
+    /// Force at an angle inside the span that the intervals cover.
+    fn force_at(&self, sticks: &[Stick], slips: &[Slip], theta: f64, u: f64) -> f64 {
+        if let Some(slip) = slips.iter().find(|s| theta >= s.start && theta < s.end) {
+            return slip.sign * self.slip_force;
+        }
+        let stick = sticks.iter().find(|s| theta >= s.start && theta <= s.end);
+        let load = stick.or(sticks.last()).map_or(0.0, |s| s.slip_load);
+        (self.stiffness * u - load).clamp(-self.slip_force, self.slip_force)
+    }
+}
+
+/// Adds the rank-one change of every stick interval: its slip load follows the displacement of
+/// its anchor. Leaving this history out breaks Newton's method.
+fn add_anchors(harmonics: &Harmonics, sticks: &[Stick], weight: f64, out: &mut SlipLoad) {
+    let size = harmonics.slots();
+    let mut sums = IntervalSums::default();
+    let (mut integral, mut at_anchor) = (vec![0.0; size], vec![0.0; size]);
+    for stick in sticks {
+        sums.reset(harmonics.highest());
+        sums.add(stick.start, stick.end);
+        integral.fill(0.0);
+        sums.add_basis(harmonics, weight, &mut integral);
+        harmonics.basis(stick.anchor, &mut at_anchor);
+        for (row, i) in out.tangent.chunks_exact_mut(size).zip(&integral) {
+            for (entry, j) in row.iter_mut().zip(&at_anchor) {
+                *entry += i * j;
+            }
+        }
+    }
+}
+
+/// The mean of a series is its integral over the period, not twice that.
+fn halve_mean_row(harmonics: &Harmonics, size: usize, out: &mut SlipLoad, tangent: bool) {
+    if harmonics.has_mean() {
+        out.value[0] *= 0.5;
+        if tangent {
+            out.tangent[..size].iter_mut().for_each(|entry| *entry *= 0.5);
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Friction laws behind one trait: series of u in, series of slip load and tangent out.
+//!
+//! The contact force is written `f = D u − q`: the stuck spring's force less the *slip load* q,
+//! which is what slip takes off it. The stuck structure carries D, so that the balance has to
+//! find q alone; it vanishes while a contact sticks. A new law is one file here and one line in
+//! [`law`].
+
+mod cycle;
+mod jenkins;
+
+pub use jenkins::Jenkins;
+
+use crate::fourier::{Harmonics, SampleTable};
+use crate::Error;
+use faer::Mat;
+use std::collections::BTreeMap;
+
+/// Mean force of a contact that never slips. Its steady motion does not determine it: it is what
+/// the past has left, and has to be assumed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Residual {
+    /// The force swings about zero.
+    Centred,
+    /// The load was raised slowly from rest with an unloaded contact.
+    FromRest,
+    /// A given mean force [N], reduced where it would make the contact slip.
+    Value(f64),
+}
+
+impl Residual {
+    /// Whether a motion with half-wave symmetry keeps it under this assumption.
+    #[must_use]
+    pub fn is_symmetric(self) -> bool {
+        !matches!(self, Self::Value(value) if value != 0.0)
+    }
+}
+
+/// One period of the relative displacements at the points of a contact.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<'a> {
+    /// The harmonics kept, and their samples.
+    pub table: &'a SampleTable,
+    /// Real coefficients, point after point.
+    pub displacement: &'a [f64],
+    /// Assumed mean force where the contact never slips.
+    pub residual: Residual,
+}
+
+/// Fourier coefficients of the slip load of one contact, and their derivative.
+#[derive(Debug, Clone, Default)]
+pub struct SlipLoad {
+    /// q, laid out as the displacement [N].
+    pub value: Vec<f64>,
+    /// ∂q/∂u, row by row, valid if it was asked for [N/m].
+    pub tangent: Vec<f64>,
+    /// Whether the tangent differs from zero: a contact that sticks for good is a linear spring
+    /// and drops out of the Newton system.
+    pub active: bool,
+}
+
+impl SlipLoad {
+    pub(crate) fn reset(&mut self, size: usize, tangent: bool) {
+        self.value.clear();
+        self.value.resize(size, 0.0);
+        if tangent {
+            self.tangent.clear();
+            self.tangent.resize(size * size, 0.0);
+        }
+        self.active = false;
+    }
+}
+
+/// What one point of a contact does over a period.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PointSummary {
+    /// Share of the period in slip.
+    pub slip_fraction: f64,
+    /// Friction work per period [J].
+    pub dissipation: f64,
+}
+
+/// A friction law between one or several relative displacements and their forces.
+pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
+    /// Number of relative displacements.
+    fn points(&self) -> usize;
+
+    /// Stiffness D of the stuck contact, points × points, symmetric positive semidefinite [N/m].
+    fn stiffness(&self) -> Mat<f64>;
+
+    /// Slip load of a periodic motion and, if asked for, its tangent. Both belong to each other
+    /// exactly: the tangent is the derivative of this value, history included.
+    fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad);
+
+    /// Coefficients of the slip load at harmonics that the motion does not keep.
+    fn slip_load_at(&self, motion: Motion<'_>, harmonics: &Harmonics, out: &mut [f64]);
+
+    /// First-order change of the kept slip load under a displacement `change` at the harmonics
+    /// `harmonics` that the motion does not keep.
+    fn slip_load_change(
+        &self,
+        motion: Motion<'_>,
+        harmonics: &Harmonics,
+        change: &[f64],
+        out: &mut [f64],
+    );
+
+    /// Slip share and friction work of every point.
+    fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]);
+
+    /// Contact forces at `samples` equidistant instants, instant after instant [N].
+    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
+}
+
+/// Parameters of a law by name.
+pub type Parameters = BTreeMap<String, Vec<f64>>;
+
+/// The registry: a law from its name and parameters.
+///
+/// # Errors
+/// Unknown name, or parameters the law refuses.
+pub fn law(name: &str, parameters: &Parameters) -> Result<Box<dyn FrictionLaw>, Error> {
+    match name {
+        "jenkins" => Ok(Box::new(Jenkins::from_parameters(parameters)?)),
+        other => Err(Error::UnknownLaw {
+            name: other.to_owned(),
+            known: "jenkins".to_owned(),
+        }),
+    }
+}
+
+/// The single number a law expects under `name`.
+fn scalar(law: &str, parameters: &Parameters, name: &str) -> Result<f64, Error> {
+    match parameters.get(name).map(Vec::as_slice) {
+        Some([value]) => Ok(*value),
+        Some(values) => Err(Error::shape(
+            &format!("{law}: {name}"),
+            "one number",
+            format!("{} numbers", values.len()),
+        )),
+        None => Err(Error::shape(&format!("{law}: {name}"), "one number", "nothing")),
+    }
+}

@@ -1,0 +1,84 @@
+//! What can be wrong with a problem, said in one line with the remedy.
+
+/// An input that the mathematics refuses.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A matrix or vector does not fit the structure.
+    #[error("{entry}: expected {expected}, got {got}")]
+    Shape {
+        /// The offending entry.
+        entry: String,
+        /// What would fit.
+        expected: String,
+        /// What was given.
+        got: String,
+    },
+    /// A number is NaN, infinite or outside its range.
+    #[error("{entry} = {value}: {remedy}")]
+    Value {
+        /// The offending entry.
+        entry: String,
+        /// Its value.
+        value: f64,
+        /// What would be accepted.
+        remedy: String,
+    },
+    /// The mass matrix has no Cholesky factor.
+    #[error(
+        "mass: not positive definite; condense massless DOFs out (static condensation) and check its signs"
+    )]
+    IndefiniteMass,
+    /// An eigenvalue iteration did not end.
+    #[error("{0}: the eigenvalue iteration did not converge; check the matrix for entries of absurd size")]
+    Eigenvalues(String),
+    /// The mean displacement is needed, but rigid-body motion leaves it undefined.
+    #[error(
+        "stiffness: singular although all contacts stick (lowest natural frequency {lowest:.3e} rad/s), so the mean displacement is undefined; ground the structure, or leave out static and even-harmonic forces and a prescribed residual"
+    )]
+    SingularStiffness {
+        /// Lowest natural frequency of the stuck structure in rad/s.
+        lowest: f64,
+    },
+    /// The frequency grid meets a resonance of the stuck structure that nothing damps.
+    #[error(
+        "omega = {omega:?} rad/s: harmonic {harmonic} hits the undamped natural frequency {natural:.6} rad/s of the stuck structure; add damping or move this frequency"
+    )]
+    UndampedResonance {
+        /// Excitation frequency in rad/s.
+        omega: f64,
+        /// Harmonic that meets the resonance.
+        harmonic: usize,
+        /// Natural frequency in rad/s.
+        natural: f64,
+    },
+    /// A friction law that is not registered.
+    #[error("contact law '{name}' is unknown; known laws: {known}")]
+    UnknownLaw {
+        /// The name that was asked for.
+        name: String,
+        /// The registered names.
+        known: String,
+    },
+}
+
+impl Error {
+    pub(crate) fn shape(
+        entry: &str,
+        expected: impl std::fmt::Display,
+        got: impl std::fmt::Display,
+    ) -> Self {
+        Self::Shape {
+            entry: entry.to_owned(),
+            expected: expected.to_string(),
+            got: got.to_string(),
+        }
+    }
+
+    pub(crate) fn value(entry: impl Into<String>, value: f64, remedy: &str) -> Self {
+        Self::Value {
+            entry: entry.into(),
+            value,
+            remedy: remedy.to_owned(),
+        }
+    }
+}

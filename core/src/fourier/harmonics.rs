@@ -1,0 +1,224 @@
+//! The harmonics a series keeps and the layout of its real coefficients.
+
+/// The set of harmonics kept in a balance.
+///
+/// Either all harmonics `0..=H`, or the odd ones alone when the motion has half-wave symmetry
+/// `x(t + T/2) = −x(t)`. The real coefficients of a series are stored as `[a_0,] a_k, b_k, …`
+/// with `x(θ) = a_0 + Σ a_k cos kθ + b_k sin kθ`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Harmonics {
+    highest: usize,
+    half_wave: bool,
+    mean: bool,
+    oscillating: Vec<usize>,
+}
+
+impl Harmonics {
+    /// Harmonics up to `highest`, odd ones alone if `half_wave`.
+    #[must_use]
+    pub fn new(highest: usize, half_wave: bool) -> Self {
+        let step = if half_wave { 2 } else { 1 };
+        Self {
+            highest,
+            half_wave,
+            mean: !half_wave,
+            oscillating: (1..=highest).step_by(step).collect(),
+        }
+    }
+
+    /// The harmonics above this set and up to `highest`: what a balance with this set discards.
+    #[must_use]
+    pub fn above(&self, highest: usize) -> Self {
+        let step = if self.half_wave { 2 } else { 1 };
+        let first = self.oscillating.last().map_or(1, |last| last + step);
+        Self {
+            highest,
+            half_wave: self.half_wave,
+            mean: false,
+            oscillating: (first..=highest).step_by(step).collect(),
+        }
+    }
+
+    /// The highest harmonic H that was asked for.
+    #[must_use]
+    pub fn highest(&self) -> usize {
+        self.highest
+    }
+
+    /// Whether only odd harmonics are kept.
+    #[must_use]
+    pub fn half_wave(&self) -> bool {
+        self.half_wave
+    }
+
+    /// The orders k ≥ 1, ascending.
+    #[must_use]
+    pub fn oscillating(&self) -> &[usize] {
+        &self.oscillating
+    }
+
+    /// The orders with the mean, if kept, first.
+    pub fn orders(&self) -> impl Iterator<Item = usize> + '_ {
+        self.has_mean()
+            .then_some(0)
+            .into_iter()
+            .chain(self.oscillating.iter().copied())
+    }
+
+    /// Whether the mean (k = 0) is an unknown.
+    #[must_use]
+    pub fn has_mean(&self) -> bool {
+        self.mean
+    }
+
+    /// Number of real coefficients of one series.
+    #[must_use]
+    pub fn slots(&self) -> usize {
+        self.offset() + 2 * self.oscillating.len()
+    }
+
+    /// Position of the first cosine coefficient.
+    #[must_use]
+    pub fn offset(&self) -> usize {
+        usize::from(self.has_mean())
+    }
+
+    /// Position of `a_k`; `b_k` follows it. `None` when the harmonic is not kept.
+    #[must_use]
+    pub fn slot(&self, order: usize) -> Option<usize> {
+        if order == 0 {
+            return self.has_mean().then_some(0);
+        }
+        let first = *self.oscillating.first()?;
+        let step = if self.half_wave { 2 } else { 1 };
+        if order < first || order > self.highest || (order - first) % step != 0 {
+            return None;
+        }
+        Some(self.offset() + 2 * ((order - first) / step))
+    }
+
+    /// Share of the period over which a motion must be followed: the rest is its mirror image.
+    #[must_use]
+    pub fn span(&self) -> f64 {
+        if self.half_wave {
+            std::f64::consts::PI
+        } else {
+            std::f64::consts::TAU
+        }
+    }
+
+    /// The mean of a series.
+    #[must_use]
+    pub fn mean(&self, series: &[f64]) -> f64 {
+        if self.has_mean() {
+            series[0]
+        } else {
+            0.0
+        }
+    }
+
+    /// Modulus of the fundamental.
+    #[must_use]
+    pub fn fundamental(&self, series: &[f64]) -> f64 {
+        let first = self.offset();
+        series[first].hypot(series[first + 1])
+    }
+
+    /// Value and first two derivatives of a series at the angle `theta`.
+    #[must_use]
+    pub fn jet(&self, series: &[f64], theta: f64) -> [f64; 3] {
+        let (mut value, mut slope, mut curvature) = (self.mean(series), 0.0, 0.0);
+        self.rotate(theta, |order, cos, sin, slot| {
+            let (a, b) = (series[slot], series[slot + 1]);
+            let (in_phase, quadrature) = (a * cos + b * sin, b * cos - a * sin);
+            value += in_phase;
+            slope += order * quadrature;
+            curvature -= order * order * in_phase;
+        });
+        [value, slope, curvature]
+    }
+
+    /// Writes the basis `[1,] cos kθ, sin kθ, …` at the angle `theta`.
+    pub fn basis(&self, theta: f64, basis: &mut [f64]) {
+        if self.has_mean() {
+            basis[0] = 1.0;
+        }
+        self.rotate(theta, |_, cos, sin, slot| {
+            basis[slot] = cos;
+            basis[slot + 1] = sin;
+        });
+    }
+
+    /// Calls `visit(k, cos kθ, sin kθ, slot)` for every k ≥ 1, by rotation instead of one
+    /// sine and cosine per order.
+    #[inline]
+    fn rotate(&self, theta: f64, mut visit: impl FnMut(f64, f64, f64, usize)) {
+        let Some(&first) = self.oscillating.first() else {
+            return;
+        };
+        let (sin_1, cos_1) = theta.sin_cos();
+        let (step, (sin_step, cos_step)) = if self.half_wave {
+            let double = (2.0 * sin_1 * cos_1, (cos_1 - sin_1) * (cos_1 + sin_1));
+            (2.0, double)
+        } else {
+            (1.0, (sin_1, cos_1))
+        };
+        let mut order = first as f64;
+        let (mut sin, mut cos) = if first == 1 {
+            (sin_1, cos_1)
+        } else {
+            (order * theta).sin_cos()
+        };
+        let mut slot = self.offset();
+        for _ in &self.oscillating {
+            visit(order, cos, sin, slot);
+            (cos, sin) = (
+                cos * cos_step - sin * sin_step,
+                sin * cos_step + cos * sin_step,
+            );
+            order += step;
+            slot += 2;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn odd_harmonics_skip_the_mean_and_the_even_orders() {
+        let odd = Harmonics::new(6, true);
+        assert_eq!(odd.orders().collect::<Vec<_>>(), [1, 3, 5]);
+        assert_eq!(
+            (odd.slots(), odd.slot(3), odd.slot(2), odd.slot(0)),
+            (6, Some(2), None, None)
+        );
+        let all = Harmonics::new(2, false);
+        assert_eq!(all.orders().collect::<Vec<_>>(), [0, 1, 2]);
+        assert_eq!((all.slots(), all.slot(2), all.slot(3)), (5, Some(3), None));
+    }
+
+    #[test]
+    fn jet_agrees_with_direct_sums() {
+        for half_wave in [true, false] {
+            let harmonics = Harmonics::new(7, half_wave);
+            let series: Vec<f64> = (0..harmonics.slots())
+                .map(|i| ((3 * i + 1) as f64).sin())
+                .collect();
+            let theta = 0.83_f64;
+            let [value, slope, curvature] = harmonics.jet(&series, theta);
+            let mut expected = [harmonics.mean(&series), 0.0, 0.0];
+            for &k in harmonics.oscillating() {
+                let slot = harmonics.slot(k).unwrap();
+                let (a, b, k) = (series[slot], series[slot + 1], k as f64);
+                expected[0] += a * (k * theta).cos() + b * (k * theta).sin();
+                expected[1] += k * (b * (k * theta).cos() - a * (k * theta).sin());
+                expected[2] -= k * k * (a * (k * theta).cos() + b * (k * theta).sin());
+            }
+            assert!((value - expected[0]).abs() < 1e-13);
+            assert!((slope - expected[1]).abs() < 1e-12);
+            assert!((curvature - expected[2]).abs() < 1e-11);
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! Turning points of a trigonometric series: bracketed on samples, then located exactly.
+
+use super::Harmonics;
+
+/// Samples per period and harmonic on which turning points are bracketed. A polynomial of degree
+/// H has at most 2H turning points, so that 16H samples keep them apart by eight on average.
+const SAMPLES_PER_HARMONIC: usize = 16;
+
+/// An angle where the series turns, and its value there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurningPoint {
+    /// Angle θ = ωt.
+    pub theta: f64,
+    /// Value of the series.
+    pub value: f64,
+}
+
+/// Cosines and sines on a quarter of the period, from which a series' slope on the whole grid
+/// follows by reflection.
+#[derive(Debug, Clone)]
+pub struct SampleTable {
+    harmonics: Harmonics,
+    quarter: usize,
+    cos: Vec<f64>,
+    sin: Vec<f64>,
+}
+
+impl SampleTable {
+    /// The table of a set of harmonics.
+    #[must_use]
+    pub fn new(harmonics: Harmonics) -> Self {
+        let quarter = (SAMPLES_PER_HARMONIC * harmonics.highest().max(4)).div_ceil(4);
+        let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
+        let (mut cos, mut sin) = (Vec::new(), Vec::new());
+        for &order in harmonics.oscillating() {
+            for i in 0..=quarter {
+                let (s, c) = (order as f64 * i as f64 * step).sin_cos();
+                cos.push(c);
+                sin.push(s);
+            }
+        }
+        Self {
+            harmonics,
+            quarter,
+            cos,
+            sin,
+        }
+    }
+
+    /// The harmonics of the table.
+    #[must_use]
+    pub fn harmonics(&self) -> &Harmonics {
+        &self.harmonics
+    }
+
+    /// Finds the turning points in `[0, span)` (half a period under half-wave symmetry), in
+    /// ascending order.
+    pub fn turning_points(&self, series: &[f64], points: &mut Vec<TurningPoint>) {
+        points.clear();
+        let slope = self.sample_slope(series);
+        let count = slope.len();
+        let step = std::f64::consts::FRAC_PI_2 / self.quarter as f64;
+        let mirrored = self.harmonics.half_wave();
+        let rising = |i: usize| (slope[i % count] > 0.0) != (mirrored && i >= count);
+        let value = |i: usize| {
+            let folded = slope[i % count];
+            if mirrored && i >= count {
+                -folded
+            } else {
+                folded
+            }
+        };
+        for i in 0..count {
+            let (left, right) = (i as f64 * step, (i + 1) as f64 * step);
+            if rising(i) != rising(i + 1) {
+                let guess =
+                    left + step * (value(i) / (value(i) - value(i + 1))).clamp(0.0, 1.0);
+                points.push(self.locate(series, left, right, rising(i), guess));
+            } else if rising(i + 2) == rising(i + 1) {
+                self.push_hidden_pair(
+                    series,
+                    [value(i), value(i + 1), value(i + 2)],
+                    [left, right + step],
+                    points,
+                );
+            }
+        }
+        let span = self.harmonics.span();
+        for point in points.iter_mut().filter(|p| p.theta >= span) {
+            // A root in the last bracket may round up to the span, which is the mirrored start.
+            point.theta -= span;
+            if mirrored {
+                point.value = -point.value;
+            }
+        }
+        points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
+    }
+
+    /// Slope of the series on the grid of `[0, span)`.
+    fn sample_slope(&self, series: &[f64]) -> Vec<f64> {
+        let q = self.quarter;
+        // Even and odd orders apart: they reflect with opposite sign about π/2.
+        let mut sums = [(); 4].map(|()| vec![0.0; q + 1]);
+        for (index, &order) in self.harmonics.oscillating().iter().enumerate() {
+            let slot = self.harmonics.offset() + 2 * index;
+            let k = order as f64;
+            let (of_cos, of_sin) = (k * series[slot + 1], -k * series[slot]);
+            let row = index * (q + 1)..(index + 1) * (q + 1);
+            let parity = 2 * (order % 2);
+            for (sum, c) in sums[parity].iter_mut().zip(&self.cos[row.clone()]) {
+                *sum += of_cos * c;
+            }
+            for (sum, s) in sums[parity + 1].iter_mut().zip(&self.sin[row]) {
+                *sum += of_sin * s;
+            }
+        }
+        let [even_cos, even_sin, odd_cos, odd_sin] = sums;
+        if self.harmonics.half_wave() {
+            let mut slope = vec![0.0; 2 * q];
+            for i in 0..=q {
+                slope[i] = odd_cos[i] + odd_sin[i];
+            }
+            for i in 1..q {
+                slope[2 * q - i] = odd_sin[i] - odd_cos[i];
+            }
+            return slope;
+        }
+        let mut slope = vec![0.0; 4 * q];
+        for i in 0..=q {
+            slope[i] = even_cos[i] + odd_cos[i] + even_sin[i] + odd_sin[i];
+            slope[2 * q - i] = even_cos[i] - odd_cos[i] - even_sin[i] + odd_sin[i];
+            slope[2 * q + i] = even_cos[i] - odd_cos[i] + even_sin[i] - odd_sin[i];
+            slope[(4 * q - i) % (4 * q)] = even_cos[i] + odd_cos[i] - even_sin[i] - odd_sin[i];
+        }
+        slope
+    }
+
+    /// Looks for two turning points between samples of equal sign: where the slope comes close to
+    /// zero, its extremum decides.
+    fn push_hidden_pair(
+        &self,
+        series: &[f64],
+        slope: [f64; 3],
+        bracket: [f64; 2],
+        points: &mut Vec<TurningPoint>,
+    ) {
+        let [before, here, after] = slope.map(f64::abs);
+        let bend = before - 2.0 * here + after;
+        if here > before || here > after || bend <= 0.0 {
+            return;
+        }
+        let vertex = here - (after - before).powi(2) / (8.0 * bend);
+        if vertex > 0.25 * here {
+            return;
+        }
+        let Some(theta) = self.slope_extremum(series, bracket) else {
+            return;
+        };
+        let rising = slope[1] > 0.0;
+        if (self.harmonics.jet(series, theta)[1] > 0.0) != rising {
+            let middle = [0.5 * (bracket[0] + theta), 0.5 * (theta + bracket[1])];
+            points.push(self.locate(series, bracket[0], theta, rising, middle[0]));
+            points.push(self.locate(series, theta, bracket[1], !rising, middle[1]));
+        }
+    }
+
+    /// Zero of the second derivative in the bracket, by bisection: rare, so that plain is best.
+    fn slope_extremum(&self, series: &[f64], bracket: [f64; 2]) -> Option<f64> {
+        let curvature = |theta: f64| self.harmonics.jet(series, theta)[2];
+        let [mut low, mut high] = bracket;
+        let sign = curvature(low) > 0.0;
+        if (curvature(high) > 0.0) == sign {
+            return None;
+        }
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if (curvature(middle) > 0.0) == sign {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Some(0.5 * (low + high))
+    }
+
+    /// Newton's method on the slope, kept inside a bracket whose left end rises if `rising`.
+    fn locate(
+        &self,
+        series: &[f64],
+        mut low: f64,
+        mut high: f64,
+        rising: bool,
+        guess: f64,
+    ) -> TurningPoint {
+        let mut theta = guess;
+        let mut jet = self.harmonics.jet(series, theta);
+        for _ in 0..60 {
+            if (jet[1] > 0.0) == rising {
+                low = theta;
+            } else {
+                high = theta;
+            }
+            let newton = theta - jet[1] / jet[2];
+            let next = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+            let moved = (next - theta).abs();
+            // The value is stationary here: an angle good to 1e-10 gives it to rounding.
+            if moved <= 1e-10 {
+                return TurningPoint {
+                    theta: next,
+                    value: jet[0] + 0.5 * jet[1] * (next - theta),
+                };
+            }
+            theta = next;
+            jet = self.harmonics.jet(series, theta);
+        }
+        TurningPoint {
+            theta,
+            value: jet[0],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn turning_points(harmonics: Harmonics, series: &[f64]) -> Vec<TurningPoint> {
+        let mut points = Vec::new();
+        SampleTable::new(harmonics).turning_points(series, &mut points);
+        points
+    }
+
+    #[test]
+    fn a_cosine_turns_at_its_crest_and_trough() {
+        let points = turning_points(Harmonics::new(1, false), &[0.5, 2.0, 0.0]);
+        assert_eq!(points.len(), 2);
+        assert!((points[1].theta - std::f64::consts::PI).abs() < 1e-9);
+        assert!((points[0].value - 2.5).abs() < 1e-14 && (points[1].value + 1.5).abs() < 1e-14);
+        let half = turning_points(Harmonics::new(1, true), &[2.0, 0.0]);
+        assert_eq!(half.len(), 1);
+        assert!((half[0].value.abs() - 2.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn both_layouts_find_the_same_points() {
+        let odd = Harmonics::new(9, true);
+        let all = Harmonics::new(9, false);
+        let series: Vec<f64> = (0..odd.slots())
+            .map(|i| (2.3 * i as f64 + 0.4).sin() / (1.0 + i as f64))
+            .collect();
+        let mut full = vec![0.0; all.slots()];
+        for &k in odd.oscillating() {
+            let (from, to) = (odd.slot(k).unwrap(), all.slot(k).unwrap());
+            full[to..to + 2].copy_from_slice(&series[from..from + 2]);
+        }
+        let half = turning_points(odd, &series);
+        let whole = turning_points(all, &full);
+        assert_eq!(whole.len(), 2 * half.len());
+        for (a, b) in half.iter().zip(&whole) {
+            assert!((a.theta - b.theta).abs() < 1e-9 && (a.value - b.value).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn a_pair_between_two_samples_is_found() {
+        // u' = 1 + eps - cos(theta - s) dips below zero in a window far narrower than the grid.
+        let shift = 0.5 * std::f64::consts::FRAC_PI_2 / 16.0 + 0.3;
+        let depth = 1e-4;
+        let harmonics = Harmonics::new(4, false);
+        // slope = d - (1 - cos(2 (theta - shift))) cannot be written without the mean of the
+        // slope, so build it from orders 1..4: cos 2x - cos x has a double root at x = 0.
+        let mut series = vec![0.0; harmonics.slots()];
+        let mut add = |k: usize, amplitude: f64| {
+            let slot = harmonics.slot(k).unwrap();
+            let phase = k as f64 * shift;
+            series[slot] += -amplitude * phase.sin() / k as f64;
+            series[slot + 1] += amplitude * phase.cos() / k as f64;
+        };
+        add(2, 1.0);
+        add(1, -1.0 + depth);
+        let points = turning_points(harmonics.clone(), &series);
+        let near: Vec<_> = points
+            .iter()
+            .filter(|p| (p.theta - shift).abs() < 0.02)
+            .collect();
+        assert_eq!(near.len(), 2, "{points:?}");
+    }
+}

@@ -1,0 +1,26 @@
+//! Steady vibration of structures damped by dry friction.
+//!
+//! The crate reads from the ground up:
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`fourier`] | trigonometric series: evaluation, turning points, sums over intervals |
+//! | [`structure`] | M, C, K, modes and the compliance of the stuck structure |
+//! | [`contact`] | friction laws behind one trait: series of u in, series of slip load and tangent out |
+//! | [`balance`] | the harmonic balance equations and their sweeps over frequency |
+//! | [`solve`] | Newton's method and homotopy, which know nothing of friction |
+//!
+//! Units are SI throughout; `x(t) = Re Σ X_k exp(i k ω t)`, and a real series is stored as
+//! cosine and sine coefficients, `X_k = a_k − i b_k`.
+
+pub mod balance;
+pub mod contact;
+pub mod error;
+pub mod fourier;
+pub mod model;
+pub mod solve;
+pub mod structure;
+pub mod timing;
+
+pub use error::Error;
+pub use model::Model;

@@ -1,0 +1,156 @@
+//! Newton's method with a line search on the residual norm.
+
+use super::{norm, System};
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonSettings {
+    /// Relative error of the unknowns at which a solution is accepted.
+    pub tolerance: f64,
+    /// Iterations before giving up.
+    pub max_iterations: usize,
+}
+
+impl Default for NewtonSettings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-10,
+            max_iterations: 50,
+        }
+    }
+}
+
+/// How a solution ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The estimated error is below the tolerance.
+    Converged,
+    /// No step along the Newton direction lowers the residual, or too many iterations.
+    Stalled,
+    /// The Jacobian is singular, or the residual is not a number.
+    Singular,
+}
+
+/// Outcome and effort.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Report {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Newton steps taken.
+    pub iterations: usize,
+    /// Norm of the last residual, relative to that of the unknowns.
+    pub residual: f64,
+}
+
+/// Shortest step of the line search: below it the direction is no descent direction in practice.
+const SHORTEST_STEP: f64 = 1.0 / 256.0;
+
+/// Solves `system = 0` from `x`, which holds the best point found on return.
+pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings) -> Report {
+    let size = system.size();
+    let (mut residual, mut step) = (vec![0.0; size], vec![0.0; size]);
+    let (mut trial, mut trial_residual) = (vec![0.0; size], vec![0.0; size]);
+    system.residual(x, &mut residual);
+    let mut size_of_residual = norm(&residual);
+    for iteration in 0..settings.max_iterations {
+        let report = |outcome, residual: f64, x: &[f64]| Report {
+            outcome,
+            iterations: iteration + 1,
+            residual: residual / norm(x).max(f64::MIN_POSITIVE),
+        };
+        if !size_of_residual.is_finite() || !system.solve(&residual, &mut step) {
+            return report(Outcome::Singular, size_of_residual, x);
+        }
+        let size_of_step = norm(&step);
+        if !size_of_step.is_finite() {
+            return report(Outcome::Singular, size_of_residual, x);
+        }
+        let close = size_of_step <= 1e-9 * norm(x);
+        let mut length = 1.0;
+        let size_of_trial = loop {
+            for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(&step) {
+                *t = x - length * s;
+            }
+            system.residual(&trial, &mut trial_residual);
+            let size_of_trial = norm(&trial_residual);
+            // At rounding level the residual need not fall any more.
+            if close || size_of_trial <= (1.0 - 1e-4 * length) * size_of_residual {
+                break size_of_trial;
+            }
+            length *= 0.5;
+            if length < SHORTEST_STEP {
+                system.residual(x, &mut residual);
+                return report(Outcome::Stalled, size_of_residual, x);
+            }
+        };
+        // Where Newton's method converges, the error shrinks as the residual does: the error left
+        // is the step times the contraction just seen.
+        let contraction = size_of_trial / size_of_residual.max(f64::MIN_POSITIVE);
+        let left = length * size_of_step * contraction.min(1.0);
+        x.copy_from_slice(&trial);
+        std::mem::swap(&mut residual, &mut trial_residual);
+        size_of_residual = size_of_trial;
+        if close || (length == 1.0 && left <= settings.tolerance * norm(x)) {
+            return report(Outcome::Converged, size_of_residual, x);
+        }
+    }
+    Report {
+        outcome: Outcome::Stalled,
+        iterations: settings.max_iterations,
+        residual: size_of_residual / norm(x).max(f64::MIN_POSITIVE),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Arctangent(f64);
+
+    impl System for Arctangent {
+        fn size(&self) -> usize {
+            1
+        }
+
+        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+            self.0 = 1.0 / (1.0 + x[0] * x[0]);
+            out[0] = x[0].atan() - 0.5;
+        }
+
+        fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
+            step[0] = rhs[0] / self.0;
+            true
+        }
+    }
+
+    #[test]
+    fn damping_saves_a_start_from_which_full_steps_diverge() {
+        let mut x = [8.0];
+        let report = newton(&mut Arctangent(0.0), &mut x, NewtonSettings::default());
+        assert_eq!(report.outcome, Outcome::Converged);
+        assert!((x[0] - 0.5_f64.tan()).abs() < 1e-12);
+    }
+
+    struct Rootless;
+
+    impl System for Rootless {
+        fn size(&self) -> usize {
+            1
+        }
+
+        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+            out[0] = 1.0 + x[0] * x[0];
+        }
+
+        fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
+            step[0] = rhs[0];
+            true
+        }
+    }
+
+    #[test]
+    fn a_system_without_root_is_reported() {
+        let report = newton(&mut Rootless, &mut [0.3], NewtonSettings::default());
+        assert_ne!(report.outcome, Outcome::Converged);
+    }
+}

@@ -1,0 +1,93 @@
+//! The linear structure: matrices, modes and the compliance of the *stuck* structure.
+//!
+//! Every analysis sees a structure through one trait, [`Compliance`]: what displacement a load at
+//! harmonic k produces when all contacts stick. That form stays well scaled at high harmonics,
+//! needs no partition of the matrices and takes ω as an unknown.
+
+mod direct;
+mod modal;
+mod modes;
+mod ports;
+mod system;
+
+pub use direct::DirectCompliance;
+pub use modal::{compliance, ModalBase, ModalCompliance};
+pub use modes::{natural_frequencies, real_modes, RealModes};
+pub use ports::{HarmonicLoad, Ports};
+pub use system::Structure;
+
+use crate::Error;
+use faer::c64;
+
+/// Displacements of the contacts at one frequency: what the loads alone cause, and what unit slip
+/// loads cause. Buffers are reused from point to point.
+#[derive(Debug, Clone, Default)]
+pub struct Receptance {
+    /// `G_k = B (K_s + ikωC − (kω)²M)⁻¹ Bᵀ`, column by column, contacts × contacts [m/N].
+    pub contact: Vec<c64>,
+    /// `B G P_k`: displacement of the contacts under the external load [m].
+    pub stuck: Vec<c64>,
+    /// Derivatives of the two in ω, if asked for.
+    pub slope: Option<(Vec<c64>, Vec<c64>)>,
+}
+
+impl Receptance {
+    pub(crate) fn reset(&mut self, contacts: usize) {
+        let zero = c64::new(0.0, 0.0);
+        for (buffer, size) in [
+            (&mut self.contact, contacts * contacts),
+            (&mut self.stuck, contacts),
+        ] {
+            buffer.clear();
+            buffer.resize(size, zero);
+        }
+        if let Some((contact, stuck)) = &mut self.slope {
+            contact.clear();
+            contact.resize(contacts * contacts, zero);
+            stuck.clear();
+            stuck.resize(contacts, zero);
+        }
+    }
+}
+
+/// The linear structure with all contacts stuck, seen from its contacts and observed DOFs.
+pub trait Compliance: Send + Sync {
+    /// Number of relative contact displacements.
+    fn contacts(&self) -> usize;
+
+    /// Number of DOFs that can be observed.
+    fn dofs(&self) -> usize;
+
+    /// Harmonics with an external load, ascending.
+    fn forced_harmonics(&self) -> Vec<usize>;
+
+    /// Receptance of the contacts for harmonic `harmonic` of a motion at `omega` [rad/s].
+    ///
+    /// # Errors
+    /// The static stiffness is singular (harmonic 0), or nothing damps the resonance met.
+    fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error>;
+
+    /// Displacement amplitudes of the DOFs `observe` under the external load and the slip loads
+    /// `slip_load`, given the contact displacements `contact` that belong to them.
+    ///
+    /// # Errors
+    /// As [`Compliance::receptance`].
+    fn displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error>;
+
+    /// Natural frequencies of the stuck structure, ascending [rad/s].
+    fn stuck_frequencies(&self) -> &[f64];
+
+    /// Natural frequencies with all contacts removed, ascending [rad/s].
+    fn free_frequencies(&self) -> &[f64];
+
+    /// Half-power bandwidth `2ζω` of the least damped mode [rad/s].
+    fn narrowest_bandwidth(&self) -> f64;
+}

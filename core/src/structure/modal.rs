@@ -1,0 +1,521 @@
+//! Compliance from one eigen-decomposition.
+//!
+//! | damping | modes | how the stuck base is reached |
+//! |---|---|---|
+//! | diagonal in the stuck modes (none, mass-proportional) | real, stuck | directly |
+//! | diagonal in the free modes (Rayleigh, modal) | real, free | contact stiffness as a low-rank change |
+//! | any other, also unsymmetric | complex, stuck | directly |
+
+use super::modes::{inverse, real_modes, RealModes};
+use super::ports::Ports;
+use super::{Compliance, DirectCompliance, Receptance, Structure};
+use crate::Error;
+use faer::linalg::solvers::Solve as _;
+use faer::{c64, Mat, MatRef};
+
+/// Off-diagonal modal damping, relative to the largest entry, that still counts as rounding.
+const COUPLING: f64 = 1e-10;
+/// Distance to an undamped resonance, relative to the squared frequency, that is refused.
+const RESONANCE: f64 = 1e-9;
+/// Lowest squared frequency, relative to the highest, of a structure that counts as grounded.
+const RIGID_BODY: f64 = 1e-13;
+
+/// How the denominator of a mode depends on frequency.
+#[derive(Debug, Clone)]
+enum Spectrum {
+    /// `1 / (ω_j² − ω² + iω c_j)`.
+    Real { omega_squared: Vec<f64>, damping: Vec<f64> },
+    /// `1 / (iω − s_j)`.
+    Complex { poles: Vec<c64> },
+}
+
+/// Which modes carry the compliance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModalBase {
+    /// Real modes of the stuck structure.
+    Stuck,
+    /// Real modes of the structure without contacts.
+    Free,
+    /// Complex modes of the stuck structure.
+    Complex,
+}
+
+/// A structure in modal coordinates: `G(ω) = R diag(w(ω)) L`.
+#[derive(Debug, Clone)]
+pub struct ModalCompliance {
+    base: ModalBase,
+    spectrum: Spectrum,
+    /// R: displacement of every DOF per modal coordinate, N × modes.
+    right: Mat<c64>,
+    /// B R and L Bᵀ, contacts × modes each.
+    contact_right: Mat<c64>,
+    contact_left: Mat<c64>,
+    /// L P_k per forced harmonic.
+    loads: Vec<(usize, Vec<c64>)>,
+    /// Contact stiffness, if the modes are those of the free structure.
+    restraint: Option<Mat<f64>>,
+    flexibility: Option<Flexibility>,
+    stuck_frequencies: Vec<f64>,
+    free_frequencies: Vec<f64>,
+    bandwidth: f64,
+    forced: Vec<usize>,
+}
+
+/// Static displacements, which damping does not touch: `K_s⁻¹ [Bᵀ, P_0]`.
+#[derive(Debug, Clone)]
+struct Flexibility {
+    of_contacts: Mat<f64>,
+    of_load: Mat<f64>,
+    rows: Mat<f64>,
+}
+
+/// The compliance of a structure: modal, or by direct solution where its complex modes are
+/// defective (critically damped or undamped rigid-body modes with general damping).
+///
+/// # Errors
+/// Shapes that do not fit, or an eigenvalue iteration that fails.
+pub fn compliance(
+    structure: &Structure,
+    ports: &Ports,
+) -> Result<(Box<dyn Compliance>, &'static str), Error> {
+    match ModalCompliance::new(structure, ports)? {
+        Some(modal) => {
+            let name = match modal.base {
+                ModalBase::Stuck => "stuck modes",
+                ModalBase::Free => "free modes",
+                ModalBase::Complex => "complex modes",
+            };
+            Ok((Box::new(modal), name))
+        }
+        None => Ok((Box::new(DirectCompliance::new(structure, ports)?), "direct")),
+    }
+}
+
+impl ModalCompliance {
+    /// The modal form of a structure, or `None` if its complex modes do not span the space.
+    ///
+    /// # Errors
+    /// Shapes that do not fit, or an eigenvalue iteration that fails.
+    pub fn new(structure: &Structure, ports: &Ports) -> Result<Option<Self>, Error> {
+        ports.check(structure.dofs())?;
+        let restrained =
+            structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
+        let stuck = real_modes(structure.mass(), restrained.as_ref())?;
+        let free = real_modes(structure.mass(), structure.stiffness())?;
+        let in_stuck = stuck.project(structure.damping());
+        let in_free = free.project(structure.damping());
+        let (base, spectrum, right, left, restraint) = if is_diagonal(in_stuck.as_ref()) {
+            let (spectrum, shapes) = real_spectrum(&stuck, in_stuck.as_ref());
+            let left = shapes.transpose().to_owned();
+            (ModalBase::Stuck, spectrum, shapes, left, None)
+        } else if is_diagonal(in_free.as_ref()) {
+            let (spectrum, shapes) = real_spectrum(&free, in_free.as_ref());
+            let left = shapes.transpose().to_owned();
+            let restraint = Some(ports.stiffness.clone());
+            (ModalBase::Free, spectrum, shapes, left, restraint)
+        } else {
+            let Some((poles, right, left)) = complex_modes(&stuck, in_stuck.as_ref())? else {
+                return Ok(None);
+            };
+            (
+                ModalBase::Complex,
+                Spectrum::Complex { poles },
+                right,
+                left,
+                None,
+            )
+        };
+        let rows = complex(ports.rows.as_ref());
+        let modal = Self {
+            base,
+            bandwidth: spectrum.narrowest_bandwidth(),
+            contact_right: &rows * &right,
+            contact_left: (&left * rows.transpose()).transpose().to_owned(),
+            loads: ports
+                .loads
+                .iter()
+                .map(|load| (load.harmonic, multiply(left.as_ref(), &load.amplitude)))
+                .collect(),
+            right,
+            spectrum,
+            restraint,
+            flexibility: Flexibility::new(&stuck, ports),
+            stuck_frequencies: stuck.frequencies(),
+            free_frequencies: free.frequencies(),
+            forced: ports.forced_harmonics(),
+        };
+        Ok(modal.reproduces(structure, ports, restrained.as_ref()).then_some(modal))
+    }
+
+    /// Compares complex modes with a direct solution: eigenvectors of a nearly defective problem
+    /// lose digits, and then the direct form must serve.
+    fn reproduces(
+        &self,
+        structure: &Structure,
+        ports: &Ports,
+        restrained: MatRef<'_, f64>,
+    ) -> bool {
+        if self.base != ModalBase::Complex {
+            return true;
+        }
+        let direct = DirectCompliance::of(structure, ports, restrained);
+        let highest = self.stuck_frequencies.last().copied().unwrap_or(1.0).max(1.0);
+        let (mut ours, mut theirs) = (Receptance::default(), Receptance::default());
+        [0.013, 0.11, 0.7].iter().all(|share| {
+            let omega = share * highest;
+            if self.receptance(1, omega, &mut ours).is_err()
+                || direct.receptance(1, omega, &mut theirs).is_err()
+            {
+                return false;
+            }
+            let scale = theirs.contact.iter().map(|g| g.norm()).fold(0.0, f64::max);
+            ours.contact
+                .iter()
+                .zip(&theirs.contact)
+                .all(|(a, b)| (a - b).norm() <= 1e-8 * scale)
+        })
+    }
+
+    fn load(&self, harmonic: usize) -> Option<&[c64]> {
+        self.loads
+            .iter()
+            .find(|(order, _)| *order == harmonic)
+            .map(|(_, load)| load.as_slice())
+    }
+
+    /// Refuses a frequency at which an undamped mode of the stuck base resonates.
+    fn check_resonance(&self, harmonic: usize, omega: f64) -> Result<(), Error> {
+        let Spectrum::Real { omega_squared, damping } = &self.spectrum else {
+            return Ok(());
+        };
+        if self.base != ModalBase::Stuck {
+            return Ok(());
+        }
+        let squared = (harmonic as f64 * omega).powi(2);
+        for (j, (&natural, &c)) in omega_squared.iter().zip(damping).enumerate() {
+            let distance = (natural - squared).abs() + harmonic as f64 * omega * c.abs();
+            let seen = (0..self.contact_left.nrows())
+                .any(|i| self.contact_left[(i, j)].norm() > 0.0)
+                || self.load(harmonic).is_some_and(|load| load[j].norm() > 0.0);
+            if seen && distance <= RESONANCE * squared {
+                return Err(Error::UndampedResonance {
+                    omega,
+                    harmonic,
+                    natural: natural.max(0.0).sqrt(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Sums the modes into `g` (and its derivative) for all contact pairs and the load.
+    fn sum_modes(&self, harmonic: usize, omega: f64, out: &mut Receptance) {
+        let contacts = self.contacts();
+        let order = harmonic as f64;
+        let load = self.load(harmonic);
+        for j in 0..self.right.ncols() {
+            let (weight, slope) = self.spectrum.weight(j, order * omega);
+            let slope = order * slope;
+            for column in 0..contacts {
+                let left = self.contact_left[(column, j)];
+                let (value, change) = (weight * left, slope * left);
+                for row in 0..contacts {
+                    let right = self.contact_right[(row, j)];
+                    out.contact[column * contacts + row] += right * value;
+                    if let Some((contact, _)) = &mut out.slope {
+                        contact[column * contacts + row] += right * change;
+                    }
+                }
+            }
+            let Some(load) = load else { continue };
+            for row in 0..contacts {
+                let response = self.contact_right[(row, j)] * load[j];
+                out.stuck[row] += response * weight;
+                if let Some((_, stuck)) = &mut out.slope {
+                    stuck[row] += response * slope;
+                }
+            }
+        }
+    }
+}
+
+impl Compliance for ModalCompliance {
+    fn contacts(&self) -> usize {
+        self.contact_right.nrows()
+    }
+
+    fn dofs(&self) -> usize {
+        self.right.nrows()
+    }
+
+    fn forced_harmonics(&self) -> Vec<usize> {
+        self.forced.clone()
+    }
+
+    fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
+        out.reset(self.contacts());
+        if harmonic == 0 {
+            let Some(flexibility) = &self.flexibility else {
+                return Err(self.singular());
+            };
+            flexibility.receptance(out);
+            return Ok(());
+        }
+        self.check_resonance(harmonic, omega)?;
+        self.sum_modes(harmonic, omega, out);
+        if let Some(stiffness) = &self.restraint {
+            restrain(stiffness.as_ref(), out);
+        }
+        Ok(())
+    }
+
+    fn displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        out.fill(c64::new(0.0, 0.0));
+        if harmonic == 0 {
+            let Some(flexibility) = &self.flexibility else {
+                return Err(self.singular());
+            };
+            flexibility.displacement(slip_load, observe, out);
+            return Ok(());
+        }
+        // The free structure carries the whole contact force, the stuck one the slip load alone.
+        let forces: Vec<c64> = match &self.restraint {
+            Some(stiffness) => (0..self.contacts())
+                .map(|i| {
+                    let stuck: c64 = (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum();
+                    slip_load[i] - stuck
+                })
+                .collect(),
+            None => slip_load.to_vec(),
+        };
+        let load = self.load(harmonic);
+        for j in 0..self.right.ncols() {
+            let (weight, _) = self.spectrum.weight(j, harmonic as f64 * omega);
+            let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
+            for (i, force) in forces.iter().enumerate() {
+                excitation += self.contact_left[(i, j)] * force;
+            }
+            let coordinate = weight * excitation;
+            for (x, &dof) in out.iter_mut().zip(observe) {
+                *x += self.right[(dof, j)] * coordinate;
+            }
+        }
+        Ok(())
+    }
+
+    fn stuck_frequencies(&self) -> &[f64] {
+        &self.stuck_frequencies
+    }
+
+    fn free_frequencies(&self) -> &[f64] {
+        &self.free_frequencies
+    }
+
+    fn narrowest_bandwidth(&self) -> f64 {
+        self.bandwidth
+    }
+}
+
+impl ModalCompliance {
+    fn singular(&self) -> Error {
+        Error::SingularStiffness {
+            lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0),
+        }
+    }
+}
+
+impl Flexibility {
+    /// `None` if the stuck structure has rigid-body modes.
+    fn new(stuck: &RealModes, ports: &Ports) -> Option<Self> {
+        let largest = stuck.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
+        if stuck.omega_squared.iter().any(|w| w.abs() <= RIGID_BODY * largest) {
+            return None;
+        }
+        let flexibility = |load: MatRef<'_, f64>| {
+            let mut modal = stuck.shapes.transpose() * load;
+            for j in 0..modal.ncols() {
+                for (i, w) in stuck.omega_squared.iter().enumerate() {
+                    modal[(i, j)] /= w;
+                }
+            }
+            &stuck.shapes * modal
+        };
+        let static_load = Mat::from_fn(ports.rows.ncols(), 1, |i, _| {
+            ports.load(0).map_or(0.0, |load| load[i].re)
+        });
+        Some(Self {
+            of_contacts: flexibility(ports.rows.transpose()),
+            of_load: flexibility(static_load.as_ref()),
+            rows: ports.rows.clone(),
+        })
+    }
+
+    fn receptance(&self, out: &mut Receptance) {
+        let contact = &self.rows * &self.of_contacts;
+        let stuck = &self.rows * &self.of_load;
+        let contacts = self.rows.nrows();
+        for column in 0..contacts {
+            out.stuck[column] = c64::new(stuck[(column, 0)], 0.0);
+            for row in 0..contacts {
+                out.contact[column * contacts + row] = c64::new(contact[(row, column)], 0.0);
+            }
+        }
+    }
+
+    fn displacement(&self, slip_load: &[c64], observe: &[usize], out: &mut [c64]) {
+        for (x, &dof) in out.iter_mut().zip(observe) {
+            let slip: f64 = (0..slip_load.len())
+                .map(|i| self.of_contacts[(dof, i)] * slip_load[i].re)
+                .sum();
+            *x = c64::new(self.of_load[(dof, 0)] + slip, 0.0);
+        }
+    }
+}
+
+impl Spectrum {
+    /// Weight of mode j at `omega` and its derivative in ω.
+    fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
+        match self {
+            Self::Real { omega_squared, damping } => {
+                let squared = omega * omega;
+                let mut denominator = c64::new(omega_squared[j] - squared, omega * damping[j]);
+                // An undamped mode of the free base met exactly is no resonance of the stuck
+                // structure: stepping aside by rounding's square root keeps eight digits.
+                if denominator.norm() < 1e-8 * squared {
+                    denominator = c64::new(0.0, 1e-8 * squared);
+                }
+                let weight = denominator.inv();
+                let slope = weight * weight * c64::new(2.0 * omega, -damping[j]);
+                (weight, slope)
+            }
+            Self::Complex { poles } => {
+                let weight = (c64::new(0.0, omega) - poles[j]).inv();
+                (weight, weight * weight * c64::new(0.0, -1.0))
+            }
+        }
+    }
+
+    fn narrowest_bandwidth(&self) -> f64 {
+        match self {
+            Self::Real { damping, .. } => damping.iter().map(|c| c.abs()).fold(f64::MAX, f64::min),
+            Self::Complex { poles } => poles.iter().map(|s| 2.0 * s.re.abs()).fold(f64::MAX, f64::min),
+        }
+    }
+}
+
+fn real_spectrum(modes: &RealModes, damping: MatRef<'_, f64>) -> (Spectrum, Mat<c64>) {
+    let spectrum = Spectrum::Real {
+        omega_squared: modes.omega_squared.clone(),
+        damping: (0..damping.nrows()).map(|j| damping[(j, j)]).collect(),
+    };
+    (spectrum, complex(modes.shapes.as_ref()))
+}
+
+type ComplexModes = (Vec<c64>, Mat<c64>, Mat<c64>);
+
+/// Poles and both sides of the modal sum of the state-space problem in real modal coordinates,
+/// with state `(S q, q')`, S = diag(ω_j): nearly normal for light damping. `None` if the
+/// eigenvectors do not span the space.
+fn complex_modes(
+    modes: &RealModes,
+    damping: MatRef<'_, f64>,
+) -> Result<Option<ComplexModes>, Error> {
+    let n = modes.omega_squared.len();
+    let highest = modes.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs())).sqrt();
+    let scale: Vec<f64> = modes
+        .omega_squared
+        .iter()
+        .map(|w| w.abs().sqrt().max(1e-4 * highest).max(f64::MIN_POSITIVE))
+        .collect();
+    let state = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+        (true, true) => 0.0,
+        (true, false) => scale[i] * f64::from(u8::from(i == j - n)),
+        (false, true) => -modes.omega_squared[j] / scale[j] * f64::from(u8::from(i - n == j)),
+        (false, false) => -damping[(i - n, j - n)],
+    });
+    let eigen = state
+        .eigen()
+        .map_err(|_| Error::Eigenvalues("damping".to_owned()))?;
+    let vectors = eigen.U();
+    let inverse = inverse(vectors);
+    let poles: Vec<c64> = (0..2 * n).map(|j| eigen.S()[j]).collect();
+    let finite = |z: &c64| z.re.is_finite() && z.im.is_finite();
+    let spans = (0..2 * n).all(|i| (0..2 * n).all(|j| finite(&inverse[(i, j)])));
+    if !spans || !poles.iter().all(finite) {
+        return Ok(None);
+    }
+    let shapes = complex(modes.shapes.as_ref());
+    let top = Mat::from_fn(n, 2 * n, |i, j| vectors[(i, j)] / scale[i]);
+    let right = &shapes * top;
+    let left = inverse.get(.., n..) * shapes.transpose();
+    Ok(Some((poles, right, left)))
+}
+
+/// Turns the receptance of the free structure into that of the stuck one:
+/// `G_s = (I + G D)⁻¹ G`.
+fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
+    let contacts = stiffness.nrows();
+    if contacts == 1 {
+        let d = stiffness[(0, 0)];
+        let factor = (1.0 + out.contact[0] * d).inv();
+        out.contact[0] *= factor;
+        out.stuck[0] *= factor;
+        if let Some((contact, stuck)) = &mut out.slope {
+            stuck[0] = factor * (stuck[0] - contact[0] * d * out.stuck[0]);
+            contact[0] *= factor * factor;
+        }
+        return;
+    }
+    let stiffness = complex(stiffness);
+    let column_major = |values: &[c64]| {
+        Mat::from_fn(contacts, values.len() / contacts.max(1), |i, j| values[j * contacts + i])
+    };
+    let free = column_major(&out.contact);
+    let coupling = Mat::<c64>::identity(contacts, contacts) + &free * &stiffness;
+    let lu = coupling.partial_piv_lu();
+    let contact = lu.solve(&free);
+    let stuck = lu.solve(column_major(&out.stuck));
+    store(contact.as_ref(), &mut out.contact);
+    store(stuck.as_ref(), &mut out.stuck);
+    if let Some((contact_slope, stuck_slope)) = &mut out.slope {
+        let change = column_major(contact_slope);
+        let free_stuck = column_major(stuck_slope);
+        // dG_s = (I + G D)⁻¹ dG (I − D G_s)
+        let kept = Mat::<c64>::identity(contacts, contacts) - &stiffness * &contact;
+        store(lu.solve(&change * kept).as_ref(), contact_slope);
+        store(lu.solve(free_stuck - change * (&stiffness * &stuck)).as_ref(), stuck_slope);
+    }
+}
+
+fn store(matrix: MatRef<'_, c64>, values: &mut [c64]) {
+    let rows = matrix.nrows();
+    for j in 0..matrix.ncols() {
+        for i in 0..rows {
+            values[j * rows + i] = matrix[(i, j)];
+        }
+    }
+}
+
+fn is_diagonal(matrix: MatRef<'_, f64>) -> bool {
+    let limit = COUPLING * matrix.norm_max();
+    let size = matrix.nrows();
+    (0..size).all(|j| (0..size).all(|i| i == j || matrix[(i, j)].abs() <= limit))
+}
+
+pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
+}
+
+fn multiply(matrix: MatRef<'_, c64>, vector: &[c64]) -> Vec<c64> {
+    (0..matrix.nrows())
+        .map(|i| (0..vector.len()).map(|j| matrix[(i, j)] * vector[j]).sum())
+        .collect()
+}

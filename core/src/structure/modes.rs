@@ -1,0 +1,76 @@
+//! Real modes of `(K − ω²M) φ = 0`, scaled to unit modal mass.
+
+use crate::Error;
+use faer::linalg::solvers::DenseSolveCore as _;
+use faer::{Mat, MatRef, Side};
+
+/// Undamped modes: `Φᵀ M Φ = I`, `Φᵀ K Φ = diag(ω²)`.
+#[derive(Debug, Clone)]
+pub struct RealModes {
+    /// Squared natural frequencies, ascending; negative if the structure is statically unstable.
+    pub omega_squared: Vec<f64>,
+    /// Mode shapes, one per column.
+    pub shapes: Mat<f64>,
+}
+
+/// Modes of a symmetric stiffness and a positive definite mass.
+///
+/// # Errors
+/// Mass not positive definite, or the eigenvalue iteration fails.
+pub fn real_modes(mass: MatRef<'_, f64>, stiffness: MatRef<'_, f64>) -> Result<RealModes, Error> {
+    let cholesky = mass.llt(Side::Lower).map_err(|_| Error::IndefiniteMass)?;
+    let lower = cholesky.L();
+    let mut reduced = stiffness.to_owned();
+    let par = faer::Par::Seq;
+    // L⁻¹ K L⁻ᵀ, from the left and, after transposition, from the left again.
+    faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
+    let mut reduced = reduced.transpose().to_owned();
+    faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
+    let eigen = reduced
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|_| Error::Eigenvalues("stiffness".to_owned()))?;
+    let mut shapes = eigen.U().to_owned();
+    faer::linalg::triangular_solve::solve_upper_triangular_in_place(
+        lower.transpose(),
+        shapes.as_mut(),
+        par,
+    );
+    let omega_squared = (0..mass.nrows()).map(|j| eigen.S()[j]).collect();
+    Ok(RealModes {
+        omega_squared,
+        shapes,
+    })
+}
+
+impl RealModes {
+    /// Natural frequencies [rad/s]; rounding below zero counts as a rigid-body mode.
+    #[must_use]
+    pub fn frequencies(&self) -> Vec<f64> {
+        self.omega_squared
+            .iter()
+            .map(|w| w.max(0.0).sqrt())
+            .collect()
+    }
+
+    /// `Φᵀ A Φ` of a matrix A.
+    #[must_use]
+    pub fn project(&self, matrix: MatRef<'_, f64>) -> Mat<f64> {
+        self.shapes.transpose() * matrix * &self.shapes
+    }
+}
+
+/// Natural frequencies [rad/s] of mass and stiffness, ascending.
+///
+/// # Errors
+/// As [`real_modes`].
+pub fn natural_frequencies(
+    mass: MatRef<'_, f64>,
+    stiffness: MatRef<'_, f64>,
+) -> Result<Vec<f64>, Error> {
+    Ok(real_modes(mass, stiffness)?.frequencies())
+}
+
+/// Inverse of a well-conditioned complex matrix.
+pub(super) fn inverse(matrix: MatRef<'_, faer::c64>) -> Mat<faer::c64> {
+    matrix.partial_piv_lu().inverse()
+}

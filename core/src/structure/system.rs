@@ -1,0 +1,115 @@
+//! Mass, damping and stiffness.
+
+use crate::Error;
+use faer::{Mat, MatRef};
+
+/// Asymmetry, relative to the largest entry, that printed digits may leave in a matrix.
+const ASYMMETRY: f64 = 1e-8;
+
+/// The matrices of a linear structure; mass and stiffness symmetric, damping any.
+#[derive(Debug, Clone)]
+pub struct Structure {
+    mass: Mat<f64>,
+    damping: Mat<f64>,
+    stiffness: Mat<f64>,
+}
+
+impl Structure {
+    /// A structure from its N × N matrices [kg, kg/s, N/m].
+    ///
+    /// # Errors
+    /// Wrong shapes, entries that are not finite, mass or stiffness not symmetric, mass not
+    /// positive definite.
+    pub fn new(
+        mass: MatRef<'_, f64>,
+        damping: MatRef<'_, f64>,
+        stiffness: MatRef<'_, f64>,
+    ) -> Result<Self, Error> {
+        let size = mass.nrows();
+        for (entry, matrix) in [("mass", mass), ("damping", damping), ("stiffness", stiffness)] {
+            if (matrix.nrows(), matrix.ncols()) != (size, size) || size == 0 {
+                return Err(Error::shape(
+                    entry,
+                    "square matrices of one size",
+                    format!("{} x {}", matrix.nrows(), matrix.ncols()),
+                ));
+            }
+            for j in 0..size {
+                for i in 0..size {
+                    if !matrix[(i, j)].is_finite() {
+                        return Err(Error::value(
+                            format!("{entry}[{i}, {j}]"),
+                            matrix[(i, j)],
+                            "every entry must be finite",
+                        ));
+                    }
+                }
+            }
+        }
+        let structure = Self {
+            mass: symmetric("mass", mass)?,
+            damping: damping.to_owned(),
+            stiffness: symmetric("stiffness", stiffness)?,
+        };
+        structure
+            .mass
+            .llt(faer::Side::Lower)
+            .map_err(|_| Error::IndefiniteMass)?;
+        Ok(structure)
+    }
+
+    /// Number of DOFs N.
+    #[must_use]
+    pub fn dofs(&self) -> usize {
+        self.mass.nrows()
+    }
+
+    /// Mass matrix [kg].
+    #[must_use]
+    pub fn mass(&self) -> MatRef<'_, f64> {
+        self.mass.as_ref()
+    }
+
+    /// Damping matrix [kg/s].
+    #[must_use]
+    pub fn damping(&self) -> MatRef<'_, f64> {
+        self.damping.as_ref()
+    }
+
+    /// Stiffness matrix [N/m], contacts not included.
+    #[must_use]
+    pub fn stiffness(&self) -> MatRef<'_, f64> {
+        self.stiffness.as_ref()
+    }
+
+    /// Stiffness with contacts stuck: `K + Bᵀ D B`.
+    #[must_use]
+    pub fn restrained_stiffness(
+        &self,
+        rows: MatRef<'_, f64>,
+        contact_stiffness: MatRef<'_, f64>,
+    ) -> Mat<f64> {
+        let added = rows.transpose() * contact_stiffness * rows;
+        &self.stiffness + &added
+    }
+}
+
+fn symmetric(entry: &str, matrix: MatRef<'_, f64>) -> Result<Mat<f64>, Error> {
+    let size = matrix.nrows();
+    let largest = matrix.norm_max();
+    for j in 0..size {
+        for i in 0..j {
+            let difference = (matrix[(i, j)] - matrix[(j, i)]).abs();
+            if difference > ASYMMETRY * largest {
+                return Err(Error::value(
+                    format!("{entry}[{i}, {j}] - {entry}[{j}, {i}]"),
+                    difference,
+                    "the matrix must be symmetric",
+                ));
+            }
+        }
+    }
+    Ok(Mat::from_fn(size, size, |i, j| {
+        0.5 * (matrix[(i, j)] + matrix[(j, i)])
+    }))
+}

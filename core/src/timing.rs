@@ -1,0 +1,34 @@
+//! Where the time of an analysis goes.
+
+use std::time::{Duration, Instant};
+
+/// Time spent and work done in each stage of an analysis.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Profile {
+    /// Evaluation of the compliance from the modes.
+    pub compliance: Duration,
+    /// Friction forces and their tangents.
+    pub law: Duration,
+    /// Assembly and solution of the linear systems.
+    pub linear_solve: Duration,
+    /// Displacements of the observed DOFs and their error estimates.
+    pub recovery: Duration,
+    /// Everything, from the first to the last point.
+    pub total: Duration,
+    /// Evaluations of all contact laws.
+    pub evaluations: usize,
+    /// Factorisations of Newton matrices.
+    pub factorisations: usize,
+    /// Points that needed homotopy after Newton's method had failed.
+    pub homotopies: usize,
+}
+
+impl Profile {
+    /// Runs `work` and adds its duration to `stage`.
+    pub fn time<T>(stage: &mut Duration, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let value = work();
+        *stage += start.elapsed();
+        value
+    }
+}
