@@ -72,9 +72,8 @@ impl Problem {
         py: Python<'py>,
         slipping: Vec<(usize, usize)>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let frequencies = py
-            .detach(|| self.model.natural_frequencies(&slipping))
-            .map_err(refused)?;
+        let frequencies =
+            py.detach(|| self.model.natural_frequencies(&slipping)).map_err(refused)?;
         Ok(vector(py, frequencies))
     }
 

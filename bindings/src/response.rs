@@ -2,9 +2,7 @@
 
 use crate::arrays::{block, is_half_wave, refused, series, table, vector};
 use crate::problem::Problem;
-use numpy::{
-    Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2,
-};
+use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -207,7 +205,8 @@ impl Solution {
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let profile = &self.inner.profile;
         let counters = PyDict::new(py);
-        counters.set_item("iterations", self.points().iter().map(|p| p.iterations).sum::<usize>())?;
+        counters
+            .set_item("iterations", self.points().iter().map(|p| p.iterations).sum::<usize>())?;
         counters.set_item("evaluations", profile.evaluations)?;
         counters.set_item("factorisations", profile.factorisations)?;
         counters.set_item("homotopies", profile.homotopies)?;
@@ -232,9 +231,7 @@ pub fn forced_response(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Solution> {
     if method != "newton" {
-        return Err(PyValueError::new_err(format!(
-            "method = \"{method}\": must be \"newton\""
-        )));
+        return Err(PyValueError::new_err(format!("method = \"{method}\": must be \"newton\"")));
     }
     let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
     let observe: Vec<usize> = observe
@@ -261,7 +258,8 @@ pub fn forced_response(
             }
             last = Instant::now();
             Python::attach(|py| {
-                let told = progress.as_ref().map_or(Ok(()), |call| call.call1(py, (share,)).map(drop));
+                let told =
+                    progress.as_ref().map_or(Ok(()), |call| call.call1(py, (share,)).map(drop));
                 match told.and_then(|()| py.check_signals()) {
                     Ok(()) => true,
                     Err(error) => {
@@ -310,8 +308,7 @@ pub fn peak(
     let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
-    py.detach(|| refine_peak(&problem.model, settings, dof, measure, bracket))
-        .map_err(refused)
+    py.detach(|| refine_peak(&problem.model, settings, dof, measure, bracket)).map_err(refused)
 }
 
 /// Amplitudes of series `X_0, X_1, …`, one per row, with the exact extrema of their polynomials.
@@ -364,12 +361,11 @@ pub fn contact_force<'py>(
         )));
     }
     let residual = residual.parse()?;
-    let half_wave = residual.is_symmetric()
-        && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
+    let half_wave =
+        residual.is_symmetric() && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
     let sample_table = SampleTable::new(Harmonics::new(orders - 1, half_wave));
-    let coefficients: Vec<f64> = (0..points)
-        .flat_map(|n| series(sample_table.harmonics(), |k| view[[n, k]]))
-        .collect();
+    let coefficients: Vec<f64> =
+        (0..points).flat_map(|n| series(sample_table.harmonics(), |k| view[[n, k]])).collect();
     let motion = Motion { table: &sample_table, displacement: &coefficients, residual };
     table(py, samples, points, law.force_history(motion, samples))
 }

@@ -75,10 +75,6 @@ impl Error {
     }
 
     pub(crate) fn value(entry: impl Into<String>, value: f64, remedy: &str) -> Self {
-        Self::Value {
-            entry: entry.into(),
-            value,
-            remedy: remedy.to_owned(),
-        }
+        Self::Value { entry: entry.into(), value, remedy: remedy.to_owned() }
     }
 }

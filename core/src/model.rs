@@ -1,7 +1,9 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
 use crate::contact::FrictionLaw;
-use crate::structure::{compliance, natural_frequencies, Compliance, HarmonicLoad, Ports, Structure};
+use crate::structure::{
+    compliance, natural_frequencies, Compliance, HarmonicLoad, Ports, Structure,
+};
 use crate::Error;
 use faer::{Mat, Side};
 use std::ops::Range;
@@ -55,9 +57,7 @@ impl Model {
             }
             let own_stiffness = law.stiffness();
             rows.get_mut(first..first + size, ..).copy_from(&own);
-            stiffness
-                .get_mut(first..first + size, first..first + size)
-                .copy_from(&own_stiffness);
+            stiffness.get_mut(first..first + size, first..first + size).copy_from(&own_stiffness);
             points.push(first..first + size);
             laws.push(law);
             first += size;
@@ -107,7 +107,8 @@ impl Model {
     /// Whether the motion has half-wave symmetry: odd laws under odd harmonics alone.
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
-        self.compliance.forced_harmonics().iter().all(|k| k % 2 == 1)
+        self.laws.iter().all(|law| law.is_odd())
+            && self.compliance.forced_harmonics().iter().all(|k| k % 2 == 1)
     }
 
     /// Natural frequencies [rad/s] with the contact points `slipping` at constant force and all
@@ -136,11 +137,9 @@ impl Model {
         }
         let (slip, stick): (Vec<usize>, Vec<usize>) = (0..total).partition(|&i| slips[i]);
         let stiffness = condensed(&self.ports.stiffness, &stick, &slip)?;
-        let rows = Mat::from_fn(stick.len(), self.structure.dofs(), |i, j| {
-            self.ports.rows[(stick[i], j)]
-        });
-        let restrained =
-            self.structure.restrained_stiffness(rows.as_ref(), stiffness.as_ref());
+        let rows =
+            Mat::from_fn(stick.len(), self.structure.dofs(), |i, j| self.ports.rows[(stick[i], j)]);
+        let restrained = self.structure.restrained_stiffness(rows.as_ref(), stiffness.as_ref());
         natural_frequencies(self.structure.mass(), restrained.as_ref())
     }
 }

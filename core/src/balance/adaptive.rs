@@ -6,13 +6,14 @@ use super::solution::{Point, PointStatus, Solution};
 use super::sweep::{check_frequency, finish};
 use super::Progress;
 use crate::fourier::SampleTable;
-use crate::solve::{norm, System as _};
+use crate::solve::System as _;
 use crate::Error;
+use faer::c64;
 use std::time::Instant;
 
-/// A straight line between two points misses the curve by a quarter of what the tangent at one
-/// misses at the other.
-const LINE_TO_TANGENT: f64 = 4.0;
+/// A DOF's error counts relative to its amplitude, but not to less than this share of the
+/// largest amplitude it has had: an antiresonance needs no points of its own.
+const FLOOR: f64 = 0.02;
 /// Longest step as a share of the range: a curve needs points to be looked at.
 const LONGEST: f64 = 1.0 / 60.0;
 /// Shortest step relative to the frequency.
@@ -21,8 +22,8 @@ const SHORTEST: f64 = 1e-9;
 /// Solves from `from` to `to` [rad/s], in either direction, with steps such that straight lines
 /// between the points stay within the tolerance of the curve.
 ///
-/// Steps follow the error of the tangent predictor, which a narrow resonance between two points
-/// could escape; so each stuck and each free natural frequency in the range is a point, and
+/// Steps follow the curvature of the observed DOFs, which a narrow resonance between two points
+/// could hide; so each stuck and each free natural frequency in the range is a point, and
 /// steps beside it start at the bandwidth of the least damped mode.
 ///
 /// # Errors
@@ -44,6 +45,7 @@ pub fn sweep_range(
     let longest = LONGEST * (to - from).abs();
     let fine = balance.model.compliance().narrowest_bandwidth().clamp(1e-6 * longest, longest);
     let mut points = vec![balance.solve(from, None)?];
+    let mut largest = sizes(&points[0]);
     let mut step = 0.1 * longest;
     let mut interrupted = false;
     for stop in stops {
@@ -56,16 +58,20 @@ pub fn sweep_range(
             }
             let room = (stop - last.omega).abs();
             // Two even steps instead of a long and a tiny one.
-            let length = if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * stop) };
+            let length =
+                if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * stop) };
             let omega = if step >= room { stop } else { last.omega + direction * length };
             let guess = tangent(&mut balance, last, omega);
             let point = balance.solve(omega, guess.as_ref())?;
-            let error = prediction_error(&balance, guess.as_ref(), &point) / LINE_TO_TANGENT;
             let target = balance.settings.tolerance;
+            let error = line_error(&points, &point, &largest).unwrap_or(target);
             let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
             let too_long = error > 2.0 * target && length > SHORTEST * omega;
             step = (length * factor).min(longest);
             if !too_long {
+                for (largest, size) in largest.iter_mut().zip(sizes(&point)) {
+                    *largest = largest.max(size);
+                }
                 points.push(point);
             }
         }
@@ -120,17 +126,42 @@ fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<
     Some(predicted)
 }
 
-/// Distance of the prediction from the solution, relative to it.
-fn prediction_error(balance: &ForcedBalance<'_>, guess: Option<&Unknowns>, point: &Point) -> f64 {
-    let (Some(guess), Some(solved)) = (guess, point.unknowns.as_ref()) else {
-        return balance.settings.tolerance * LINE_TO_TANGENT;
-    };
-    if !is_solved(point) {
-        return balance.settings.tolerance * LINE_TO_TANGENT;
+/// Largest relative distance of the observed DOFs from a straight line between the last point
+/// and `new`, from the curvature through the last three points.
+fn line_error(points: &[Point], new: &Point, largest: &[f64]) -> Option<f64> {
+    let [.., before, last] = points else { return None };
+    if ![before, last, new].into_iter().all(is_solved) {
+        return None;
     }
-    let guess = guess.recast(&solved.harmonics);
-    let difference: Vec<f64> = guess.iter().zip(&solved.values).map(|(a, b)| a - b).collect();
-    norm(&difference) / norm(&solved.values).max(f64::MIN_POSITIVE)
+    let (step, earlier) = (new.omega - last.omega, last.omega - before.omega);
+    let bend = 0.25 * step / (step + earlier);
+    let own = |point: &Point, dof: usize, order: usize| {
+        let orders = point.harmonics + 1;
+        if order < orders {
+            point.displacement[dof * orders + order]
+        } else {
+            c64::new(0.0, 0.0)
+        }
+    };
+    let errors = sizes(new).into_iter().zip(largest).enumerate().map(|(dof, (size, largest))| {
+        let missed: f64 = (1..=new.harmonics)
+            .map(|k| {
+                let (x, y, z) = (own(before, dof, k), own(last, dof, k), own(new, dof, k));
+                (z - y - (y - x) * (step / earlier)).norm_sqr()
+            })
+            .sum();
+        bend * missed.sqrt() / size.max(FLOOR * largest).max(f64::MIN_POSITIVE)
+    });
+    Some(errors.fold(0.0, f64::max))
+}
+
+/// Size of the oscillation of each observed DOF.
+fn sizes(point: &Point) -> Vec<f64> {
+    point
+        .displacement
+        .chunks_exact(point.harmonics + 1)
+        .map(|series| series[1..].iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt())
+        .collect()
 }
 
 fn is_solved(point: &Point) -> bool {

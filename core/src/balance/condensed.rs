@@ -3,7 +3,7 @@
 //! The Jacobian `I − G ∂Q` has nontrivial columns only for contacts that slip; the Newton
 //! direction is found from their block and carried to the stuck contacts by substitution.
 
-use crate::contact::{Motion, Residual, SlipLoad};
+use crate::contact::{FrictionLaw, Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{Parametrised, System};
@@ -44,6 +44,15 @@ impl Unknowns {
     }
 }
 
+/// What a homotopy scales, from easy to the problem at hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Path {
+    /// The external load: at small load everything sticks.
+    Load,
+    /// The stiffness of the contacts: soft contacts make a smooth problem.
+    Stiffness,
+}
+
 /// The equations at one frequency and set of harmonics.
 pub struct Condensed<'a> {
     model: &'a Model,
@@ -53,7 +62,10 @@ pub struct Condensed<'a> {
     receptances: Vec<Receptance>,
     stuck: Vec<f64>,
     loads: Vec<SlipLoad>,
-    scale: f64,
+    path: Path,
+    load_scale: f64,
+    /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
+    softened: Option<(f64, Vec<Box<dyn FrictionLaw>>)>,
     factor: Option<PartialPivLu<f64>>,
     /// Points of contacts with a tangent, of the last factorisation.
     active: Vec<usize>,
@@ -63,10 +75,7 @@ pub struct Condensed<'a> {
 impl<'a> Condensed<'a> {
     /// Equations of a model in the harmonics of a table; call [`Condensed::set_omega`] next.
     pub fn new(model: &'a Model, table: &'a SampleTable, residual: Residual, slopes: bool) -> Self {
-        let blank = Receptance {
-            slope: slopes.then(Default::default),
-            ..Receptance::default()
-        };
+        let blank = Receptance { slope: slopes.then(Default::default), ..Receptance::default() };
         Self {
             model,
             table,
@@ -74,7 +83,9 @@ impl<'a> Condensed<'a> {
             receptances: vec![blank; table.harmonics().orders().count()],
             stuck: Vec::new(),
             loads: vec![SlipLoad::default(); model.laws().len()],
-            scale: 1.0,
+            path: Path::Load,
+            load_scale: 1.0,
+            softened: None,
             factor: None,
             active: Vec::new(),
             profile: Profile::default(),
@@ -106,6 +117,11 @@ impl<'a> Condensed<'a> {
             scatter(harmonics, order, &receptance.stuck, &mut self.stuck);
         }
         Ok(())
+    }
+
+    /// Chooses what the next homotopy scales.
+    pub fn choose(&mut self, path: Path) {
+        self.path = path;
     }
 
     /// The stuck response, which is the solution as long as nothing slips.
@@ -210,6 +226,30 @@ impl<'a> Condensed<'a> {
         }
     }
 
+    /// Adds to the slip load of a softened contact what its lost stiffness takes off the force:
+    /// the compliance goes on carrying the full stiffness.
+    fn add_lost_stiffness(
+        &self,
+        index: usize,
+        share: f64,
+        motion: Motion<'_>,
+        load: &mut SlipLoad,
+    ) {
+        let slots = self.table.harmonics().slots();
+        let points = &self.model.points()[index];
+        let size = points.len() * slots;
+        for (i, row) in points.clone().enumerate() {
+            for (j, column) in points.clone().enumerate() {
+                let lost = share * self.model.contact_stiffness()[(row, column)];
+                for slot in 0..slots {
+                    load.value[i * slots + slot] += lost * motion.displacement[j * slots + slot];
+                    load.tangent[(i * slots + slot) * size + j * slots + slot] += lost;
+                }
+            }
+        }
+        load.active = true;
+    }
+
     /// Assembles and factors `I − G_AA ∂Q_A` of the active points.
     fn factorise(&mut self) {
         let slots = self.table.harmonics().slots();
@@ -277,7 +317,14 @@ impl System for Condensed<'_> {
         let mut law_time = std::time::Duration::ZERO;
         Profile::time(&mut law_time, || {
             for (index, load) in loads.iter_mut().enumerate() {
-                self.model.laws()[index].slip_load(self.motion(index, x), true, load);
+                let motion = self.motion(index, x);
+                match &self.softened {
+                    None => self.model.laws()[index].slip_load(motion, true, load),
+                    Some((share, laws)) => {
+                        laws[index].slip_load(motion, true, load);
+                        self.add_lost_stiffness(index, 1.0 - share, motion, load);
+                    }
+                }
             }
         });
         self.profile.law += law_time;
@@ -287,7 +334,7 @@ impl System for Condensed<'_> {
         out.fill(0.0);
         self.add_response(&self.slip_load(), out);
         for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
-            *r = x - self.scale * stuck - *r;
+            *r = x - self.load_scale * stuck - *r;
         }
     }
 
@@ -328,11 +375,26 @@ impl System for Condensed<'_> {
 
 impl Parametrised for Condensed<'_> {
     fn set_scale(&mut self, scale: f64) {
-        self.scale = scale;
+        match self.path {
+            Path::Load => self.load_scale = scale,
+            Path::Stiffness => {
+                let soften = || self.model.laws().iter().map(|law| law.softened(scale)).collect();
+                self.softened = (scale < 1.0).then(|| (scale, soften()));
+            }
+        }
     }
 
     fn easy_start(&self, x: &mut [f64]) {
-        x.iter_mut().zip(&self.stuck).for_each(|(x, stuck)| *x = self.scale * stuck);
+        if self.path == Path::Load {
+            x.iter_mut().zip(&self.stuck).for_each(|(x, stuck)| *x = self.load_scale * stuck);
+        }
+    }
+
+    fn predict(&self, growth: f64, x: &mut [f64]) {
+        // Beyond the onset of slip a solution grows roughly with its load.
+        if self.path == Path::Load {
+            x.iter_mut().for_each(|x| *x *= growth);
+        }
     }
 }
 

@@ -1,13 +1,13 @@
 //! The forced response at one frequency.
 
 use super::accuracy::{discarded_harmonics, Correction};
-use super::condensed::{gather, Condensed, Unknowns};
+use super::condensed::{gather, Condensed, Path, Unknowns};
 use super::settings::{HarmonicChoice, Settings};
 use super::solution::{Point, PointStatus};
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::solve::{homotopy, newton, Outcome, System as _};
+use crate::solve::{homotopy, newton, Outcome, Report, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -15,9 +15,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Orders that automatic harmonics climb: half as many again from rung to rung.
-const LADDER: [usize; 17] = [
-    1, 3, 5, 7, 9, 13, 19, 27, 39, 57, 83, 121, 177, 261, 387, 575, 857,
-];
+const LADDER: [usize; 17] = [1, 3, 5, 7, 9, 13, 19, 27, 39, 57, 83, 121, 177, 261, 387, 575, 857];
 /// Automatic harmonics start here: enough for a smooth slip cycle.
 const FIRST_RUNG: usize = 3;
 /// An estimate this far below the tolerance lets the next point try one rung less.
@@ -99,15 +97,15 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// Climbs the ladder of orders until the discarded harmonics matter less than the tolerance.
-    fn solve_automatically(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
+    fn solve_automatically(
+        &mut self,
+        omega: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Point, Error> {
         let limit = self.settings.max_harmonics;
         let lowest = self.forced.last().copied().unwrap_or(1).max(1);
-        let rungs: Vec<usize> = LADDER
-            .iter()
-            .copied()
-            .filter(|&h| h >= lowest && h < limit)
-            .chain([limit])
-            .collect();
+        let rungs: Vec<usize> =
+            LADDER.iter().copied().filter(|&h| h >= lowest && h < limit).chain([limit]).collect();
         let mut rung = self.rung.min(rungs.len() - 1);
         let mut start = start.cloned();
         let mut iterations = 0;
@@ -144,7 +142,11 @@ impl<'a> ForcedBalance<'a> {
             .zip(point.displacement.chunks_exact(orders))
             .map(|(&error, series)| {
                 let amplitude = series[1..].iter().map(|x| x.norm()).fold(0.0, f64::max);
-                if error == 0.0 { 0.0 } else { error / amplitude.max(f64::MIN_POSITIVE) }
+                if error == 0.0 {
+                    0.0
+                } else {
+                    error / amplitude.max(f64::MIN_POSITIVE)
+                }
             })
             .fold(0.0, f64::max)
     }
@@ -192,15 +194,7 @@ impl<'a> ForcedBalance<'a> {
         let mut report = newton(equations, &mut x, self.settings.newton);
         if report.outcome != Outcome::Converged {
             self.profile.homotopies += 1;
-            let mut along = x.clone();
-            let second = homotopy(equations, &mut along, self.settings.newton);
-            report.iterations += second.iterations;
-            if second.outcome == Outcome::Converged {
-                (report.outcome, report.residual) = (second.outcome, second.residual);
-                x = along;
-            }
-            let mut residual = vec![0.0; equations.size()];
-            equations.residual(&x, &mut residual);
+            self.follow_paths(equations, &mut x, &mut report);
         }
         let status = match report.outcome {
             Outcome::Converged => PointStatus::Converged,
@@ -212,11 +206,27 @@ impl<'a> ForcedBalance<'a> {
         self.profile.recovery += start.elapsed();
         point.residual = report.residual;
         point.iterations = report.iterations;
-        point.unknowns = Some(Unknowns {
-            harmonics: harmonics.clone(),
-            values: x,
-        });
+        point.unknowns = Some(Unknowns { harmonics: harmonics.clone(), values: x });
         Ok(point)
+    }
+
+    /// Homotopy after Newton's method has failed: first in the contact stiffness, whose path is
+    /// smooth even for nearly rigid contacts, then in the load.
+    fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
+        for path in [Path::Stiffness, Path::Load] {
+            let mut along = x.clone();
+            equations.choose(path);
+            let followed = homotopy(equations, &mut along, self.settings.newton);
+            report.iterations += followed.iterations;
+            if followed.outcome == Outcome::Converged {
+                (report.outcome, report.residual) = (followed.outcome, followed.residual);
+                *x = along;
+                break;
+            }
+        }
+        // The recovery reads slip loads and tangents at the point that is returned.
+        let mut residual = vec![0.0; equations.size()];
+        equations.residual(x, &mut residual);
     }
 
     /// Displacements, contact forces, slip shares and the error estimate of a solution.
@@ -243,9 +253,14 @@ impl<'a> ForcedBalance<'a> {
         for order in harmonics.orders() {
             gather(harmonics, order, x, &mut u);
             gather(harmonics, order, &slip_load, &mut q);
-            self.model
-                .compliance()
-                .displacement(order, omega, &u, &q, self.observe, &mut observed)?;
+            self.model.compliance().displacement(
+                order,
+                omega,
+                &u,
+                &q,
+                self.observe,
+                &mut observed,
+            )?;
             for (i, value) in observed.iter().enumerate() {
                 point.displacement[i * orders + order] = *value;
             }
@@ -261,6 +276,10 @@ impl<'a> ForcedBalance<'a> {
             law.summary(equations.motion(index, x), &mut summaries[range]);
         }
         point.contacts = summaries;
+        point.error_estimate = vec![0.0; self.observe.len()];
+        if point.contacts.iter().all(|contact| contact.slip_fraction == 0.0) {
+            return Ok(point);
+        }
         let discarded = discarded_harmonics(harmonics, omega, self.model);
         let correction = Correction::new(self.model, equations, &discarded, omega, x)?;
         point.error_estimate = correction.errors(self.model, omega, self.observe, &point)?;

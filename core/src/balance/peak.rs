@@ -65,9 +65,8 @@ fn brent(
             break;
         }
         let parabola = vertex(best, second, third);
-        let accepted = parabola.filter(|&p| {
-            p > low && p < high && (p - best.0).abs() < 0.5 * before_last.abs()
-        });
+        let accepted = parabola
+            .filter(|&p| p > low && p < high && (p - best.0).abs() < 0.5 * before_last.abs());
         before_last = step;
         step = match accepted {
             Some(p) => p - best.0,
@@ -81,10 +80,18 @@ fn brent(
         let omega = (best.0 + shift).clamp(low, high);
         let trial = (omega, height(omega)?);
         if trial.1 >= best.1 {
-            if omega >= best.0 { low = best.0 } else { high = best.0 }
+            if omega >= best.0 {
+                low = best.0
+            } else {
+                high = best.0
+            }
             (third, second, best) = (second, best, trial);
         } else {
-            if omega < best.0 { low = omega } else { high = omega }
+            if omega < best.0 {
+                low = omega
+            } else {
+                high = omega
+            }
             if trial.1 >= second.1 || second.0 == best.0 {
                 (third, second) = (second, trial);
             } else if trial.1 >= third.1 || third.0 == best.0 || third.0 == second.0 {

@@ -20,7 +20,7 @@ pub struct Settings {
     pub harmonics: HarmonicChoice,
     /// Relative error of the amplitudes, for automatic harmonics and steps; default 1e-3.
     pub tolerance: f64,
-    /// Mean force of contacts that never slip; default [`Residual::Centred`].
+    /// Force at mid-range of contacts that never slip; default [`Residual::Centred`].
     pub residual: Residual,
     /// Highest order that automatic harmonics may reach; default 255.
     pub max_harmonics: usize,

@@ -12,7 +12,7 @@ pub enum PointStatus {
     Converged,
     /// Newton's method and homotopy both failed.
     Stalled,
-    /// A discarded-free equation is singular: an undamped resonance at one of the harmonics.
+    /// The equations are singular: an undamped resonance at an unforced harmonic.
     Singular,
     /// The analysis was ended before.
     NotComputed,
@@ -59,10 +59,7 @@ impl Point {
             contact_force: vec![c64::new(f64::NAN, 0.0); contacts],
             error_estimate: vec![f64::NAN; observed],
             contacts: vec![
-                PointSummary {
-                    slip_fraction: f64::NAN,
-                    dissipation: f64::NAN,
-                };
+                PointSummary { slip_fraction: f64::NAN, dissipation: f64::NAN };
                 contacts
             ],
             unknowns: None,

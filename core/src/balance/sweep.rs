@@ -55,10 +55,7 @@ pub(super) fn finish(
         points,
         half_wave: balance.half_wave(),
         interrupted,
-        profile: Profile {
-            total: start.elapsed(),
-            ..balance.profile
-        },
+        profile: Profile { total: start.elapsed(), ..balance.profile },
     }
 }
 

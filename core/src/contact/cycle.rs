@@ -1,7 +1,7 @@
 //! The path of an elastic, perfectly plastic element over one period, from event to event.
 
 use super::Motion;
-use crate::fourier::{Harmonics, IntervalSums, TurningPoint};
+use crate::fourier::{Harmonics, TurningPoint};
 use std::f64::consts::PI;
 
 /// An interval of the period in which the element sticks. The slip load is constant there.
@@ -44,8 +44,9 @@ impl Cycle {
         let mut turns = Vec::new();
         motion.table.turning_points(motion.displacement, &mut turns);
         let (crest, trough) = extremes(harmonics, &turns, motion.displacement);
-        // Written so that a displacement that is not a number sticks: the caller sees it diverge.
-        if !(stiffness * (crest.value - trough.value) > 2.0 * slip_force) {
+        let range = crest.value - trough.value;
+        // A displacement that is not a number has no turning points: the caller sees it diverge.
+        if turns.is_empty() || stiffness * range <= 2.0 * slip_force {
             return Self::Stuck { crest, trough };
         }
         let path = path_from_crest(harmonics, &turns);
@@ -103,16 +104,6 @@ impl Cycle {
     }
 }
 
-/// Sums over all slip intervals.
-pub(super) fn union_of(slips: &[Slip], highest: usize) -> IntervalSums {
-    let mut sums = IntervalSums::default();
-    sums.reset(highest);
-    for slip in slips {
-        sums.add(slip.start, slip.end);
-    }
-    sums
-}
-
 /// Highest and lowest turning point over the whole period.
 fn extremes(
     harmonics: &Harmonics,
@@ -137,9 +128,8 @@ fn extremes(
 /// its mirror image under half-wave symmetry).
 fn path_from_crest(harmonics: &Harmonics, turns: &[TurningPoint]) -> Vec<TurningPoint> {
     let size = |p: &TurningPoint| if harmonics.half_wave() { p.value.abs() } else { p.value };
-    let first = (0..turns.len())
-        .max_by(|&a, &b| size(&turns[a]).total_cmp(&size(&turns[b])))
-        .unwrap_or(0);
+    let first =
+        (0..turns.len()).max_by(|&a, &b| size(&turns[a]).total_cmp(&size(&turns[b]))).unwrap_or(0);
     let sign = if harmonics.half_wave() { -1.0 } else { 1.0 };
     let span = harmonics.span();
     let wrapped = turns[..=first.min(turns.len().saturating_sub(1))]
@@ -170,11 +160,16 @@ fn crossing(
             low = theta;
         }
         let newton = theta - (value - target) / slope;
-        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let next = if newton >= low - 1e-12 && newton <= high + 1e-12 {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
         let moved = (next - theta).abs();
         theta = next;
-        // The force is continuous here: an angle good to 1e-9 gives its integrals to rounding.
-        if moved <= 1e-9 {
+        // Newton's method squares its error, and the force is continuous here: after a step this
+        // short the integrals are good to rounding.
+        if moved <= 1e-7 {
             break;
         }
     }

@@ -6,7 +6,7 @@
 //! The Fourier integrals over the intervals are exact, so that no sampling error enters, and
 //! their derivative is exact with them: f is continuous, hence moving interval ends add nothing.
 
-use super::cycle::{union_of, Cycle, Slip, Stick};
+use super::cycle::{Cycle, Slip, Stick};
 use super::{scalar, FrictionLaw, Motion, Parameters, PointSummary, Residual, SlipLoad};
 use crate::fourier::{Harmonics, IntervalSums};
 use crate::Error;
@@ -73,8 +73,16 @@ impl FrictionLaw for Jenkins {
         1
     }
 
+    fn is_odd(&self) -> bool {
+        true
+    }
+
     fn stiffness(&self) -> Mat<f64> {
         Mat::from_fn(1, 1, |_, _| self.stiffness)
+    }
+
+    fn softened(&self, share: f64) -> Box<dyn FrictionLaw> {
+        Box::new(Self { stiffness: share * self.stiffness, ..*self })
     }
 
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
@@ -107,16 +115,25 @@ impl FrictionLaw for Jenkins {
                     harmonics.basis(crest.theta, &mut high);
                     harmonics.basis(trough.theta, &mut low);
                     for (j, slope) in out.tangent[..size].iter_mut().enumerate() {
-                        *slope = 0.5 * (by_middle * (high[j] + low[j]) + by_range * (high[j] - low[j]));
+                        *slope =
+                            0.5 * (by_middle * (high[j] + low[j]) + by_range * (high[j] - low[j]));
                     }
                 }
             }
             Cycle::Slipping { sticks, slips } => {
                 out.active = true;
                 let weight = 2.0 / harmonics.span();
-                self.integrate_value(motion, harmonics, &sticks, &slips, out, tangent);
+                let SlipLoad { value, tangent: matrix, .. } = out;
+                let union = union_of(&slips, harmonics, harmonics);
+                union.products(harmonics, harmonics, weight * k, |i, j, v| {
+                    value[i] += v * motion.displacement[j];
+                    if tangent {
+                        matrix[i * size + j] = v;
+                    }
+                });
+                self.add_constants(harmonics, &sticks, &slips, weight, value);
                 if tangent {
-                    add_anchors(harmonics, &sticks, k * weight, out);
+                    add_anchors(harmonics, &sticks, k * weight, matrix);
                 }
                 halve_mean_row(harmonics, size, out, tangent);
             }
@@ -125,13 +142,13 @@ impl FrictionLaw for Jenkins {
 
     fn slip_load_at(&self, motion: Motion<'_>, harmonics: &Harmonics, out: &mut [f64]) {
         out.fill(0.0);
-        let Cycle::Slipping { sticks, slips } = Cycle::new(motion, self.stiffness, self.slip_force) else {
+        let Cycle::Slipping { sticks, slips } = Cycle::new(motion, self.stiffness, self.slip_force)
+        else {
             return;
         };
         let kept = motion.table.harmonics();
         let weight = 2.0 / kept.span();
-        let highest = harmonics.highest() + kept.highest();
-        let union = union_of(&slips, highest);
+        let union = union_of(&slips, harmonics, kept);
         union.products(harmonics, kept, weight * self.stiffness, |i, j, v| {
             out[i] += v * motion.displacement[j];
         });
@@ -148,18 +165,17 @@ impl FrictionLaw for Jenkins {
         out.fill(0.0);
         let kept = motion.table.harmonics();
         let k = self.stiffness;
-        let Cycle::Slipping { sticks, slips } = Cycle::new(motion, self.stiffness, self.slip_force) else {
+        let Cycle::Slipping { sticks, slips } = Cycle::new(motion, self.stiffness, self.slip_force)
+        else {
             return;
         };
         let weight = 2.0 / kept.span();
-        let union = union_of(&slips, harmonics.highest() + kept.highest());
+        let union = union_of(&slips, kept, harmonics);
         union.products(kept, harmonics, weight * k, |i, j, v| out[i] += v * change[j]);
-        let mut sums = IntervalSums::default();
+        let mut bounds = Bounds::new(kept);
         for stick in &sticks {
-            sums.reset(kept.highest());
-            sums.add(stick.start, stick.end);
             let at_anchor = harmonics.jet(change, stick.anchor)[0];
-            sums.add_basis(kept, weight * k * at_anchor, out);
+            bounds.add_integral(kept, stick.start, stick.end, weight * k * at_anchor, out);
         }
         if kept.has_mean() {
             out[0] *= 0.5;
@@ -216,30 +232,6 @@ impl FrictionLaw for Jenkins {
 }
 
 impl Jenkins {
-    /// Adds the integrals of the slip load to `out.value`, and those of its derivative within
-    /// slip intervals to `out.tangent`.
-    fn integrate_value(
-        &self,
-        motion: Motion<'_>,
-        harmonics: &Harmonics,
-        sticks: &[Stick],
-        slips: &[Slip],
-        out: &mut SlipLoad,
-        tangent: bool,
-    ) {
-        let size = harmonics.slots();
-        let weight = 2.0 / harmonics.span();
-        let union = union_of(slips, 2 * harmonics.highest());
-        let SlipLoad { value, tangent: matrix, .. } = out;
-        union.products(harmonics, harmonics, weight * self.stiffness, |i, j, v| {
-            value[i] += v * motion.displacement[j];
-            if tangent {
-                matrix[i * size + j] = v;
-            }
-        });
-        self.add_constants(harmonics, sticks, slips, weight, value);
-    }
-
     /// Integrals of the constant parts: the slip load of each stick interval, and `−(±F_d)` of
     /// each slip interval.
     fn add_constants(
@@ -250,15 +242,14 @@ impl Jenkins {
         weight: f64,
         out: &mut [f64],
     ) {
-        let mut sums = IntervalSums::default();
-        let constants = sticks
-            .iter()
-            .map(|stick| (stick.start, stick.end, stick.slip_load))
-            .chain(slips.iter().map(|slip| (slip.start, slip.end, -slip.sign * self.slip_force)));
-        for (start, end, constant) in constants {
-            sums.reset(harmonics.highest());
-            sums.add(start, end);
-            sums.add_basis(harmonics, weight * constant, out);
+        let mut bounds = Bounds::new(harmonics);
+        for stick in sticks {
+            let constant = weight * stick.slip_load;
+            bounds.add_integral(harmonics, stick.start, stick.end, constant, out);
+        }
+        for slip in slips {
+            let constant = -weight * slip.sign * self.slip_force;
+            bounds.add_integral(harmonics, slip.start, slip.end, constant, out);
         }
     }
 
@@ -273,24 +264,60 @@ impl Jenkins {
     }
 }
 
+/// Basis integrals over intervals, from the antiderivatives at their two ends.
+struct Bounds {
+    start: Vec<f64>,
+    end: Vec<f64>,
+}
+
+impl Bounds {
+    fn new(harmonics: &Harmonics) -> Self {
+        let size = harmonics.slots();
+        Self { start: vec![0.0; size], end: vec![0.0; size] }
+    }
+
+    /// Adds `factor ∫ basis dθ` to `out`.
+    fn add_integral(
+        &mut self,
+        harmonics: &Harmonics,
+        start: f64,
+        end: f64,
+        factor: f64,
+        out: &mut [f64],
+    ) {
+        harmonics.antiderivative(start, &mut self.start);
+        harmonics.antiderivative(end, &mut self.end);
+        for ((out, start), end) in out.iter_mut().zip(&self.start).zip(&self.end) {
+            *out += factor * (end - start);
+        }
+    }
+}
+
 /// Adds the rank-one change of every stick interval: its slip load follows the displacement of
 /// its anchor. Leaving this history out breaks Newton's method.
-fn add_anchors(harmonics: &Harmonics, sticks: &[Stick], weight: f64, out: &mut SlipLoad) {
+fn add_anchors(harmonics: &Harmonics, sticks: &[Stick], weight: f64, tangent: &mut [f64]) {
     let size = harmonics.slots();
-    let mut sums = IntervalSums::default();
+    let mut bounds = Bounds::new(harmonics);
     let (mut integral, mut at_anchor) = (vec![0.0; size], vec![0.0; size]);
     for stick in sticks {
-        sums.reset(harmonics.highest());
-        sums.add(stick.start, stick.end);
         integral.fill(0.0);
-        sums.add_basis(harmonics, weight, &mut integral);
+        bounds.add_integral(harmonics, stick.start, stick.end, weight, &mut integral);
         harmonics.basis(stick.anchor, &mut at_anchor);
-        for (row, i) in out.tangent.chunks_exact_mut(size).zip(&integral) {
+        for (row, i) in tangent.chunks_exact_mut(size).zip(&integral) {
             for (entry, j) in row.iter_mut().zip(&at_anchor) {
                 *entry += i * j;
             }
         }
     }
+}
+
+/// Sums over all slip intervals, for products of two sets of harmonics.
+fn union_of(slips: &[Slip], rows: &Harmonics, columns: &Harmonics) -> IntervalSums {
+    let mut sums = IntervalSums::new(rows, columns);
+    for slip in slips {
+        sums.add(slip.start, slip.end);
+    }
+    sums
 }
 
 /// The mean of a series is its integral over the period, not twice that.

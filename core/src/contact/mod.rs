@@ -15,15 +15,15 @@ use crate::Error;
 use faer::Mat;
 use std::collections::BTreeMap;
 
-/// Mean force of a contact that never slips. Its steady motion does not determine it: it is what
-/// the past has left, and has to be assumed.
+/// Force at mid-range of a contact that never slips. Its steady motion does not determine it: it
+/// is what the past has left, and has to be assumed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Residual {
     /// The force swings about zero.
     Centred,
     /// The load was raised slowly from rest with an unloaded contact.
     FromRest,
-    /// A given mean force [N], reduced where it would make the contact slip.
+    /// A given force [N], reduced where it would make the contact slip.
     Value(f64),
 }
 
@@ -42,7 +42,7 @@ pub struct Motion<'a> {
     pub table: &'a SampleTable,
     /// Real coefficients, point after point.
     pub displacement: &'a [f64],
-    /// Assumed mean force where the contact never slips.
+    /// Assumed force at mid-range where the contact never slips.
     pub residual: Residual,
 }
 
@@ -84,8 +84,15 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// Number of relative displacements.
     fn points(&self) -> usize;
 
+    /// Whether the opposite motion gives the opposite force. An odd law under odd harmonics keeps
+    /// half-wave symmetry.
+    fn is_odd(&self) -> bool;
+
     /// Stiffness D of the stuck contact, points × points, symmetric positive semidefinite [N/m].
     fn stiffness(&self) -> Mat<f64>;
+
+    /// The same law with all its stiffness multiplied by `share`, for homotopies.
+    fn softened(&self, share: f64) -> Box<dyn FrictionLaw>;
 
     /// Slip load of a periodic motion and, if asked for, its tangent. Both belong to each other
     /// exactly: the tangent is the derivative of this value, history included.
@@ -121,10 +128,7 @@ pub type Parameters = BTreeMap<String, Vec<f64>>;
 pub fn law(name: &str, parameters: &Parameters) -> Result<Box<dyn FrictionLaw>, Error> {
     match name {
         "jenkins" => Ok(Box::new(Jenkins::from_parameters(parameters)?)),
-        other => Err(Error::UnknownLaw {
-            name: other.to_owned(),
-            known: "jenkins".to_owned(),
-        }),
+        other => Err(Error::UnknownLaw { name: other.to_owned(), known: "jenkins".to_owned() }),
     }
 }
 

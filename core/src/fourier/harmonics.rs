@@ -59,10 +59,7 @@ impl Harmonics {
 
     /// The orders with the mean, if kept, first.
     pub fn orders(&self) -> impl Iterator<Item = usize> + '_ {
-        self.has_mean()
-            .then_some(0)
-            .into_iter()
-            .chain(self.oscillating.iter().copied())
+        self.has_mean().then_some(0).into_iter().chain(self.oscillating.iter().copied())
     }
 
     /// Whether the mean (k = 0) is an unknown.
@@ -149,6 +146,17 @@ impl Harmonics {
         });
     }
 
+    /// Writes the antiderivatives `[θ,] sin kθ / k, −cos kθ / k, …` of the basis.
+    pub fn antiderivative(&self, theta: f64, out: &mut [f64]) {
+        if self.has_mean() {
+            out[0] = theta;
+        }
+        self.rotate(theta, |order, cos, sin, slot| {
+            out[slot] = sin / order;
+            out[slot + 1] = -cos / order;
+        });
+    }
+
     /// Calls `visit(k, cos kθ, sin kθ, slot)` for every k ≥ 1, by rotation instead of one
     /// sine and cosine per order.
     #[inline]
@@ -164,18 +172,12 @@ impl Harmonics {
             (1.0, (sin_1, cos_1))
         };
         let mut order = first as f64;
-        let (mut sin, mut cos) = if first == 1 {
-            (sin_1, cos_1)
-        } else {
-            (order * theta).sin_cos()
-        };
+        let (mut sin, mut cos) =
+            if first == 1 { (sin_1, cos_1) } else { (order * theta).sin_cos() };
         let mut slot = self.offset();
         for _ in &self.oscillating {
             visit(order, cos, sin, slot);
-            (cos, sin) = (
-                cos * cos_step - sin * sin_step,
-                sin * cos_step + cos * sin_step,
-            );
+            (cos, sin) = (cos * cos_step - sin * sin_step, sin * cos_step + cos * sin_step);
             order += step;
             slot += 2;
         }
@@ -190,10 +192,7 @@ mod tests {
     fn odd_harmonics_skip_the_mean_and_the_even_orders() {
         let odd = Harmonics::new(6, true);
         assert_eq!(odd.orders().collect::<Vec<_>>(), [1, 3, 5]);
-        assert_eq!(
-            (odd.slots(), odd.slot(3), odd.slot(2), odd.slot(0)),
-            (6, Some(2), None, None)
-        );
+        assert_eq!((odd.slots(), odd.slot(3), odd.slot(2), odd.slot(0)), (6, Some(2), None, None));
         let all = Harmonics::new(2, false);
         assert_eq!(all.orders().collect::<Vec<_>>(), [0, 1, 2]);
         assert_eq!((all.slots(), all.slot(2), all.slot(3)), (5, Some(3), None));
@@ -203,9 +202,8 @@ mod tests {
     fn jet_agrees_with_direct_sums() {
         for half_wave in [true, false] {
             let harmonics = Harmonics::new(7, half_wave);
-            let series: Vec<f64> = (0..harmonics.slots())
-                .map(|i| ((3 * i + 1) as f64).sin())
-                .collect();
+            let series: Vec<f64> =
+                (0..harmonics.slots()).map(|i| ((3 * i + 1) as f64).sin()).collect();
             let theta = 0.83_f64;
             let [value, slope, curvature] = harmonics.jet(&series, theta);
             let mut expected = [harmonics.mean(&series), 0.0, 0.0];

@@ -8,17 +8,22 @@ use super::Harmonics;
 /// `C_m = Σ ∫ cos mθ dθ` and `S_m = Σ ∫ sin mθ dθ` over intervals.
 #[derive(Debug, Clone, Default)]
 pub struct IntervalSums {
+    /// Distance between the orders in use: products of odd harmonics have even orders alone.
+    step: usize,
     cos: Vec<f64>,
     sin: Vec<f64>,
 }
 
 impl IntervalSums {
-    /// Empties the sums and makes room for orders `0..=highest`.
-    pub fn reset(&mut self, highest: usize) {
-        self.cos.clear();
-        self.cos.resize(highest + 1, 0.0);
-        self.sin.clear();
-        self.sin.resize(highest + 1, 0.0);
+    /// Empty sums for the products of two sets of harmonics.
+    #[must_use]
+    pub fn new(rows: &Harmonics, columns: &Harmonics) -> Self {
+        let size = rows.highest() + columns.highest() + 1;
+        Self {
+            step: if rows.half_wave() && columns.half_wave() { 2 } else { 1 },
+            cos: vec![0.0; size],
+            sin: vec![0.0; size],
+        }
     }
 
     /// Adds the interval `[start, end]` of angles.
@@ -29,32 +34,15 @@ impl IntervalSums {
     }
 
     fn add_bound(&mut self, theta: f64, sign: f64) {
-        let (sin_1, cos_1) = theta.sin_cos();
-        let (mut cos, mut sin) = (cos_1, sin_1);
-        let orders = self.cos.iter_mut().zip(&mut self.sin).enumerate().skip(1);
-        for (order, (sum_cos, sum_sin)) in orders {
+        let (sin_step, cos_step) = (self.step as f64 * theta).sin_cos();
+        let (mut cos, mut sin) = (cos_step, sin_step);
+        let mut order = self.step;
+        while order < self.cos.len() {
             let weight = sign / order as f64;
-            *sum_cos += weight * sin;
-            *sum_sin -= weight * cos;
-            (cos, sin) = (cos * cos_1 - sin * sin_1, sin * cos_1 + cos * sin_1);
-        }
-    }
-
-    /// Length of the union.
-    #[must_use]
-    pub fn length(&self) -> f64 {
-        self.cos[0]
-    }
-
-    /// `Σ ∫ basis dθ`, added with a factor to `out`.
-    pub fn add_basis(&self, harmonics: &Harmonics, factor: f64, out: &mut [f64]) {
-        if harmonics.has_mean() {
-            out[0] += factor * self.cos[0];
-        }
-        for (index, &k) in harmonics.oscillating().iter().enumerate() {
-            let slot = harmonics.offset() + 2 * index;
-            out[slot] += factor * self.cos[k];
-            out[slot + 1] += factor * self.sin[k];
+            self.cos[order] += weight * sin;
+            self.sin[order] -= weight * cos;
+            (cos, sin) = (cos * cos_step - sin * sin_step, sin * cos_step + cos * sin_step);
+            order += self.step;
         }
     }
 
@@ -69,17 +57,9 @@ impl IntervalSums {
     ) {
         let half = 0.5 * factor;
         for (i, k) in rows.orders().enumerate() {
-            let row = if rows.has_mean() && i > 0 {
-                2 * i - 1
-            } else {
-                2 * i
-            };
+            let row = if rows.has_mean() && i > 0 { 2 * i - 1 } else { 2 * i };
             for (j, l) in columns.orders().enumerate() {
-                let column = if columns.has_mean() && j > 0 {
-                    2 * j - 1
-                } else {
-                    2 * j
-                };
+                let column = if columns.has_mean() && j > 0 { 2 * j - 1 } else { 2 * j };
                 let (sum, difference) = (k + l, k.abs_diff(l));
                 let (c_sum, c_diff) = (half * self.cos[sum], half * self.cos[difference]);
                 let s_sum = half * self.sin[sum];
@@ -108,8 +88,7 @@ mod tests {
         let rows = Harmonics::new(3, false);
         let columns = Harmonics::new(5, true);
         let (start, end) = (0.4, 2.9);
-        let mut sums = IntervalSums::default();
-        sums.reset(8);
+        let mut sums = IntervalSums::new(&rows, &columns);
         sums.add(start, end);
         let mut matrix = vec![vec![0.0; columns.slots()]; rows.slots()];
         sums.products(&rows, &columns, 1.0, |i, j, v| matrix[i][j] = v);

@@ -4,7 +4,10 @@ use super::Harmonics;
 
 /// Samples per period and harmonic on which turning points are bracketed. A polynomial of degree
 /// H has at most 2H turning points, so that 16H samples keep them apart by eight on average.
-const SAMPLES_PER_HARMONIC: usize = 16;
+const SAMPLES_PER_HARMONIC: usize = 64;
+
+/// Angles closer than this are the same.
+const ROUNDING: f64 = 1e-12;
 
 /// An angle where the series turns, and its value there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,12 +42,7 @@ impl SampleTable {
                 sin.push(s);
             }
         }
-        Self {
-            harmonics,
-            quarter,
-            cos,
-            sin,
-        }
+        Self { harmonics, quarter, cos, sin }
     }
 
     /// The harmonics of the table.
@@ -57,32 +55,17 @@ impl SampleTable {
     /// ascending order.
     pub fn turning_points(&self, series: &[f64], points: &mut Vec<TurningPoint>) {
         points.clear();
-        let slope = self.sample_slope(series);
-        let count = slope.len();
-        let step = std::f64::consts::FRAC_PI_2 / self.quarter as f64;
         let mirrored = self.harmonics.half_wave();
-        let rising = |i: usize| (slope[i % count] > 0.0) != (mirrored && i >= count);
-        let value = |i: usize| {
-            let folded = slope[i % count];
-            if mirrored && i >= count {
-                -folded
-            } else {
-                folded
-            }
-        };
-        for i in 0..count {
+        let slope = self.sample_slope(series);
+        let step = std::f64::consts::FRAC_PI_2 / self.quarter as f64;
+        for (i, triple) in slope.windows(3).enumerate() {
+            let [here, next, after] = [triple[0], triple[1], triple[2]];
             let (left, right) = (i as f64 * step, (i + 1) as f64 * step);
-            if rising(i) != rising(i + 1) {
-                let guess =
-                    left + step * (value(i) / (value(i) - value(i + 1))).clamp(0.0, 1.0);
-                points.push(self.locate(series, left, right, rising(i), guess));
-            } else if rising(i + 2) == rising(i + 1) {
-                self.push_hidden_pair(
-                    series,
-                    [value(i), value(i + 1), value(i + 2)],
-                    [left, right + step],
-                    points,
-                );
+            if (here > 0.0) != (next > 0.0) {
+                let guess = left + step * (here / (here - next)).clamp(0.0, 1.0);
+                points.push(self.locate(series, left, right, here > 0.0, guess));
+            } else if next.abs() < here.abs() && (after > 0.0) == (next > 0.0) {
+                self.push_hidden_pair(series, [here, next, after], [left, right + step], points);
             }
         }
         let span = self.harmonics.span();
@@ -96,11 +79,14 @@ impl SampleTable {
         points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
     }
 
-    /// Slope of the series on the grid of `[0, span)`.
+    /// Slope of the series on the grid of `[0, span)` and at the first two points beyond, no
+    /// sample exactly zero at the seam, so that its mirror image has the other sign.
     fn sample_slope(&self, series: &[f64]) -> Vec<f64> {
         let q = self.quarter;
         // Even and odd orders apart: they reflect with opposite sign about π/2.
-        let mut sums = [(); 4].map(|()| vec![0.0; q + 1]);
+        let mut sums = [(); 4].map(|()| Vec::new());
+        let present = if self.harmonics.half_wave() { 2.. } else { 0.. };
+        sums[present].iter_mut().for_each(|sum| sum.resize(q + 1, 0.0));
         for (index, &order) in self.harmonics.oscillating().iter().enumerate() {
             let slot = self.harmonics.offset() + 2 * index;
             let k = order as f64;
@@ -115,22 +101,31 @@ impl SampleTable {
             }
         }
         let [even_cos, even_sin, odd_cos, odd_sin] = sums;
-        if self.harmonics.half_wave() {
-            let mut slope = vec![0.0; 2 * q];
+        let half_wave = self.harmonics.half_wave();
+        let count = if half_wave { 2 * q } else { 4 * q };
+        let mut slope = vec![0.0; count + 2];
+        if half_wave {
             for i in 0..=q {
                 slope[i] = odd_cos[i] + odd_sin[i];
-            }
-            for i in 1..q {
                 slope[2 * q - i] = odd_sin[i] - odd_cos[i];
             }
-            return slope;
+            slope[q] = odd_cos[q] + odd_sin[q];
+        } else {
+            for i in 0..=q {
+                slope[2 * q - i] = even_cos[i] - odd_cos[i] - even_sin[i] + odd_sin[i];
+                slope[2 * q + i] = even_cos[i] - odd_cos[i] + even_sin[i] - odd_sin[i];
+                slope[4 * q - i] = even_cos[i] + odd_cos[i] - even_sin[i] - odd_sin[i];
+            }
+            for i in 0..=q {
+                slope[i] = even_cos[i] + odd_cos[i] + even_sin[i] + odd_sin[i];
+            }
         }
-        let mut slope = vec![0.0; 4 * q];
-        for i in 0..=q {
-            slope[i] = even_cos[i] + odd_cos[i] + even_sin[i] + odd_sin[i];
-            slope[2 * q - i] = even_cos[i] - odd_cos[i] - even_sin[i] + odd_sin[i];
-            slope[2 * q + i] = even_cos[i] - odd_cos[i] + even_sin[i] - odd_sin[i];
-            slope[(4 * q - i) % (4 * q)] = even_cos[i] + odd_cos[i] - even_sin[i] - odd_sin[i];
+        let sign = if half_wave { -1.0 } else { 1.0 };
+        for i in 0..2 {
+            if slope[i] == 0.0 {
+                slope[i] = -f64::MIN_POSITIVE;
+            }
+            slope[count + i] = sign * slope[i];
         }
         slope
     }
@@ -201,26 +196,22 @@ impl SampleTable {
                 high = theta;
             }
             let newton = theta - jet[1] / jet[2];
-            let next = if newton > low && newton < high {
+            // Rounding may place a root at the end of its bracket just outside.
+            let next = if newton >= low - ROUNDING && newton <= high + ROUNDING {
                 newton
             } else {
                 0.5 * (low + high)
             };
             let moved = (next - theta).abs();
-            // The value is stationary here: an angle good to 1e-10 gives it to rounding.
-            if moved <= 1e-10 {
-                return TurningPoint {
-                    theta: next,
-                    value: jet[0] + 0.5 * jet[1] * (next - theta),
-                };
+            // Newton's method squares its error, and the value is stationary here: after a step
+            // this short both are good to rounding.
+            if moved <= 1e-7 {
+                return TurningPoint { theta: next, value: jet[0] + 0.5 * jet[1] * (next - theta) };
             }
             theta = next;
             jet = self.harmonics.jet(series, theta);
         }
-        TurningPoint {
-            theta,
-            value: jet[0],
-        }
+        TurningPoint { theta, value: jet[0] }
     }
 }
 
@@ -249,9 +240,8 @@ mod tests {
     fn both_layouts_find_the_same_points() {
         let odd = Harmonics::new(9, true);
         let all = Harmonics::new(9, false);
-        let series: Vec<f64> = (0..odd.slots())
-            .map(|i| (2.3 * i as f64 + 0.4).sin() / (1.0 + i as f64))
-            .collect();
+        let series: Vec<f64> =
+            (0..odd.slots()).map(|i| (2.3 * i as f64 + 0.4).sin() / (1.0 + i as f64)).collect();
         let mut full = vec![0.0; all.slots()];
         for &k in odd.oscillating() {
             let (from, to) = (odd.slot(k).unwrap(), all.slot(k).unwrap());
@@ -283,10 +273,7 @@ mod tests {
         add(2, 1.0);
         add(1, -1.0 + depth);
         let points = turning_points(harmonics.clone(), &series);
-        let near: Vec<_> = points
-            .iter()
-            .filter(|p| (p.theta - shift).abs() < 0.02)
-            .collect();
+        let near: Vec<_> = points.iter().filter(|p| (p.theta - shift).abs() < 0.02).collect();
         assert_eq!(near.len(), 2, "{points:?}");
     }
 }

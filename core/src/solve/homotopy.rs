@@ -1,54 +1,61 @@
-//! Homotopy: a hard system reached from an easy one through a scale of its load.
+//! Homotopy: a hard system reached from an easy one through the scale of a parameter.
 
 use super::{newton, NewtonSettings, Outcome, Report, System};
 
-/// A system whose load can be scaled; at small scale it is easy.
+/// A system with a positive parameter that makes it easy when small; one is the problem itself.
 pub trait Parametrised: System {
-    /// Scales the load.
+    /// Sets the parameter.
     fn set_scale(&mut self, scale: f64);
 
-    /// A start at the present scale.
+    /// Replaces `x` by a start at the present, small parameter, if it knows a better one.
     fn easy_start(&self, x: &mut [f64]);
+
+    /// Predicts the solution after the parameter has grown by the factor `growth`.
+    fn predict(&self, growth: f64, x: &mut [f64]);
 }
 
-/// Scale of the first, easy problem.
-const FIRST_SCALE: f64 = 1e-3;
-/// First and shortest step of the logarithm of the scale.
+/// Parameters at which a first solution is tried, one after the other.
+const FIRST_SCALES: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-5];
+/// First and shortest step of the logarithm of the parameter.
 const FIRST_STEP: f64 = 0.5;
 const SHORTEST_STEP: f64 = 1e-4;
 
-/// Raises the load scale to one, with steps that shrink on failure and grow on success; `x` holds
-/// the solution on return. Friction laws are positively homogeneous, so that a solution scaled
-/// with the load is a good prediction.
-pub fn homotopy(
-    system: &mut impl Parametrised,
-    x: &mut [f64],
-    settings: NewtonSettings,
-) -> Report {
-    let mut logarithm = FIRST_SCALE.ln();
-    let mut step = FIRST_STEP;
-    system.set_scale(FIRST_SCALE);
-    system.easy_start(x);
-    let mut report = newton(system, x, settings);
-    let mut iterations = report.iterations;
+/// Finds an easy solution and follows it to the problem itself, with steps that shrink on failure
+/// and grow on success. `x` is a start and, on return, the solution.
+pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonSettings) -> Report {
+    let mut iterations = 0;
     let mut trial = x.to_vec();
-    while report.outcome == Outcome::Converged && logarithm < 0.0 {
+    let mut easy = None;
+    for scale in FIRST_SCALES {
+        system.set_scale(scale);
+        trial.copy_from_slice(x);
+        system.easy_start(&mut trial);
+        let report = newton(system, &mut trial, settings);
+        iterations += report.iterations;
+        if report.outcome == Outcome::Converged {
+            easy = Some((scale.ln(), report));
+            break;
+        }
+    }
+    let Some((mut logarithm, mut report)) = easy else {
+        system.set_scale(1.0);
+        return Report { outcome: Outcome::Stalled, iterations, residual: f64::NAN };
+    };
+    x.copy_from_slice(&trial);
+    let mut step = FIRST_STEP;
+    while logarithm < 0.0 && step >= SHORTEST_STEP {
         let next = (logarithm + step).min(0.0);
-        let growth = (next - logarithm).exp();
-        trial.iter_mut().zip(x.iter()).for_each(|(t, x)| *t = growth * x);
+        trial.copy_from_slice(x);
+        system.predict((next - logarithm).exp(), &mut trial);
         system.set_scale(next.exp());
-        let attempt = newton(system, &mut trial, settings);
-        iterations += attempt.iterations;
-        if attempt.outcome == Outcome::Converged {
+        report = newton(system, &mut trial, settings);
+        iterations += report.iterations;
+        if report.outcome == Outcome::Converged {
             x.copy_from_slice(&trial);
             logarithm = next;
             step *= 1.5;
-            report = attempt;
         } else {
             step *= 0.5;
-            if step < SHORTEST_STEP {
-                report = attempt;
-            }
         }
     }
     system.set_scale(1.0);

@@ -75,7 +75,11 @@ impl DirectCompliance {
     fn load(&self, harmonic: usize) -> Mat<c64> {
         Mat::from_fn(self.structure.dofs(), 1, |i, _| {
             let amplitude = self.ports.load(harmonic).map_or(c64::new(0.0, 0.0), |load| load[i]);
-            if harmonic == 0 { c64::new(amplitude.re, 0.0) } else { amplitude }
+            if harmonic == 0 {
+                c64::new(amplitude.re, 0.0)
+            } else {
+                amplitude
+            }
         })
     }
 }

@@ -34,10 +34,9 @@ pub struct Receptance {
 impl Receptance {
     pub(crate) fn reset(&mut self, contacts: usize) {
         let zero = c64::new(0.0, 0.0);
-        for (buffer, size) in [
-            (&mut self.contact, contacts * contacts),
-            (&mut self.stuck, contacts),
-        ] {
+        for (buffer, size) in
+            [(&mut self.contact, contacts * contacts), (&mut self.stuck, contacts)]
+        {
             buffer.clear();
             buffer.resize(size, zero);
         }

@@ -117,13 +117,7 @@ impl ModalCompliance {
             let Some((poles, right, left)) = complex_modes(&stuck, in_stuck.as_ref())? else {
                 return Ok(None);
             };
-            (
-                ModalBase::Complex,
-                Spectrum::Complex { poles },
-                right,
-                left,
-                None,
-            )
+            (ModalBase::Complex, Spectrum::Complex { poles }, right, left, None)
         };
         let rows = complex(ports.rows.as_ref());
         let modal = Self {
@@ -169,18 +163,12 @@ impl ModalCompliance {
                 return false;
             }
             let scale = theirs.contact.iter().map(|g| g.norm()).fold(0.0, f64::max);
-            ours.contact
-                .iter()
-                .zip(&theirs.contact)
-                .all(|(a, b)| (a - b).norm() <= 1e-8 * scale)
+            ours.contact.iter().zip(&theirs.contact).all(|(a, b)| (a - b).norm() <= 1e-8 * scale)
         })
     }
 
     fn load(&self, harmonic: usize) -> Option<&[c64]> {
-        self.loads
-            .iter()
-            .find(|(order, _)| *order == harmonic)
-            .map(|(_, load)| load.as_slice())
+        self.loads.iter().find(|(order, _)| *order == harmonic).map(|(_, load)| load.as_slice())
     }
 
     /// Refuses a frequency at which an undamped mode of the stuck base resonates.
@@ -290,7 +278,8 @@ impl Compliance for ModalCompliance {
         let forces: Vec<c64> = match &self.restraint {
             Some(stiffness) => (0..self.contacts())
                 .map(|i| {
-                    let stuck: c64 = (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum();
+                    let stuck: c64 =
+                        (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum();
                     slip_load[i] - stuck
                 })
                 .collect(),
@@ -326,9 +315,7 @@ impl Compliance for ModalCompliance {
 
 impl ModalCompliance {
     fn singular(&self) -> Error {
-        Error::SingularStiffness {
-            lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0),
-        }
+        Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
     }
 }
 
@@ -372,9 +359,8 @@ impl Flexibility {
 
     fn displacement(&self, slip_load: &[c64], observe: &[usize], out: &mut [c64]) {
         for (x, &dof) in out.iter_mut().zip(observe) {
-            let slip: f64 = (0..slip_load.len())
-                .map(|i| self.of_contacts[(dof, i)] * slip_load[i].re)
-                .sum();
+            let slip: f64 =
+                (0..slip_load.len()).map(|i| self.of_contacts[(dof, i)] * slip_load[i].re).sum();
             *x = c64::new(self.of_load[(dof, 0)] + slip, 0.0);
         }
     }
@@ -406,7 +392,9 @@ impl Spectrum {
     fn narrowest_bandwidth(&self) -> f64 {
         match self {
             Self::Real { damping, .. } => damping.iter().map(|c| c.abs()).fold(f64::MAX, f64::min),
-            Self::Complex { poles } => poles.iter().map(|s| 2.0 * s.re.abs()).fold(f64::MAX, f64::min),
+            Self::Complex { poles } => {
+                poles.iter().map(|s| 2.0 * s.re.abs()).fold(f64::MAX, f64::min)
+            }
         }
     }
 }
@@ -441,9 +429,7 @@ fn complex_modes(
         (false, true) => -modes.omega_squared[j] / scale[j] * f64::from(u8::from(i - n == j)),
         (false, false) => -damping[(i - n, j - n)],
     });
-    let eigen = state
-        .eigen()
-        .map_err(|_| Error::Eigenvalues("damping".to_owned()))?;
+    let eigen = state.eigen().map_err(|_| Error::Eigenvalues("damping".to_owned()))?;
     let vectors = eigen.U();
     let inverse = inverse(vectors);
     let poles: Vec<c64> = (0..2 * n).map(|j| eigen.S()[j]).collect();

@@ -36,20 +36,14 @@ pub fn real_modes(mass: MatRef<'_, f64>, stiffness: MatRef<'_, f64>) -> Result<R
         par,
     );
     let omega_squared = (0..mass.nrows()).map(|j| eigen.S()[j]).collect();
-    Ok(RealModes {
-        omega_squared,
-        shapes,
-    })
+    Ok(RealModes { omega_squared, shapes })
 }
 
 impl RealModes {
     /// Natural frequencies [rad/s]; rounding below zero counts as a rigid-body mode.
     #[must_use]
     pub fn frequencies(&self) -> Vec<f64> {
-        self.omega_squared
-            .iter()
-            .map(|w| w.max(0.0).sqrt())
-            .collect()
+        self.omega_squared.iter().map(|w| w.max(0.0).sqrt()).collect()
     }
 
     /// `Φᵀ A Φ` of a matrix A.

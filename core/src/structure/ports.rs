@@ -26,20 +26,12 @@ pub struct Ports {
 impl Ports {
     pub(super) fn check(&self, dofs: usize) -> Result<(), Error> {
         if self.rows.ncols() != dofs {
-            return Err(Error::shape(
-                "contact rows",
-                format!("{dofs} columns"),
-                self.rows.ncols(),
-            ));
+            return Err(Error::shape("contact rows", format!("{dofs} columns"), self.rows.ncols()));
         }
         for (index, load) in self.loads.iter().enumerate() {
             let entry = format!("load at harmonic {}", load.harmonic);
             if load.amplitude.len() != dofs {
-                return Err(Error::shape(
-                    &entry,
-                    format!("{dofs} entries"),
-                    load.amplitude.len(),
-                ));
+                return Err(Error::shape(&entry, format!("{dofs} entries"), load.amplitude.len()));
             }
             if load.amplitude.iter().any(|p| !p.re.is_finite() || !p.im.is_finite()) {
                 return Err(Error::value(entry, f64::NAN, "every entry must be finite"));

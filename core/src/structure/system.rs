@@ -51,10 +51,7 @@ impl Structure {
             damping: damping.to_owned(),
             stiffness: symmetric("stiffness", stiffness)?,
         };
-        structure
-            .mass
-            .llt(faer::Side::Lower)
-            .map_err(|_| Error::IndefiniteMass)?;
+        structure.mass.llt(faer::Side::Lower).map_err(|_| Error::IndefiniteMass)?;
         Ok(structure)
     }
 
@@ -109,7 +106,5 @@ fn symmetric(entry: &str, matrix: MatRef<'_, f64>) -> Result<Mat<f64>, Error> {
             }
         }
     }
-    Ok(Mat::from_fn(size, size, |i, j| {
-        0.5 * (matrix[(i, j)] + matrix[(j, i)])
-    }))
+    Ok(Mat::from_fn(size, size, |i, j| 0.5 * (matrix[(i, j)] + matrix[(j, i)])))
 }

@@ -1,0 +1,71 @@
+# Two commands for everybody: `make demo` and `make test`. Both make their own environment in .venv.
+
+VENV   := .venv
+PYTHON ?= python3
+BIN    := $(VENV)/bin
+
+.PHONY: demo test rust python docs bench peers clean tools
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make demo   build, run the SNECMA beam study, say where its table, picture and files are"
+	@echo "make test   build, then all Rust and Python tests, linters and the documentation"
+	@echo "make bench  criterion benchmarks of the core and the speed table of the package"
+	@echo "make peers  the same study with pyHarm-os, in an environment of its own"
+
+# Says what is missing instead of failing half-way.
+tools:
+	@command -v $(PYTHON) >/dev/null || { \
+	  echo "missing: $(PYTHON); install Python 3.11 or later, or name it: make PYTHON=/path/to/python"; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "too old: `$(PYTHON) --version`; Python 3.11 or later is needed: make PYTHON=/path/to/python"; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { \
+	  echo "missing: the venv module of $(PYTHON); on Debian and Ubuntu: apt install python3-venv"; exit 1; }
+	@command -v cargo >/dev/null || { \
+	  echo "missing: cargo; install Rust 1.85 or later from https://rustup.rs"; exit 1; }
+
+$(BIN)/python: | tools
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+
+# The package as a user gets it.
+SOURCES := $(shell find core/src bindings/src -name '*.rs') Cargo.toml Cargo.lock \
+           core/Cargo.toml bindings/Cargo.toml pyproject.toml
+$(VENV)/.installed: $(BIN)/python $(SOURCES) $(shell find python -name '*.py*' -not -name '*.so')
+	$(BIN)/python -m pip install --quiet .
+	@touch $@
+
+# The package as a developer needs it: editable, with test tools.
+$(VENV)/.developed: $(BIN)/python $(SOURCES)
+	$(BIN)/python -m pip install --quiet "maturin>=1.8,<2"
+	. $(BIN)/activate && maturin develop --release --quiet --extras test,docs
+	@touch $@ $(VENV)/.installed
+
+demo: tools $(VENV)/.installed
+	$(BIN)/stickslip run examples/snecma-beam/study.toml --out results
+
+test: tools rust python docs
+
+rust:
+	cargo fmt --all --check
+	cargo clippy --release --workspace --all-targets -- -D warnings
+	cargo test --release --workspace
+
+python: $(VENV)/.developed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/pytest
+
+docs: $(VENV)/.developed
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+bench: $(VENV)/.developed
+	cargo bench -p stickslip-core --bench forced_response
+	$(BIN)/python benchmarks/speed.py
+
+peers: $(VENV)/.developed
+	$(BIN)/python benchmarks/speed.py --peers
+
+clean:
+	rm -rf $(VENV) .peers target site results

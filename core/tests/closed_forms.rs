@@ -1,0 +1,136 @@
+//! The Jenkins element under a harmonic displacement has closed forms (Griffin 1980; Guillen
+//! 1999, eqs. 2.12-2.14 with the sign of 2.13 corrected).
+
+use std::f64::consts::PI;
+use stickslip_core::contact::{FrictionLaw, Jenkins, Motion, PointSummary, Residual, SlipLoad};
+use stickslip_core::fourier::{Harmonics, SampleTable};
+
+const STIFFNESS: f64 = 3.0e5;
+const SLIP_FORCE: f64 = 12.0;
+
+fn motion<'a>(table: &'a SampleTable, displacement: &'a [f64]) -> Motion<'a> {
+    Motion { table, displacement, residual: Residual::Centred }
+}
+
+#[test]
+fn stiffness_and_dissipation_of_a_harmonic_displacement() {
+    let law = Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap();
+    let delta = SLIP_FORCE / STIFFNESS;
+    for half_wave in [true, false] {
+        let table = SampleTable::new(Harmonics::new(5, half_wave));
+        let first = table.harmonics().offset();
+        for ratio in [1.0 + 1e-9, 1.05, 2.0, 3.7, 40.0] {
+            let amplitude = ratio * delta;
+            let mut u = vec![0.0; table.harmonics().slots()];
+            u[first] = amplitude;
+            let mut load = SlipLoad::default();
+            law.slip_load(motion(&table, &u), false, &mut load);
+            let in_phase = STIFFNESS * amplitude - load.value[first];
+            let quadrature = -load.value[first + 1];
+            let theta = (1.0 - 2.0 / ratio).acos();
+            let stiffness = STIFFNESS / PI * (theta - 0.5 * (2.0 * theta).sin());
+            assert!((in_phase - stiffness * amplitude).abs() < 1e-9 * SLIP_FORCE, "{ratio}");
+            let work = 4.0 * SLIP_FORCE * (amplitude - delta);
+            // u = A cos θ: the work per cycle is −π A times the sine coefficient of the force.
+            assert!((-PI * amplitude * quadrature - work).abs() < 1e-9 * SLIP_FORCE * amplitude);
+            let mut summary = [PointSummary::default()];
+            law.summary(motion(&table, &u), &mut summary);
+            assert!((summary[0].dissipation - work).abs() < 1e-12 * SLIP_FORCE * amplitude);
+            assert!((summary[0].slip_fraction - (1.0 - theta / PI)).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn equivalent_damping_is_largest_at_twice_the_slip_displacement() {
+    let law = Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap();
+    let delta = SLIP_FORCE / STIFFNESS;
+    let table = SampleTable::new(Harmonics::new(1, true));
+    let damping = |amplitude: f64| {
+        let mut load = SlipLoad::default();
+        law.slip_load(motion(&table, &[amplitude, 0.0]), false, &mut load);
+        load.value[1] / amplitude
+    };
+    let largest = damping(2.0 * delta);
+    assert!((largest - STIFFNESS / PI).abs() < 1e-9 * STIFFNESS);
+    for ratio in [1.2, 1.9, 2.1, 5.0] {
+        assert!(damping(ratio * delta) < largest);
+    }
+}
+
+#[test]
+fn the_force_history_closes_its_loop_and_matches_its_series() {
+    let law = Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap();
+    let delta = SLIP_FORCE / STIFFNESS;
+    for half_wave in [true, false] {
+        let table = SampleTable::new(Harmonics::new(5, half_wave));
+        let harmonics = table.harmonics();
+        let mut u = vec![0.0; harmonics.slots()];
+        for (order, a, b) in [(1, 2.0, -0.4), (3, 0.9, 1.1), (5, -0.5, 0.3)] {
+            let slot = harmonics.slot(order).unwrap();
+            (u[slot], u[slot + 1]) = (a * delta, b * delta);
+        }
+        let samples = 40_000;
+        let history = law.force_history(motion(&table, &u), samples);
+        assert!(history.iter().all(|f| f.abs() <= SLIP_FORCE));
+        // The stop operator, marched through two periods, forgets its start: same force.
+        let mut f = 0.0_f64;
+        let mut largest = 0.0_f64;
+        let displacement = |n: usize| harmonics.jet(&u, 2.0 * PI * n as f64 / samples as f64)[0];
+        for n in 1..=2 * samples {
+            let step = STIFFNESS * (displacement(n) - displacement(n - 1));
+            f = (f + step).clamp(-SLIP_FORCE, SLIP_FORCE);
+            if n > samples {
+                largest = largest.max((f - history[n % samples]).abs());
+            }
+        }
+        assert!(largest < 1e-5 * SLIP_FORCE, "{largest}");
+        let mut load = SlipLoad::default();
+        law.slip_load(motion(&table, &u), false, &mut load);
+        for order in [1, 3, 5] {
+            let slot = harmonics.slot(order).unwrap();
+            let mean = |shape: &dyn Fn(f64) -> f64| {
+                2.0 / samples as f64
+                    * (0..samples)
+                        .map(|n| {
+                            shape(order as f64 * 2.0 * PI * n as f64 / samples as f64) * history[n]
+                        })
+                        .sum::<f64>()
+            };
+            let series = [
+                STIFFNESS * u[slot] - load.value[slot],
+                STIFFNESS * u[slot + 1] - load.value[slot + 1],
+            ];
+            assert!((series[0] - mean(&f64::cos)).abs() < 1e-6 * SLIP_FORCE);
+            assert!((series[1] - mean(&f64::sin)).abs() < 1e-6 * SLIP_FORCE);
+        }
+    }
+}
+
+#[test]
+fn discarded_harmonics_continue_the_kept_ones() {
+    let law = Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap();
+    let narrow = SampleTable::new(Harmonics::new(5, true));
+    let wide = SampleTable::new(Harmonics::new(11, true));
+    let delta = SLIP_FORCE / STIFFNESS;
+    let kept: Vec<f64> = [2.0, 0.3, -0.8, 0.9, 0.2, 0.1].iter().map(|x| x * delta).collect();
+    let mut padded = kept.clone();
+    padded.resize(wide.harmonics().slots(), 0.0);
+    let mut all = SlipLoad::default();
+    law.slip_load(motion(&wide, &padded), true, &mut all);
+    let above = narrow.harmonics().above(11);
+    let mut beyond = vec![0.0; above.slots()];
+    law.slip_load_at(motion(&narrow, &kept), &above, &mut beyond);
+    for (a, b) in beyond.iter().zip(&all.value[6..]) {
+        assert!((a - b).abs() < 1e-9 * SLIP_FORCE);
+    }
+    let change: Vec<f64> = (0..above.slots()).map(|i| (i as f64 + 0.3).sin()).collect();
+    let mut response = vec![0.0; kept.len()];
+    law.slip_load_change(motion(&narrow, &kept), &above, &change, &mut response);
+    let size = wide.harmonics().slots();
+    for (row, value) in response.iter().enumerate() {
+        let expected: f64 =
+            change.iter().enumerate().map(|(j, c)| all.tangent[row * size + 6 + j] * c).sum();
+        assert!((value - expected).abs() < 1e-8 * STIFFNESS);
+    }
+}

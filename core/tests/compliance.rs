@@ -1,0 +1,185 @@
+//! The modal compliance against direct solution, for every kind of damping.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{beam_pair, snecma_beam, System};
+use faer::{c64, mat, Mat};
+use stickslip_core::structure::{
+    compliance, natural_frequencies, Compliance, DirectCompliance, HarmonicLoad, Ports, Receptance,
+    Structure,
+};
+use stickslip_core::Error;
+
+fn parts(system: &System) -> (Structure, Ports) {
+    let structure =
+        Structure::new(system.mass.as_ref(), system.damping.as_ref(), system.stiffness.as_ref())
+            .unwrap();
+    let count = system.dampers.len();
+    let rows = Mat::from_fn(count, system.dofs(), |i, j| system.rows(i)[(0, j)]);
+    let stiffness =
+        Mat::from_fn(count, count, |i, j| if i == j { system.dampers[i].2 } else { 0.0 });
+    let amplitude = (0..system.dofs()).map(|i| c64::new(1.0 + i as f64, 0.5)).collect();
+    let loads = vec![
+        HarmonicLoad { harmonic: 1, amplitude },
+        HarmonicLoad { harmonic: 0, amplitude: vec![c64::new(3.0, 0.0); system.dofs()] },
+    ];
+    (structure, Ports { rows, stiffness, loads })
+}
+
+fn with_damping(mut system: System, damping: Mat<f64>) -> System {
+    system.damping = damping;
+    system
+}
+
+fn kinds() -> Vec<(&'static str, System)> {
+    let pair = beam_pair(1.0);
+    let free = pair.clone();
+    let unsymmetric = Mat::from_fn(6, 6, |i, j| {
+        pair.damping[(i, j)] + 20.0 * f64::from(u8::from(i < j)) - 7.0 * f64::from(u8::from(i > j))
+    });
+    let local = Mat::from_fn(6, 6, |i, j| if i == 1 && j == 1 { 40.0 } else { 0.0 });
+    vec![
+        ("stuck modes", with_damping(free.clone(), faer::Scale(9.0) * &free.mass)),
+        ("stuck modes", with_damping(free.clone(), Mat::zeros(6, 6))),
+        ("free modes", free.clone()),
+        ("complex modes", with_damping(free.clone(), unsymmetric)),
+        ("complex modes", with_damping(free, local)),
+    ]
+}
+
+#[test]
+fn every_modal_base_reproduces_the_direct_solution() {
+    for (expected, system) in kinds() {
+        let (structure, ports) = parts(&system);
+        let (modal, base) = compliance(&structure, &ports).unwrap();
+        assert_eq!(base, expected);
+        let direct = DirectCompliance::new(&structure, &ports).unwrap();
+        let observe: Vec<usize> = (0..system.dofs()).collect();
+        for (harmonic, omega) in
+            [(0, 100.0), (1, 37.0), (1, 190.0), (2, 160.0), (7, 300.0), (15, 290.0)]
+        {
+            let (mut a, mut b) = (Receptance::default(), Receptance::default());
+            modal.receptance(harmonic, omega, &mut a).unwrap();
+            direct.receptance(harmonic, omega, &mut b).unwrap();
+            compare(base, &a.contact, &b.contact);
+            compare(base, &a.stuck, &b.stuck);
+            let slip: Vec<c64> = (0..3).map(|i| c64::new(2.0, -(i as f64))).collect();
+            // Displacements must belong to the slip loads: u = u_stuck + G q.
+            let contact: Vec<c64> = (0..3)
+                .map(|i| b.stuck[i] + (0..3).map(|j| b.contact[j * 3 + i] * slip[j]).sum::<c64>())
+                .collect();
+            let mut x = vec![c64::new(0.0, 0.0); observe.len()];
+            let mut y = x.clone();
+            modal.displacement(harmonic, omega, &contact, &slip, &observe, &mut x).unwrap();
+            direct.displacement(harmonic, omega, &contact, &slip, &observe, &mut y).unwrap();
+            let (x, y): (Vec<_>, Vec<_>) = if harmonic == 0 {
+                (
+                    x.iter().map(|z| c64::new(z.re, 0.0)).collect(),
+                    y.iter().map(|z| c64::new(z.re, 0.0)).collect(),
+                )
+            } else {
+                (x, y)
+            };
+            compare(base, &x, &y);
+        }
+    }
+}
+
+fn compare(name: &str, got: &[c64], want: &[c64]) {
+    let scale = want.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    for (a, b) in got.iter().zip(want) {
+        assert!((a - b).norm() <= 1e-9 * scale, "{name}: {a} {b}");
+    }
+}
+
+#[test]
+fn frequency_derivatives_match_differences() {
+    for (_, system) in kinds() {
+        let (structure, ports) = parts(&system);
+        let (modal, base) = compliance(&structure, &ports).unwrap();
+        let direct = DirectCompliance::new(&structure, &ports).unwrap();
+        for form in [modal.as_ref(), &direct as &dyn Compliance] {
+            let (omega, step) = (130.0, 1e-4);
+            let mut exact = Receptance { slope: Some(Default::default()), ..Default::default() };
+            let (mut ahead, mut behind) = (Receptance::default(), Receptance::default());
+            form.receptance(3, omega, &mut exact).unwrap();
+            form.receptance(3, omega + step, &mut ahead).unwrap();
+            form.receptance(3, omega - step, &mut behind).unwrap();
+            let (slope, _) = exact.slope.unwrap();
+            let scale = slope.iter().map(|z| z.norm()).fold(0.0, f64::max);
+            for ((a, b), s) in ahead.contact.iter().zip(&behind.contact).zip(&slope) {
+                assert!(((a - b) / (2.0 * step) - s).norm() < 1e-6 * scale, "{base}");
+            }
+            form.receptance(1, omega, &mut ahead).unwrap();
+            let mut exact = Receptance { slope: Some(Default::default()), ..Default::default() };
+            form.receptance(1, omega, &mut exact).unwrap();
+            form.receptance(1, omega + step, &mut ahead).unwrap();
+            form.receptance(1, omega - step, &mut behind).unwrap();
+            let (_, slope) = exact.slope.unwrap();
+            let scale = slope.iter().map(|z| z.norm()).fold(0.0, f64::max);
+            for ((a, b), s) in ahead.stuck.iter().zip(&behind.stuck).zip(&slope) {
+                assert!(((a - b) / (2.0 * step) - s).norm() < 1e-6 * scale, "{base}");
+            }
+        }
+    }
+}
+
+#[test]
+fn natural_frequencies_of_the_beam() {
+    let beam = snecma_beam(1.0);
+    let slipping = natural_frequencies(beam.mass.as_ref(), beam.stiffness.as_ref()).unwrap();
+    let model = beam.model();
+    let stuck = model.natural_frequencies(&[]).unwrap();
+    for (got, want) in slipping.iter().zip([159.5927, 901.7589, 2167.5410]) {
+        assert!((got - want).abs() < 1e-4, "{got} {want}");
+    }
+    for (got, want) in stuck.iter().zip([225.6623, 1404.3759, 3273.7922]) {
+        assert!((got - want).abs() < 1e-4, "{got} {want}");
+    }
+    assert_eq!(model.natural_frequencies(&[(0, 0)]).unwrap(), slipping);
+    assert!(model.natural_frequencies(&[(1, 0)]).is_err());
+}
+
+#[test]
+fn rigid_body_motion_is_refused_where_the_mean_matters() {
+    // Two masses on one spring; a general damping makes its undamped rigid-body pair defective.
+    let free = |damping: Mat<f64>| System {
+        mass: mat![[1.0, 0.0], [0.0, 2.0]],
+        stiffness: mat![[100.0, -100.0], [-100.0, 100.0]],
+        damping,
+        dampers: vec![(0, Some(1), 30.0, 1.0)],
+        forces: vec![(0, 1, 1.0, 0.0)],
+    };
+    for damping in
+        [Mat::zeros(2, 2), mat![[0.4, -0.4], [-0.4, 0.4]], mat![[0.4, -0.1], [-0.4, 0.4]]]
+    {
+        let system = free(damping);
+        let (structure, ports) = parts(&system);
+        let (form, _) = compliance(&structure, &ports).unwrap();
+        let direct = DirectCompliance::new(&structure, &ports).unwrap();
+        let (mut a, mut b) = (Receptance::default(), Receptance::default());
+        form.receptance(1, 4.0, &mut a).unwrap();
+        direct.receptance(1, 4.0, &mut b).unwrap();
+        compare("free-free", &a.contact, &b.contact);
+        let refused = form.receptance(0, 4.0, &mut a);
+        assert!(matches!(refused, Err(Error::SingularStiffness { .. })), "{refused:?}");
+        assert!(system.model().static_singular());
+    }
+}
+
+#[test]
+fn bad_matrices_are_refused_with_their_entry() {
+    let good = mat![[2.0, 0.1], [0.1, 1.0]];
+    let refused = |m: &Mat<f64>, c: &Mat<f64>, k: &Mat<f64>| {
+        Structure::new(m.as_ref(), c.as_ref(), k.as_ref()).unwrap_err().to_string()
+    };
+    let nan = mat![[1.0, 0.0], [f64::NAN, 1.0]];
+    assert!(refused(&good, &nan, &good).contains("damping[1, 0]"));
+    let skew = mat![[1.0, 0.5], [0.0, 1.0]];
+    assert!(refused(&good, &good, &skew).contains("stiffness[0, 1]"));
+    let indefinite = mat![[1.0, 2.0], [2.0, 1.0]];
+    assert_eq!(refused(&indefinite, &good, &good), Error::IndefiniteMass.to_string());
+    assert!(refused(&good, &good, &mat![[1.0]]).contains("stiffness"));
+}

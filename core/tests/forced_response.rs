@@ -1,0 +1,300 @@
+//! Forced responses against the dissertation's converged tables and fine Runge-Kutta.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{beam_pair, runge_kutta, single_dof, snecma_beam, System};
+use stickslip_core::balance::{
+    refine_peak, sweep, sweep_range, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
+    Solution,
+};
+use stickslip_core::contact::Residual;
+use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
+
+fn fixed(highest: usize) -> Settings {
+    Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
+}
+
+fn grid(from: f64, to: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
+}
+
+fn solve(system: &System, settings: Settings, omega: &[f64]) -> Solution {
+    let model = system.model();
+    let observe: Vec<usize> = (0..system.dofs()).collect();
+    let balance = ForcedBalance::new(&model, settings, &observe).unwrap();
+    sweep(balance, omega, &mut |_| true).unwrap()
+}
+
+fn half_range(point: &Point, half_wave: bool, dof: usize) -> f64 {
+    let harmonics = Harmonics::new(point.harmonics, half_wave);
+    let table = SampleTable::new(harmonics.clone());
+    let orders = point.harmonics + 1;
+    let mut series = vec![0.0; harmonics.slots()];
+    for k in harmonics.orders() {
+        let slot = harmonics.slot(k).unwrap();
+        let x = point.displacement[dof * orders + k];
+        series[slot] = x.re;
+        if k > 0 {
+            series[slot + 1] = -x.im;
+        }
+    }
+    amplitude(&table, &series, Measure::HalfRange)
+}
+
+fn largest(solution: &Solution, dof: usize) -> (f64, f64) {
+    solution
+        .points
+        .iter()
+        .map(|p| (half_range(p, solution.half_wave, dof), p.omega))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .unwrap()
+}
+
+fn all_converged(solution: &Solution) -> bool {
+    solution.points.iter().all(|p| p.status == PointStatus::Converged)
+}
+
+#[test]
+fn tip_peaks_of_the_beam_by_harmonics() {
+    let beam = snecma_beam(20.313);
+    for (highest, peak) in
+        [(1, 1.364684e-3), (3, 1.490380e-3), (9, 1.514972e-3), (15, 1.456342e-3), (21, 1.453190e-3)]
+    {
+        let curve = solve(&beam, fixed(highest), &grid(20.0, 350.0, 400));
+        assert!(all_converged(&curve) && curve.half_wave);
+        let (got, _) = largest(&curve, 1);
+        assert!((got / peak - 1.0).abs() < 1e-4, "H = {highest}: {got}");
+    }
+}
+
+#[test]
+fn peaks_of_the_beam_by_load() {
+    let table = [
+        (0.938, 0.3709e-3, 225.58, 0.5700e-5, 225.60),
+        (2.188, 0.6778e-3, 224.19, 1.1279e-5, 225.47),
+        (6.563, 0.7216e-3, 216.49, 2.1158e-5, 221.64),
+        (16.563, 1.2175e-3, 194.01, 6.2856e-5, 195.40),
+        (20.313, 1.4548e-3, 192.93, 8.7471e-5, 191.49),
+        (25.0, 1.8185e-3, 177.98, 13.0627e-5, 178.99),
+        (31.475, 2.9847e-3, 169.05, 24.8364e-5, 168.78),
+        (38.438, 6.0031e-3, 162.43, 50.9307e-5, 162.65),
+    ];
+    let omega = grid(20.0, 350.0, 400);
+    for (load, tip, tip_omega, damper, damper_omega) in table {
+        let beam = snecma_beam(load);
+        let curve = solve(&beam, fixed(35), &omega);
+        assert!(all_converged(&curve));
+        let model = beam.model();
+        for (dof, peak, at) in [(1, tip, tip_omega), (0, damper, damper_omega)] {
+            let (height, guess) = largest(&curve, dof);
+            let bracket = [guess - 1.0, guess, guess + 1.0];
+            let (omega, got) =
+                refine_peak(&model, fixed(35), dof, Measure::HalfRange, bracket).unwrap();
+            assert!(got >= height, "{load} N: refined below the grid");
+            assert!((got / peak - 1.0).abs() < 2e-3, "{load} N, DOF {dof}: {got}");
+            assert!((omega - at).abs() < 0.05, "{load} N, DOF {dof}: {omega}");
+        }
+    }
+}
+
+#[test]
+fn peaks_by_damper_stiffness() {
+    // Stiffer dampers hold the beam still for longer, which takes more harmonics.
+    let table = [
+        (2.4e4, 98.09e-5, 35),
+        (2.4e5, 92.44e-5, 35),
+        (2.4e6, 24.020e-5, 35),
+        (2.4e8, 6.9825e-5, 101),
+        (2.4e9, 6.7453e-5, 101),
+    ];
+    for (stiffness, peak, highest) in table {
+        let mut beam = snecma_beam(20.313);
+        beam.dampers[0].2 = stiffness;
+        let curve = solve(&beam, fixed(highest), &grid(150.0, 230.0, 161));
+        assert!(all_converged(&curve));
+        let (height, guess) = largest(&curve, 0);
+        let bracket = [guess - 0.5, guess, guess + 0.5];
+        let (_, got) =
+            refine_peak(&beam.model(), fixed(highest), 0, Measure::HalfRange, bracket).unwrap();
+        assert!(got >= height);
+        assert!((got / peak - 1.0).abs() < 2e-3, "{stiffness:e}: {got}");
+    }
+}
+
+#[test]
+fn single_dof_with_its_subresonances() {
+    for (ratio, peak, at) in
+        [(0.5, 1.49967e-5, 209.21), (1.0, 2.93748e-5, 182.09), (2.0, 15.98269e-5, 161.24)]
+    {
+        let system = single_dof(ratio);
+        let curve = solve(&system, fixed(35), &grid(20.0, 350.0, 400));
+        assert!(all_converged(&curve));
+        let (_, guess) = largest(&curve, 0);
+        let bracket = [guess - 0.8, guess, guess + 0.8];
+        let (omega, got) =
+            refine_peak(&system.model(), fixed(35), 0, Measure::HalfRange, bracket).unwrap();
+        assert!((got / peak - 1.0).abs() < 2e-4, "{ratio}: {got}");
+        assert!((omega - at).abs() < 0.02, "{ratio}: {omega}");
+    }
+    // Local maxima well below the resonance, fed by the higher harmonics of friction.
+    let curve = solve(&single_dof(2.0), fixed(61), &grid(20.0, 90.0, 701));
+    let heights: Vec<f64> =
+        curve.points.iter().map(|p| half_range(p, curve.half_wave, 0)).collect();
+    let maxima: Vec<f64> = (1..heights.len() - 1)
+        .filter(|&i| heights[i] > heights[i - 1] && heights[i] > heights[i + 1])
+        .map(|i| curve.points[i].omega)
+        .collect();
+    for subresonance in [66.1, 41.6, 30.3, 23.8] {
+        assert!(
+            maxima.iter().any(|omega| (omega - subresonance).abs() < 0.15),
+            "{subresonance} not in {maxima:?}"
+        );
+    }
+}
+
+#[test]
+fn two_coupled_beams_against_runge_kutta() {
+    let pair = beam_pair(50.0);
+    let omega = [154.0, 163.0, 175.0, 190.0];
+    let curve = solve(&pair, fixed(51), &omega);
+    assert!(all_converged(&curve));
+    let slips: Vec<f64> =
+        curve.points.iter().flat_map(|p| p.contacts.iter().map(|c| c.slip_fraction)).collect();
+    assert!(slips.iter().filter(|s| **s > 0.0).count() >= 10, "{slips:?}");
+    for point in &curve.points {
+        let reference = runge_kutta(&pair, point.omega, 150, 8000);
+        for dof in [0, 1, 3, 4] {
+            let got = half_range(point, curve.half_wave, dof);
+            let error = (got / reference[dof] - 1.0).abs();
+            assert!(error < 2e-3, "{} rad/s, DOF {dof}: {got} {}", point.omega, reference[dof]);
+        }
+    }
+}
+
+#[test]
+fn several_forces_on_any_harmonic_and_a_static_load_against_runge_kutta() {
+    let mut system = beam_pair(60.0);
+    system.forces.push((4, 2, 6.0, -0.4));
+    system.forces.push((1, 3, 4.0, 0.9));
+    system.forces.push((3, 0, 400.0, 0.0));
+    let settings = fixed(50);
+    let curve = solve(&system, settings, &[158.0, 168.0]);
+    assert!(all_converged(&curve) && !curve.half_wave);
+    for point in &curve.points {
+        assert!(point.contacts.iter().all(|c| c.slip_fraction > 0.0), "{:?}", point.contacts);
+        let reference = runge_kutta(&system, point.omega, 150, 8000);
+        for dof in [0, 1, 3, 4] {
+            let got = half_range(point, false, dof);
+            let error = (got / reference[dof] - 1.0).abs();
+            assert!(error < 2e-3, "{} rad/s, DOF {dof}: {got} {}", point.omega, reference[dof]);
+        }
+    }
+}
+
+#[test]
+fn hard_cases_converge_in_both_directions() {
+    let up = grid(20.0, 350.0, 120);
+    let down: Vec<f64> = up.iter().rev().copied().collect();
+    for stiffness in [2.4e4, 2.4e7, 2.4e9, 2.4e10] {
+        for load in [0.938, 6.563, 38.438] {
+            for highest in [1, 9, 21, 35] {
+                let mut beam = snecma_beam(load);
+                beam.dampers[0].2 = stiffness;
+                let (a, b) =
+                    (solve(&beam, fixed(highest), &up), solve(&beam, fixed(highest), &down));
+                assert!(all_converged(&a) && all_converged(&b), "{stiffness:e} {load} {highest}");
+                for (p, q) in a.points.iter().zip(b.points.iter().rev()) {
+                    let (x, y) = (half_range(p, true, 1), half_range(q, true, 1));
+                    assert!(
+                        (x / y - 1.0).abs() < 1e-6,
+                        "{stiffness:e} {load} {highest} {}",
+                        p.omega
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_range_gets_its_steps_and_harmonics_from_the_tolerance() {
+    let beam = snecma_beam(20.313);
+    let model = beam.model();
+    for tolerance in [1e-2, 1e-3] {
+        let settings = Settings { tolerance, max_harmonics: 121, ..Settings::default() };
+        for (from, to) in [(100.0, 350.0), (350.0, 100.0)] {
+            let balance = ForcedBalance::new(&model, settings, &[0, 1]).unwrap();
+            let curve = sweep_range(balance, from, to, &mut |_| true).unwrap();
+            assert!(all_converged(&curve));
+            assert_eq!(curve.points[0].omega, from);
+            assert_eq!(curve.points[curve.points.len() - 1].omega, to);
+            for pair in curve.points.windows(2) {
+                assert!((pair[1].omega - pair[0].omega) * (to - from) > 0.0);
+                // A straight line holds to a few times the tolerance in the middle of each step.
+                let middle = 0.5 * (pair[0].omega + pair[1].omega);
+                let between = solve(&beam, fixed(83), &[middle]);
+                let exact = half_range(&between.points[0], true, 1);
+                let line = 0.5 * (half_range(&pair[0], true, 1) + half_range(&pair[1], true, 1));
+                assert!((line / exact - 1.0).abs() < 5.0 * tolerance, "{middle}: {line} {exact}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stuck_contact_holds_the_residual_it_is_told() {
+    let mut beam = snecma_beam(0.938);
+    beam.forces.push((0, 0, 100.0, 0.0));
+    let stuck_force = |residual| {
+        let settings = Settings { residual, ..fixed(5) };
+        let curve = solve(&beam, settings, &[200.0]);
+        assert!(all_converged(&curve));
+        curve.points[0].contact_force[0].re
+    };
+    assert!(stuck_force(Residual::Centred).abs() < 1e-9);
+    assert!((stuck_force(Residual::Value(40.0)) - 40.0).abs() < 1e-9);
+    // From rest the stuck spring carries its share of the static load.
+    let from_rest = stuck_force(Residual::FromRest);
+    assert!(from_rest > 50.0 && from_rest < 100.0, "{from_rest}");
+    // More than the slip limit leaves room for is cut back to it.
+    assert!(stuck_force(Residual::Value(1e4)) < 246.048);
+}
+
+#[test]
+fn an_interrupted_sweep_keeps_what_it_has() {
+    let beam = snecma_beam(20.313);
+    let model = beam.model();
+    let balance = ForcedBalance::new(&model, fixed(9), &[1]).unwrap();
+    let curve = sweep(balance, &grid(20.0, 350.0, 50), &mut |share| share < 0.5).unwrap();
+    assert!(curve.interrupted);
+    let done = curve.points.iter().filter(|p| p.status == PointStatus::Converged).count();
+    assert!((20..=30).contains(&done), "{done}");
+    assert_eq!(curve.points.len(), 50);
+    assert!(curve.points[49].status == PointStatus::NotComputed);
+    assert!(curve.points[49].displacement[0].re.is_nan());
+}
+
+#[test]
+fn bad_requests_are_named() {
+    let model = snecma_beam(1.0).model();
+    let message = |settings: Settings, observe: &[usize], omega: &[f64]| {
+        ForcedBalance::new(&model, settings, observe)
+            .and_then(|balance| sweep(balance, omega, &mut |_| true))
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(message(fixed(0), &[0], &[1.0]).contains("harmonics = 0"));
+    assert!(message(fixed(3), &[7], &[1.0]).contains("observe = 7"));
+    assert!(message(fixed(3), &[0], &[10.0, -2.0]).contains("omega[1] = -2"));
+    let loose = Settings { tolerance: 2.0, ..Settings::default() };
+    assert!(message(loose, &[0], &[1.0]).contains("tolerance = 2"));
+    let mut undamped = snecma_beam(1.0);
+    undamped.damping = faer::Mat::zeros(3, 3);
+    let model = undamped.model();
+    let resonance = model.natural_frequencies(&[]).unwrap()[0];
+    let balance = ForcedBalance::new(&model, fixed(3), &[0]).unwrap();
+    let refused = sweep(balance, &[resonance], &mut |_| true).unwrap_err().to_string();
+    assert!(refused.contains("undamped natural frequency 225.66"), "{refused}");
+}

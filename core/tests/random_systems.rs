@@ -1,0 +1,95 @@
+//! Random passive systems: solved, in energy balance, and the same from either direction.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::System;
+use faer::Mat;
+use proptest::prelude::*;
+use std::f64::consts::PI;
+use stickslip_core::balance::{sweep, ForcedBalance, HarmonicChoice, PointStatus, Settings};
+
+/// A chain of masses with random springs, light Rayleigh damping, dampers and forces.
+fn passive_system() -> impl Strategy<Value = System> {
+    (2_usize..7, 1_usize..4)
+        .prop_flat_map(|(dofs, dampers)| {
+            (
+                prop::collection::vec(0.5_f64..3.0, dofs),
+                prop::collection::vec(50.0_f64..500.0, dofs),
+                prop::collection::vec((0..dofs, 0..dofs, 1.0_f64..4.0, -1.5_f64..1.0), dampers),
+                prop::collection::vec((0..dofs, 0.2_f64..2.0, -PI..PI), 1..3),
+                0.02_f64..0.3,
+            )
+        })
+        .prop_map(|(masses, springs, dampers, forces, damping)| {
+            let n = masses.len();
+            let mass = Mat::from_fn(n, n, |i, j| if i == j { masses[i] } else { 0.0 });
+            let stiffness = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
+                0 => springs[i] + springs.get(i + 1).copied().unwrap_or(0.0),
+                1 => -springs[i.max(j)],
+                _ => 0.0,
+            });
+            let damping = faer::Scale(damping) * &mass + faer::Scale(1e-4) * &stiffness;
+            System {
+                mass,
+                damping,
+                stiffness,
+                dampers: dampers
+                    .into_iter()
+                    .map(|(one, other, stiffness, limit)| {
+                        let other = (other != one).then_some(other);
+                        (one, other, 10_f64.powf(stiffness), 10_f64.powf(limit))
+                    })
+                    .collect(),
+                forces: forces.into_iter().map(|(dof, f, phase)| (dof, 1, f, phase)).collect(),
+            }
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn converged_balanced_and_unique(system in passive_system()) {
+        let model = system.model();
+        let n = system.dofs();
+        let observe: Vec<usize> = (0..n).collect();
+        let settings = Settings { harmonics: HarmonicChoice::Fixed(9), ..Settings::default() };
+        let omega: Vec<f64> = (1..40).map(|i| i as f64 * 0.9).collect();
+        let back: Vec<f64> = omega.iter().rev().copied().collect();
+        let run = |omega: &[f64]| {
+            sweep(ForcedBalance::new(&model, settings, &observe).unwrap(), omega, &mut |_| true).unwrap()
+        };
+        let (up, down) = (run(&omega), run(&back));
+        for (point, other) in up.points.iter().zip(down.points.iter().rev()) {
+            prop_assert_eq!(point.status, PointStatus::Converged);
+            prop_assert_eq!(other.status, PointStatus::Converged);
+            let orders = point.harmonics + 1;
+            let size = point.displacement.iter().map(|x| x.norm()).fold(0.0, f64::max);
+            for (a, b) in point.displacement.iter().zip(&other.displacement) {
+                prop_assert!((a - b).norm() <= 1e-6 * size);
+            }
+            // Work of the forces = viscous + friction work, per period.
+            let x = |dof: usize, k: usize| point.displacement[dof * orders + k];
+            let input: f64 = system
+                .forces
+                .iter()
+                .map(|&(dof, _, f, phase)| -PI * f * (x(dof, 1) * faer::c64::from_polar(1.0, -phase)).im)
+                .sum();
+            let viscous: f64 = (1..orders)
+                .map(|k| {
+                    let quadratic: f64 = (0..n)
+                        .flat_map(|i| (0..n).map(move |j| (i, j)))
+                        .map(|(i, j)| system.damping[(i, j)] * (x(i, k) * x(j, k).conj()).re)
+                        .sum();
+                    PI * (k * k) as f64 * point.omega * quadratic
+                })
+                .sum();
+            let friction: f64 = point.contacts.iter().map(|c| c.dissipation).sum();
+            prop_assert!(friction >= 0.0);
+            let error = (input - viscous - friction).abs();
+            prop_assert!(error <= 1e-7 * input.abs().max(viscous + friction), "{} {} {}", input, viscous, friction);
+        }
+    }
+}

@@ -1,0 +1,75 @@
+"""Steady vibration of structures damped by dry friction: fast, without tuning, with its error.
+
+Everything named here is loaded when it is first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from stickslip import reference
+    from stickslip._core import __version__
+    from stickslip.analyses.forced_response import forced_response
+    from stickslip.errors import Interrupted, ModelError
+    from stickslip.io import read_matrix
+    from stickslip.model import Force, Jenkins, Model, natural_frequencies
+    from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
+    from stickslip.results import ForcedResponse
+    from stickslip.results.status import Status
+    from stickslip.results.store import load
+
+__all__ = [
+    "Force",
+    "ForcedResponse",
+    "Interrupted",
+    "Jenkins",
+    "ModalDamping",
+    "Model",
+    "ModelError",
+    "Rayleigh",
+    "Status",
+    "Structure",
+    "__version__",
+    "forced_response",
+    "join",
+    "load",
+    "natural_frequencies",
+    "read_matrix",
+    "reference",
+]
+
+_HOMES = {
+    "Force": "model",
+    "ForcedResponse": "results",
+    "Interrupted": "errors",
+    "Jenkins": "model",
+    "ModalDamping": "model",
+    "Model": "model",
+    "ModelError": "errors",
+    "Rayleigh": "model",
+    "Status": "results",
+    "Structure": "model",
+    "__version__": "_core",
+    "forced_response": "analyses.forced_response",
+    "join": "model",
+    "load": "results.store",
+    "natural_frequencies": "model",
+    "read_matrix": "io",
+}
+_MODULES = ("reference",)
+
+
+def __getattr__(name: str) -> object:
+    if name in _MODULES:
+        return import_module(f"{__name__}.{name}")
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

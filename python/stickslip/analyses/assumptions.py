@@ -1,0 +1,185 @@
+"""What a forced response took for granted, in words."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.model import Model
+from stickslip.results.arrays import Arrays, amplitude_of
+from stickslip.results.status import Status
+
+if TYPE_CHECKING:
+    from stickslip.analyses.forced_response import Settings
+
+__all__ = ["assumptions_of"]
+
+LARGE_ERROR = 0.05
+"""Share of the amplitude above which the discarded harmonics are worth a warning."""
+
+_SHOWN = 6
+_BASES = {
+    "stuck modes": (
+        "The damping is proportional on the stuck structure: the compliance is the sum over its "
+        "real modes."
+    ),
+    "free modes": (
+        "The damping is proportional on the free structure: the compliance is the sum over its "
+        "real modes, the stuck contacts added exactly."
+    ),
+    "complex modes": (
+        "The damping is not proportional: the compliance is the sum over the complex modes of the "
+        "stuck structure."
+    ),
+    "direct": (
+        "The modes cannot be separated well: the compliance is solved for at every frequency."
+    ),
+}
+
+
+def assumptions_of(
+    model: Model, settings: Settings, dofs: tuple[str, ...], arrays: Arrays, *, half_wave: bool
+) -> tuple[str, ...]:
+    """Say what a forced response took for granted, one text per assumption.
+
+    Parameters
+    ----------
+    model : Model
+        What was computed.
+    settings : Settings
+        How.
+    dofs : tuple of str
+        The observed degrees of freedom.
+    arrays : Arrays
+        What came out.
+    half_wave : bool
+        Whether only odd harmonics were solved for.
+
+    Returns
+    -------
+    tuple of str
+        One sentence or two each; those that do not apply are left out.
+    """
+    base = model.problem.modal_base
+    texts = (
+        _harmonics(settings, arrays, half_wave),
+        _residual(model, settings, arrays),
+        _BASES.get(base, f"The compliance is evaluated by {base}."),
+        _frequencies(settings, arrays),
+        _observed(model, dofs),
+        _damping(model.structure.damping),
+        _truncation(dofs, arrays),
+        _failures(arrays),
+    )
+    return tuple(text for text in texts if text)
+
+
+def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> str:
+    kept = arrays.harmonics[arrays.solved]
+    if not kept.size:
+        return ""
+    least, most = int(kept.min()), int(kept.max())
+    chosen = (
+        f", chosen per point ({least} to {most}) to a tolerance of {settings.tolerance:g}"
+        if settings.harmonics == "auto"
+        else ""
+    )
+    if half_wave:
+        return (
+            f"Only the odd harmonics up to {most} were solved for{chosen}: the forces and the "
+            "friction laws are half-wave symmetric."
+        )
+    return f"All harmonics from 0 to {most} were solved for{chosen}."
+
+
+def _residual(model: Model, settings: Settings, arrays: Arrays) -> str:
+    stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
+    if not model.contacts or not stuck.any():
+        return ""
+    held = {
+        "centred": "no force at mid-range of its displacement",
+        "from_rest": "the force it built up from zero displacement",
+    }.get(str(settings.residual), f"{settings.residual} N at mid-range of its displacement")
+    return (
+        f"A contact that never slips was taken to hold {held} (residual={settings.residual!r}, "
+        f"of effect at {stuck.sum()} of {stuck.size} points); residual_bounds gives what it could "
+        "hold."
+    )
+
+
+def _frequencies(settings: Settings, arrays: Arrays) -> str:
+    if settings.span is None:
+        return ""
+    low, high = settings.span
+    return (
+        f"The {arrays.omega.size} frequencies between {low:g} and {high:g} rad/s were chosen to a "
+        f"tolerance of {settings.tolerance:g}."
+    )
+
+
+def _observed(model: Model, dofs: tuple[str, ...]) -> str:
+    total = len(model.structure)
+    if len(dofs) == total:
+        return ""
+    listed = ", ".join(dofs[:_SHOWN]) + (", ..." if len(dofs) > _SHOWN else "")
+    return f"Only {len(dofs)} of {total} dofs are kept in the result: {listed}."
+
+
+def _damping(damping: NDArray[np.float64]) -> str:
+    # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
+    symmetric = 0.5 * (damping + damping.T)
+    diagonal = np.abs(np.diag(symmetric))
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    scaled = symmetric * scale * scale[:, None]
+    # Rounding may put the zero eigenvalue of an undamped motion on either side.
+    identity = np.eye(len(scaled))
+    if _is_positive(scaled - 1e-13 * identity):
+        return ""
+    if _is_positive(scaled + 1e-9 * identity):
+        return (
+            "The damping leaves some motion undamped: a steady state that friction does not damp "
+            "either may not be the only one."
+        )
+    return (
+        "The damping is negative for some motion: the solution may be unstable or not the only one."
+    )
+
+
+def _is_positive(matrix: NDArray[np.float64]) -> bool:
+    try:
+        np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def _truncation(dofs: tuple[str, ...], arrays: Arrays) -> str:
+    # The exact half range of every dof and point would cost as much as the solution; the root
+    # sum of squares finds the point, and only there is the range taken.
+    size = np.sqrt((np.abs(arrays.displacement[:, 1:]) ** 2).sum(axis=1))
+    size[~arrays.solved] = np.nan
+    if not np.isfinite(size).any() or not np.nanmax(size) > 0.0:
+        return ""
+    # What moves by rounding only has no relative error worth naming.
+    noise = np.maximum(1e-6 * np.nanmax(size, axis=0, initial=0.0), 1e-12 * np.nanmax(size))
+    ratio = np.where(size > noise, arrays.error_estimate / np.where(size > noise, size, 1.0), 0.0)
+    point, dof = np.unravel_index(int(np.nanargmax(ratio)), ratio.shape)
+    series = np.ascontiguousarray(arrays.displacement[point : point + 1, :, dof])
+    share = float(arrays.error_estimate[point, dof] / amplitude_of(series, "half_range")[0])
+    if share <= LARGE_ERROR:
+        return ""
+    return (
+        f"The discarded harmonics could still change {dofs[dof]!r} by {share:.1%} at omega = "
+        f"{arrays.omega[point]:.6g} rad/s, the worst point; keep more harmonics there."
+    )
+
+
+def _failures(arrays: Arrays) -> str:
+    counts = Counter(Status.from_code(int(code)) for code in arrays.status)
+    failed = [f"{count} {status}" for status, count in counts.items() if status != "converged"]
+    if not failed:
+        return ""
+    return f"Of {arrays.omega.size} points not all met every tolerance: {', '.join(failed)}."

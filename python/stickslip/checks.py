@@ -1,0 +1,198 @@
+"""Doors that every number, name and matrix from outside passes before it is used."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Sequence
+from numbers import Integral, Real
+from typing import Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.errors import ModelError
+
+__all__ = [
+    "MAX_DENSE",
+    "Matrix",
+    "MatrixLike",
+    "SparseMatrix",
+    "brief",
+    "listed",
+    "real_matrix",
+    "real_number",
+    "text",
+    "unknown",
+    "whole_number",
+]
+
+MAX_DENSE = 5000
+"""Largest sparse matrix, in rows, that is made dense."""
+
+Matrix: TypeAlias = NDArray[np.float64]
+_SHOWN = 6
+_LONGEST = 60
+
+
+@runtime_checkable
+class SparseMatrix(Protocol):
+    """What is needed of a `scipy.sparse` array or matrix, so that SciPy need not be imported."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Rows and columns."""
+        ...
+
+    def toarray(self) -> NDArray[np.generic]:
+        """Return the dense array."""
+        ...
+
+
+MatrixLike: TypeAlias = ArrayLike | SparseMatrix
+
+
+def brief(value: object) -> str:
+    """Return what `repr` says, on one line and cut to 60 characters."""
+    line = re.sub(r"\s*\n\s*", " ", repr(value))
+    return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 3]}..."
+
+
+def unknown(kind: str, name: object, known: Iterable[str]) -> str:
+    """Word an unknown name, with the nearest known one or the list of them.
+
+    Parameters
+    ----------
+    kind : str
+        What is named: "dof", "contact", ...
+    name : object
+        The name that was given.
+    known : iterable of str
+        The names that exist.
+
+    Returns
+    -------
+    str
+        For example ``unknown dof 'tpi'; did you mean 'tip'?``.
+    """
+    names = list(known)
+    near = difflib.get_close_matches(name, names, n=1) if isinstance(name, str) else []
+    if near:
+        return f"unknown {kind} {brief(name)}; did you mean {near[0]!r}?"
+    if not names:
+        return f"unknown {kind} {brief(name)}; there is none"
+    return f"unknown {kind} {brief(name)}; known: {listed(names)}"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return the first names in quotes, and how many there are if that is not all."""
+    more = f", ... ({len(names)} in all)" if len(names) > _SHOWN else ""
+    return ", ".join(map(repr, names[:_SHOWN])) + more
+
+
+def text(value: object, entry: str) -> str:
+    """Return a name that is text and not blank.
+
+    Raises
+    ------
+    ModelError
+        If `value` is not a string or holds nothing but white space.
+    """
+    if not isinstance(value, str):
+        raise ModelError(f"{entry}: {brief(value)} is not text; give a name in quotes")
+    if not value.strip():
+        raise ModelError(f"{entry}: {brief(value)} is empty; give a name")
+    return value
+
+
+def real_number(value: object, entry: str, *, finite: bool = True) -> float:
+    """Return a real number as a float.
+
+    Parameters
+    ----------
+    value : object
+        The number: Python or NumPy, or a zero-dimensional array.
+    entry : str
+        What the message calls it.
+    finite : bool, optional
+        Refuse infinity. Not-a-number is always refused.
+
+    Raises
+    ------
+    ModelError
+        If `value` is anything else (text, a truth value, complex, a list).
+    """
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, complex | np.complexfloating):
+        raise ModelError(f"{entry}: {brief(value)} is complex; give a real number")
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise ModelError(f"{entry}: {brief(value)} is not a number; give a real number in SI units")
+    number = float(value)
+    if np.isnan(number) or (finite and np.isinf(number)):
+        kind = "finite number" if finite else "number"
+        raise ModelError(f"{entry}: {number} is not a {kind}; give a real number in SI units")
+    return number
+
+
+def whole_number(value: object, entry: str, *, smallest: int = 0) -> int:
+    """Return an integer that is not below `smallest`.
+
+    Raises
+    ------
+    ModelError
+        If `value` is not an integer (1.0 and True are not) or lies below `smallest`.
+    """
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise ModelError(
+            f"{entry}: {brief(value)} is not an integer; give {smallest}, {smallest + 1}, ..."
+        )
+    if value < smallest:
+        raise ModelError(f"{entry}: {brief(value)} lies below {smallest}; count from {smallest}")
+    return int(value)
+
+
+def real_matrix(value: object, entry: str) -> Matrix:
+    """Return a two-dimensional array of real numbers, dense, as a copy.
+
+    Parameters
+    ----------
+    value : array_like or scipy.sparse array or matrix
+        The matrix. Sparse ones are made dense up to `MAX_DENSE` rows.
+    entry : str
+        What the message calls it.
+
+    Returns
+    -------
+    ndarray of float64, shape (rows, columns)
+        C-contiguous. Its entries may still be infinite or not a number.
+
+    Raises
+    ------
+    ModelError
+        If the value is ragged, complex, not numeric, not two-dimensional, or too large and sparse.
+    """
+    if isinstance(value, SparseMatrix):
+        rows = max(value.shape)
+        if rows > MAX_DENSE:
+            raise ModelError(
+                f"{entry}: {rows} rows are too many for dense modes (at most {MAX_DENSE}); "
+                "reduce the model first (Craig-Bampton, keeping contact, force and output dofs)"
+            )
+        value = value.toarray()
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise ModelError(f"{entry}: rows of unequal length; give one square table") from None
+    if array.dtype.kind == "c":
+        raise ModelError(
+            f"{entry}: complex entries; give real matrices (put structural damping into damping)"
+        )
+    if array.dtype.kind not in "fiu":
+        raise ModelError(f"{entry}: entries of type {array.dtype} are not real numbers")
+    if array.ndim != 2:
+        raise ModelError(
+            f"{entry}: {array.ndim} dimension(s), shape {array.shape}; give rows and columns, "
+            "a diagonal as np.diag(values)"
+        )
+    return np.array(array, dtype=np.float64, order="C")

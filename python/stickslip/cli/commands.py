@@ -1,0 +1,396 @@
+"""The command line: ``stickslip run STUDY.toml``, ``show`` and ``plot`` of results, ``schema``.
+
+Exit codes: 0 all is well, 1 some points did not converge, 2 the input is refused, 70 a defect of
+the program, 130 interrupted by Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from functools import partial, wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NamedTuple, ParamSpec, cast
+
+import typer
+
+from stickslip.errors import Interrupted, ModelError
+
+if TYPE_CHECKING:
+    from stickslip.cli.picture import Panel
+    from stickslip.results import ForcedResponse
+    from stickslip.study import Case, Study
+
+__all__ = ["app"]
+
+NOT_CONVERGED, REFUSED, DEFECT, STOPPED = 1, 2, 70, 130
+
+P = ParamSpec("P")
+
+Files = Annotated[
+    list[Path], typer.Argument(help="Result files of 'stickslip run'.", metavar="RESULT.nc")
+]
+
+app = typer.Typer(
+    name="stickslip",
+    help="Steady vibration of structures damped by dry friction.",
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _epilog(*examples: str) -> str:
+    # paragraphs, because the help would join lines
+    return "\n\n".join(("[bold]Examples[/bold]", *(f"  {example}" for example in examples)))
+
+
+def _guarded(command: Callable[P, None]) -> Callable[P, None]:
+    """Turn what a command raises into one line on standard error and an exit code."""
+
+    @wraps(command)
+    def guarded(*args: P.args, **kwargs: P.kwargs) -> None:
+        from stickslip.cli.console import complain
+
+        if os.environ.get("STICKSLIP_DEBUG", "0") not in ("", "0"):
+            return command(*args, **kwargs)
+        try:
+            command(*args, **kwargs)
+        except (typer.Exit, typer.Abort, BrokenPipeError):
+            raise
+        except KeyboardInterrupt as error:
+            complain("interrupted", str(error) or "nothing more was saved")
+            raise typer.Exit(STOPPED) from None
+        except ModelError as error:
+            complain("error", str(error))
+            raise typer.Exit(REFUSED) from None
+        except OSError as error:
+            complain("error", f"{error.filename or 'file'}: {error.strerror or error}")
+            raise typer.Exit(REFUSED) from None
+        except Exception as error:
+            cause = " ".join(f"{type(error).__name__}: {error}".split())
+            advice = (
+                "this is a defect of stickslip; set STICKSLIP_DEBUG=1 to see where, and report it"
+            )
+            complain("error", f"{cause} ({advice})")
+            raise typer.Exit(DEFECT) from None
+
+    return guarded
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from stickslip import __version__
+
+        print(f"stickslip {__version__}")
+        raise typer.Exit
+
+
+@app.callback(
+    epilog=_epilog(
+        "stickslip run examples/snecma-beam/study.toml",
+        "stickslip show results/snecma-beam-20.313.nc",
+        "stickslip plot results/snecma-beam-*.nc --dof tip --log",
+    )
+)
+def main(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Print the version.", callback=_print_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
+    """Steady vibration of structures damped by dry friction."""
+    for stream in (sys.stdout, sys.stderr):
+        # a file name that the terminal cannot show is no reason to fail
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+# ------------------------------------------------------------------------------------------- run
+
+
+class Curve(NamedTuple):
+    """A computed curve and where it was saved."""
+
+    case: Case
+    result: ForcedResponse
+    file: Path
+
+
+class Clock(dict[str, float]):
+    """Seconds spent, by what was done."""
+
+    @contextmanager
+    def __call__(self, label: str) -> Iterator[None]:
+        """Add the time of a block."""
+        begin = time.perf_counter()
+        try:
+            yield
+        finally:
+            self[label] = self.get(label, 0.0) + time.perf_counter() - begin
+
+
+@app.command(
+    epilog=_epilog(
+        "stickslip run study.toml",
+        "stickslip run study.toml --out results/first --timings",
+        "stickslip run study.toml --quiet --no-plot",
+    )
+    + "\n\nExit code 0: all points converged; 1: some did not; 2: the study is refused."
+)
+@_guarded
+def run(
+    study: Annotated[Path, typer.Argument(help="Study file.", metavar="STUDY.toml")],
+    out: Annotated[Path, typer.Option(help="Folder for the results.", metavar="DIR")] = Path(
+        "results"
+    ),
+    timings: Annotated[bool, typer.Option("--timings", help="Print where the time went.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print problems only.")] = False,
+    no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no picture.")] = False,
+) -> None:
+    """Compute a study: one curve per level, saved as NetCDF, with a table and a picture."""
+    from stickslip.cli import console
+    from stickslip.study import Study
+
+    clock = Clock()
+    with clock("reading the study"):
+        loaded = Study.load(study)
+        out.mkdir(parents=True, exist_ok=True)
+    curves = _compute(loaded, out, clock, quiet=quiet)
+    if not quiet:
+        with clock("refining peaks"):
+            console.peaks(
+                [(_level(curve.case), curve.result) for curve in curves],
+                "" if loaded.tables.analysis.levels is None else "level",
+                loaded.dofs,
+                loaded.tables.output.length_unit,
+            )
+    picture = out / f"{loaded.name}.png"
+    if not no_plot:
+        with clock("drawing"):
+            _draw_study(loaded, curves, picture)
+    if timings:
+        console.stages([curve.result for curve in curves], clock)
+    if not quiet:
+        _tell_files(loaded, curves, None if no_plot else picture)
+    _warn([(curve.case.name, curve.result) for curve in curves])
+
+
+def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curve]:
+    from stickslip.cli.console import progress
+
+    curves: list[Curve] = []
+    cases = study.cases
+    with progress(study.name, wanted=not quiet) as advance:
+        results = study.run(advance)
+        try:
+            for case, result in zip(cases, results, strict=True):
+                file = out / f"{case.name}.nc"
+                with clock("saving"):
+                    result.save(file)
+                curves.append(Curve(case, result, file))
+        except Interrupted as stop:
+            # under another name, so that a complete curve of an earlier run is not lost
+            file = out / f"{cases[len(curves)].name}-partial.nc"
+            cast("ForcedResponse", stop.result).save(file)
+            raise KeyboardInterrupt(
+                f"{len(curves)} of {len(cases)} curves complete in {out}, "
+                f"the next one as far as it went in {file}"
+            ) from None
+    return curves
+
+
+def _level(case: Case) -> str:
+    return "" if case.level is None else f"{case.level:.10g}"
+
+
+def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> None:
+    from stickslip.cli.console import tell
+
+    tell("")
+    if picture is not None:
+        tell(f"picture: {picture}")
+    first = curves[0].file
+    if len(curves) == 1:
+        tell(f"results: {first}")
+    else:
+        tell(f"results: {first.with_name(f'{study.name}-*.nc')} ({len(curves)} files)")
+    tell(f"details: stickslip show {first}")
+
+
+def _warn(results: Sequence[tuple[str, ForcedResponse]]) -> None:
+    """Name what did not converge, and end with the exit code that says so."""
+    from stickslip.cli.console import complain, failures
+
+    lines = [line for name, result in results for line in failures(name, result)]
+    for line in lines:
+        complain("warning", line)
+    if lines:
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def _draw_study(study: Study, curves: Sequence[Curve], picture: Path) -> None:
+    from stickslip import plot
+    from stickslip.cli.picture import draw
+
+    output, results = study.tables.output, [curve.result for curve in curves]
+    panels = [
+        partial(
+            plot.curves,
+            results,
+            dof,
+            omega_unit=output.omega_unit,
+            length_unit=output.length_unit,
+        )
+        for dof in study.dofs
+    ]
+    draw(panels, picture)
+
+
+# ---------------------------------------------------------------------------- show, plot, schema
+
+
+@app.command(epilog=_epilog("stickslip show results/snecma-beam-20.313.nc"))
+@_guarded
+def show(results: Files) -> None:
+    """Print what results hold: the model, the peaks, what was assumed, what did not converge."""
+    from stickslip import load
+    from stickslip.cli import console
+    from stickslip.study import notable_dofs
+
+    for number, file in enumerate(results):
+        result = load(file)
+        if number > 0:
+            console.tell("")
+        console.tell(str(file))
+        console.facts(result)
+        console.tell("")
+        console.peaks([("", result)], "", notable_dofs(result.model, result.dofs), "m")
+        for line in console.failures(file.name, result):
+            console.complain("warning", line)
+
+
+@app.command(
+    epilog=_epilog(
+        "stickslip plot results/snecma-beam-*.nc",
+        "stickslip plot results/snecma-beam-*.nc --dof tip --hertz --linear --out tip.pdf",
+        "stickslip plot results/snecma-beam-20.313.nc --dof tip --waveform 170",
+        'stickslip plot results/snecma-beam-20.313.nc --loop "27 Hz"',
+    )
+)
+@_guarded
+def plot(
+    results: Files,
+    dof: Annotated[
+        list[str] | None,
+        typer.Option(help="DOF to draw, repeatable; default: with a force or a contact."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Picture (.png, .pdf, .svg); default: beside the result.", metavar="FILE"
+        ),
+    ] = None,
+    hertz: Annotated[bool, typer.Option("--hertz", help="Frequency axis in Hz.")] = False,
+    log: Annotated[bool, typer.Option("--log/--linear", help="Amplitude axis.")] = True,
+    per_force: Annotated[
+        bool, typer.Option("--per-force", help="Amplitude per unit of force.")
+    ] = False,
+    waveform: Annotated[
+        str | None,
+        typer.Option(help="Draw one period at this frequency instead.", metavar="OMEGA"),
+    ] = None,
+    loop: Annotated[
+        str | None,
+        typer.Option(help="Draw the hysteresis loop at this frequency.", metavar="OMEGA"),
+    ] = None,
+    contact: Annotated[
+        str, typer.Option(help="Contact of the loop: position, from 0, or name.")
+    ] = "0",
+) -> None:
+    """Draw response curves, or one period of the motion, or a hysteresis loop."""
+    from stickslip import load, plot
+    from stickslip.cli import console
+    from stickslip.cli.picture import draw, titled
+    from stickslip.study import notable_dofs
+
+    if waveform is not None and loop is not None:
+        raise ModelError("--waveform and --loop exclude each other; give one")
+    loaded = [load(file) for file in results]
+    dofs = dof or notable_dofs(loaded[0].model, loaded[0].dofs)
+    panels: list[Panel]
+    if waveform is not None:
+        panels = [
+            partial(plot.waveform, result, name, _index(result, waveform, "--waveform"))
+            for result in loaded
+            for name in dofs
+        ]
+    elif loop is not None:
+        place = int(contact) if contact.isdecimal() else contact
+        panels = [
+            partial(plot.hysteresis, result, place, _index(result, loop, "--loop"))
+            for result in loaded
+        ]
+    else:
+        panels = [
+            partial(
+                plot.curves,
+                loaded,
+                name,
+                omega_unit="Hz" if hertz else "rad/s",
+                log=log,
+                normalise="force" if per_force else None,
+            )
+            for name in dofs
+        ]
+    kind = "waveform" if waveform is not None else "loop" if loop is not None else "curve"
+    picture = out or results[0].with_name(f"{results[0].stem}-{kind}.png")
+    if kind != "curve" and len(results) > 1:
+        names = [file.stem for file in results for _ in range(len(panels) // len(results))]
+        panels = [titled(*pair) for pair in zip(panels, names, strict=True)]
+    draw(panels, picture)
+    console.tell(f"picture: {picture}")
+
+
+def _index(result: ForcedResponse, text: str, option: str) -> int:
+    """Return the computed point nearest to a frequency, which must lie among them."""
+    from stickslip.units import quantity
+
+    value: float | str = text
+    with suppress(ValueError):
+        value = float(text)
+    omega = quantity(value, "rad/s", option)
+    low, high = float(result.omega.min()), float(result.omega.max())
+    if not low * (1 - 1e-6) <= omega <= high * (1 + 1e-6):
+        raise ModelError(
+            f"{option} = {text!r} is {omega:.6g} rad/s, outside the computed {low:.6g} to "
+            f"{high:.6g} rad/s; choose a frequency in between"
+        )
+    return result.index(omega)
+
+
+@app.command(epilog=_epilog("stickslip schema --out stickslip.schema.json"))
+@_guarded
+def schema(
+    out: Annotated[
+        Path | None, typer.Option(help="File to write; default: the terminal.", metavar="FILE")
+    ] = None,
+) -> None:
+    """Print the JSON schema of study files, with which editors complete and check them."""
+    from stickslip.cli.console import tell
+    from stickslip.study import json_schema
+
+    text = json.dumps(json_schema(), indent=2, ensure_ascii=False)
+    if out is None:
+        tell(text)
+    else:
+        out.write_text(text + "\n", encoding="utf-8")
+        tell(f"schema: {out}")

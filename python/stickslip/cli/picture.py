@@ -1,0 +1,61 @@
+"""Pictures: panels one below the other, written to a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from stickslip.errors import ModelError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Panel", "draw", "titled"]
+
+
+class Panel(Protocol):
+    """Draws something on axes."""
+
+    def __call__(self, *, ax: Axes) -> object:
+        """Draw it."""
+        ...
+
+
+def draw(panels: Sequence[Panel], file: Path) -> None:
+    """Draw panels one below the other into a file.
+
+    Parameters
+    ----------
+    panels : sequence of Panel
+        What to draw, from top to bottom.
+    file : Path
+        The picture; its ending says in which format. Folders are made as needed.
+
+    Raises
+    ------
+    ModelError
+        If the format is unknown, or a panel refuses what it is to draw.
+    """
+    from matplotlib.figure import Figure
+
+    # made without pyplot: no window system is asked for, and nothing stays open
+    figure = Figure(figsize=(7.0, 0.6 + 3.9 * len(panels)), layout="constrained")
+    known = figure.canvas.get_supported_filetypes()
+    if file.suffix.lstrip(".").lower() not in known:
+        kinds = ", ".join(f".{kind}" for kind in sorted(known))
+        raise ModelError(f"{file}: '{file.suffix}' is no format of pictures; known: {kinds}")
+    for row, panel in enumerate(panels):
+        panel(ax=figure.add_subplot(len(panels), 1, row + 1))
+    file.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(file, dpi=150)
+
+
+def titled(panel: Panel, name: str) -> Panel:
+    """Put the name of a result over its panel."""
+
+    def drawn(*, ax: Axes) -> None:
+        panel(ax=ax)
+        ax.set_title(f"{name}: {ax.get_title()}", fontsize="medium")
+
+    return drawn

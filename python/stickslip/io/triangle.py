@@ -1,0 +1,67 @@
+"""Whole matrices out of the triangle that files of symmetric matrices hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from scipy.sparse import coo_array
+
+__all__ = ["SIGNS", "whole_matrix"]
+
+SIGNS = {"general": 0, "symmetric": 1, "skew-symmetric": -1}
+"""What an entry is multiplied by when it is mirrored; 0: it is not."""
+
+
+def whole_matrix(
+    shape: tuple[int, int],
+    rows: NDArray[np.int64],
+    columns: NDArray[np.int64],
+    values: NDArray[np.float64],
+    symmetry: str,
+) -> coo_array:
+    """Return a sparse matrix from its entries.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Rows and columns of the matrix.
+    rows, columns : ndarray of int64, shape (entries,)
+        Counted from 0.
+    values : ndarray of float64, shape (entries,)
+        Entries at the same place add up.
+    symmetry : str
+        A key of `SIGNS`. A matrix that is not "general" is given by one triangle.
+
+    Returns
+    -------
+    scipy.sparse.coo_array
+        The whole matrix.
+
+    Raises
+    ------
+    ValueError
+        If an entry lies outside the matrix, or a symmetric one is not square or has entries in
+        both triangles.
+    """
+    from scipy.sparse import coo_array
+
+    for indices, size, kind in ((rows, shape[0], "row"), (columns, shape[1], "column")):
+        if indices.size and not (indices.min() >= 0 and indices.max() < size):
+            raise ValueError(f"a {kind} index lies outside 1 to {size}")
+    sign = SIGNS[symmetry]
+    if sign:
+        if shape[0] != shape[1]:
+            raise ValueError(f"{symmetry}, but {shape[0]} x {shape[1]}")
+        if (rows > columns).any() and (rows < columns).any():
+            raise ValueError(f"{symmetry}, but entries on both sides of the diagonal")
+        off = rows != columns
+        rows, columns, values = (
+            np.concatenate([rows, columns[off]]),
+            np.concatenate([columns, rows[off]]),
+            np.concatenate([values, sign * values[off]]),
+        )
+    return coo_array((values, (rows, columns)), shape=shape)

@@ -1,0 +1,287 @@
+"""Friction contacts: where they act and their parameters; the mathematics of a law is compiled.
+
+A new law is one class here, with its line in `LAWS`, and one file in the core.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from stickslip.checks import Matrix, brief, real_number, text, unknown
+from stickslip.errors import ModelError
+from stickslip.model.structure import Structure
+
+__all__ = ["LAWS", "Contact", "Jenkins", "contact_from_spec"]
+
+
+@dataclass(frozen=True)
+class Contact(ABC):
+    """A friction law at one or more contact points.
+
+    Parameters
+    ----------
+    name : str, optional
+        By which results and settings refer to the contact. A `Model` names the unnamed by their
+        law: "jenkins", "jenkins-2", ...
+    """
+
+    law: ClassVar[str]
+    """Name of the law, as the compiled core knows it."""
+
+    name: str | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        if self.name is not None:
+            text(self.name, f"{self.law} contact: name")
+
+    @property
+    @abstractmethod
+    def dofs(self) -> tuple[str, ...]:
+        """Names of the degrees of freedom it acts on."""
+
+    @property
+    @abstractmethod
+    def points(self) -> int:
+        """Number of contact points, each of which sticks or slips."""
+
+    @abstractmethod
+    def rows(self, structure: Structure) -> Matrix:
+        """Return B of u = B x.
+
+        Parameters
+        ----------
+        structure : Structure
+            The structure that the contact acts on, of N degrees of freedom.
+
+        Returns
+        -------
+        ndarray of float64, shape (points, N)
+            One row per contact point.
+
+        Raises
+        ------
+        ModelError
+            If the structure lacks a degree of freedom.
+        """
+
+    @abstractmethod
+    def parameters(self) -> dict[str, float]:
+        """Return the parameters of the law by name, in SI units."""
+
+    @abstractmethod
+    def scaled(self, slip_force: float) -> Self:
+        """Return a contact with every slip force multiplied by `slip_force`."""
+
+    @classmethod
+    @abstractmethod
+    def from_parameters(
+        cls, dofs: tuple[str, ...], parameters: Mapping[str, object], name: str | None
+    ) -> Self:
+        """Build the contact from what `dofs`, `parameters` and `name` hold."""
+
+    def to_spec(self) -> dict[str, object]:
+        """Return the contact in plain values that any text format can hold.
+
+        Returns
+        -------
+        dict
+            `law`, `dofs` (list), `parameters` (dict; infinity is the text "inf", which JSON has no
+            number for) and `name`. See `contact_from_spec`.
+        """
+        parameters = {
+            key: value if np.isfinite(value) else str(value)
+            for key, value in self.parameters().items()
+        }
+        return {
+            "law": self.law,
+            "dofs": list(self.dofs),
+            "parameters": parameters,
+            "name": self.name,
+        }
+
+
+@dataclass(frozen=True)
+class Jenkins(Contact):
+    """A spring in series with a Coulomb slider: the elastic dry-friction element.
+
+    The force follows f = clip(f + k_d du, -F_d, F_d) along the motion.
+
+    Parameters
+    ----------
+    dof : str
+        Degree of freedom it is attached to.
+    other : str, optional
+        Degree of freedom at its other end; the displacement is x_dof - x_other. Default: the
+        ground.
+    stiffness : float
+        Stiffness k_d while it sticks [N/m].
+    slip_force : float
+        Force F_d at which it slips [N]. Zero is no friction, infinity never slips.
+    name : str, optional
+        By which results and settings refer to it.
+
+    Raises
+    ------
+    ModelError
+        If the stiffness is negative or infinite, the slip force negative, either not a number, or
+        both ends are the same degree of freedom.
+
+    References
+    ----------
+    Guillen (1999), eqs. (2.1)-(2.2), with the return map of Table 3.1 corrected.
+    """
+
+    law: ClassVar[str] = "jenkins"
+
+    dof: str
+    other: str | None = None
+    stiffness: float = field(kw_only=True)
+    slip_force: float = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        text(self.dof, "jenkins contact: dof")
+        if self.other is not None:
+            text(self.other, "jenkins contact: other")
+        if self.dof == self.other:
+            raise ModelError(
+                f"jenkins contact: both ends at dof {self.dof!r}; name another dof, or leave "
+                "`other` out for the ground"
+            )
+        entry = f"jenkins contact at {self.dof!r}"
+        stiffness = real_number(self.stiffness, f"{entry}: stiffness", finite=False)
+        slip_force = real_number(self.slip_force, f"{entry}: slip_force", finite=False)
+        if stiffness < 0.0:
+            raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
+        if np.isinf(stiffness):
+            raise ModelError(
+                f"{entry}: stiffness inf; take about 1000 times the local structure stiffness as "
+                "the rigid limit"
+            )
+        if slip_force < 0.0:
+            raise ModelError(
+                f"{entry}: slip_force {slip_force:g} is negative; give N, 0 for no friction"
+            )
+        object.__setattr__(self, "stiffness", stiffness)
+        object.__setattr__(self, "slip_force", slip_force)
+
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """Names of the degrees of freedom it acts on, one (to ground) or two."""
+        return (self.dof,) if self.other is None else (self.dof, self.other)
+
+    @property
+    def points(self) -> int:
+        """Number of contact points: one."""
+        return 1
+
+    def rows(self, structure: Structure) -> Matrix:
+        """Return B of u = B x.
+
+        Parameters
+        ----------
+        structure : Structure
+            The structure that the contact acts on, of N degrees of freedom.
+
+        Returns
+        -------
+        ndarray of float64, shape (1, N)
+            +1 at `dof`, -1 at `other`.
+
+        Raises
+        ------
+        ModelError
+            If the structure lacks a degree of freedom.
+        """
+        rows = np.zeros((1, len(structure)))
+        rows[0, structure.index(self.dof)] = 1.0
+        if self.other is not None:
+            rows[0, structure.index(self.other)] = -1.0
+        return rows
+
+    def parameters(self) -> dict[str, float]:
+        """Return `stiffness` [N/m] and `slip_force` [N]."""
+        return {"stiffness": self.stiffness, "slip_force": self.slip_force}
+
+    def scaled(self, slip_force: float) -> Self:
+        """Return a contact with its slip force multiplied; one that never slips stays so."""
+        if np.isinf(self.slip_force):
+            return self
+        return replace(self, slip_force=self.slip_force * slip_force)
+
+    @classmethod
+    def from_parameters(
+        cls, dofs: tuple[str, ...], parameters: Mapping[str, object], name: str | None
+    ) -> Self:
+        """Build the contact from what `dofs`, `parameters` and `name` hold.
+
+        Raises
+        ------
+        ModelError
+            If there are not one or two `dofs`, or other parameters than the law's two.
+        """
+        if not 1 <= len(dofs) <= 2:
+            raise ModelError(f"jenkins contact: {len(dofs)} dofs; give one (to ground) or two")
+        for key in parameters:
+            if key not in ("stiffness", "slip_force"):
+                raise ModelError(
+                    f"jenkins contact: {unknown('parameter', key, ['stiffness', 'slip_force'])}"
+                )
+        return cls(
+            *dofs,
+            stiffness=_parameter(parameters, "stiffness", "jenkins contact"),
+            slip_force=_parameter(parameters, "slip_force", "jenkins contact"),
+            name=name,
+        )
+
+
+LAWS: Mapping[str, type[Contact]] = {law.law: law for law in (Jenkins,)}
+"""Every law by its name."""
+
+
+def contact_from_spec(spec: Mapping[str, object]) -> Contact:
+    """Build a contact from the plain values of `Contact.to_spec`.
+
+    Parameters
+    ----------
+    spec : mapping
+        `law`, `dofs`, `parameters` and, optionally, `name`.
+
+    Returns
+    -------
+    Contact
+        Of the class that `LAWS` holds for the law.
+
+    Raises
+    ------
+    ModelError
+        If a key is unknown or missing, the law is unknown, or a value is refused by the law.
+    """
+    keys = ("law", "dofs", "parameters", "name")
+    for key in spec:
+        if key not in keys:
+            raise ModelError(f"contact: {unknown('key', key, keys)}")
+    law, dofs, parameters = (spec.get(key) for key in keys[:3])
+    if not isinstance(law, str) or law not in LAWS:
+        raise ModelError(f"contact: {unknown('law', law, LAWS)}")
+    if isinstance(dofs, str) or not isinstance(dofs, list | tuple):
+        raise ModelError(f"{law} contact: dofs {brief(dofs)} is not a list of names")
+    if not isinstance(parameters, Mapping):
+        raise ModelError(f"{law} contact: parameters {brief(parameters)} is not a table")
+    name = spec.get("name")
+    if name is not None:
+        name = text(name, f"{law} contact: name")
+    return LAWS[law].from_parameters(tuple(dofs), parameters, name)
+
+
+def _parameter(parameters: Mapping[str, object], key: str, entry: str) -> float:
+    """Return a parameter as `Contact.to_spec` writes it, infinity as text."""
+    if key not in parameters:
+        raise ModelError(f"{entry}: {key} is missing; give {key}")
+    value = parameters[key]
+    return real_number(np.inf if value == "inf" else value, f"{entry}: {key}", finite=False)

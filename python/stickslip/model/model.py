@@ -1,0 +1,301 @@
+"""What is computed with: a structure, its friction contacts and the forces on it.
+
+Messages count contacts and forces from 1, as study files do, beside their names; positions in calls
+count from 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Set
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain, count
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import brief, real_number, unknown, whole_number
+from stickslip.errors import ModelError
+from stickslip.model.contact import Contact
+from stickslip.model.force import Force
+from stickslip.model.structure import Structure
+
+if TYPE_CHECKING:
+    from stickslip import _core
+
+__all__ = ["ContactRef", "Model", "PointRef", "natural_frequencies"]
+
+_Item = TypeVar("_Item")
+
+ContactRef: TypeAlias = int | str
+"""A contact: its position, counted from 0, or its name."""
+PointRef: TypeAlias = ContactRef | tuple[ContactRef, int]
+"""A contact point: (contact, point), or the contact alone where it has one point."""
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Model:
+    """A structure with its friction contacts and the forces on it.
+
+    Parameters
+    ----------
+    structure : Structure
+        The linear part.
+    contacts : iterable of Contact, optional
+        Friction contacts. None is the linear structure.
+    forces : iterable of Force, optional
+        Forces; those on the same degree of freedom and harmonic add up.
+
+    Attributes
+    ----------
+    structure : Structure
+        The linear part.
+    contacts : tuple of Contact
+        The contacts, each with its name: those that had none are named by their law, "jenkins",
+        "jenkins-2", ...
+    forces : tuple of Force
+        The forces.
+
+    Raises
+    ------
+    ModelError
+        If a contact or force names a degree of freedom that the structure lacks, or two contacts
+        have the same name.
+    """
+
+    structure: Structure
+    contacts: tuple[Contact, ...]
+    forces: tuple[Force, ...]
+
+    def __init__(
+        self, structure: Structure, contacts: Iterable[Contact] = (), forces: Iterable[Force] = ()
+    ) -> None:
+        if not isinstance(structure, Structure):
+            raise ModelError(
+                f"structure: {brief(structure)} is not a Structure; give ss.Structure(...)"
+            )
+        object.__setattr__(self, "structure", structure)
+        object.__setattr__(self, "contacts", _named(_listed(contacts, "contact", Contact)))
+        object.__setattr__(self, "forces", _listed(forces, "force", Force))
+        self._require_dofs()
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.contact_names[:6]) + (", ..." if len(self.contacts) > 6 else "")
+        return f"Model({self.structure!r}, contacts=[{names}], {len(self.forces)} force(s))"
+
+    def __reduce__(self) -> tuple[type[Model], tuple[object, ...]]:
+        # The compiled problem is rebuilt on the other side: it cannot be pickled.
+        return Model, (self.structure, self.contacts, self.forces)
+
+    def _require_dofs(self) -> None:
+        known = self.structure.dofs
+        for number, contact in enumerate(self.contacts, 1):
+            for dof in contact.dofs:
+                if dof not in known:
+                    reason = unknown("dof", dof, known)
+                    raise ModelError(f"contact {number} ({contact.name!r}): {reason}")
+        for number, force in enumerate(self.forces, 1):
+            if force.dof not in known:
+                raise ModelError(f"force {number}: {unknown('dof', force.dof, known)}")
+
+    @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Names of the contacts, in order."""
+        return tuple(str(contact.name) for contact in self.contacts)
+
+    def contact_index(self, contact: ContactRef) -> int:
+        """Return the position of a contact.
+
+        Parameters
+        ----------
+        contact : int or str
+            Its position, counted from 0, or its name.
+
+        Returns
+        -------
+        int
+            Its position.
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact.
+        """
+        if isinstance(contact, str):
+            if contact not in self.contact_names:
+                raise ModelError(unknown("contact", contact, self.contact_names))
+            return self.contact_names.index(contact)
+        position = whole_number(contact, "contact")
+        _require_position("contact", position, len(self.contacts), "the model")
+        return position
+
+    def point(self, point: PointRef) -> tuple[int, int]:
+        """Return a contact point as positions.
+
+        Parameters
+        ----------
+        point : int, str or (int or str, int)
+            (contact, point), the point counted from 0; or the contact alone where it has one point.
+
+        Returns
+        -------
+        contact : int
+            Position of the contact.
+        point : int
+            Position of the point in it.
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point, or the contact has several points and none is
+            named.
+        """
+        if isinstance(point, tuple | list):
+            if len(point) != 2:
+                raise ModelError(f"contact point {brief(point)}: write (contact, point)")
+            contact = self.contact_index(point[0])
+            position = whole_number(point[1], f"contact {point[0]!r}: point")
+            _require_position(
+                "point", position, self.contacts[contact].points, f"contact {point[0]!r}"
+            )
+            return contact, position
+        contact = self.contact_index(point)
+        points = self.contacts[contact].points
+        if points != 1:
+            raise ModelError(f"contact {point!r}: it has {points} points; write ({point!r}, 0)")
+        return contact, 0
+
+    def scaled(self, *, force: float = 1.0, slip_force: float = 1.0) -> Model:
+        """Return the model at another level of excitation or preload.
+
+        Parameters
+        ----------
+        force : float, optional
+            Factor on every force amplitude, static loads included.
+        slip_force : float, optional
+            Factor on every slip force, not negative; contacts that never slip stay so.
+
+        Returns
+        -------
+        Model
+            A new model.
+
+        Raises
+        ------
+        ModelError
+            If a factor is not a finite number, or `slip_force` is negative.
+        """
+        force = real_number(force, "factor on the forces")
+        slip_force = real_number(slip_force, "factor on the slip forces")
+        if slip_force < 0.0:
+            raise ModelError(f"factor on the slip forces: {slip_force:g} is negative; give >= 0")
+        return Model(
+            self.structure,
+            [contact.scaled(slip_force) for contact in self.contacts],
+            [replace(one, amplitude=one.amplitude * force) for one in self.forces],
+        )
+
+    @cached_property
+    def problem(self) -> _core.Problem:
+        """The model as the compiled core sees it: numbers without names, built once.
+
+        Raises
+        ------
+        ModelError
+            If the core refuses the numbers.
+        """
+        from stickslip import _core
+
+        structure = self.structure
+        contacts = [
+            (contact.law, contact.rows(structure), contact.parameters())
+            for contact in self.contacts
+        ]
+        try:
+            return _core.Problem(
+                structure.mass, structure.damping, structure.stiffness, contacts, self._loads()
+            )
+        except ValueError as error:
+            raise ModelError(str(error)) from error
+
+    def _loads(self) -> list[tuple[int, NDArray[np.complex128]]]:
+        """Sum the forces of each harmonic, in ascending harmonics."""
+        loads = {
+            harmonic: np.zeros(len(self.structure), dtype=np.complex128)
+            for harmonic in sorted({force.harmonic for force in self.forces})
+        }
+        for force in self.forces:
+            loads[force.harmonic][self.structure.index(force.dof)] += force.coefficient
+        return list(loads.items())
+
+
+def natural_frequencies(model: Model, slipping: Iterable[PointRef] = ()) -> NDArray[np.float64]:
+    """Natural frequencies with some contact points slipping and all others stuck.
+
+    Parameters
+    ----------
+    model : Model
+        Its forces and damping play no part.
+    slipping : iterable of int, str or (int or str, int), optional
+        The contact points that slip: contact, or (contact, point). Default: all stick.
+
+    Returns
+    -------
+    ndarray of float64, shape (N,)
+        Angular frequencies in ascending order [rad/s].
+
+    Raises
+    ------
+    ModelError
+        If there is no such contact or point.
+    """
+    if isinstance(slipping, str) or not isinstance(slipping, Iterable):
+        raise ModelError(f"slipping: {brief(slipping)} is not a list; write slipping=[...]")
+    points = sorted({model.point(point) for point in slipping})
+    problem = model.problem
+    try:
+        return problem.natural_frequencies(points)
+    except ValueError as error:
+        raise ModelError(str(error)) from error
+
+
+def _listed(items: Iterable[_Item], entry: str, kind: type[object]) -> tuple[_Item, ...]:
+    if not isinstance(items, Iterable):
+        raise ModelError(f"{entry}s: {brief(items)} is not a list; write {entry}s=[...]")
+    listed = tuple(items)
+    for number, item in enumerate(listed, 1):
+        if not isinstance(item, kind):
+            raise ModelError(
+                f"{entry} {number}: {brief(item)} is no {entry}; give a {kind.__name__}"
+            )
+    return listed
+
+
+def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
+    """Name the unnamed by their law, past the names that are taken."""
+    taken: dict[str, int] = {}
+    for number, contact in enumerate(contacts, 1):
+        if contact.name in taken:
+            raise ModelError(
+                f"contact {number} ({contact.name!r}): contact {taken[contact.name]} has this "
+                "name already; give another name="
+            )
+        if contact.name is not None:
+            taken[contact.name] = number
+    names: list[str] = []
+    for contact in contacts:
+        name = contact.name or _free_name(contact.law, taken.keys() | set(names))
+        names.append(name)
+    return tuple(replace(contact, name=name) for contact, name in zip(contacts, names, strict=True))
+
+
+def _free_name(law: str, taken: Set[str]) -> str:
+    numbered = (f"{law}-{number}" for number in count(2))
+    return next(name for name in chain([law], numbered) if name not in taken)
+
+
+def _require_position(kind: str, position: int, size: int, owner: str) -> None:
+    if position >= size:
+        remedy = f"count from 0 to {size - 1}" if size else f"give the model a {kind}"
+        raise ModelError(f"{kind} {position}: {owner} has {size} {kind}(s); {remedy}")

@@ -1,0 +1,376 @@
+"""Linear structures: mass, damping and stiffness matrices with named degrees of freedom."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from numbers import Real
+from typing import TypeAlias
+
+import numpy as np
+
+from stickslip.checks import Matrix, MatrixLike, brief, real_matrix, real_number, text, unknown
+from stickslip.errors import ModelError
+
+__all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
+
+# Printed matrices carry rounded digits; anything larger than this is a wrong matrix.
+_ASYMMETRY = 1e-8
+_SHOWN = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rayleigh:
+    """Proportional damping, C = mass * M + stiffness * K.
+
+    Parameters
+    ----------
+    mass : float, optional
+        Factor on the mass matrix [1/s].
+    stiffness : float, optional
+        Factor on the stiffness matrix [s]. Negative factors describe negative damping.
+
+    Raises
+    ------
+    ModelError
+        If a factor is not a finite number.
+    """
+
+    mass: float = 0.0
+    stiffness: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mass", real_number(self.mass, "Rayleigh mass factor"))
+        factor = real_number(self.stiffness, "Rayleigh stiffness factor")
+        object.__setattr__(self, "stiffness", factor)
+
+    def matrix(self, mass: Matrix, stiffness: Matrix) -> Matrix:
+        """Return the damping matrix.
+
+        Parameters
+        ----------
+        mass, stiffness : ndarray of float64, shape (N, N)
+            The structure's matrices [kg], [N/m].
+
+        Returns
+        -------
+        ndarray of float64, shape (N, N)
+            Damping [kg/s].
+        """
+        return self.mass * mass + self.stiffness * stiffness
+
+
+@dataclass(frozen=True)
+class ModalDamping:
+    """Damping ratios of the structure's own modes, its contacts being free.
+
+    With mass-normalised modes Phi, C = M Phi diag(2 zeta omega) Phi^T M. Rigid-body modes stay
+    undamped.
+
+    Parameters
+    ----------
+    ratio : float or sequence of float
+        Fraction of critical damping: one for all modes, or one per mode in ascending frequency.
+
+    Raises
+    ------
+    ModelError
+        If a ratio is not a finite number; on use, if the number of ratios is not the number of
+        modes or the stiffness matrix has a negative eigenvalue.
+    """
+
+    ratio: float | Sequence[float]
+
+    def __post_init__(self) -> None:
+        given = self.ratio.tolist() if isinstance(self.ratio, np.ndarray) else self.ratio
+        ratio: float | tuple[float, ...]
+        if isinstance(given, Sequence) and not isinstance(given, str):
+            ratio = tuple(
+                real_number(value, f"damping ratio of mode {mode}")
+                for mode, value in enumerate(given)
+            )
+        else:
+            ratio = real_number(given, "damping ratio")
+        object.__setattr__(self, "ratio", ratio)
+
+    def matrix(self, mass: Matrix, stiffness: Matrix) -> Matrix:
+        """Return the damping matrix.
+
+        Parameters
+        ----------
+        mass, stiffness : ndarray of float64, shape (N, N)
+            The structure's matrices [kg], [N/m].
+
+        Returns
+        -------
+        ndarray of float64, shape (N, N)
+            Damping [kg/s].
+
+        Raises
+        ------
+        ModelError
+            If the number of ratios is not N, or the stiffness has a negative eigenvalue.
+        """
+        from scipy.linalg import eigh
+
+        size = len(mass)
+        ratios = np.asarray(self.ratio, dtype=np.float64)
+        if ratios.ndim == 1 and ratios.size != size:
+            raise ModelError(
+                f"damping: {ratios.size} ratios for {size} modes; give one per mode, or one for all"
+            )
+        squares, modes = eigh(stiffness, mass)
+        if squares[0] < -1e-8 * np.abs(squares).max():
+            raise ModelError(
+                f"damping: mode 0 has omega^2 = {squares[0]:.6g} < 0, a ratio means nothing there; "
+                "give a damping matrix"
+            )
+        # The eigenvalues of rigid-body modes are rounding noise of either sign.
+        omega = np.sqrt(np.clip(squares, 0.0, None))
+        shapes = mass @ modes
+        return np.asarray((shapes * (2.0 * ratios * omega)) @ shapes.T, dtype=np.float64)
+
+
+DampingLaw: TypeAlias = Rayleigh | ModalDamping
+"""What makes a damping matrix of mass and stiffness."""
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Structure:
+    """A linear structure, M x'' + C x' + K x = forces.
+
+    Parameters
+    ----------
+    mass : array_like or scipy.sparse matrix, shape (N, N)
+        Symmetric and positive definite [kg].
+    stiffness : array_like or scipy.sparse matrix, shape (N, N)
+        Symmetric [N/m]. It may be singular: a free structure has rigid-body modes.
+    damping : array_like, scipy.sparse matrix, Rayleigh, ModalDamping or None, optional
+        Viscous damping [kg/s], any real matrix (gyroscopic terms are skew). None is no damping.
+    dofs : sequence of str, optional
+        One name per degree of freedom, by which contacts, forces and results refer to it.
+        Default "0", "1", ...
+
+    Attributes
+    ----------
+    mass, damping, stiffness : ndarray of float64, shape (N, N)
+        Read-only. An asymmetry of mass or stiffness up to 1e-8 of the largest entry, as printed
+        digits leave it, has been averaged out.
+    dofs : tuple of str
+        Names of the degrees of freedom.
+
+    Raises
+    ------
+    ModelError
+        If a matrix is complex, not finite, not square or of another size than the mass; if mass
+        or stiffness is not symmetric; if the mass is not positive definite; if a name is missing,
+        empty or given twice.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> ss.Structure(mass=[[2.0]], stiffness=[[8.0]], damping=ss.ModalDamping(0.01), dofs=["tip"])
+    Structure(1 dof: tip)
+    """
+
+    mass: Matrix
+    stiffness: Matrix
+    damping: Matrix
+    dofs: tuple[str, ...]
+
+    def __init__(
+        self,
+        mass: MatrixLike,
+        stiffness: MatrixLike,
+        damping: MatrixLike | DampingLaw | None = None,
+        dofs: Iterable[str] | None = None,
+    ) -> None:
+        M, K = real_matrix(mass, "mass"), real_matrix(stiffness, "stiffness")
+        if not M.size:
+            raise ModelError("mass: 0 x 0; a structure needs at least one dof")
+        _require_shape(M, "mass", len(M))
+        names = _names(dofs, len(M))
+        _require_shape(K, "stiffness", len(M))
+        M, K = _symmetric(M, "mass", names), _symmetric(K, "stiffness", names)
+        _require_positive(M, names)
+        values = (M, K, _damping(damping, M, K, names), names)
+        for field, value in zip(("mass", "stiffness", "damping", "dofs"), values, strict=True):
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+            object.__setattr__(self, field, value)
+
+    def __repr__(self) -> str:
+        shown = ", ".join(self.dofs[:_SHOWN]) + (", ..." if len(self) > _SHOWN else "")
+        return f"Structure({len(self)} dof{'s' if len(self) > 1 else ''}: {shown})"
+
+    def __len__(self) -> int:
+        return len(self.dofs)
+
+    def __reduce__(self) -> tuple[type[Structure], tuple[object, ...]]:
+        # Unpickled arrays would be writeable; going through the constructor makes them constant.
+        return Structure, (self.mass, self.stiffness, self.damping, self.dofs)
+
+    def index(self, name: str) -> int:
+        """Return the position of a degree of freedom.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Returns
+        -------
+        int
+            Its row in the matrices.
+
+        Raises
+        ------
+        ModelError
+            If there is no such name; the message gives the nearest one.
+        """
+        try:
+            return self.dofs.index(name)
+        except ValueError:
+            raise ModelError(unknown("dof", name, self.dofs)) from None
+
+
+def join(structures: Mapping[str, Structure]) -> Structure:
+    """Put several structures side by side, not yet coupled.
+
+    Parameters
+    ----------
+    structures : mapping of str to Structure
+        The parts by name.
+
+    Returns
+    -------
+    Structure
+        Block-diagonal matrices; the degree of freedom "tip" of part "1" is named "1.tip".
+
+    Raises
+    ------
+    ModelError
+        If there is no part, or a part is not a `Structure` or has an empty name.
+    """
+    if not isinstance(structures, Mapping):
+        raise ModelError(
+            f'join: {brief(structures)} names no parts; write join({{"1": a, "2": b}})'
+        )
+    if not structures:
+        raise ModelError("join: no parts; give at least one structure")
+    for part, structure in structures.items():
+        text(part, "join: name of a part")
+        if not isinstance(structure, Structure):
+            raise ModelError(f"join: part {part!r} is {brief(structure)}; give a Structure")
+    parts = list(structures.values())
+    return Structure(
+        mass=_blocks([part.mass for part in parts]),
+        stiffness=_blocks([part.stiffness for part in parts]),
+        damping=_blocks([part.damping for part in parts]),
+        dofs=[f"{name}.{dof}" for name, part in structures.items() for dof in part.dofs],
+    )
+
+
+def _blocks(matrices: Sequence[Matrix]) -> Matrix:
+    whole = np.zeros((sum(map(len, matrices)),) * 2)
+    start = 0
+    for matrix in matrices:
+        block = slice(start, start + len(matrix))
+        whole[block, block] = matrix
+        start = block.stop
+    return whole
+
+
+def _names(dofs: Iterable[str] | None, size: int) -> tuple[str, ...]:
+    if dofs is None:
+        return tuple(map(str, range(size)))
+    if isinstance(dofs, str) or not isinstance(dofs, Iterable):
+        raise ModelError(f'dofs: {brief(dofs)} is not a list of names; write dofs=["tip", ...]')
+    names = tuple(text(name, f"dofs: name {place}") for place, name in enumerate(dofs, 1))
+    if len(names) != size:
+        raise ModelError(f"dofs: {len(names)} names for {size} dofs; give one name per matrix row")
+    if len(set(names)) < size:
+        twice = next(name for position, name in enumerate(names) if name in names[:position])
+        raise ModelError(f"dofs: {twice!r} is given more than once; give every dof its own name")
+    return tuple(map(str, names))
+
+
+def _require_shape(matrix: Matrix, entry: str, size: int) -> None:
+    rows, columns = matrix.shape
+    if rows != columns:
+        raise ModelError(f"{entry}: {rows} x {columns} is not square; give N x N for N dofs")
+    if rows != size:
+        raise ModelError(f"{entry}: {rows} x {columns}, but the mass matrix is {size} x {size}")
+
+
+def _require_finite(matrix: Matrix, entry: str, names: tuple[str, ...]) -> None:
+    if not np.isfinite(matrix).all():
+        row, column = np.argwhere(~np.isfinite(matrix))[0]
+        raise ModelError(
+            f"{entry}: {matrix[row, column]} at ({names[row]!r}, {names[column]!r}); "
+            "every entry must be finite"
+        )
+
+
+def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
+    """Average out rounded digits; refuse what cannot be rounding."""
+    _require_finite(matrix, entry, names)
+    difference = np.abs(matrix - matrix.T)
+    if difference.max() > _ASYMMETRY * np.abs(matrix).max():
+        row, column = np.unravel_index(difference.argmax(), difference.shape)
+        triangular = not (np.tril(matrix, -1).any() and np.triu(matrix, 1).any())
+        remedy = (
+            "only one triangle is filled: mirror it"
+            if triangular
+            else "give a symmetric matrix (skew terms belong to damping)"
+        )
+        raise ModelError(
+            f"{entry}: {matrix[row, column]:.9g} at ({names[row]!r}, {names[column]!r}) but "
+            f"{matrix[column, row]:.9g} at ({names[column]!r}, {names[row]!r}); {remedy}"
+        )
+    return 0.5 * (matrix + matrix.T)
+
+
+def _require_positive(mass: Matrix, names: tuple[str, ...]) -> None:
+    if _is_positive(mass):
+        return
+    values, vectors = np.linalg.eigh(mass)
+    name = names[int(np.abs(vectors[:, 0]).argmax())]
+    raise ModelError(
+        f"mass: smallest eigenvalue {values[0]:.6g} (mostly dof {name!r}), largest "
+        f"{values[-1]:.6g}; it must be positive definite: condense massless dofs out"
+    )
+
+
+def _is_positive(mass: Matrix) -> bool:
+    # Scaled to a unit diagonal, so that rotations in kg m^2 beside masses in kg, or any other
+    # choice of units, do not look singular.
+    diagonal = np.diag(mass)
+    if not (diagonal > 0.0).all():
+        return False
+    scale = 1.0 / np.sqrt(diagonal)
+    try:
+        pivots = np.diag(np.linalg.cholesky(mass * scale * scale[:, None])) ** 2
+    except np.linalg.LinAlgError:
+        return False
+    return bool(pivots.min() > 16.0 * len(mass) * np.finfo(np.float64).eps)
+
+
+def _damping(
+    damping: MatrixLike | DampingLaw | None,
+    mass: Matrix,
+    stiffness: Matrix,
+    names: tuple[str, ...],
+) -> Matrix:
+    if damping is None:
+        return np.zeros_like(mass)
+    if isinstance(damping, DampingLaw):
+        return damping.matrix(mass, stiffness)
+    if isinstance(damping, Real):
+        raise ModelError(
+            f"damping: {damping} is not a matrix; write ModalDamping({damping}) for a ratio"
+        )
+    matrix = real_matrix(damping, "damping")
+    _require_shape(matrix, "damping", len(mass))
+    _require_finite(matrix, "damping", names)
+    return matrix

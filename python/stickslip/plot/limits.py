@@ -1,0 +1,125 @@
+"""The two linear limits of a friction-damped structure: every contact stuck, or every one free."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from stickslip.analyses.forced_response import forced_response
+from stickslip.errors import ModelError
+from stickslip.model import Model, natural_frequencies
+from stickslip.model.structure import Structure
+from stickslip.results.arrays import Float, Measure
+
+__all__ = ["force_level", "limit_curve", "limit_model"]
+
+_POINTS = 400
+# Points beside each resonance, so that a damping ratio down to 1e-4 still shows its peak.
+_NEAR = np.geomspace(1e-6, 0.05, 30)
+
+
+def force_level(model: Model) -> float:
+    """Return the largest amplitude among the harmonic forces [N]; 0 without any."""
+    return max((abs(force.amplitude) for force in model.forces if force.harmonic), default=0.0)
+
+
+def limit_model(model: Model, *, stuck: bool) -> Model:
+    """Return the linear model that friction approaches at small or at large amplitude.
+
+    Parameters
+    ----------
+    model : Model
+        The model with friction.
+    stuck : bool
+        Whether all contacts stick, as at small amplitude, or none, as at large amplitude.
+        Contacts of infinite slip force stick in both limits, those of zero slip force in none.
+
+    Returns
+    -------
+    Model
+        Without contacts; the stiffness of stuck ones is in its structure.
+
+    Raises
+    ------
+    ModelError
+        If a law has no single stiffness.
+    """
+    structure = model.structure
+    stiffness = structure.stiffness.copy()
+    for contact, name in zip(model.contacts, model.contact_names, strict=True):
+        parameters = contact.parameters()
+        if "stiffness" not in parameters:
+            raise ModelError(
+                f"contact {name!r}: the law {contact.law!r} has no single stiffness for the linear "
+                "limits; draw with stuck=False, free=False"
+            )
+        slip_force = parameters.get("slip_force", np.nan)
+        if slip_force > 0.0 if stuck else np.isinf(slip_force):
+            rows = contact.rows(structure)
+            stiffness += parameters["stiffness"] * rows.T @ rows
+    linear = Structure(structure.mass, stiffness, structure.damping, structure.dofs)
+    return Model(linear, forces=model.forces)
+
+
+def limit_curve(
+    model: Model, dof: str, span: tuple[float, float], measure: Measure, *, stuck: bool
+) -> tuple[Float, Float]:
+    """Return the response curve of a linear limit.
+
+    Parameters
+    ----------
+    model : Model
+        The model with friction.
+    dof : str
+        Degree of freedom.
+    span : (float, float)
+        Lowest and highest angular frequency [rad/s].
+    measure : {"half_range", "max", "fundamental"}
+        Measure of the amplitude. Static loads count in "max" only.
+    stuck : bool
+        See `limit_model`.
+
+    Returns
+    -------
+    omega : ndarray of float64, shape (n,)
+        Angular frequencies, dense near resonances [rad/s].
+    amplitude : ndarray of float64, shape (n,)
+        Amplitudes [m].
+
+    Raises
+    ------
+    ModelError
+        If a law has no single stiffness, or the measure is "max" and a static load pushes the
+        limit structure away.
+    """
+    linear = limit_model(model, stuck=stuck)
+    if measure != "max":
+        # They move the mean only, and a free structure may have no equilibrium under them.
+        dynamic = [replace(force) for force in linear.forces if force.harmonic]
+        linear = Model(linear.structure, forces=dynamic)
+    harmonics = max((force.harmonic for force in linear.forces), default=1)
+    result = forced_response(
+        linear,
+        _frequencies(linear, span),
+        max(harmonics, 1),
+        observe=[dof],
+        max_harmonics=max(harmonics, 1),
+    )
+    return result.omega, result.amplitude(dof, measure)
+
+
+def _frequencies(linear: Model, span: tuple[float, float]) -> Float:
+    low, high = span
+    forced = sorted({force.harmonic for force in linear.forces if force.harmonic})
+    natural = natural_frequencies(linear)
+    resonances = np.concatenate([natural / harmonic for harmonic in forced] or [natural])
+    resonances = resonances[(resonances > low) & (resonances < high)]
+    near = np.concatenate([1.0 - _NEAR, 1.0 + _NEAR])
+    omega = np.union1d(np.linspace(low, high, _POINTS), np.outer(resonances, near).ravel())
+    omega = omega[(omega >= low) & (omega <= high)]
+    if resonances.size:
+        # An undamped resonance has no amplitude.
+        distance = np.abs(omega[:, None] / resonances - 1.0).min(axis=1)
+        omega = omega[distance > 0.5 * _NEAR[0]]
+    return np.asarray(omega, dtype=np.float64)

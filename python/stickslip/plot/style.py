@@ -1,0 +1,191 @@
+"""The looks of every figure: axes, colours, units and number formats."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+
+from stickslip.checks import unknown
+from stickslip.errors import ModelError
+from stickslip.results.arrays import Float
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+__all__ = [
+    "FREE",
+    "GREY",
+    "LIMIT",
+    "RESPONSE",
+    "STUCK",
+    "LengthUnit",
+    "OmegaUnit",
+    "Scale",
+    "colours",
+    "finish",
+    "fit",
+    "length_scale",
+    "new_axes",
+    "omega_scale",
+    "prefixed",
+]
+
+OmegaUnit: TypeAlias = Literal["rad/s", "Hz"]
+LengthUnit: TypeAlias = Literal["m", "mm", "um", "µm"]
+
+RESPONSE, LIMIT = "response", "limit"
+"""Group names (gid) by which a figure finds its own lines again."""
+
+GREY = "0.45"
+STUCK = (0, (6, 2))
+FREE = (0, (1, 1.5))
+
+_SIZE = (6.4, 4.2)
+_WIDE = (8.2, 4.2)
+_FEW = 6
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+
+
+class Scale(NamedTuple):
+    """A factor from SI to the unit that is drawn, and its label."""
+
+    factor: float
+    label: str
+
+
+_OMEGA: dict[str, Scale] = {
+    "rad/s": Scale(1.0, "angular frequency ω [rad/s]"),
+    "Hz": Scale(0.5 / np.pi, "frequency [Hz]"),
+}
+_LENGTH: dict[str, Scale] = {
+    "m": Scale(1.0, "m"),
+    "mm": Scale(1e3, "mm"),
+    "um": Scale(1e6, "µm"),
+    "µm": Scale(1e6, "µm"),
+}
+
+
+def omega_scale(unit: str) -> Scale:
+    """Return the factor on angular frequencies, and the label of their axis."""
+    if unit not in _OMEGA:
+        raise ModelError(unknown("omega_unit", unit, _OMEGA))
+    return _OMEGA[unit]
+
+
+def length_scale(unit: str) -> Scale:
+    """Return the factor on lengths, and the symbol of the unit."""
+    if unit not in _LENGTH:
+        raise ModelError(unknown("length_unit", unit, _LENGTH))
+    return _LENGTH[unit]
+
+
+def new_axes(ax: Axes | None) -> Axes:
+    """Return the given axes, or those of a new figure that `plt.show()` will show."""
+    if ax is not None:
+        return ax
+    from matplotlib import pyplot
+
+    _, made = pyplot.subplots(figsize=_SIZE, layout="constrained")
+    return made
+
+
+def colours(count: int) -> list[tuple[float, float, float, float]]:
+    """Return colours in a perceptual sequence, from dark to light, the palest left out."""
+    from matplotlib import colormaps
+
+    positions = np.linspace(0.05, 0.85, count) if count > 1 else np.array([0.25])
+    return [colormaps["viridis"](float(position)) for position in positions]
+
+
+def finish(ax: Axes, *, made: bool) -> None:
+    """Put grid, frame and, where there is something to tell apart, a legend on the axes.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        The axes.
+    made : bool
+        Whether the figure is ours: then the legend stands outside and hides no curve. On axes of
+        others it does so if it is long and their layout makes room for it.
+    """
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    ax.grid(visible=True, which="major", color="0.9", lw=0.7)
+    ax.set_axisbelow(True)
+    ax.spines[["top", "right"]].set_visible(False)
+    handles, _ = ax.get_legend_handles_labels()
+    if len(handles) < 2:
+        return
+    looks = {"frameon": False, "fontsize": "small", "handlelength": 2.4}
+    figure = ax.figure
+    roomy = made or isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine)
+    long = len(handles) > _FEW
+    if not made and not (roomy and long):
+        ax.legend(**looks | {"frameon": True, "framealpha": 0.85, "edgecolor": "none"})
+    elif long or ax.get_title():
+        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, **looks)
+        if made and isinstance(figure, Figure):
+            figure.set_size_inches(_WIDE)
+    else:
+        ax.legend(
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.01),
+            borderaxespad=0.0,
+            ncols=3,
+            columnspacing=1.4,
+            **looks,
+        )
+
+
+def fit(ax: Axes, *, log: bool) -> None:
+    """Scale and frame the responses: antiresonances, and limits on a linear axis, may leave it."""
+    responses, everything = _drawn(ax, [RESPONSE]), _drawn(ax, [RESPONSE, LIMIT])
+    abscissae = np.concatenate([np.asarray(line.get_xdata(), float) for line in responses])
+    if abscissae.min() < abscissae.max():
+        ax.set_xlim(abscissae.min(), abscissae.max())
+    values, tops = _positive(responses), _positive(everything)
+    ax.set_yscale("log" if log and values.size else "linear")
+    if not values.size:
+        return
+    if log:
+        ax.set_ylim(0.6 * max(values.min(), 1e-6 * values.max()), 1.6 * tops.max())
+        _number_decades(ax)
+    else:
+        ax.set_ylim(0.0, 1.15 * values.max())
+
+
+def prefixed(value: float, unit: str) -> str:
+    """Return a number with three digits and the SI prefix that suits it."""
+    if value == 0.0 or not np.isfinite(value):
+        return f"{value:g} {unit}"
+    exponent = int(np.clip(3 * np.floor(np.log10(abs(value)) / 3), -9, 6))
+    return f"{value / 10.0**exponent:.3g} {_PREFIXES[exponent]}{unit}"
+
+
+def _number_decades(ax: Axes) -> None:
+    """Write plain numbers on a logarithmic axis, and some between the decades if there are few."""
+    from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter
+
+    low, high = ax.get_ylim()
+    plain = low > 1e-4 and high < 1e5
+    written = FuncFormatter(lambda value, _: f"{value:g}") if plain else LogFormatterMathtext()
+    ax.yaxis.set_major_formatter(written)
+    between = np.log10(high / low) < 2.5
+    if between and plain:
+        ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+        ax.yaxis.set_minor_formatter(written)
+    else:
+        ax.yaxis.set_minor_formatter(NullFormatter())
+
+
+def _drawn(ax: Axes, groups: Sequence[str]) -> list[Line2D]:
+    return [line for line in ax.lines if line.get_gid() in groups]
+
+
+def _positive(lines: Sequence[Line2D]) -> Float:
+    values: Float = np.concatenate([np.asarray(line.get_ydata(), float) for line in lines])
+    return values[np.isfinite(values) & (values > 0.0)]

@@ -1,0 +1,224 @@
+"""Reference systems with published results, for tests, examples and comparisons.
+
+Sources: J. Guillen, "Studies of the dynamics of dry-friction-damped blade assemblies" (University
+of Michigan, 1999); M. Scheel, T. Weigele and M. Krack, "Challenging an experimental nonlinear modal
+analysis method with a new strongly friction-damped structure", J. Sound Vib. 485 (2020) 115580.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from stickslip.checks import Matrix
+from stickslip.model import Force, Jenkins, Model
+from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
+
+__all__ = [
+    "DAMPER_SLIP_FORCE",
+    "DAMPER_STIFFNESS",
+    "SNECMA_LOADS",
+    "beam_pair",
+    "rubber_beam",
+    "single_dof",
+    "snecma_beam",
+    "snecma_structure",
+]
+
+SNECMA_LOADS = (0.938, 2.188, 6.563, 16.563, 20.313, 25.0, 31.475, 38.438)
+"""The eight excitation levels of Table 2.3 [N]."""
+
+DAMPER_STIFFNESS = 2.4e7
+"""Stiffness k_d of the damper of eq. (2.32) and Table 2.2 [N/m]."""
+
+DAMPER_SLIP_FORCE = 246.048
+"""Slip force F_d of the damper of eq. (2.32) and Table 2.2 [N]."""
+
+
+def snecma_structure() -> Structure:
+    """Return the SNECMA beam without its damper.
+
+    Returns
+    -------
+    Structure
+        Degrees of freedom "damper" (deflection at the damper), "tip" (deflection at the tip) and
+        "mode" (first mode with both fixed). Natural frequencies 159.5927, 901.7589 and
+        2167.5410 rad/s.
+
+    References
+    ----------
+    Guillen (1999), eq. (2.32); Berthillier et al. (1998).
+    """
+    return Structure(
+        mass=[
+            [6.67959, 1.02115, 0.6343],
+            [1.02115, 1.22168, 0.232108],
+            [0.6343, 0.232108, 0.121809],
+        ],
+        stiffness=[
+            [4.43203e6, -3.77514e5, 0.0],
+            [-3.77514e5, 6.9626e4, 0.0],
+            [0.0, 0.0, 1.85323e5],
+        ],
+        damping=Rayleigh(mass=7.49, stiffness=2.6e-5),
+        dofs=["damper", "tip", "mode"],
+    )
+
+
+def snecma_beam(force: float = 20.313) -> Model:
+    """Return the SNECMA beam with one damper to ground, driven at its tip.
+
+    Parameters
+    ----------
+    force : float, optional
+        Amplitude of the force [N]; see `SNECMA_LOADS` for those of the dissertation.
+
+    Returns
+    -------
+    Model
+        3 degrees of freedom; stuck natural frequencies 225.6623, 1404.3759 and 3273.7922 rad/s.
+
+    References
+    ----------
+    Guillen (1999), eq. (2.32) and Table 2.3.
+    """
+    return Model(snecma_structure(), [_damper("damper")], [Force("tip", force)])
+
+
+def single_dof(force_ratio: float = 1.0) -> Model:
+    """Return one mass on a spring with a damper to ground.
+
+    Parameters
+    ----------
+    force_ratio : float, optional
+        Force amplitude over the slip force of the damper, P / F_d.
+
+    Returns
+    -------
+    Model
+        Degree of freedom "mass"; natural frequencies 159.3976 rad/s slipping, 225.4222 stuck.
+
+    References
+    ----------
+    Guillen (1999), Table 2.2.
+    """
+    mass = Structure(mass=[[944.6]], stiffness=[[2.4e7]], damping=[[7700.0]], dofs=["mass"])
+    return Model(mass, [_damper("mass")], [Force("mass", force_ratio * DAMPER_SLIP_FORCE)])
+
+
+def beam_pair(
+    force: float = 20.313,
+    *,
+    phase: float = pi / 9,
+    stiffness: float = 1e6,
+    slip_force: float = 50.0,
+) -> Model:
+    """Return two SNECMA beams rubbing against each other at their tips.
+
+    Parameters
+    ----------
+    force : float, optional
+        Amplitude of the force on either tip [N].
+    phase : float, optional
+        Phase lead of the force on beam "2" [rad]. Default: engine order 2 on 36 blades.
+    stiffness : float, optional
+        Stiffness of the contact between the tips [N/m].
+    slip_force : float, optional
+        Slip force of the contact between the tips [N].
+
+    Returns
+    -------
+    Model
+        6 degrees of freedom "1.damper", "1.tip", ..., "2.mode"; contacts "damper-1" and "damper-2"
+        to ground, as of `snecma_beam`, and "tips".
+    """
+    return Model(
+        join({"1": snecma_structure(), "2": snecma_structure()}),
+        [
+            _damper("1.damper", "damper-1"),
+            _damper("2.damper", "damper-2"),
+            Jenkins("1.tip", "2.tip", stiffness=stiffness, slip_force=slip_force, name="tips"),
+        ],
+        [Force("1.tip", force), Force("2.tip", force, phase)],
+    )
+
+
+def rubber_beam(force: float = 1.5, *, damping_ratio: float = 1e-3) -> Model:
+    """Return a finite-element model of the RubBeR friction-damped beam.
+
+    A clamped-free Euler-Bernoulli beam of 14 elements, with a Jenkins contact to ground at its
+    6th node, counted from the clamped one, and a force at its tip.
+
+    Parameters
+    ----------
+    force : float, optional
+        Amplitude of the force at the tip [N]. From about 3.6 N on, friction alone no longer bounds
+        the first resonance.
+    damping_ratio : float, optional
+        Modal damping of the free beam. The published model has none.
+
+    Returns
+    -------
+    Model
+        28 degrees of freedom "w2", "slope2", ..., "w15", "slope15": deflection [m] and slope [rad]
+        of every node but the clamped one. Free 67.960, 425.903 and 1192.611 Hz, stuck 80.367,
+        452.785 and 1204.175 Hz.
+
+    References
+    ----------
+    Scheel, Weigele and Krack (2020); dimensions as in the examples of NLvib (Krack and Gross,
+    "Harmonic balance for nonlinear vibration problems", Springer 2019).
+    """
+    nodes, length, height, width = 15, 0.710, 0.05, 0.06
+    modulus, density = 210e9 * 0.6725, 7850.0
+    area, inertia = width * height, width * height**3 / 12
+    element = length / (nodes - 1)
+    beam = Structure(
+        mass=_beam_matrix(density * area * element * _element_mass(element), nodes),
+        stiffness=_beam_matrix(modulus * inertia / element**3 * _element_stiffness(element), nodes),
+        damping=ModalDamping(damping_ratio),
+        dofs=[f"{kind}{node}" for node in range(2, nodes + 1) for kind in ("w", "slope")],
+    )
+    contact = Jenkins("w6", stiffness=1e7, slip_force=15.0)
+    return Model(beam, [contact], [Force(f"w{nodes}", force)])
+
+
+def _damper(dof: str, name: str | None = None) -> Jenkins:
+    return Jenkins(dof, stiffness=DAMPER_STIFFNESS, slip_force=DAMPER_SLIP_FORCE, name=name)
+
+
+def _element_mass(h: float) -> Matrix:
+    """Return the consistent mass of a beam element of length h, over its mass."""
+    return (
+        np.array(
+            [
+                [156.0, 22.0 * h, 54.0, -13.0 * h],
+                [22.0 * h, 4.0 * h**2, 13.0 * h, -3.0 * h**2],
+                [54.0, 13.0 * h, 156.0, -22.0 * h],
+                [-13.0 * h, -3.0 * h**2, -22.0 * h, 4.0 * h**2],
+            ]
+        )
+        / 420.0
+    )
+
+
+def _element_stiffness(h: float) -> Matrix:
+    """Return the stiffness of a beam element of length h, over E I / h^3."""
+    return np.array(
+        [
+            [12.0, 6.0 * h, -12.0, 6.0 * h],
+            [6.0 * h, 4.0 * h**2, -6.0 * h, 2.0 * h**2],
+            [-12.0, -6.0 * h, 12.0, -6.0 * h],
+            [6.0 * h, 2.0 * h**2, -6.0 * h, 4.0 * h**2],
+        ]
+    )
+
+
+def _beam_matrix(element: Matrix, nodes: int) -> Matrix:
+    """Assemble equal elements in a row and clamp the first node."""
+    whole = np.zeros((2 * nodes, 2 * nodes))
+    for node in range(nodes - 1):
+        ends = slice(2 * node, 2 * node + 4)
+        whole[ends, ends] += element
+    return whole[2:, 2:]

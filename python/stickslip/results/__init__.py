@@ -1,0 +1,6 @@
+"""What analyses return: immutable results, their tables, data sets and files."""
+
+from stickslip.results.forced_response import ForcedResponse, Measure, Peak, Summary
+from stickslip.results.status import Status
+
+__all__ = ["ForcedResponse", "Measure", "Peak", "Status", "Summary"]

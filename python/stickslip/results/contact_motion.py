@@ -1,0 +1,222 @@
+"""What happens at the contacts: forces, displacements, slip and dissipation."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import whole_number
+from stickslip.errors import ModelError
+from stickslip.model import PointRef
+from stickslip.results.arrays import Complex, Float, constant, mean_forces
+from stickslip.results.sweep import Sweep
+
+__all__ = ["ContactMotion"]
+
+Kind = TypeVar("Kind", bound=np.generic)
+
+
+class ContactMotion(Sweep):
+    """The part of a result that concerns the contacts."""
+
+    def contact_force(self, contact: PointRef, index: int, samples: int = 512) -> Float:
+        """Return one period of the contact forces, as the friction law gives them.
+
+        This is the law's answer to the harmonics of the displacement, with its corners, not the
+        truncated series of the force.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+        index : int
+            Position of the point of the sweep; negative ones count from the end.
+        samples : int, optional
+            Number of instants t = j T / samples, j = 0, 1, ...
+
+        Returns
+        -------
+        ndarray of float64, shape (samples, points) or (samples,)
+            [N], positive against the relative displacement.
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point.
+        """
+        from stickslip import _core
+
+        position = self.position(index)
+        count = whole_number(samples, "samples", smallest=1)
+        number, point = self.locate(contact)
+        columns = self._columns(number, None)
+        if not self.arrays.solved[position]:
+            forces = np.full((count, columns.stop - columns.start), np.nan)
+        else:
+            kept = int(self.arrays.harmonics[position]) + 1
+            series = self.arrays.contact_displacement[position, :kept, columns].T
+            try:
+                forces = _core.contact_force(
+                    self.model.problem,
+                    number,
+                    np.ascontiguousarray(series),
+                    self.settings.residual,
+                    count,
+                )
+            except ValueError as error:
+                raise ModelError(str(error)) from error
+        return constant(forces if point is None else np.ascontiguousarray(forces[:, point]))
+
+    def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:
+        """Return one period of the relative displacement at the contacts.
+
+        With `contact_force` at the same instants it draws the hysteresis loop.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+        index : int
+            Position of the point of the sweep; negative ones count from the end.
+        samples : int, optional
+            Number of instants t = j T / samples, j = 0, 1, ...
+
+        Returns
+        -------
+        ndarray of float64, shape (samples, points) or (samples,)
+            [m].
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point.
+        """
+        return self._period(self._select(self.arrays.contact_displacement, contact), index, samples)
+
+    def slip_fraction(self, contact: PointRef) -> Float:
+        """Return the share of the period that each contact point slips.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, points) or (n,)
+            From 0, it never slips, to 1.
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point.
+        """
+        return self._select(self.arrays.slip_fraction, contact)
+
+    def dissipation(self, contact: PointRef) -> Float:
+        """Return the work that each contact point loses to friction per cycle.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, points) or (n,)
+            [J].
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point.
+        """
+        return self._select(self.arrays.dissipation, contact)
+
+    def residual_bounds(self, contact: PointRef) -> Float:
+        """Return the mean forces that a contact could hold without changing the vibration.
+
+        A contact that never slips keeps a mean force from its history. With half range R of its
+        displacement any force up to F_d - k_d R at mid-range goes with the same vibration; the
+        bounds are those of the mean force. A contact that slips holds the mean force that the
+        motion gives it, and the two bounds are 0.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, points, 2) or (n, 2)
+            Lower and upper bound [N].
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point, or its law has no single stiffness and slip force.
+        """
+        number, _ = self.locate(contact)
+        parameters = self.model.contacts[number].parameters()
+        if not {"stiffness", "slip_force"} <= set(parameters):
+            raise ModelError(
+                f"contact {self.model.contact_names[number]!r}: residual bounds need one stiffness "
+                f"and one slip force, which the law {self.model.contacts[number].law!r} has not"
+            )
+        stiffness, slip_force = parameters["stiffness"], parameters["slip_force"]
+        series = self._select(self.arrays.contact_displacement, contact)
+        points = series.reshape(*series.shape[:2], -1)
+        bounds = [
+            mean_forces(np.ascontiguousarray(points[:, :, point]), stiffness, slip_force)
+            for point in range(points.shape[2])
+        ]
+        values = np.stack(bounds, axis=1)
+        values[~self.arrays.solved] = np.nan
+        return constant(values if series.ndim == 3 else np.ascontiguousarray(values[:, 0]))
+
+    def locate(self, contact: PointRef) -> tuple[int, int | None]:
+        """Return the position of a contact, and of its point if one is meant.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+
+        Returns
+        -------
+        contact : int
+            Position of the contact.
+        point : int or None
+            Position of the point in it; None for the whole contact.
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point.
+        """
+        if isinstance(contact, tuple | list):
+            return self.model.point(contact)
+        return self.model.contact_index(contact), None
+
+    def _columns(self, contact: int, point: int | None) -> slice:
+        start = sum(one.points for one in self.model.contacts[:contact])
+        if point is None:
+            return slice(start, start + self.model.contacts[contact].points)
+        return slice(start + point, start + point + 1)
+
+    def _select(self, values: NDArray[Kind], contact: PointRef) -> NDArray[Kind]:
+        number, point = self.locate(contact)
+        columns = values[..., self._columns(number, point)]
+        return columns if point is None else columns[..., 0]
+
+    def _period(self, series: Complex, index: int, samples: int) -> Float:
+        position = self.position(index)
+        count = whole_number(samples, "samples", smallest=1)
+        if not self.arrays.solved[position]:
+            return constant(np.full((count, *series.shape[2:]), np.nan))
+        # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
+        turns = np.outer(np.arange(count), np.arange(series.shape[1])) % count
+        turn = np.exp(2j * np.pi / count * turns)
+        return constant(np.ascontiguousarray((turn @ series[position]).real))

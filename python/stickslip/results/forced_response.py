@@ -1,0 +1,381 @@
+"""What an analysis returns: immutable, with status, error and assumptions beside the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+from stickslip.checks import unknown
+from stickslip.errors import ModelError
+from stickslip.model import PointRef
+from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
+from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.peaks import Peak, Summary, highest
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+    from stickslip.plot import CurveOptions, Frame, LoopOptions
+
+__all__ = ["ForcedResponse", "Measure", "Peak", "Summary"]
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class ForcedResponse(ContactMotion):
+    """Steady response to periodic forces over the excitation frequency.
+
+    Amplitudes and all that derives from them are not-a-number at points that were not solved;
+    `status` says why. Degrees of freedom are addressed by name, contacts by position or name, and
+    one contact point as (contact, point). Angular frequencies are in rad/s, displacements in m,
+    forces in N. Arrays are read-only.
+
+    Attributes
+    ----------
+    model : Model
+        What was computed.
+    settings : Settings
+        How.
+    arrays : Arrays
+        Every number by its name, for all dofs and contact points at once.
+    dofs : tuple of str
+        The observed degrees of freedom.
+    half_wave : bool
+        Whether only odd harmonics were solved for, because forces and laws are half-wave symmetric.
+    interrupted : bool
+        Whether the run was stopped before its end.
+    timings : dict of float
+        Seconds by stage.
+    counters : dict of int
+        Evaluations by kind.
+    assumptions : tuple of str
+        What was taken for granted, and what to look at before the numbers are used.
+    """
+
+    dofs: tuple[str, ...]
+    half_wave: bool
+    interrupted: bool
+    timings: Mapping[str, float]
+    counters: Mapping[str, int]
+    assumptions: tuple[str, ...]
+    _amplitudes: dict[tuple[str, Measure], Float] = field(default_factory=dict, init=False)
+    _peaks: dict[tuple[str, Measure], Peak] = field(default_factory=dict, init=False)
+
+    def __repr__(self) -> str:
+        omega = self.omega
+        solved = "all solved" if self.arrays.solved.all() else f"{self.arrays.solved.sum()} solved"
+        return (
+            f"ForcedResponse({omega.size} points from {omega.min():g} to {omega.max():g} rad/s "
+            f"({solved}), {len(self.dofs)} dofs, harmonics={self.settings.harmonics!r})"
+        )
+
+    def coefficients(self, dof: str) -> Complex:
+        """Return the harmonics of a displacement, X_k of x(t) = Re sum_k X_k exp(i k omega t).
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+
+        Returns
+        -------
+        ndarray of complex128, shape (n, H+1)
+            [m]. At points that did not converge the last iterate, kept for diagnosis.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, or it was not observed.
+        """
+        return self.arrays.displacement[:, :, self._column(dof)]
+
+    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitude of a displacement over frequency.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+        measure : {"half_range", "max", "fundamental"}, optional
+            Half the peak-to-peak range over a period, the largest |x|, or |X_1|.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+            [m]. Exact extrema of the harmonic series, not those of samples.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom or measure, or the former was not observed.
+        """
+        key = (dof, _measure(measure))
+        if key not in self._amplitudes:
+            values = amplitude_of(np.ascontiguousarray(self.coefficients(dof)), measure)
+            self._amplitudes[key] = constant(np.where(self.arrays.solved, values, np.nan))
+        return self._amplitudes[key]
+
+    def phase(self, dof: str) -> Float:
+        """Return the phase of the fundamental, x_1(t) = |X_1| cos(omega t + phase).
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+            Phase lead, between -pi and pi [rad]; not-a-number where there is no fundamental.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, or it was not observed.
+        """
+        fundamental = self.coefficients(dof)[:, 1]
+        known = self.arrays.solved & (fundamental != 0.0)
+        return constant(np.where(known, np.angle(fundamental), np.nan))
+
+    def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
+        """Return one period of a displacement.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+        index : int
+            Position of the point; negative ones count from the end.
+        samples : int, optional
+            Number of instants t = j T / samples, j = 0, 1, ...
+
+        Returns
+        -------
+        ndarray of float64, shape (samples,)
+            [m].
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom or point, or the former was not observed.
+        """
+        return self._period(self.coefficients(dof), index, samples)
+
+    def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
+        """Return the highest point of the response curve, between the computed points.
+
+        Every local maximum of the computed points within 10 % of the largest is refined between
+        its neighbours, solving the balance equations anew.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+        measure : {"half_range", "max", "fundamental"}, optional
+            See `amplitude`.
+
+        Returns
+        -------
+        Peak
+            `omega`, `amplitude` (not below any computed point) and `at_edge`.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom or measure, the former was not observed, or no
+            point is solved.
+        """
+        key = (dof, _measure(measure))
+        if key not in self._peaks:
+            self._peaks[key] = highest(self, dof, measure)
+        return self._peaks[key]
+
+    def error_estimate(self, dof: str) -> Float:
+        """Return what the discarded harmonics could still change in a displacement.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+            [m]. The discarded harmonics of the contact forces, pushed through the compliance.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, or it was not observed.
+        """
+        return self.arrays.error_estimate[:, self._column(dof)]
+
+    def summary(self) -> list[Summary]:
+        """Return the peak of every observed degree of freedom, one row each.
+
+        Returns
+        -------
+        list of Summary
+            Empty if no point is solved.
+        """
+        if not self.arrays.solved.any():
+            return []
+        return [self._row(dof) for dof in self.dofs]
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return everything as an xarray dataset with units on every variable.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions omega, harmonic, dof and point (of contact).
+        """
+        from stickslip.results.dataset import to_dataset
+
+        return to_dataset(self)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the result with its model to a NetCDF file, whole or not at all.
+
+        Parameters
+        ----------
+        path : path-like
+            The file; an existing one is replaced. Read it with `stickslip.load`.
+
+        Raises
+        ------
+        ModelError
+            If the file cannot be written.
+        """
+        from stickslip.results.store import save
+
+        save(self, path)
+
+    def plot(self, dof: str, **options: Unpack[CurveOptions]) -> Axes:
+        """Draw the response curve between its stuck and free limits.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+        **options
+            See `stickslip.plot.curves`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from stickslip import plot
+
+        return plot.curves(self, dof, **options)
+
+    def plot_waveform(
+        self,
+        dof: str | Sequence[str],
+        index: int,
+        *,
+        samples: int = 512,
+        **options: Unpack[Frame],
+    ) -> Axes:
+        """Draw one period of one or several displacements.
+
+        Parameters
+        ----------
+        dof : str or sequence of str
+            Observed degrees of freedom.
+        index : int
+            Position of the point; negative ones count from the end.
+        samples : int, optional
+            Instants per period.
+        **options
+            See `stickslip.plot.waveform`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from stickslip import plot
+
+        return plot.waveform(self, dof, index, samples=samples, **options)
+
+    def plot_hysteresis(
+        self, contact: PointRef, index: int | Sequence[int], **options: Unpack[LoopOptions]
+    ) -> Axes:
+        """Draw the contact force against the relative displacement.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+        index : int or sequence of int
+            Positions of points, one loop each.
+        **options
+            See `stickslip.plot.hysteresis`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from stickslip import plot
+
+        return plot.hysteresis(self, contact, index, **options)
+
+    def plot_slip(
+        self,
+        contact: PointRef | None = None,
+        *,
+        ax: Axes | None = None,
+        omega_unit: Literal["rad/s", "Hz"] = "rad/s",
+    ) -> Axes:
+        """Draw the share of the period that contacts slip.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int), optional
+            The contact, or one of its points. Default: all.
+        ax, omega_unit
+            See `stickslip.plot.slip`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from stickslip import plot
+
+        return plot.slip(self, contact, ax=ax, omega_unit=omega_unit)
+
+    def _column(self, dof: str) -> int:
+        if dof in self.dofs:
+            return self.dofs.index(dof)
+        if dof in self.model.structure.dofs:
+            raise ModelError(f"dof {dof!r}: it was not observed; add it to observe and run again")
+        raise ModelError(unknown("dof", dof, self.dofs))
+
+    def _row(self, dof: str) -> Summary:
+        peak = self.peak(dof)
+        solved = np.flatnonzero(self.arrays.solved)
+        near = int(solved[np.abs(self.omega[solved] - peak.omega).argmin()])
+        return Summary(
+            dof,
+            peak.omega,
+            peak.amplitude,
+            float(self.error_estimate(dof)[near]),
+            int(self.harmonics[near]),
+            peak.at_edge,
+        )
+
+
+def _measure(measure: Measure) -> Measure:
+    if measure not in get_args(Measure):
+        raise ModelError(unknown("measure", measure, get_args(Measure)))
+    return measure

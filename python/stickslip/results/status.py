@@ -1,0 +1,84 @@
+"""How the computation of one point ended, and what to do about it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from stickslip.errors import ModelError
+
+__all__ = ["Status"]
+
+
+class Status(StrEnum):
+    """How the computation of one point ended.
+
+    A status compares equal to its text (``Status.STALLED == "stalled"``).
+    """
+
+    CONVERGED = "converged"
+    STALLED = "stalled"
+    SINGULAR = "singular"
+    NOT_COMPUTED = "not computed"
+    HARMONICS_LIMIT = "harmonics limit"
+
+    @classmethod
+    def from_code(cls, code: int) -> Status:
+        """Return the status that the compiled core, or a file, writes as a number.
+
+        Parameters
+        ----------
+        code : int
+            0 converged, 1 stalled, 2 singular, 3 not computed, 4 harmonics limit.
+
+        Raises
+        ------
+        ModelError
+            If there is no such status.
+        """
+        members = tuple(cls)
+        if not 0 <= code < len(members):
+            raise ModelError(f"status {code} is unknown; known: 0 to {len(members) - 1}")
+        return members[code]
+
+    @property
+    def code(self) -> int:
+        """The number of this status, as written to files."""
+        return tuple(type(self)).index(self)
+
+    @property
+    def solved(self) -> bool:
+        """Whether the balance equations hold at this point.
+
+        True for `CONVERGED`, and for `HARMONICS_LIMIT`: there the equations are solved for the
+        harmonics that were kept, only more of them would be needed for the tolerance.
+        """
+        return self in (Status.CONVERGED, Status.HARMONICS_LIMIT)
+
+    @property
+    def advice(self) -> str:
+        """Cause and next action, one sentence each."""
+        return _ADVICE[self]
+
+
+_ADVICE = {
+    Status.CONVERGED: (
+        "The balance equations are solved and every tolerance is met. Nothing needs to be done."
+    ),
+    Status.STALLED: (
+        "The iteration stopped before the balance equations were met. "
+        "Raise max_iterations, keep more harmonics, or approach this omega in smaller steps."
+    ),
+    Status.SINGULAR: (
+        "The equations have no unique solution here: an unforced harmonic hits an undamped natural "
+        "frequency of the stuck structure, or damping is negative and the curve turns. "
+        "Add damping or shift this omega slightly."
+    ),
+    Status.NOT_COMPUTED: (
+        "The run was interrupted before this point was reached. "
+        "Run the analysis again for the missing omega."
+    ),
+    Status.HARMONICS_LIMIT: (
+        "max_harmonics was reached before the discarded harmonics met the tolerance. "
+        "Read error_estimate, and raise max_harmonics or tolerance."
+    ),
+}

@@ -1,0 +1,265 @@
+"""Results in NetCDF files, with the model they belong to."""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+from collections.abc import Hashable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.analyses.forced_response import Settings
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.model.contact import contact_from_spec
+from stickslip.model.force import force_from_spec
+from stickslip.model.structure import Structure
+from stickslip.results import ForcedResponse
+from stickslip.results.arrays import Arrays
+from stickslip.results.dataset import arrays_from, to_dataset
+from stickslip.results.status import Status
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["load", "save"]
+
+KIND = "forced_response"
+FORMAT = 1
+"""Version of the layout of the file; it rises when an older reader could not read it."""
+
+_MATRICES = {
+    "mass": ("kg", "mass matrix"),
+    "damping": ("kg/s", "damping matrix"),
+    "stiffness": ("N/m", "stiffness matrix"),
+}
+
+
+def save(result: ForcedResponse, path: str | os.PathLike[str]) -> None:
+    """Write a result with its model to a NetCDF 4 file, whole or not at all.
+
+    Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
+    reader opens the file. Contacts and forces are JSON texts, one per variable entry.
+
+    Parameters
+    ----------
+    result : ForcedResponse
+        The result, also a partial one.
+    path : path-like
+        The file; an existing one is replaced.
+
+    Raises
+    ------
+    ModelError
+        If the folder does not exist or the file cannot be written.
+    """
+    target = Path(path)
+    if target.is_dir():
+        raise ModelError(f"{target}: is a folder; give the name of a file in it")
+    if not target.parent.is_dir():
+        raise ModelError(f"{target}: there is no folder {target.parent}; create it first")
+    dataset = _split(to_dataset(result).assign(_model_variables(result.model)))
+    dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": KIND}
+    try:
+        with _whole(target) as temporary:
+            dataset.to_netcdf(temporary, engine="h5netcdf", encoding=_encoding(dataset))
+    except OSError as error:
+        raise ModelError(
+            f"{target}: cannot be written ({error.strerror or error}); nothing was changed"
+        ) from error
+
+
+def load(path: str | os.PathLike[str]) -> ForcedResponse:
+    """Read a result that `ForcedResponse.save` wrote.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Returns
+    -------
+    ForcedResponse
+        Equal to the saved one, bit by bit, with its model: peaks can still be refined.
+
+    Raises
+    ------
+    ModelError
+        If there is no such file, it is damaged, from elsewhere, or of a newer format.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise ModelError(f"{source}: {'is a folder' if source.is_dir() else 'no such file'}")
+    dataset = _read(source)
+    _require_format(dataset, source)
+    try:
+        return _result(_joined(dataset))
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        raise ModelError(
+            f"{source}: not a complete stickslip result ({_line(error)}); compute and save it again"
+        ) from error
+
+
+def _read(source: Path) -> xr.Dataset:
+    import xarray as xr
+
+    try:
+        # Nothing is decoded: the numbers must come back bit by bit.
+        return xr.load_dataset(source, engine="h5netcdf", mask_and_scale=False, decode_times=False)
+    except Exception as error:
+        # The readers below raise whatever the bytes of a damaged file lead them to.
+        raise ModelError(
+            f"{source}: not a readable NetCDF file, or a damaged one ({_line(error)}); "
+            "load reads what save wrote"
+        ) from error
+
+
+def _require_format(dataset: xr.Dataset, source: Path) -> None:
+    kind, version = (dataset.attrs.get(f"stickslip_{key}") for key in ("kind", "format"))
+    if kind is None or version is None:
+        raise ModelError(f"{source}: a NetCDF file, but not a stickslip result")
+    if kind != KIND:
+        raise ModelError(
+            f"{source}: holds {kind!r}, this version reads {KIND!r} only; upgrade stickslip"
+        )
+    if not isinstance(version, int | np.integer) or not 1 <= version <= FORMAT:
+        writer = dataset.attrs.get("stickslip_version", "another version")
+        raise ModelError(
+            f"{source}: written by stickslip {writer} in format {version}, this version reads "
+            f"format 1 to {FORMAT}; upgrade stickslip"
+        )
+
+
+def _result(dataset: xr.Dataset) -> ForcedResponse:
+    settings = json.loads(dataset.attrs["settings"])
+    if settings["span"] is not None:
+        settings["span"] = tuple(settings["span"])
+    model, dofs = _model(dataset), tuple(map(str, dataset["dof"].values))
+    arrays = Arrays(**arrays_from(dataset))  # type: ignore[arg-type]
+    _require_fit(model, dofs, arrays)
+    return ForcedResponse(
+        model=model,
+        settings=Settings(**settings),
+        dofs=dofs,
+        arrays=arrays,
+        half_wave=bool(dataset.attrs["half_wave"]),
+        interrupted=bool(dataset.attrs["interrupted"]),
+        timings=json.loads(dataset.attrs["timings"]),
+        counters=json.loads(dataset.attrs["counters"]),
+        assumptions=tuple(json.loads(dataset.attrs["assumptions"])),
+    )
+
+
+def _require_fit(model: Model, dofs: tuple[str, ...], arrays: Arrays) -> None:
+    """Refuse arrays that belong to another model."""
+    for dof in dofs:
+        model.structure.index(dof)
+    points = sum(contact.points for contact in model.contacts)
+    if arrays.contact_force.shape[2] != points:
+        raise ValueError(
+            f"{arrays.contact_force.shape[2]} contact points in the arrays, {points} in the model"
+        )
+    if arrays.status.max(initial=0) >= len(Status):
+        raise ValueError(f"status {arrays.status.max()} is unknown")
+
+
+def _model_variables(model: Model) -> Mapping[Hashable, object]:
+    structure = model.structure
+    variables: dict[Hashable, object] = {
+        name: (("row", "column"), getattr(structure, name), {"units": unit, "long_name": meaning})
+        for name, (unit, meaning) in _MATRICES.items()
+    }
+    variables["row"] = (
+        "row",
+        np.array(structure.dofs, dtype=np.str_),
+        {"units": "1", "long_name": "degree of freedom of the structure"},
+    )
+    # Variables rather than attributes: HDF5 keeps no attribute above 64 kB.
+    specs = {
+        "contacts": [contact.to_spec() for contact in model.contacts],
+        "forces": [force.to_spec() for force in model.forces],
+    }
+    for name, entries in specs.items():
+        variables[name] = (
+            f"{name}_entry",
+            np.array([json.dumps(entry) for entry in entries], dtype=np.str_),
+            {"units": "1", "long_name": f"{name} of the model, one JSON text each"},
+        )
+    return variables
+
+
+def _model(dataset: xr.Dataset) -> Model:
+    structure = Structure(
+        **{name: dataset[name].values for name in _MATRICES},
+        dofs=list(map(str, dataset["row"].values)),
+    )
+    return Model(
+        structure,
+        [contact_from_spec(json.loads(text)) for text in dataset["contacts"].values],
+        [force_from_spec(json.loads(text)) for text in dataset["forces"].values],
+    )
+
+
+def _split(dataset: xr.Dataset) -> xr.Dataset:
+    """Replace every complex variable by its real and its imaginary part."""
+    parts = {}
+    names = [name for name, variable in dataset.data_vars.items() if variable.dtype.kind == "c"]
+    for name in names:
+        variable = dataset[name]
+        for part in ("real", "imag"):
+            long_name = f"{part} part of the {variable.attrs['long_name']}"
+            parts[f"{name}_{part}"] = (
+                variable.dims,
+                getattr(variable.values, part),
+                variable.attrs | {"long_name": long_name},
+            )
+    return dataset.drop_vars(names).assign(parts)
+
+
+def _joined(dataset: xr.Dataset) -> xr.Dataset:
+    """Undo `_split`."""
+    wholes = {}
+    names = [str(name) for name in dataset.data_vars if str(name).endswith("_real")]
+    for name in names:
+        real, imag = dataset[name], dataset[name.replace("_real", "_imag")]
+        # Adding 1j * imag would turn an infinite or a negative zero into something else.
+        values = np.empty(real.shape, dtype=np.complex128)
+        values.real, values.imag = real.values, imag.values
+        wholes[name.removesuffix("_real")] = (real.dims, values, real.attrs)
+    return dataset.assign(wholes)
+
+
+def _encoding(dataset: xr.Dataset) -> dict[Hashable, dict[str, object]]:
+    """Compress tables, with check sums, and declare no fill value: every bit pattern counts."""
+    encoding: dict[Hashable, dict[str, object]] = {}
+    for name, variable in dataset.variables.items():
+        if variable.dtype.kind == "U":
+            continue
+        encoding[name] = {"_FillValue": None}
+        if variable.ndim and variable.size:
+            encoding[name] |= {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
+    return encoding
+
+
+@contextmanager
+def _whole(target: Path) -> Iterator[Path]:
+    """Let a file be written beside its target, and put it there once it is complete."""
+    temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+    try:
+        yield temporary
+        with temporary.open("rb") as written:
+            os.fsync(written.fileno())
+        temporary.replace(target)
+    finally:
+        with suppress(FileNotFoundError):
+            temporary.unlink()
+
+
+def _line(error: BaseException) -> str:
+    """Return the first line of what an error says."""
+    texts = str(error).splitlines()
+    return texts[0] if texts else type(error).__name__

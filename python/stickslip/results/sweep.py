@@ -1,0 +1,112 @@
+"""What every curve over frequency has: its points, and how each of them ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Integral
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.checks import real_number
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.results.arrays import Arrays, Bool, Float, Int, constant
+from stickslip.results.status import Status
+
+if TYPE_CHECKING:
+    from stickslip.analyses.forced_response import Settings
+
+__all__ = ["Sweep"]
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Sweep:
+    """The points of a result.
+
+    Attributes
+    ----------
+    model : Model
+        What was computed.
+    settings : Settings
+        How.
+    arrays : Arrays
+        Every number by its name.
+    """
+
+    model: Model
+    settings: Settings
+    arrays: Arrays
+
+    @property
+    def omega(self) -> Float:
+        """Angular frequency per point, shape (n,) [rad/s], in the order of the sweep."""
+        return self.arrays.omega
+
+    @property
+    def harmonics(self) -> Int:
+        """Highest harmonic kept per point, shape (n,)."""
+        return self.arrays.harmonics
+
+    @property
+    def residual(self) -> Float:
+        """Relative residual of the balance equations per point, shape (n,)."""
+        return self.arrays.residual
+
+    @property
+    def iterations(self) -> Int:
+        """Iterations used per point, shape (n,)."""
+        return self.arrays.iterations
+
+    @cached_property
+    def status(self) -> tuple[Status, ...]:
+        """How each point ended; ``status[i].advice`` says what to do about it."""
+        return tuple(Status.from_code(int(code)) for code in self.arrays.status)
+
+    @cached_property
+    def converged(self) -> Bool:
+        """Whether each point is solved and meets every tolerance, shape (n,)."""
+        return constant(self.arrays.status == Status.CONVERGED.code)
+
+    def index(self, omega: float) -> int:
+        """Return the position of the computed point nearest to a frequency.
+
+        Parameters
+        ----------
+        omega : float
+            Angular frequency [rad/s].
+
+        Returns
+        -------
+        int
+            Position; of several equally near points the first.
+        """
+        return int(np.abs(self.omega - real_number(omega, "omega")).argmin())
+
+    def position(self, index: int) -> int:
+        """Return the position of a point of the sweep, negative ones counted from the end.
+
+        Parameters
+        ----------
+        index : int
+            Position.
+
+        Returns
+        -------
+        int
+            Position from 0.
+
+        Raises
+        ------
+        ModelError
+            If there is no such point.
+        """
+        count = self.arrays.omega.size
+        if isinstance(index, bool) or not isinstance(index, Integral):
+            raise ModelError(
+                f"index: {index!r} is not an integer; see index(omega) for the nearest"
+            )
+        if not -count <= index < count:
+            raise ModelError(f"index: {index}; there are {count} points, 0 to {count - 1}")
+        return int(index) % count

@@ -1,0 +1,323 @@
+"""Studies: a TOML file that holds a model and what to compute of it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from pydantic import ValidationError
+
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.model.structure import ModalDamping, Rayleigh, Structure
+from stickslip.study.complaint import complaint
+from stickslip.study.tables import MatrixFile, ModalDampingTable, RayleighDamping, StudyTables
+
+if TYPE_CHECKING:
+    from stickslip.checks import MatrixLike
+    from stickslip.model.structure import DampingLaw
+    from stickslip.results import ForcedResponse
+    from stickslip.study.tables import ForceTable, JenkinsTable, Rows, StructureTable
+
+__all__ = ["Case", "Study", "json_schema", "notable_dofs"]
+
+_SHOWN_DOFS = 4
+
+
+@dataclass(frozen=True)
+class Case:
+    """One curve of a study.
+
+    Attributes
+    ----------
+    name : str
+        Name of the study, with the level when there are several: ``"snecma-beam-20.313"``.
+    level : float or None
+        Factor on every force; None when the study has no levels.
+    model : Model
+        The model at that level.
+    """
+
+    name: str
+    level: float | None
+    model: Model
+
+
+@dataclass(frozen=True)
+class Study:
+    """A model and what to compute of it, as read from a study file.
+
+    Attributes
+    ----------
+    name : str
+        Name of the study: its key `name`, or the name of the file, or of the folder of a
+        ``study.toml``.
+    tables : StudyTables
+        The entries of the file, in SI units.
+    model : Model
+        The model with the forces as written.
+    source : str
+        Where it was read from; error messages begin with it.
+    """
+
+    name: str
+    tables: StudyTables
+    model: Model
+    source: str
+
+    @classmethod
+    def load(cls, path: str | Path) -> Study:
+        """Read a study file, and the matrices it names.
+
+        Parameters
+        ----------
+        path : str or Path
+            TOML file with the tables ``[structure]``, ``[[contact]]``, ``[[force]]``,
+            ``[analysis]`` and ``[output]``; files named in it are relative to it.
+
+        Returns
+        -------
+        Study
+            The study, checked as far as can be without computing.
+
+        Raises
+        ------
+        ModelError
+            The file is missing, is no TOML, has an unknown key, or any entry is refused: one line
+            beginning with the path.
+        """
+        path = Path(path)
+        try:
+            text = path.read_text(encoding="utf-8")
+        except FileNotFoundError:
+            raise ModelError(f"{path}: no such study file{_neighbour(path)}") from None
+        except IsADirectoryError:
+            raise ModelError(f"{path}: is a folder; name the study file in it") from None
+        except UnicodeDecodeError:
+            raise ModelError(f"{path}: is not text in UTF-8; give a TOML study file") from None
+        except OSError as error:
+            raise ModelError(f"{path}: cannot be read ({error.strerror})") from None
+        name = path.resolve().parent.name if path.stem == "study" else path.stem
+        return cls.parse(text, folder=path.parent, source=str(path), name=name or "study")
+
+    @classmethod
+    def parse(
+        cls, text: str, *, folder: str | Path = ".", source: str = "study", name: str = "study"
+    ) -> Study:
+        """Read a study from text.
+
+        Parameters
+        ----------
+        text : str
+            What would stand in the file.
+        folder : str or Path, optional
+            Where the matrix files are looked for.
+        source : str, optional
+            What error messages begin with.
+        name : str, optional
+            Name of the study, unless the text gives one.
+
+        Returns
+        -------
+        Study
+            The study.
+
+        Raises
+        ------
+        ModelError
+            As `load`.
+        """
+        with _named(source):
+            tables = _read(text)
+            model = _model(tables, Path(folder))
+            _check_dofs(tables, model)
+        return cls(tables.name or name, tables, model, source)
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """The curves of the study, one per level."""
+        levels = self.tables.analysis.levels
+        if levels is None:
+            return (Case(self.name, None, self.model),)
+        return tuple(
+            Case(f"{self.name}-{level:.10g}", level, self.model.scaled(force=level))
+            for level in levels
+        )
+
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """The DOFs to tabulate and draw: of `[output]`, or else those with a force or a contact."""
+        if self.tables.output.dofs is not None:
+            return self.tables.output.dofs
+        observed = self.tables.analysis.observe
+        return notable_dofs(self.model, observed or self.model.structure.dofs)
+
+    def models(self) -> tuple[Model, ...]:
+        """Return the models, one per level."""
+        return tuple(case.model for case in self.cases)
+
+    def run(self, progress: Callable[[float], None] | None = None) -> Iterator[ForcedResponse]:
+        """Compute the curves, one after the other.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called about ten times per second with the share of the study that is done, 0 to 1.
+
+        Yields
+        ------
+        ForcedResponse
+            One per level, in the order of `cases`.
+
+        Raises
+        ------
+        ModelError
+            The analysis refuses the model or its settings.
+        Interrupted
+            Ctrl-C; carries the part of the current curve that was done.
+        """
+        cases = self.cases
+        for number, case in enumerate(cases):
+            with _named(self.source):
+                result = self.tables.analysis.run(case.model, _part(progress, number, len(cases)))
+            yield result
+
+
+def notable_dofs(model: Model, observed: Sequence[str]) -> tuple[str, ...]:
+    """Choose the DOFs to show when none are named.
+
+    Parameters
+    ----------
+    model : Model
+        What was computed.
+    observed : sequence of str
+        The DOFs whose motion is known.
+
+    Returns
+    -------
+    tuple of str
+        Up to four that carry a force or a contact, in this order, or else the first ones.
+    """
+    loaded = [force.dof for force in model.forces]
+    touching = [dof for contact in model.contacts for dof in contact.dofs]
+    notable = [dof for dof in dict.fromkeys((*loaded, *touching)) if dof in observed]
+    return tuple(notable or observed)[:_SHOWN_DOFS]
+
+
+def json_schema() -> dict[str, object]:
+    """Return the JSON schema of study files.
+
+    Returns
+    -------
+    dict
+        JSON schema (draft 2020-12) with which editors (Taplo, VS Code's Even Better TOML) complete
+        and check a study file while it is written.
+    """
+    schema = StudyTables.model_json_schema(by_alias=True)
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **schema,
+        "title": "stickslip study",
+    }
+
+
+def _read(text: str) -> StudyTables:
+    try:
+        return StudyTables.model_validate(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise ModelError(f"not valid TOML: {error}") from None
+    except ValidationError as error:
+        raise ModelError(complaint(error)) from None
+
+
+def _model(tables: StudyTables, folder: Path) -> Model:
+    with _named("structure"):
+        structure = _structure(tables.structure, folder)
+    parts: list[tuple[str, ForceTable | JenkinsTable]] = [
+        *((f"contact {number}", contact) for number, contact in enumerate(tables.contact, 1)),
+        *((f"force {number}", force) for number, force in enumerate(tables.force, 1)),
+    ]
+    for entry, part in parts:
+        with _named(entry):
+            for dof in part.touched:
+                structure.index(dof)
+            part.build()
+    return Model(
+        structure,
+        contacts=[contact.build() for contact in tables.contact],
+        forces=[force.build() for force in tables.force],
+    )
+
+
+def _structure(table: StructureTable, folder: Path) -> Structure:
+    mass = _matrix(table.mass, folder, "mass")
+    stiffness = _matrix(table.stiffness, folder, "stiffness")
+    return Structure(mass, stiffness, _damping(table, folder), table.dofs)
+
+
+def _damping(table: StructureTable, folder: Path) -> MatrixLike | DampingLaw | None:
+    match table.damping:
+        case None:
+            return None
+        case RayleighDamping(rayleigh=factor):
+            return Rayleigh(mass=factor.mass, stiffness=factor.stiffness)
+        case ModalDampingTable(modal=ratio):
+            return ModalDamping(ratio)
+        case source:
+            return _matrix(source, folder, "damping")
+
+
+def _matrix(source: str | MatrixFile | Rows, folder: Path, entry: str) -> MatrixLike:
+    from stickslip.io import read_matrix
+
+    if isinstance(source, tuple):
+        return np.array(source, dtype=np.float64)
+    name, key = (source, None) if isinstance(source, str) else (source.file, source.key)
+    path = folder / name
+    if not path.is_file():
+        raise ModelError(f"{entry} = '{name}': no such file in {folder}{_neighbour(path)}")
+    return read_matrix(path, key)
+
+
+def _neighbour(path: Path) -> str:
+    """Suggest the file of the folder whose name is nearest."""
+    folder = path.parent
+    if not folder.is_dir():
+        return f"; there is no folder {folder} either"
+    near = get_close_matches(path.name, [file.name for file in folder.iterdir()], n=1)
+    return f"; did you mean '{near[0]}'?" if near else ""
+
+
+def _check_dofs(tables: StudyTables, model: Model) -> None:
+    observed = tables.analysis.observe or model.structure.dofs
+    for number, dof in enumerate(tables.analysis.observe or (), 1):
+        with _named(f"analysis: observe[{number}]"):
+            model.structure.index(dof)
+    for number, dof in enumerate(tables.output.dofs or (), 1):
+        with _named(f"output: dofs[{number}]"):
+            model.structure.index(dof)
+            if dof not in observed:
+                raise ModelError(f"'{dof}' is not kept; add it to 'observe' in [analysis]")
+
+
+def _part(
+    progress: Callable[[float], None] | None, number: int, total: int
+) -> Callable[[float], None] | None:
+    if progress is None:
+        return None
+    return lambda fraction: progress((number + fraction) / total)
+
+
+@contextmanager
+def _named(entry: str) -> Iterator[None]:
+    """Say where the entry stands that is complained of."""
+    try:
+        yield
+    except ModelError as error:
+        raise ModelError(f"{entry}: {error}") from None

@@ -1,0 +1,259 @@
+"""The tables of a study file: what may stand in them, read strictly, refused in one line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, Self
+
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Strict,
+    Tag,
+    model_validator,
+)
+
+from stickslip.errors import ModelError
+from stickslip.model import Force, Jenkins
+from stickslip.study.analysis_tables import AnalysisTable
+from stickslip.study.entries import (
+    HERE,
+    Angle,
+    Dof,
+    Newtons,
+    Number,
+    Rate,
+    Ratio,
+    SlipForce,
+    StiffnessValue,
+    Table,
+    Text,
+    Time,
+    chosen_by,
+    number_or,
+)
+
+__all__ = [
+    "ForceTable",
+    "JenkinsTable",
+    "MatrixFile",
+    "ModalDampingTable",
+    "RayleighDamping",
+    "Rows",
+    "StructureTable",
+    "StudyTables",
+]
+
+# ---------------------------------------------------------------------------------- [structure]
+
+
+class MatrixFile(Table):
+    """A matrix of a file that holds several."""
+
+    file: Text = Field(description="File, relative to the study file.", examples=["beam.mat"])
+    key: Text | None = Field(
+        default=None, description="Name of the matrix in the file.", examples=["M"]
+    )
+
+
+class RayleighTable(Table):
+    """Damping proportional to mass and stiffness."""
+
+    mass: Rate = Field(default=0.0, description="Factor on the mass matrix [1/s].", examples=[7.49])
+    stiffness: Time = Field(
+        default=0.0, description="Factor on the stiffness [s].", examples=[2.6e-5]
+    )
+
+
+class RayleighDamping(Table):
+    """C = mass M + stiffness K."""
+
+    rayleigh: RayleighTable
+
+
+class ModalDampingTable(Table):
+    """A damping ratio per mode of the structure without contacts."""
+
+    modal: Annotated[
+        Annotated[Ratio, Tag("<number>")]
+        | Annotated[tuple[Ratio, ...], Strict(False), Tag("<list>")],
+        number_or("<list>"),
+    ] = Field(description="One ratio for all modes, or one per mode.", examples=[0.001])
+
+
+def _matrix_form(value: object) -> str | None:
+    if isinstance(value, str):
+        return "<file>"
+    if isinstance(value, list | tuple):
+        return "<rows>"
+    if isinstance(value, Mapping):
+        return next((f"<{form}>" for form in ("rayleigh", "modal") if form in value), "<table>")
+    forms = {MatrixFile: "<table>", RayleighDamping: "<rayleigh>", ModalDampingTable: "<modal>"}
+    return next((form for table, form in forms.items() if isinstance(value, table)), None)
+
+
+def _rows(value: object) -> object:
+    widths = {len(row) for row in value if isinstance(row, list)} if isinstance(value, list) else {}
+    if len(widths) > 1:
+        raise ModelError(f"{HERE} has rows of different lengths")
+    return value
+
+
+Rows = Annotated[
+    tuple[Annotated[tuple[Number, ...], Strict(False)], ...], Strict(False), BeforeValidator(_rows)
+]
+_FileName = Annotated[Text, Tag("<file>")]
+_FileTable = Annotated[MatrixFile, Tag("<table>")]
+_InlineRows = Annotated[Rows, Tag("<rows>")]
+
+MatrixSource = Annotated[
+    _FileName | _FileTable | _InlineRows,
+    Discriminator(
+        _matrix_form,
+        custom_error_type="matrix_form",
+        custom_error_message="is neither a file name, nor {file = ..., key = ...}, nor rows",
+    ),
+]
+DampingSource = Annotated[
+    _FileName
+    | _FileTable
+    | _InlineRows
+    | Annotated[RayleighDamping, Tag("<rayleigh>")]
+    | Annotated[ModalDampingTable, Tag("<modal>")],
+    Discriminator(
+        _matrix_form,
+        custom_error_type="matrix_form",
+        custom_error_message=(
+            "is neither a matrix, nor {rayleigh = {mass = ..., stiffness = ...}}, nor {modal = ...}"
+        ),
+    ),
+]
+
+
+class StructureTable(Table):
+    """The linear structure."""
+
+    mass: MatrixSource = Field(description="Mass matrix.", examples=["mass.mtx"])
+    stiffness: MatrixSource = Field(description="Stiffness matrix.", examples=["stiffness.mtx"])
+    damping: DampingSource | None = Field(
+        default=None,
+        description="Damping matrix, Rayleigh or modal damping; left out: none.",
+        examples=[{"rayleigh": {"mass": 7.49, "stiffness": 2.6e-5}}, {"modal": 0.001}],
+    )
+    dofs: Annotated[tuple[Dof, ...], Strict(False)] | None = Field(
+        default=None,
+        description="Names of the DOFs, row by row; left out: '0', '1', ...",
+        examples=[["damper", "tip", "mode"]],
+    )
+
+
+# ------------------------------------------------------------------------ [[contact]], [[force]]
+
+
+class JenkinsTable(Table):
+    """A Jenkins element: a spring in series with a Coulomb slider."""
+
+    law: Literal["jenkins"] = Field(description="Friction law.")
+    dof: Dof | None = Field(
+        default=None, description="The DOF, for a contact to ground.", examples=["tip"]
+    )
+    dofs: Annotated[tuple[Dof, Dof], Strict(False)] | None = Field(
+        default=None,
+        description="The two DOFs, for a contact between them.",
+        examples=[["left.tip", "right.tip"]],
+    )
+    stiffness: StiffnessValue = Field(description="Contact stiffness k_d.")
+    slip_force: SlipForce = Field(description="Slip limit F_d; inf: it never slips.")
+    name: Text | None = Field(default=None, description="Name; left out: that of the law.")
+
+    @model_validator(mode="after")
+    def _require_one_place(self) -> Self:
+        if (self.dof is None) == (self.dofs is None):
+            raise ValueError(
+                "give either 'dof', for a contact to ground, or 'dofs', the two it lies between"
+            )
+        return self
+
+    @property
+    def touched(self) -> tuple[str, ...]:
+        """The DOFs it acts on."""
+        return self.dofs or ((self.dof,) if self.dof is not None else ())
+
+    def build(self) -> Jenkins:
+        """Return the contact."""
+        return Jenkins(
+            *self.touched, stiffness=self.stiffness, slip_force=self.slip_force, name=self.name
+        )
+
+
+class ForceTable(Table):
+    """A harmonic force, amplitude cos(harmonic omega t + phase)."""
+
+    dof: Dof = Field(description="The DOF it acts on.")
+    amplitude: Newtons = Field(description="Amplitude.", examples=["20.3 N", 20.3])
+    phase: Angle = Field(default=0.0, description="Phase.", examples=["90 deg"])
+    harmonic: Annotated[int, Field(ge=0)] = Field(
+        default=1, description="Multiple of omega; 0: a static load."
+    )
+
+    @property
+    def touched(self) -> tuple[str, ...]:
+        """The DOFs it acts on."""
+        return (self.dof,)
+
+    def build(self) -> Force:
+        """Return the force."""
+        return Force(self.dof, self.amplitude, phase=self.phase, harmonic=self.harmonic)
+
+
+ContactTable = Annotated[JenkinsTable, Tag("<jenkins>"), chosen_by("law", "jenkins")]
+"""Each further friction law joins this union with a table of its own."""
+
+
+# ------------------------------------------------------------------------------------- the file
+
+
+class OutputTable(Table):
+    """What is tabulated and drawn."""
+
+    dofs: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
+        default=None,
+        description="DOFs tabulated and drawn; left out: those that carry a force or a contact.",
+        examples=[["tip", "damper"]],
+    )
+    omega_unit: Literal["rad/s", "Hz"] = Field(
+        default="rad/s", description="Unit of the frequency axis."
+    )
+    length_unit: Literal["m", "mm", "um"] = Field(
+        default="m", description="Unit of the amplitudes."
+    )
+
+
+class StudyTables(Table):
+    """A study: a structure with contacts and forces, and what to compute of it."""
+
+    name: Annotated[str, Field(pattern=r'^[^/\\:*?"<>|\x00-\x1f]+$')] | None = Field(
+        default=None, description="Name of the result files; left out: that of the study file."
+    )
+    description: str = Field(default="", description="What is studied, for the reader.")
+    structure: StructureTable = Field(description="The linear structure.")
+    contact: Annotated[tuple[ContactTable, ...], Strict(False)] = Field(
+        default=(), description="The friction contacts."
+    )
+    force: Annotated[tuple[ForceTable, ...], Strict(False)] = Field(
+        default=(), description="The forces."
+    )
+    analysis: AnalysisTable = Field(description="What to compute.")
+    output: OutputTable = Field(default=OutputTable(), description="What to tabulate and draw.")
+
+    @model_validator(mode="after")
+    def _require_distinct_names(self) -> Self:
+        names = [contact.name for contact in self.contact]
+        for number, name in enumerate(names):
+            if name is not None and name in names[:number]:
+                raise ModelError(
+                    f"contact {number + 1}: name = '{name}' is that of contact "
+                    f"{names.index(name) + 1} too; give another name"
+                )
+        return self

@@ -1,0 +1,53 @@
+import os
+import runpy
+from pathlib import Path
+
+import pytest
+
+import stickslip as ss
+from stickslip.study import Study
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
+# errata.md, section 4: exact orbits; tip [m] and frequency [rad/s] of the peaks by load [N]
+TIP_PEAKS = {
+    0.938: (0.3709e-3, 225.58),
+    2.188: (0.6778e-3, 224.19),
+    6.563: (0.7216e-3, 216.49),
+    16.563: (1.2175e-3, 194.01),
+    20.313: (1.4548e-3, 192.93),
+    25.0: (1.8185e-3, 177.98),
+    31.475: (2.9847e-3, 169.05),
+    38.438: (6.0031e-3, 162.43),
+}
+
+
+@pytest.fixture(scope="module")
+def curves():
+    study = Study.load(EXAMPLES / "snecma-beam" / "study.toml")
+    return dict(zip([case.level for case in study.cases], study.run(), strict=True))
+
+
+@pytest.mark.parametrize(("load", "expected"), TIP_PEAKS.items())
+def test_the_beam_peaks_where_the_exact_orbits_do(curves, load, expected):
+    peak = curves[load].peak("tip")
+    assert peak.amplitude == pytest.approx(expected[0], rel=2e-3)
+    assert peak.omega == pytest.approx(expected[1], rel=2e-3)
+    assert curves[load].converged.all()
+
+
+def test_the_script_gives_what_the_study_gives(curves, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    script = EXAMPLES / "snecma-beam" / "beam.py"
+    runpy.run_path(os.fspath(script), run_name="__main__")
+    assert len(capsys.readouterr().out.splitlines()) == len(TIP_PEAKS)
+    saved = ss.load("snecma-beam-20.313.nc")
+    curve = curves[20.313]
+    assert saved.amplitude("tip") == pytest.approx(curve.amplitude("tip"), rel=1e-12)
+    assert saved.amplitude("damper") == pytest.approx(curve.amplitude("damper"), rel=1e-12)
+
+
+def test_the_script_is_short():
+    lines = (EXAMPLES / "snecma-beam" / "beam.py").read_text().splitlines()
+    assert len(lines) <= 15
+    assert max(map(len, lines)) <= 100
