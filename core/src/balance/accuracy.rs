@@ -6,8 +6,9 @@
 //! change between two values of H, in contrast, says nothing, for the error stays on a plateau
 //! until Hω passes the highest stuck natural frequency.
 
-use super::condensed::{gather, scatter, Condensed};
+use super::condensed::Condensed;
 use super::solution::Point;
+use super::unknowns::{gather, scatter};
 use crate::fourier::Harmonics;
 use crate::model::Model;
 use crate::solve::System as _;

@@ -1,9 +1,10 @@
 //! A curve over a range of frequencies, with steps chosen to the tolerance.
 
-use super::condensed::{Condensed, Unknowns};
+use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::solution::{Point, PointStatus, Solution};
 use super::sweep::{check_frequency, finish};
+use super::unknowns::Unknowns;
 use super::Progress;
 use crate::fourier::SampleTable;
 use crate::solve::System as _;

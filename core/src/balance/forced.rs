@@ -1,9 +1,10 @@
 //! The forced response at one frequency.
 
 use super::accuracy::{discarded_harmonics, Correction};
-use super::condensed::{gather, Condensed, Path, Unknowns};
+use super::condensed::{Condensed, Path};
 use super::settings::{HarmonicChoice, Settings};
 use super::solution::{Point, PointStatus};
+use super::unknowns::{gather, Unknowns};
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;

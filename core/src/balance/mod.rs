@@ -9,6 +9,7 @@ mod peak;
 mod settings;
 mod solution;
 mod sweep;
+mod unknowns;
 
 pub use adaptive::sweep_range;
 pub use forced::ForcedBalance;

@@ -41,7 +41,7 @@ pub fn refine_peak(
         }
         let harmonics = Harmonics::new(point.harmonics, balance.half_wave());
         let mut series = vec![0.0; harmonics.slots()];
-        super::condensed::scatter_series(&harmonics, &point.displacement, &mut series);
+        super::unknowns::scatter_series(&harmonics, &point.displacement, &mut series);
         start = point.unknowns;
         Ok(amplitude(&SampleTable::new(harmonics), &series, measure))
     };

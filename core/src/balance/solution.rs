@@ -1,6 +1,6 @@
 //! What a forced response returns.
 
-use super::condensed::Unknowns;
+use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
 use crate::timing::Profile;
 use faer::c64;

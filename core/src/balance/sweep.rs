@@ -1,8 +1,8 @@
 //! A curve over given frequencies.
 
-use super::condensed::Unknowns;
 use super::forced::ForcedBalance;
 use super::solution::{Point, PointStatus, Solution};
+use super::unknowns::Unknowns;
 use super::Progress;
 use crate::timing::Profile;
 use crate::Error;

@@ -5,9 +5,12 @@
 //! needs no partition of the matrices and takes ω as an unknown.
 
 mod direct;
+mod flexibility;
 mod modal;
 mod modes;
 mod ports;
+mod restraint;
+mod spectrum;
 mod system;
 
 pub use direct::DirectCompliance;

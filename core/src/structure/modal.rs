@@ -6,28 +6,19 @@
 //! | diagonal in the free modes (Rayleigh, modal) | real, free | contact stiffness as a low-rank change |
 //! | any other, also unsymmetric | complex, stuck | directly |
 
-use super::modes::{inverse, real_modes, RealModes};
+use super::flexibility::Flexibility;
+use super::modes::real_modes;
 use super::ports::Ports;
+use super::restraint::restrain;
+use super::spectrum::{complex_modes, real_spectrum, Spectrum};
 use super::{Compliance, DirectCompliance, Receptance, Structure};
 use crate::Error;
-use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat, MatRef};
 
 /// Off-diagonal modal damping, relative to the largest entry, that still counts as rounding.
 const COUPLING: f64 = 1e-10;
 /// Distance to an undamped resonance, relative to the squared frequency, that is refused.
 const RESONANCE: f64 = 1e-9;
-/// Lowest squared frequency, relative to the highest, of a structure that counts as grounded.
-const RIGID_BODY: f64 = 1e-13;
-
-/// How the denominator of a mode depends on frequency.
-#[derive(Debug, Clone)]
-enum Spectrum {
-    /// `1 / (ω_j² − ω² + iω c_j)`.
-    Real { omega_squared: Vec<f64>, damping: Vec<f64> },
-    /// `1 / (iω − s_j)`.
-    Complex { poles: Vec<c64> },
-}
 
 /// Which modes carry the compliance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,14 +50,6 @@ pub struct ModalCompliance {
     free_frequencies: Vec<f64>,
     bandwidth: f64,
     forced: Vec<usize>,
-}
-
-/// Static displacements, which damping does not touch: `K_s⁻¹ [Bᵀ, P_0]`.
-#[derive(Debug, Clone)]
-struct Flexibility {
-    of_contacts: Mat<f64>,
-    of_load: Mat<f64>,
-    rows: Mat<f64>,
 }
 
 /// The compliance of a structure: modal, or by direct solution where its complex modes are
@@ -316,177 +299,6 @@ impl Compliance for ModalCompliance {
 impl ModalCompliance {
     fn singular(&self) -> Error {
         Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
-    }
-}
-
-impl Flexibility {
-    /// `None` if the stuck structure has rigid-body modes.
-    fn new(stuck: &RealModes, ports: &Ports) -> Option<Self> {
-        let largest = stuck.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
-        if stuck.omega_squared.iter().any(|w| w.abs() <= RIGID_BODY * largest) {
-            return None;
-        }
-        let flexibility = |load: MatRef<'_, f64>| {
-            let mut modal = stuck.shapes.transpose() * load;
-            for j in 0..modal.ncols() {
-                for (i, w) in stuck.omega_squared.iter().enumerate() {
-                    modal[(i, j)] /= w;
-                }
-            }
-            &stuck.shapes * modal
-        };
-        let static_load = Mat::from_fn(ports.rows.ncols(), 1, |i, _| {
-            ports.load(0).map_or(0.0, |load| load[i].re)
-        });
-        Some(Self {
-            of_contacts: flexibility(ports.rows.transpose()),
-            of_load: flexibility(static_load.as_ref()),
-            rows: ports.rows.clone(),
-        })
-    }
-
-    fn receptance(&self, out: &mut Receptance) {
-        let contact = &self.rows * &self.of_contacts;
-        let stuck = &self.rows * &self.of_load;
-        let contacts = self.rows.nrows();
-        for column in 0..contacts {
-            out.stuck[column] = c64::new(stuck[(column, 0)], 0.0);
-            for row in 0..contacts {
-                out.contact[column * contacts + row] = c64::new(contact[(row, column)], 0.0);
-            }
-        }
-    }
-
-    fn displacement(&self, slip_load: &[c64], observe: &[usize], out: &mut [c64]) {
-        for (x, &dof) in out.iter_mut().zip(observe) {
-            let slip: f64 =
-                (0..slip_load.len()).map(|i| self.of_contacts[(dof, i)] * slip_load[i].re).sum();
-            *x = c64::new(self.of_load[(dof, 0)] + slip, 0.0);
-        }
-    }
-}
-
-impl Spectrum {
-    /// Weight of mode j at `omega` and its derivative in ω.
-    fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
-        match self {
-            Self::Real { omega_squared, damping } => {
-                let squared = omega * omega;
-                let mut denominator = c64::new(omega_squared[j] - squared, omega * damping[j]);
-                // An undamped mode of the free base met exactly is no resonance of the stuck
-                // structure: stepping aside by rounding's square root keeps eight digits.
-                if denominator.norm() < 1e-8 * squared {
-                    denominator = c64::new(0.0, 1e-8 * squared);
-                }
-                let weight = denominator.inv();
-                let slope = weight * weight * c64::new(2.0 * omega, -damping[j]);
-                (weight, slope)
-            }
-            Self::Complex { poles } => {
-                let weight = (c64::new(0.0, omega) - poles[j]).inv();
-                (weight, weight * weight * c64::new(0.0, -1.0))
-            }
-        }
-    }
-
-    fn narrowest_bandwidth(&self) -> f64 {
-        match self {
-            Self::Real { damping, .. } => damping.iter().map(|c| c.abs()).fold(f64::MAX, f64::min),
-            Self::Complex { poles } => {
-                poles.iter().map(|s| 2.0 * s.re.abs()).fold(f64::MAX, f64::min)
-            }
-        }
-    }
-}
-
-fn real_spectrum(modes: &RealModes, damping: MatRef<'_, f64>) -> (Spectrum, Mat<c64>) {
-    let spectrum = Spectrum::Real {
-        omega_squared: modes.omega_squared.clone(),
-        damping: (0..damping.nrows()).map(|j| damping[(j, j)]).collect(),
-    };
-    (spectrum, complex(modes.shapes.as_ref()))
-}
-
-type ComplexModes = (Vec<c64>, Mat<c64>, Mat<c64>);
-
-/// Poles and both sides of the modal sum of the state-space problem in real modal coordinates,
-/// with state `(S q, q')`, S = diag(ω_j): nearly normal for light damping. `None` if the
-/// eigenvectors do not span the space.
-fn complex_modes(
-    modes: &RealModes,
-    damping: MatRef<'_, f64>,
-) -> Result<Option<ComplexModes>, Error> {
-    let n = modes.omega_squared.len();
-    let highest = modes.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs())).sqrt();
-    let scale: Vec<f64> = modes
-        .omega_squared
-        .iter()
-        .map(|w| w.abs().sqrt().max(1e-4 * highest).max(f64::MIN_POSITIVE))
-        .collect();
-    let state = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
-        (true, true) => 0.0,
-        (true, false) => scale[i] * f64::from(u8::from(i == j - n)),
-        (false, true) => -modes.omega_squared[j] / scale[j] * f64::from(u8::from(i - n == j)),
-        (false, false) => -damping[(i - n, j - n)],
-    });
-    let eigen = state.eigen().map_err(|_| Error::Eigenvalues("damping".to_owned()))?;
-    let vectors = eigen.U();
-    let inverse = inverse(vectors);
-    let poles: Vec<c64> = (0..2 * n).map(|j| eigen.S()[j]).collect();
-    let finite = |z: &c64| z.re.is_finite() && z.im.is_finite();
-    let spans = (0..2 * n).all(|i| (0..2 * n).all(|j| finite(&inverse[(i, j)])));
-    if !spans || !poles.iter().all(finite) {
-        return Ok(None);
-    }
-    let shapes = complex(modes.shapes.as_ref());
-    let top = Mat::from_fn(n, 2 * n, |i, j| vectors[(i, j)] / scale[i]);
-    let right = &shapes * top;
-    let left = inverse.get(.., n..) * shapes.transpose();
-    Ok(Some((poles, right, left)))
-}
-
-/// Turns the receptance of the free structure into that of the stuck one:
-/// `G_s = (I + G D)⁻¹ G`.
-fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
-    let contacts = stiffness.nrows();
-    if contacts == 1 {
-        let d = stiffness[(0, 0)];
-        let factor = (1.0 + out.contact[0] * d).inv();
-        out.contact[0] *= factor;
-        out.stuck[0] *= factor;
-        if let Some((contact, stuck)) = &mut out.slope {
-            stuck[0] = factor * (stuck[0] - contact[0] * d * out.stuck[0]);
-            contact[0] *= factor * factor;
-        }
-        return;
-    }
-    let stiffness = complex(stiffness);
-    let column_major = |values: &[c64]| {
-        Mat::from_fn(contacts, values.len() / contacts.max(1), |i, j| values[j * contacts + i])
-    };
-    let free = column_major(&out.contact);
-    let coupling = Mat::<c64>::identity(contacts, contacts) + &free * &stiffness;
-    let lu = coupling.partial_piv_lu();
-    let contact = lu.solve(&free);
-    let stuck = lu.solve(column_major(&out.stuck));
-    store(contact.as_ref(), &mut out.contact);
-    store(stuck.as_ref(), &mut out.stuck);
-    if let Some((contact_slope, stuck_slope)) = &mut out.slope {
-        let change = column_major(contact_slope);
-        let free_stuck = column_major(stuck_slope);
-        // dG_s = (I + G D)⁻¹ dG (I − D G_s)
-        let kept = Mat::<c64>::identity(contacts, contacts) - &stiffness * &contact;
-        store(lu.solve(&change * kept).as_ref(), contact_slope);
-        store(lu.solve(free_stuck - change * (&stiffness * &stuck)).as_ref(), stuck_slope);
-    }
-}
-
-fn store(matrix: MatRef<'_, c64>, values: &mut [c64]) {
-    let rows = matrix.nrows();
-    for j in 0..matrix.ncols() {
-        for i in 0..rows {
-            values[j * rows + i] = matrix[(i, j)];
-        }
     }
 }
 

@@ -1,0 +1,96 @@
+//! The frequency dependence of a modal sum: real modes with modal damping, or complex modes.
+
+use super::modal::complex;
+use super::modes::{inverse, RealModes};
+use crate::Error;
+use faer::{c64, Mat, MatRef};
+
+/// How the denominator of a mode depends on frequency.
+#[derive(Debug, Clone)]
+pub(super) enum Spectrum {
+    /// `1 / (ω_j² − ω² + iω c_j)`.
+    Real { omega_squared: Vec<f64>, damping: Vec<f64> },
+    /// `1 / (iω − s_j)`.
+    Complex { poles: Vec<c64> },
+}
+
+impl Spectrum {
+    /// Weight of mode j at `omega` and its derivative in ω.
+    pub(super) fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
+        match self {
+            Self::Real { omega_squared, damping } => {
+                let squared = omega * omega;
+                let mut denominator = c64::new(omega_squared[j] - squared, omega * damping[j]);
+                // An undamped mode of the free base met exactly is no resonance of the stuck
+                // structure: stepping aside by rounding's square root keeps eight digits.
+                if denominator.norm() < 1e-8 * squared {
+                    denominator = c64::new(0.0, 1e-8 * squared);
+                }
+                let weight = denominator.inv();
+                let slope = weight * weight * c64::new(2.0 * omega, -damping[j]);
+                (weight, slope)
+            }
+            Self::Complex { poles } => {
+                let weight = (c64::new(0.0, omega) - poles[j]).inv();
+                (weight, weight * weight * c64::new(0.0, -1.0))
+            }
+        }
+    }
+
+    pub(super) fn narrowest_bandwidth(&self) -> f64 {
+        match self {
+            Self::Real { damping, .. } => damping.iter().map(|c| c.abs()).fold(f64::MAX, f64::min),
+            Self::Complex { poles } => {
+                poles.iter().map(|s| 2.0 * s.re.abs()).fold(f64::MAX, f64::min)
+            }
+        }
+    }
+}
+
+/// Modal denominators and shapes of real modes with a diagonal modal damping.
+pub(super) fn real_spectrum(modes: &RealModes, damping: MatRef<'_, f64>) -> (Spectrum, Mat<c64>) {
+    let spectrum = Spectrum::Real {
+        omega_squared: modes.omega_squared.clone(),
+        damping: (0..damping.nrows()).map(|j| damping[(j, j)]).collect(),
+    };
+    (spectrum, complex(modes.shapes.as_ref()))
+}
+
+/// Poles, and both sides R and L of the modal sum.
+pub(super) type ComplexModes = (Vec<c64>, Mat<c64>, Mat<c64>);
+
+/// Poles and both sides of the modal sum of the state-space problem in real modal coordinates,
+/// with state `(S q, q')`, S = diag(ω_j): nearly normal for light damping. `None` if the
+/// eigenvectors do not span the space.
+pub(super) fn complex_modes(
+    modes: &RealModes,
+    damping: MatRef<'_, f64>,
+) -> Result<Option<ComplexModes>, Error> {
+    let n = modes.omega_squared.len();
+    let highest = modes.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs())).sqrt();
+    let scale: Vec<f64> = modes
+        .omega_squared
+        .iter()
+        .map(|w| w.abs().sqrt().max(1e-4 * highest).max(f64::MIN_POSITIVE))
+        .collect();
+    let state = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+        (true, true) => 0.0,
+        (true, false) => scale[i] * f64::from(u8::from(i == j - n)),
+        (false, true) => -modes.omega_squared[j] / scale[j] * f64::from(u8::from(i - n == j)),
+        (false, false) => -damping[(i - n, j - n)],
+    });
+    let eigen = state.eigen().map_err(|_| Error::Eigenvalues("damping".to_owned()))?;
+    let vectors = eigen.U();
+    let inverse = inverse(vectors);
+    let poles: Vec<c64> = (0..2 * n).map(|j| eigen.S()[j]).collect();
+    let finite = |z: &c64| z.re.is_finite() && z.im.is_finite();
+    let spans = (0..2 * n).all(|i| (0..2 * n).all(|j| finite(&inverse[(i, j)])));
+    if !spans || !poles.iter().all(finite) {
+        return Ok(None);
+    }
+    let shapes = complex(modes.shapes.as_ref());
+    let top = Mat::from_fn(n, 2 * n, |i, j| vectors[(i, j)] / scale[i]);
+    let right = &shapes * top;
+    let left = inverse.get(.., n..) * shapes.transpose();
+    Ok(Some((poles, right, left)))
+}
