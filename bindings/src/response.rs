@@ -6,6 +6,7 @@ use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonl
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
 use stickslip_core::balance::{
     refine_peak, sweep, sweep_range, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
@@ -249,31 +250,37 @@ pub fn forced_response(
         Frequencies::Grid(_) => None,
     };
     let model = &problem.model;
-    let mut raised = None;
-    let inner = py.detach(|| {
-        let mut last = Instant::now();
-        let mut look = |share: f64| {
-            if last.elapsed() < LOOK {
+    let (inner, raised) = py.detach(|| {
+        let raised = RefCell::new(None);
+        let last = Cell::new(Instant::now());
+        let look = |share: f64| {
+            if raised.borrow().is_some() {
+                return false;
+            }
+            if last.get().elapsed() < LOOK {
                 return true;
             }
-            last = Instant::now();
+            last.set(Instant::now());
             Python::attach(|py| {
                 let told =
                     progress.as_ref().map_or(Ok(()), |call| call.call1(py, (share,)).map(drop));
                 match told.and_then(|()| py.check_signals()) {
                     Ok(()) => true,
                     Err(error) => {
-                        raised = Some(error);
+                        raised.replace(Some(error));
                         false
                     }
                 }
             })
         };
-        let balance = ForcedBalance::new(model, settings, &observe)?;
-        match range {
-            Some((from, to)) => sweep_range(balance, from, to, &mut look),
-            None => sweep(balance, &grid, &mut look),
-        }
+        let inner = ForcedBalance::new(model, settings, &observe).and_then(|balance| {
+            let balance = balance.watched(&look);
+            match range {
+                Some((from, to)) => sweep_range(balance, from, to),
+                None => sweep(balance, &grid),
+            }
+        });
+        (inner, raised.into_inner())
     });
     // Ctrl-C keeps what was solved; anything else a progress callback raises is its own.
     if let Some(error) = raised {

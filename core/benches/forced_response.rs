@@ -24,7 +24,7 @@ fn beam_sweep(criterion: &mut Criterion) {
         group.bench_with_input(BenchmarkId::from_parameter(highest), &settings, |b, settings| {
             b.iter(|| {
                 let balance = ForcedBalance::new(&model, *settings, &[0, 1, 2]);
-                balance.and_then(|balance| sweep(balance, black_box(&omega), &mut |_| true))
+                balance.and_then(|balance| sweep(balance, black_box(&omega)))
             });
         });
     }

@@ -59,7 +59,7 @@ proptest! {
         let omega: Vec<f64> = (1..40).map(|i| i as f64 * 0.9).collect();
         let back: Vec<f64> = omega.iter().rev().copied().collect();
         let run = |omega: &[f64]| {
-            sweep(ForcedBalance::new(&model, settings, &observe).unwrap(), omega, &mut |_| true).unwrap()
+            sweep(ForcedBalance::new(&model, settings, &observe).unwrap(), omega).unwrap()
         };
         let (up, down) = (run(&omega), run(&back));
         for (point, other) in up.points.iter().zip(down.points.iter().rev()) {

@@ -5,7 +5,6 @@ use super::forced::ForcedBalance;
 use super::solution::{Point, PointStatus, Solution};
 use super::sweep::{check_frequency, finish};
 use super::unknowns::Unknowns;
-use super::Progress;
 use crate::fourier::SampleTable;
 use crate::solve::System as _;
 use crate::Error;
@@ -29,12 +28,7 @@ const SHORTEST: f64 = 1e-9;
 ///
 /// # Errors
 /// As for a sweep over given frequencies; a range of no length.
-pub fn sweep_range(
-    mut balance: ForcedBalance<'_>,
-    from: f64,
-    to: f64,
-    progress: &mut Progress<'_>,
-) -> Result<Solution, Error> {
+pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result<Solution, Error> {
     let start = Instant::now();
     check_frequency("omega range: start", from)?;
     check_frequency("omega range: end", to)?;
@@ -50,10 +44,13 @@ pub fn sweep_range(
     let mut step = 0.1 * longest;
     let mut interrupted = false;
     for stop in stops {
+        if interrupted {
+            break;
+        }
         step = step.min(fine);
         while (stop - points[points.len() - 1].omega) * direction > 0.0 {
             let last = &points[points.len() - 1];
-            if !progress((last.omega - from) / (to - from)) {
+            if !balance.report((last.omega - from) / (to - from)) {
                 interrupted = true;
                 break;
             }
@@ -64,6 +61,10 @@ pub fn sweep_range(
             let omega = if step >= room { stop } else { last.omega + direction * length };
             let guess = tangent(&mut balance, last, omega);
             let point = balance.solve(omega, guess.as_ref())?;
+            if point.status == PointStatus::NotComputed {
+                interrupted = true;
+                break;
+            }
             let target = balance.settings.tolerance;
             let error = line_error(&points, &point, &largest).unwrap_or(target);
             let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);

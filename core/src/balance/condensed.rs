@@ -36,6 +36,7 @@ pub struct Condensed<'a> {
     load_scale: f64,
     /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
     softened: Option<(f64, Vec<Box<dyn FrictionLaw>>)>,
+    interrupted: Option<&'a dyn Fn() -> bool>,
     factor: Option<PartialPivLu<f64>>,
     /// Points of contacts with a tangent, of the last factorisation.
     active: Vec<usize>,
@@ -56,6 +57,7 @@ impl<'a> Condensed<'a> {
             path: Path::Load,
             load_scale: 1.0,
             softened: None,
+            interrupted: None,
             factor: None,
             active: Vec::new(),
             profile: Profile::default(),
@@ -87,6 +89,11 @@ impl<'a> Condensed<'a> {
             scatter(harmonics, order, &receptance.stuck, &mut self.stuck);
         }
         Ok(())
+    }
+
+    /// Has the iterations ask whether to end the analysis.
+    pub fn watch(&mut self, interrupted: &'a dyn Fn() -> bool) {
+        self.interrupted = Some(interrupted);
     }
 
     /// Chooses what the next homotopy scales.
@@ -308,6 +315,10 @@ impl System for Condensed<'_> {
         }
     }
 
+    fn interrupted(&self) -> bool {
+        self.interrupted.is_some_and(|ask| ask())
+    }
+
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
         let start = std::time::Instant::now();
         let slots = self.table.harmonics().slots();
@@ -365,5 +376,71 @@ impl Parametrised for Condensed<'_> {
         if self.path == Path::Load {
             x.iter_mut().for_each(|x| *x *= growth);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Jenkins;
+    use crate::model::Contact;
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::mat;
+
+    /// Two masses with one contact that slips, one between the masses and one that sticks.
+    fn model(static_load: f64) -> Model {
+        let mass = mat![[2.0, 0.1], [0.1, 1.0]];
+        let stiffness = mat![[300.0, -100.0], [-100.0, 150.0]];
+        let damping = mat![[0.5, -0.1], [0.2, 0.4]];
+        let structure =
+            Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+        let contact = |row: [f64; 2], stiffness, slip_force| Contact {
+            law: Box::new(Jenkins::new(stiffness, slip_force).unwrap()),
+            rows: Mat::from_fn(1, 2, |_, j| row[j]),
+        };
+        let contacts = vec![
+            contact([1.0, 0.0], 80.0, 0.3),
+            contact([1.0, -1.0], 200.0, 0.2),
+            contact([0.0, 1.0], 50.0, 1e4),
+        ];
+        let load = |harmonic, force: f64| HarmonicLoad {
+            harmonic,
+            amplitude: vec![c64::new(force, 0.2 * force), c64::new(-0.3 * force, 0.0)],
+        };
+        Model::new(structure, contacts, vec![load(1, 4.0), load(0, static_load)]).unwrap()
+    }
+
+    #[test]
+    fn newton_directions_match_differences_of_the_residual() {
+        for (static_load, half_wave) in [(0.0, true), (3.0, false)] {
+            let model = model(static_load);
+            let table = SampleTable::new(Harmonics::new(5, half_wave));
+            let mut equations = Condensed::new(&model, &table, Residual::Centred, false);
+            equations.set_omega(9.0).unwrap();
+            let size = equations.size();
+            let x: Vec<f64> =
+                (0..size).map(|i| 0.02 * (1.0 + i as f64).sin() / (1.0 + i as f64 / 3.0)).collect();
+            let (mut ahead, mut behind) = (vec![0.0; size], vec![0.0; size]);
+            let rhs: Vec<f64> = (0..size).map(|i| (0.7 * i as f64).cos()).collect();
+            let mut step = vec![0.0; size];
+            equations.residual(&x, &mut ahead);
+            assert!(equations.loads[0].active && equations.loads[1].active);
+            assert_eq!(equations.loads[2].active, !half_wave);
+            assert!(equations.solve(&rhs, &mut step));
+            let h = 1e-7 / norm_max(&step);
+            let shifted = |sign: f64| -> Vec<f64> {
+                x.iter().zip(&step).map(|(x, s)| x + sign * h * s).collect()
+            };
+            equations.residual(&shifted(1.0), &mut ahead);
+            equations.residual(&shifted(-1.0), &mut behind);
+            for ((a, b), expected) in ahead.iter().zip(&behind).zip(&rhs) {
+                let difference = (a - b) / (2.0 * h);
+                assert!((difference - expected).abs() < 1e-6, "{difference} {expected}");
+            }
+        }
+    }
+
+    fn norm_max(x: &[f64]) -> f64 {
+        x.iter().map(|v| v.abs()).fold(0.0, f64::max)
     }
 }

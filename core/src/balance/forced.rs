@@ -5,6 +5,7 @@ use super::condensed::{Condensed, Path};
 use super::settings::{HarmonicChoice, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::{gather, Unknowns};
+use super::Progress;
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
@@ -31,6 +32,8 @@ pub struct ForcedBalance<'a> {
     forced: Vec<usize>,
     tables: BTreeMap<usize, Arc<SampleTable>>,
     rung: usize,
+    progress: &'a Progress<'a>,
+    share: f64,
     pub(super) profile: Profile,
 }
 
@@ -63,8 +66,23 @@ impl<'a> ForcedBalance<'a> {
             forced,
             tables: BTreeMap::new(),
             rung: FIRST_RUNG,
+            progress: &|_| true,
+            share: 0.0,
             profile: Profile::default(),
         })
+    }
+
+    /// Has `progress` called during the analysis.
+    #[must_use]
+    pub fn watched(mut self, progress: &'a Progress<'a>) -> Self {
+        self.progress = progress;
+        self
+    }
+
+    /// Reports the share of the work done; `false` if the analysis is to end.
+    pub(super) fn report(&mut self, share: f64) -> bool {
+        self.share = share;
+        (self.progress)(share)
     }
 
     /// Whether only odd harmonics are solved for.
@@ -120,7 +138,7 @@ impl<'a> ForcedBalance<'a> {
                 self.rung = rung - usize::from(generous && rung > 0);
                 return Ok(point);
             }
-            if rung + 1 == rungs.len() {
+            if rung + 1 == rungs.len() || point.status == PointStatus::NotComputed {
                 self.rung = rung;
                 if point.status == PointStatus::Converged {
                     point.status = PointStatus::HarmonicsLimit;
@@ -159,7 +177,10 @@ impl<'a> ForcedBalance<'a> {
         start: Option<&Unknowns>,
     ) -> Result<Point, Error> {
         let table = self.table(highest);
+        let (progress, share) = (self.progress, self.share);
+        let interrupted = || !progress(share);
         let mut equations = Condensed::new(self.model, &table, self.settings.residual, false);
+        equations.watch(&interrupted);
         let solved = self.solve_equations(&mut equations, omega, start)?;
         self.add_profile(&equations.profile);
         Ok(solved)
@@ -193,11 +214,15 @@ impl<'a> ForcedBalance<'a> {
             |unknowns| unknowns.recast(harmonics),
         );
         let mut report = newton(equations, &mut x, self.settings.newton);
-        if report.outcome != Outcome::Converged {
+        if !matches!(report.outcome, Outcome::Converged | Outcome::Interrupted) {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
         }
         let status = match report.outcome {
+            Outcome::Interrupted => {
+                let (status, observed) = (PointStatus::NotComputed, self.observe.len());
+                return Ok(Point::empty(omega, status, observed, contacts));
+            }
             Outcome::Converged => PointStatus::Converged,
             Outcome::Stalled => PointStatus::Stalled,
             Outcome::Singular => PointStatus::Singular,
@@ -219,7 +244,7 @@ impl<'a> ForcedBalance<'a> {
             equations.choose(path);
             let followed = homotopy(equations, &mut along, self.settings.newton);
             report.iterations += followed.iterations;
-            if followed.outcome == Outcome::Converged {
+            if matches!(followed.outcome, Outcome::Converged | Outcome::Interrupted) {
                 (report.outcome, report.residual) = (followed.outcome, followed.residual);
                 *x = along;
                 break;

@@ -18,5 +18,6 @@ pub use settings::{HarmonicChoice, Settings};
 pub use solution::{Point, PointStatus, Solution};
 pub use sweep::sweep;
 
-/// Called between points with the share of the work done; `false` ends the analysis.
-pub type Progress<'a> = dyn FnMut(f64) -> bool + 'a;
+/// Called between points and between Newton iterations with the share of the work done; `false`
+/// ends the analysis and keeps what is solved.
+pub type Progress<'a> = dyn Fn(f64) -> bool + 'a;

@@ -3,7 +3,6 @@
 use super::forced::ForcedBalance;
 use super::solution::{Point, PointStatus, Solution};
 use super::unknowns::Unknowns;
-use super::Progress;
 use crate::timing::Profile;
 use crate::Error;
 use std::time::Instant;
@@ -13,11 +12,7 @@ use std::time::Instant;
 ///
 /// # Errors
 /// A frequency that is not positive, or one at which the loads excite an undamped resonance.
-pub fn sweep(
-    mut balance: ForcedBalance<'_>,
-    omega: &[f64],
-    progress: &mut Progress<'_>,
-) -> Result<Solution, Error> {
+pub fn sweep(mut balance: ForcedBalance<'_>, omega: &[f64]) -> Result<Solution, Error> {
     let start = Instant::now();
     for (index, &frequency) in omega.iter().enumerate() {
         check_frequency(&format!("omega[{index}]"), frequency)?;
@@ -26,14 +21,17 @@ pub fn sweep(
     let mut points: Vec<Point> = Vec::with_capacity(omega.len());
     let mut interrupted = false;
     for &frequency in omega {
-        interrupted = interrupted || !progress(points.len() as f64 / omega.len() as f64);
+        let share = points.len() as f64 / omega.len() as f64;
+        interrupted = interrupted || !balance.report(share);
         if interrupted {
             let (status, observed) = (PointStatus::NotComputed, balance.observed());
             points.push(Point::empty(frequency, status, observed, contacts));
             continue;
         }
         let guess = predict(&points, frequency);
-        points.push(balance.solve(frequency, guess.as_ref())?);
+        let point = balance.solve(frequency, guess.as_ref())?;
+        interrupted = point.status == PointStatus::NotComputed;
+        points.push(point);
     }
     Ok(finish(balance, points, interrupted, start))
 }

@@ -32,14 +32,19 @@ pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonS
         system.easy_start(&mut trial);
         let report = newton(system, &mut trial, settings);
         iterations += report.iterations;
-        if report.outcome == Outcome::Converged {
-            easy = Some((scale.ln(), report));
-            break;
+        match report.outcome {
+            Outcome::Converged => {
+                easy = Some((scale.ln(), report));
+                break;
+            }
+            Outcome::Interrupted => break,
+            _ => {}
         }
     }
     let Some((mut logarithm, mut report)) = easy else {
         system.set_scale(1.0);
-        return Report { outcome: Outcome::Stalled, iterations, residual: f64::NAN };
+        let outcome = if system.interrupted() { Outcome::Interrupted } else { Outcome::Stalled };
+        return Report { outcome, iterations, residual: f64::NAN };
     };
     x.copy_from_slice(&trial);
     let mut step = FIRST_STEP;
@@ -54,6 +59,8 @@ pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonS
             x.copy_from_slice(&trial);
             logarithm = next;
             step *= 1.5;
+        } else if report.outcome == Outcome::Interrupted {
+            break;
         } else {
             step *= 0.5;
         }

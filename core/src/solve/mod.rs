@@ -14,6 +14,11 @@ pub trait System {
     /// Residual at `x`; keeps what [`System::solve`] needs.
     fn residual(&mut self, x: &[f64], out: &mut [f64]);
 
+    /// Whether the caller wants to end the analysis; asked once per iteration.
+    fn interrupted(&self) -> bool {
+        false
+    }
+
     /// Solves `J step = rhs` with the Jacobian at the last `x`; `false` if J is singular.
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool;
 }

@@ -26,6 +26,8 @@ pub enum Outcome {
     Stalled,
     /// The Jacobian is singular, or the residual is not a number.
     Singular,
+    /// The caller ended the analysis.
+    Interrupted,
 }
 
 /// Outcome and effort.
@@ -55,6 +57,9 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
             iterations: iteration + 1,
             residual: residual / norm(x).max(f64::MIN_POSITIVE),
         };
+        if system.interrupted() {
+            return report(Outcome::Interrupted, size_of_residual, x);
+        }
         if !size_of_residual.is_finite() || !system.solve(&residual, &mut step) {
             return report(Outcome::Singular, size_of_residual, x);
         }
