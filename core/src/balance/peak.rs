@@ -1,7 +1,7 @@
 //! The true maximum of a curve between its grid points.
 
 use super::forced::ForcedBalance;
-use super::settings::Settings;
+use super::settings::{HarmonicChoice, Settings};
 use super::sweep::check_frequency;
 use super::PointStatus;
 use crate::fourier::{amplitude, Harmonics, Measure, SampleTable};
@@ -32,6 +32,7 @@ pub fn refine_peak(
         return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
     }
     let observe = [dof];
+    let settings = with_one_order(model, settings, &observe, [low, guess, high])?;
     let mut balance = ForcedBalance::new(model, settings, &observe)?;
     let mut start = None;
     let mut height = |omega: f64| -> Result<f64, Error> {
@@ -46,6 +47,25 @@ pub fn refine_peak(
         Ok(amplitude(&SampleTable::new(harmonics), &series, measure))
     };
     brent(low, guess, high, &mut height)
+}
+
+/// Replaces automatic harmonics by the most that they choose at three frequencies: an amplitude
+/// whose order changes from point to point is too rough to maximise.
+fn with_one_order(
+    model: &Model,
+    settings: Settings,
+    observe: &[usize],
+    omega: [f64; 3],
+) -> Result<Settings, Error> {
+    if settings.harmonics != HarmonicChoice::Auto {
+        return Ok(settings);
+    }
+    let mut balance = ForcedBalance::new(model, settings, observe)?;
+    let mut highest = 1;
+    for frequency in omega {
+        highest = highest.max(balance.solve(frequency, None)?.harmonics);
+    }
+    Ok(Settings { harmonics: HarmonicChoice::Fixed(highest), ..settings })
 }
 
 /// Brent's maximiser without derivatives.

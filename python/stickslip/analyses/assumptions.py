@@ -113,7 +113,7 @@ def _residual(model: Model, settings: Settings, arrays: Arrays) -> str:
 def _frequencies(settings: Settings, arrays: Arrays) -> str:
     if settings.span is None:
         return ""
-    low, high = settings.span
+    low, high = sorted(settings.span)
     return (
         f"The {arrays.omega.size} frequencies between {low:g} and {high:g} rad/s were chosen to a "
         f"tolerance of {settings.tolerance:g}."

@@ -117,8 +117,8 @@ def forced_response(
         Structure, contacts and forces.
     omega : array_like, shape (n,), or (float, float)
         Angular frequencies [rad/s], swept in the order given. A tuple of two numbers is a range
-        from low to high, in which the frequencies are chosen to `tolerance`; write
-        ``[low, high]`` or an array for a grid of two.
+        from the first to the second, upwards or downwards, in which the frequencies are chosen to
+        `tolerance`; write ``[one, two]`` or an array for a grid of two.
     harmonics : int or "auto", optional
         Highest harmonic kept, or "auto": per point, as many as `tolerance` asks for.
     tolerance : float, optional
@@ -259,14 +259,14 @@ def _grid(omega: ArrayLike | Span) -> NDArray[np.float64] | Span:
 
 def _span(span: tuple[object, ...]) -> Span:
     if len(span) != 2:
-        raise ModelError(f"omega: a range has two ends, not {len(span)}; write (low, high)")
-    low, high = (real_number(end, "omega: end of the range") for end in span)
-    if not 0.0 < low < high:
+        raise ModelError(f"omega: a range has two ends, not {len(span)}; write (start, end)")
+    start, end = (real_number(value, "omega: end of the range") for value in span)
+    if not (start > 0.0 and end > 0.0 and start != end):
         raise ModelError(
-            f"omega: the range ({low:g}, {high:g}) must satisfy 0 < low < high; "
+            f"omega: the range ({start:g}, {end:g}) must have two different ends above 0 rad/s; "
             "write a list for single frequencies"
         )
-    return low, high
+    return start, end
 
 
 def _harmonics(harmonics: object, limit: int) -> int | Literal["auto"]:
@@ -324,7 +324,7 @@ def _observed(observe: Iterable[str] | str | None, model: Model) -> tuple[str, .
 
 def _require_held(model: Model, residual: Residual) -> None:
     """Refuse a static load that nothing, or only contacts of prescribed mean force, would hold."""
-    static = [(n, one) for n, one in enumerate(model.forces) if not one.harmonic and one.amplitude]
+    static = [(n, one) for n, one in enumerate(model.forces, start=1) if not one.harmonic and one.amplitude]
     if not static:
         return
     position, force = static[0]

@@ -68,8 +68,6 @@ class OmegaRange(Table):
             raise ValueError("'from' and 'to' are equal; for one frequency write omega = [...]")
         if self.points is None and self.spacing is not None:
             raise ValueError("'spacing' needs 'points'; without points the steps are adaptive")
-        if self.points is None and self.begin > self.end:
-            raise ValueError("'from' must be below 'to' where 'points' is left out")
         return self
 
     def values(self) -> NDArray[np.float64] | tuple[float, float]:
