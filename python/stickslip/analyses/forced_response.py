@@ -324,7 +324,11 @@ def _observed(observe: Iterable[str] | str | None, model: Model) -> tuple[str, .
 
 def _require_held(model: Model, residual: Residual) -> None:
     """Refuse a static load that nothing, or only contacts of prescribed mean force, would hold."""
-    static = [(n, one) for n, one in enumerate(model.forces, start=1) if not one.harmonic and one.amplitude]
+    static = [
+        (n, one)
+        for n, one in enumerate(model.forces, start=1)
+        if not one.harmonic and one.amplitude
+    ]
     if not static:
         return
     position, force = static[0]
