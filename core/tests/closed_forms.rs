@@ -106,31 +106,3 @@ fn the_force_history_closes_its_loop_and_matches_its_series() {
         }
     }
 }
-
-#[test]
-fn discarded_harmonics_continue_the_kept_ones() {
-    let law = Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap();
-    let narrow = SampleTable::new(Harmonics::new(5, true));
-    let wide = SampleTable::new(Harmonics::new(11, true));
-    let delta = SLIP_FORCE / STIFFNESS;
-    let kept: Vec<f64> = [2.0, 0.3, -0.8, 0.9, 0.2, 0.1].iter().map(|x| x * delta).collect();
-    let mut padded = kept.clone();
-    padded.resize(wide.harmonics().slots(), 0.0);
-    let mut all = SlipLoad::default();
-    law.slip_load(motion(&wide, &padded), true, &mut all);
-    let above = narrow.harmonics().above(11);
-    let mut beyond = vec![0.0; above.slots()];
-    law.slip_load_at(motion(&narrow, &kept), &above, &mut beyond);
-    for (a, b) in beyond.iter().zip(&all.value[6..]) {
-        assert!((a - b).abs() < 1e-9 * SLIP_FORCE);
-    }
-    let change: Vec<f64> = (0..above.slots()).map(|i| (i as f64 + 0.3).sin()).collect();
-    let mut response = vec![0.0; kept.len()];
-    law.slip_load_change(motion(&narrow, &kept), &above, &change, &mut response);
-    let size = wide.harmonics().slots();
-    for (row, value) in response.iter().enumerate() {
-        let expected: f64 =
-            change.iter().enumerate().map(|(j, c)| all.tangent[row * size + 6 + j] * c).sum();
-        assert!((value - expected).abs() < 1e-8 * STIFFNESS);
-    }
-}

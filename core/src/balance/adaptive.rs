@@ -5,19 +5,15 @@ use super::forced::ForcedBalance;
 use super::solution::{Point, PointStatus, Solution};
 use super::sweep::{check_frequency, finish};
 use super::unknowns::Unknowns;
-use crate::fourier::SampleTable;
 use crate::solve::System as _;
 use crate::Error;
 use faer::c64;
 use std::time::Instant;
 
-/// A DOF's error counts relative to its amplitude, but not to less than this share of the
-/// largest amplitude it has had: an antiresonance needs no points of its own.
-const FLOOR: f64 = 0.02;
 /// Longest step as a share of the range: a curve needs points to be looked at.
 const LONGEST: f64 = 1.0 / 60.0;
 /// Shortest step relative to the frequency.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST: f64 = 1e-7;
 
 /// Solves from `from` to `to` [rad/s], in either direction, with steps such that straight lines
 /// between the points stay within the tolerance of the curve.
@@ -40,7 +36,7 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
     let longest = LONGEST * (to - from).abs();
     let fine = balance.model.compliance().narrowest_bandwidth().clamp(1e-6 * longest, longest);
     let mut points = vec![balance.solve(from, None)?];
-    let mut largest = sizes(&points[0]);
+    balance.scale.include(&points[0]);
     let mut step = 0.1 * longest;
     let mut interrupted = false;
     for stop in stops {
@@ -57,7 +53,7 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
             let room = (stop - last.omega).abs();
             // Two even steps instead of a long and a tiny one.
             let length =
-                if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * stop) };
+                if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * last.omega) };
             let omega = if step >= room { stop } else { last.omega + direction * length };
             let guess = tangent(&mut balance, last, omega);
             let point = balance.solve(omega, guess.as_ref())?;
@@ -66,13 +62,16 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
                 break;
             }
             let target = balance.settings.tolerance;
-            let error = line_error(&points, &point, &largest).unwrap_or(target);
+            // Nothing is known of the bend at the start, where the step stays, nor behind a point
+            // that is not solved, where it grows to get past.
+            let unknown = if is_solved(&point) { 0.81 * target } else { 0.0 };
+            let error = line_error(&balance, &points, &point).unwrap_or(unknown);
             let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
-            let too_long = error > 2.0 * target && length > SHORTEST * omega;
+            let too_long = error > 2.0 * target && length > 1.5 * SHORTEST * omega;
             step = (length * factor).min(longest);
             if !too_long {
-                for (largest, size) in largest.iter_mut().zip(sizes(&point)) {
-                    *largest = largest.max(size);
+                if is_solved(&point) {
+                    balance.scale.include(&point);
                 }
                 points.push(point);
             }
@@ -110,17 +109,18 @@ fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<
         return None;
     }
     let unknowns = last.unknowns.as_ref()?;
-    let table = SampleTable::new(unknowns.harmonics.clone());
+    let table = balance.table(unknowns.harmonics.highest());
     let residual = balance.settings.residual;
     let mut equations = Condensed::new(balance.model, &table, residual, true);
     equations.set_omega(last.omega).ok()?;
     let (mut ignored, mut rate) = (vec![0.0; equations.size()], vec![0.0; equations.size()]);
     equations.residual(&unknowns.values, &mut ignored);
     let frequency_rate = equations.frequency_rate();
-    if !equations.solve(&frequency_rate, &mut rate) {
+    let solved = equations.solve(&frequency_rate, &mut rate);
+    balance.add_profile(&equations.profile);
+    if !solved {
         return Some(unknowns.clone());
     }
-    balance.add_profile(&equations.profile);
     let mut predicted = unknowns.clone();
     for (value, rate) in predicted.values.iter_mut().zip(&rate) {
         *value += (omega - last.omega) * rate;
@@ -130,7 +130,7 @@ fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<
 
 /// Largest relative distance of the observed DOFs from a straight line between the last point
 /// and `new`, from the curvature through the last three points.
-fn line_error(points: &[Point], new: &Point, largest: &[f64]) -> Option<f64> {
+fn line_error(balance: &ForcedBalance<'_>, points: &[Point], new: &Point) -> Option<f64> {
     let [.., before, last] = points else { return None };
     if ![before, last, new].into_iter().all(is_solved) {
         return None;
@@ -145,25 +145,16 @@ fn line_error(points: &[Point], new: &Point, largest: &[f64]) -> Option<f64> {
             c64::new(0.0, 0.0)
         }
     };
-    let errors = sizes(new).into_iter().zip(largest).enumerate().map(|(dof, (size, largest))| {
+    let errors = (0..new.error_estimate.len()).map(|dof| {
         let missed: f64 = (1..=new.harmonics)
             .map(|k| {
                 let (x, y, z) = (own(before, dof, k), own(last, dof, k), own(new, dof, k));
                 (z - y - (y - x) * (step / earlier)).norm_sqr()
             })
             .sum();
-        bend * missed.sqrt() / size.max(FLOOR * largest).max(f64::MIN_POSITIVE)
+        bend * missed.sqrt()
     });
-    Some(errors.fold(0.0, f64::max))
-}
-
-/// Size of the oscillation of each observed DOF.
-fn sizes(point: &Point) -> Vec<f64> {
-    point
-        .displacement
-        .chunks_exact(point.harmonics + 1)
-        .map(|series| series[1..].iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt())
-        .collect()
+    Some(balance.scale.relative(new, errors))
 }
 
 fn is_solved(point: &Point) -> bool {

@@ -1,7 +1,8 @@
 //! The forced response at one frequency.
 
-use super::accuracy::{discarded_harmonics, Correction};
+use super::accuracy::{errors, extended_order};
 use super::condensed::{Condensed, Path};
+use super::scale::Scale;
 use super::settings::{HarmonicChoice, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::{gather, Unknowns};
@@ -18,6 +19,8 @@ use std::sync::Arc;
 
 /// Orders that automatic harmonics climb: half as many again from rung to rung.
 const LADDER: [usize; 17] = [1, 3, 5, 7, 9, 13, 19, 27, 39, 57, 83, 121, 177, 261, 387, 575, 857];
+/// Below this order the friction force has no shape that an estimate could start from.
+const LOWEST_ORDER: usize = 3;
 /// Automatic harmonics start here: enough for a smooth slip cycle.
 const FIRST_RUNG: usize = 3;
 /// An estimate this far below the tolerance lets the next point try one rung less.
@@ -32,6 +35,7 @@ pub struct ForcedBalance<'a> {
     forced: Vec<usize>,
     tables: BTreeMap<usize, Arc<SampleTable>>,
     rung: usize,
+    pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     share: f64,
     pub(super) profile: Profile,
@@ -66,6 +70,7 @@ impl<'a> ForcedBalance<'a> {
             forced,
             tables: BTreeMap::new(),
             rung: FIRST_RUNG,
+            scale: Scale::default(),
             progress: &|_| true,
             share: 0.0,
             profile: Profile::default(),
@@ -95,7 +100,7 @@ impl<'a> ForcedBalance<'a> {
         self.observe.len()
     }
 
-    fn table(&mut self, highest: usize) -> Arc<SampleTable> {
+    pub(super) fn table(&mut self, highest: usize) -> Arc<SampleTable> {
         let half_wave = self.half_wave;
         let table = self
             .tables
@@ -125,49 +130,38 @@ impl<'a> ForcedBalance<'a> {
         let lowest = self.forced.last().copied().unwrap_or(1).max(1);
         let rungs: Vec<usize> =
             LADDER.iter().copied().filter(|&h| h >= lowest && h < limit).chain([limit]).collect();
+        let lowest_rung = rungs.iter().position(|&h| h >= LOWEST_ORDER).unwrap_or(0);
         let mut rung = self.rung.min(rungs.len() - 1);
+        let mut stalled = false;
         let mut start = start.cloned();
         let mut iterations = 0;
         loop {
             let mut point = self.solve_with(rungs[rung], omega, start.as_ref())?;
             iterations += point.iterations;
             point.iterations = iterations;
-            let error = self.relative_error(&point);
-            if point.status == PointStatus::Converged && error <= self.settings.tolerance {
-                let generous = error <= GENEROUS * self.settings.tolerance;
-                self.rung = rung - usize::from(generous && rung > 0);
-                return Ok(point);
-            }
-            if rung + 1 == rungs.len() || point.status == PointStatus::NotComputed {
-                self.rung = rung;
-                if point.status == PointStatus::Converged {
-                    point.status = PointStatus::HarmonicsLimit;
+            match point.status {
+                PointStatus::Converged => {
+                    self.scale.include(&point);
+                    let error = self.scale.relative(&point, point.error_estimate.iter().copied());
+                    if error <= self.settings.tolerance {
+                        let generous = error <= GENEROUS * self.settings.tolerance;
+                        self.rung = (rung - usize::from(generous && rung > 0)).max(lowest_rung);
+                        return Ok(point);
+                    }
+                    if rung + 1 == rungs.len() {
+                        self.rung = rung;
+                        point.status = PointStatus::HarmonicsLimit;
+                        return Ok(point);
+                    }
+                    start = point.unknowns;
                 }
-                return Ok(point);
-            }
-            if point.status == PointStatus::Converged {
-                start = point.unknowns;
+                // One more rung may be what a stalled point lacks.
+                PointStatus::Stalled if !stalled && rung + 1 < rungs.len() => stalled = true,
+                // More harmonics cure no singular equations.
+                _ => return Ok(point),
             }
             rung += 1;
         }
-    }
-
-    /// Largest estimated error of an observed DOF relative to its own amplitude.
-    fn relative_error(&self, point: &Point) -> f64 {
-        let orders = point.harmonics + 1;
-        point
-            .error_estimate
-            .iter()
-            .zip(point.displacement.chunks_exact(orders))
-            .map(|(&error, series)| {
-                let amplitude = series[1..].iter().map(|x| x.norm()).fold(0.0, f64::max);
-                if error == 0.0 {
-                    0.0
-                } else {
-                    error / amplitude.max(f64::MIN_POSITIVE)
-                }
-            })
-            .fold(0.0, f64::max)
     }
 
     fn solve_with(
@@ -194,7 +188,7 @@ impl<'a> ForcedBalance<'a> {
         self.profile.factorisations += profile.factorisations;
     }
 
-    /// Newton's method from the start, then homotopy in the load, then a status that says so.
+    /// Newton's method from the start, then homotopy, then a status that says so.
     fn solve_equations(
         &mut self,
         equations: &mut Condensed<'_>,
@@ -257,8 +251,8 @@ impl<'a> ForcedBalance<'a> {
 
     /// Displacements, contact forces, slip shares and the error estimate of a solution.
     fn recover(
-        &self,
-        equations: &mut Condensed<'_>,
+        &mut self,
+        equations: &Condensed<'_>,
         omega: f64,
         x: &[f64],
         status: PointStatus,
@@ -302,13 +296,19 @@ impl<'a> ForcedBalance<'a> {
             law.summary(equations.motion(index, x), &mut summaries[range]);
         }
         point.contacts = summaries;
+        if status != PointStatus::Converged {
+            return Ok(point);
+        }
         point.error_estimate = vec![0.0; self.observe.len()];
         if point.contacts.iter().all(|contact| contact.slip_fraction == 0.0) {
             return Ok(point);
         }
-        let discarded = discarded_harmonics(harmonics, omega, self.model);
-        let correction = Correction::new(self.model, equations, &discarded, omega, x)?;
-        point.error_estimate = correction.errors(self.model, omega, self.observe, &point)?;
+        let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
+        let table = self.table(extended_order(harmonics, omega, self.model, slipping));
+        let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
+        let residual = self.settings.residual;
+        point.error_estimate =
+            errors(self.model, &table, residual, &solution, self.observe, &point)?;
         Ok(point)
     }
 }

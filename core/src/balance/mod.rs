@@ -6,6 +6,7 @@ mod adaptive;
 mod condensed;
 mod forced;
 mod peak;
+mod scale;
 mod settings;
 mod solution;
 mod sweep;

@@ -124,8 +124,8 @@ impl FrictionLaw for Jenkins {
                 out.active = true;
                 let weight = 2.0 / harmonics.span();
                 let SlipLoad { value, tangent: matrix, .. } = out;
-                let union = union_of(&slips, harmonics, harmonics);
-                union.products(harmonics, harmonics, weight * k, |i, j, v| {
+                let union = union_of(&slips, harmonics);
+                union.products(harmonics, weight * k, |i, j, v| {
                     value[i] += v * motion.displacement[j];
                     if tangent {
                         matrix[i * size + j] = v;
@@ -137,48 +137,6 @@ impl FrictionLaw for Jenkins {
                 }
                 halve_mean_row(harmonics, size, out, tangent);
             }
-        }
-    }
-
-    fn slip_load_at(&self, motion: Motion<'_>, harmonics: &Harmonics, out: &mut [f64]) {
-        out.fill(0.0);
-        let Cycle::Slipping { sticks, slips } = Cycle::new(motion, self.stiffness, self.slip_force)
-        else {
-            return;
-        };
-        let kept = motion.table.harmonics();
-        let weight = 2.0 / kept.span();
-        let union = union_of(&slips, harmonics, kept);
-        union.products(harmonics, kept, weight * self.stiffness, |i, j, v| {
-            out[i] += v * motion.displacement[j];
-        });
-        self.add_constants(harmonics, &sticks, &slips, weight, out);
-    }
-
-    fn slip_load_change(
-        &self,
-        motion: Motion<'_>,
-        harmonics: &Harmonics,
-        change: &[f64],
-        out: &mut [f64],
-    ) {
-        out.fill(0.0);
-        let kept = motion.table.harmonics();
-        let k = self.stiffness;
-        let Cycle::Slipping { sticks, slips } = Cycle::new(motion, self.stiffness, self.slip_force)
-        else {
-            return;
-        };
-        let weight = 2.0 / kept.span();
-        let union = union_of(&slips, kept, harmonics);
-        union.products(kept, harmonics, weight * k, |i, j, v| out[i] += v * change[j]);
-        let mut bounds = Bounds::new(kept);
-        for stick in &sticks {
-            let at_anchor = harmonics.jet(change, stick.anchor)[0];
-            bounds.add_integral(kept, stick.start, stick.end, weight * k * at_anchor, out);
-        }
-        if kept.has_mean() {
-            out[0] *= 0.5;
         }
     }
 
@@ -311,9 +269,9 @@ fn add_anchors(harmonics: &Harmonics, sticks: &[Stick], weight: f64, tangent: &m
     }
 }
 
-/// Sums over all slip intervals, for products of two sets of harmonics.
-fn union_of(slips: &[Slip], rows: &Harmonics, columns: &Harmonics) -> IntervalSums {
-    let mut sums = IntervalSums::new(rows, columns);
+/// Sums over all slip intervals.
+fn union_of(slips: &[Slip], harmonics: &Harmonics) -> IntervalSums {
+    let mut sums = IntervalSums::new(harmonics);
     for slip in slips {
         sums.add(slip.start, slip.end);
     }

@@ -10,7 +10,7 @@ mod jenkins;
 
 pub use jenkins::Jenkins;
 
-use crate::fourier::{Harmonics, SampleTable};
+use crate::fourier::SampleTable;
 use crate::Error;
 use faer::Mat;
 use std::collections::BTreeMap;
@@ -97,19 +97,6 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// Slip load of a periodic motion and, if asked for, its tangent. Both belong to each other
     /// exactly: the tangent is the derivative of this value, history included.
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad);
-
-    /// Coefficients of the slip load at harmonics that the motion does not keep.
-    fn slip_load_at(&self, motion: Motion<'_>, harmonics: &Harmonics, out: &mut [f64]);
-
-    /// First-order change of the kept slip load under a displacement `change` at the harmonics
-    /// `harmonics` that the motion does not keep.
-    fn slip_load_change(
-        &self,
-        motion: Motion<'_>,
-        harmonics: &Harmonics,
-        change: &[f64],
-        out: &mut [f64],
-    );
 
     /// Slip share and friction work of every point.
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]);

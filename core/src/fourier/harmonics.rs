@@ -9,7 +9,6 @@
 pub struct Harmonics {
     highest: usize,
     half_wave: bool,
-    mean: bool,
     oscillating: Vec<usize>,
 }
 
@@ -18,25 +17,7 @@ impl Harmonics {
     #[must_use]
     pub fn new(highest: usize, half_wave: bool) -> Self {
         let step = if half_wave { 2 } else { 1 };
-        Self {
-            highest,
-            half_wave,
-            mean: !half_wave,
-            oscillating: (1..=highest).step_by(step).collect(),
-        }
-    }
-
-    /// The harmonics above this set and up to `highest`: what a balance with this set discards.
-    #[must_use]
-    pub fn above(&self, highest: usize) -> Self {
-        let step = if self.half_wave { 2 } else { 1 };
-        let first = self.oscillating.last().map_or(1, |last| last + step);
-        Self {
-            highest,
-            half_wave: self.half_wave,
-            mean: false,
-            oscillating: (first..=highest).step_by(step).collect(),
-        }
+        Self { highest, half_wave, oscillating: (1..=highest).step_by(step).collect() }
     }
 
     /// The highest harmonic H that was asked for.
@@ -65,7 +46,7 @@ impl Harmonics {
     /// Whether the mean (k = 0) is an unknown.
     #[must_use]
     pub fn has_mean(&self) -> bool {
-        self.mean
+        !self.half_wave
     }
 
     /// Number of real coefficients of one series.
@@ -86,12 +67,11 @@ impl Harmonics {
         if order == 0 {
             return self.has_mean().then_some(0);
         }
-        let first = *self.oscillating.first()?;
-        let step = if self.half_wave { 2 } else { 1 };
-        if order < first || order > self.highest || (order - first) % step != 0 {
+        if order > self.highest || (self.half_wave && order % 2 == 0) {
             return None;
         }
-        Some(self.offset() + 2 * ((order - first) / step))
+        let index = if self.half_wave { (order - 1) / 2 } else { order - 1 };
+        Some(self.offset() + 2 * index)
     }
 
     /// Share of the period over which a motion must be followed: the rest is its mirror image.
@@ -161,9 +141,6 @@ impl Harmonics {
     /// sine and cosine per order.
     #[inline]
     fn rotate(&self, theta: f64, mut visit: impl FnMut(f64, f64, f64, usize)) {
-        let Some(&first) = self.oscillating.first() else {
-            return;
-        };
         let (sin_1, cos_1) = theta.sin_cos();
         let (step, (sin_step, cos_step)) = if self.half_wave {
             let double = (2.0 * sin_1 * cos_1, (cos_1 - sin_1) * (cos_1 + sin_1));
@@ -171,9 +148,7 @@ impl Harmonics {
         } else {
             (1.0, (sin_1, cos_1))
         };
-        let mut order = first as f64;
-        let (mut sin, mut cos) =
-            if first == 1 { (sin_1, cos_1) } else { (order * theta).sin_cos() };
+        let (mut order, mut cos, mut sin) = (1.0, cos_1, sin_1);
         let mut slot = self.offset();
         for _ in &self.oscillating {
             visit(order, cos, sin, slot);

@@ -15,12 +15,12 @@ pub struct IntervalSums {
 }
 
 impl IntervalSums {
-    /// Empty sums for the products of two sets of harmonics.
+    /// Empty sums for the products of a set of harmonics.
     #[must_use]
-    pub fn new(rows: &Harmonics, columns: &Harmonics) -> Self {
-        let size = rows.highest() + columns.highest() + 1;
+    pub fn new(harmonics: &Harmonics) -> Self {
+        let size = 2 * harmonics.highest() + 1;
         Self {
-            step: if rows.half_wave() && columns.half_wave() { 2 } else { 1 },
+            step: if harmonics.half_wave() { 2 } else { 1 },
             cos: vec![0.0; size],
             sin: vec![0.0; size],
         }
@@ -47,19 +47,24 @@ impl IntervalSums {
     }
 
     /// `Σ ∫ basis_row basis_column dθ` times a factor, handed to `store(row, column, value)`.
-    /// Rows and columns may keep different harmonics.
     pub fn products(
         &self,
-        rows: &Harmonics,
-        columns: &Harmonics,
+        harmonics: &Harmonics,
         factor: f64,
         mut store: impl FnMut(usize, usize, f64),
     ) {
         let half = 0.5 * factor;
-        for (i, k) in rows.orders().enumerate() {
-            let row = if rows.has_mean() && i > 0 { 2 * i - 1 } else { 2 * i };
-            for (j, l) in columns.orders().enumerate() {
-                let column = if columns.has_mean() && j > 0 { 2 * j - 1 } else { 2 * j };
+        let slots = |index: usize| {
+            if harmonics.has_mean() {
+                (2 * index).saturating_sub(1)
+            } else {
+                2 * index
+            }
+        };
+        for (i, k) in harmonics.orders().enumerate() {
+            let row = slots(i);
+            for (j, l) in harmonics.orders().enumerate() {
+                let column = slots(j);
                 let (sum, difference) = (k + l, k.abs_diff(l));
                 let (c_sum, c_diff) = (half * self.cos[sum], half * self.cos[difference]);
                 let s_sum = half * self.sin[sum];
@@ -85,29 +90,29 @@ mod tests {
 
     #[test]
     fn products_agree_with_quadrature() {
-        let rows = Harmonics::new(3, false);
-        let columns = Harmonics::new(5, true);
-        let (start, end) = (0.4, 2.9);
-        let mut sums = IntervalSums::new(&rows, &columns);
-        sums.add(start, end);
-        let mut matrix = vec![vec![0.0; columns.slots()]; rows.slots()];
-        sums.products(&rows, &columns, 1.0, |i, j, v| matrix[i][j] = v);
-        let samples = 4000;
-        let h = (end - start) / samples as f64;
-        let mut expected = vec![vec![0.0; columns.slots()]; rows.slots()];
-        let (mut left, mut right) = (vec![0.0; rows.slots()], vec![0.0; columns.slots()]);
-        for n in 0..samples {
-            let theta = start + (n as f64 + 0.5) * h;
-            rows.basis(theta, &mut left);
-            columns.basis(theta, &mut right);
-            for (i, a) in left.iter().enumerate() {
-                for (j, b) in right.iter().enumerate() {
-                    expected[i][j] += h * a * b;
+        for half_wave in [false, true] {
+            let harmonics = Harmonics::new(5, half_wave);
+            let size = harmonics.slots();
+            let (start, end) = (0.4, 2.9);
+            let mut sums = IntervalSums::new(&harmonics);
+            sums.add(start, end);
+            let mut matrix = vec![vec![0.0; size]; size];
+            sums.products(&harmonics, 1.0, |i, j, v| matrix[i][j] = v);
+            let samples = 4000;
+            let h = (end - start) / samples as f64;
+            let mut expected = vec![vec![0.0; size]; size];
+            let mut basis = vec![0.0; size];
+            for n in 0..samples {
+                harmonics.basis(start + (n as f64 + 0.5) * h, &mut basis);
+                for (i, a) in basis.iter().enumerate() {
+                    for (j, b) in basis.iter().enumerate() {
+                        expected[i][j] += h * a * b;
+                    }
                 }
             }
-        }
-        for (got, want) in matrix.iter().flatten().zip(expected.iter().flatten()) {
-            assert!((got - want).abs() < 1e-6, "{got} {want}");
+            for (got, want) in matrix.iter().flatten().zip(expected.iter().flatten()) {
+                assert!((got - want).abs() < 1e-6, "{got} {want}");
+            }
         }
     }
 }

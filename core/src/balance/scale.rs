@@ -1,0 +1,51 @@
+//! What an error of a DOF counts against.
+
+use super::solution::Point;
+
+/// A DOF's error counts relative to its amplitude, but not to less than this share of the largest
+/// amplitude it has had: an antiresonance needs no accuracy of its own, …
+const FLOOR: f64 = 0.02;
+/// … nor to less than this share of the largest amplitude of any DOF, below which a motion that
+/// symmetry forbids is rounding.
+const NOISE: f64 = 1e-6;
+
+/// The largest size each observed DOF has had along a curve.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Scale {
+    largest: Vec<f64>,
+}
+
+impl Scale {
+    /// Takes a solved point into account.
+    pub(super) fn include(&mut self, point: &Point) {
+        let sizes = sizes(point);
+        self.largest.resize(sizes.len(), 0.0);
+        for (largest, size) in self.largest.iter_mut().zip(sizes) {
+            *largest = largest.max(size);
+        }
+    }
+
+    /// Largest of the errors of the DOFs of `point`, each relative to its size; infinite if one
+    /// is not a number.
+    pub(super) fn relative(&self, point: &Point, errors: impl Iterator<Item = f64>) -> f64 {
+        let sizes = sizes(point);
+        let overall = self.largest.iter().chain(&sizes).copied().fold(0.0, f64::max);
+        let mut worst = 0.0_f64;
+        for (dof, (error, size)) in errors.zip(&sizes).enumerate() {
+            let own = self.largest.get(dof).copied().unwrap_or(0.0);
+            let reference = size.max(FLOOR * own).max(NOISE * overall).max(f64::MIN_POSITIVE);
+            let relative = error / reference;
+            worst = if relative.is_nan() { f64::INFINITY } else { worst.max(relative) };
+        }
+        worst
+    }
+}
+
+/// Size of the oscillation of each observed DOF.
+fn sizes(point: &Point) -> Vec<f64> {
+    point
+        .displacement
+        .chunks_exact(point.harmonics + 1)
+        .map(|series| series[1..].iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt())
+        .collect()
+}
