@@ -10,6 +10,7 @@ use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
 use stickslip_core::balance::{
     refine_peak, sweep, sweep_range, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
+    HIGHEST_ORDER,
 };
 use stickslip_core::contact::{Motion, Residual};
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
@@ -215,6 +216,40 @@ impl Solution {
     }
 }
 
+/// Looks at Python from time to time while the core works: progress out, Ctrl-C in.
+struct Watch<'a> {
+    progress: Option<&'a Py<PyAny>>,
+    last: Cell<Instant>,
+    raised: RefCell<Option<PyErr>>,
+}
+
+impl<'a> Watch<'a> {
+    fn new(progress: Option<&'a Py<PyAny>>) -> Self {
+        Self { progress, last: Cell::new(Instant::now()), raised: RefCell::new(None) }
+    }
+
+    /// `false` once an exception is pending.
+    fn look(&self, share: f64) -> bool {
+        if self.raised.borrow().is_some() {
+            return false;
+        }
+        if self.last.get().elapsed() < LOOK {
+            return true;
+        }
+        self.last.set(Instant::now());
+        Python::attach(|py| {
+            let told = self.progress.map_or(Ok(()), |call| call.call1(py, (share,)).map(drop));
+            match told.and_then(|()| py.check_signals()) {
+                Ok(()) => true,
+                Err(error) => {
+                    self.raised.replace(Some(error));
+                    false
+                }
+            }
+        })
+    }
+}
+
 /// Harmonic balance over a grid or a range of frequencies.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
@@ -251,28 +286,8 @@ pub fn forced_response(
     };
     let model = &problem.model;
     let (inner, raised) = py.detach(|| {
-        let raised = RefCell::new(None);
-        let last = Cell::new(Instant::now());
-        let look = |share: f64| {
-            if raised.borrow().is_some() {
-                return false;
-            }
-            if last.get().elapsed() < LOOK {
-                return true;
-            }
-            last.set(Instant::now());
-            Python::attach(|py| {
-                let told =
-                    progress.as_ref().map_or(Ok(()), |call| call.call1(py, (share,)).map(drop));
-                match told.and_then(|()| py.check_signals()) {
-                    Ok(()) => true,
-                    Err(error) => {
-                        raised.replace(Some(error));
-                        false
-                    }
-                }
-            })
-        };
+        let watch = Watch::new(progress.as_ref());
+        let look = |share: f64| watch.look(share);
         let inner = ForcedBalance::new(model, settings, &observe).and_then(|balance| {
             let balance = balance.watched(&look);
             match range {
@@ -280,7 +295,7 @@ pub fn forced_response(
                 None => sweep(balance, &grid),
             }
         });
-        (inner, raised.into_inner())
+        (inner, watch.raised.into_inner())
     });
     // Ctrl-C keeps what was solved; anything else a progress callback raises is its own.
     if let Some(error) = raised {
@@ -315,7 +330,14 @@ pub fn peak(
     let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
-    py.detach(|| refine_peak(&problem.model, settings, dof, measure, bracket)).map_err(refused)
+    let (found, raised) = py.detach(|| {
+        let watch = Watch::new(None);
+        let look = |share: f64| watch.look(share);
+        let found = refine_peak(&problem.model, settings, dof, measure, bracket, &look);
+        (found, watch.raised.into_inner())
+    });
+    raised.map_or(Ok(()), Err)?;
+    found.map_err(refused)
 }
 
 /// Amplitudes of series `X_0, X_1, …`, one per row, with the exact extrema of their polynomials.
@@ -328,8 +350,10 @@ pub fn amplitude<'py>(
     let measure: Measure = measure.parse().map_err(refused)?;
     let view = coefficients.as_array();
     let (rows, orders) = (view.nrows(), view.ncols());
-    if orders < 2 {
-        return Err(PyValueError::new_err("coefficients: at least X_0 and X_1 are needed"));
+    if !(2..=HIGHEST_ORDER + 1).contains(&orders) {
+        return Err(PyValueError::new_err(format!(
+            "coefficients: expected X_0, X_1 and at most {HIGHEST_ORDER} harmonics, got {orders} orders"
+        )));
     }
     let half_wave = (0..rows).all(|n| is_half_wave(orders, |k| view[[n, k]]));
     let table = SampleTable::new(Harmonics::new(orders - 1, half_wave));

@@ -183,3 +183,14 @@ fn bad_matrices_are_refused_with_their_entry() {
     assert_eq!(refused(&indefinite, &good, &good), Error::IndefiniteMass.to_string());
     assert!(refused(&good, &good, &mat![[1.0]]).contains("stiffness"));
 }
+
+#[test]
+fn a_strongly_damped_high_mode_hides_no_coupling_of_low_ones() {
+    let damping = mat![[0.02, 0.019, 0.0], [0.019, 0.02, 0.0], [0.0, 0.0, 1e9]];
+    let stiffness = mat![[1000.0, 0.0, 0.0], [0.0, 1000.5, 0.0], [0.0, 0.0, 1e14]];
+    let mass = Mat::<f64>::identity(3, 3);
+    let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+    let ports = Ports { rows: Mat::zeros(0, 3), stiffness: Mat::zeros(0, 0), loads: vec![] };
+    let (_, base) = compliance(&structure, &ports).unwrap();
+    assert!(base == "complex modes" || base == "direct", "{base}");
+}

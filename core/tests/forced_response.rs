@@ -91,7 +91,8 @@ fn peaks_of_the_beam_by_load() {
             let (height, guess) = largest(&curve, dof);
             let bracket = [guess - 1.0, guess, guess + 1.0];
             let (omega, got) =
-                refine_peak(&model, fixed(35), dof, Measure::HalfRange, bracket).unwrap();
+                refine_peak(&model, fixed(35), dof, Measure::HalfRange, bracket, &|_| true)
+                    .unwrap();
             assert!(got >= height, "{load} N: refined below the grid");
             assert!((got / peak - 1.0).abs() < 2e-3, "{load} N, DOF {dof}: {got}");
             assert!((omega - at).abs() < 0.05, "{load} N, DOF {dof}: {omega}");
@@ -117,7 +118,8 @@ fn peaks_by_damper_stiffness() {
         let (height, guess) = largest(&curve, 0);
         let bracket = [guess - 0.5, guess, guess + 0.5];
         let (_, got) =
-            refine_peak(&beam.model(), fixed(highest), 0, Measure::HalfRange, bracket).unwrap();
+            refine_peak(&beam.model(), fixed(highest), 0, Measure::HalfRange, bracket, &|_| true)
+                .unwrap();
         assert!(got >= height);
         assert!((got / peak - 1.0).abs() < 2e-3, "{stiffness:e}: {got}");
     }
@@ -134,7 +136,8 @@ fn single_dof_with_its_subresonances() {
         let (_, guess) = largest(&curve, 0);
         let bracket = [guess - 0.8, guess, guess + 0.8];
         let (omega, got) =
-            refine_peak(&system.model(), fixed(35), 0, Measure::HalfRange, bracket).unwrap();
+            refine_peak(&system.model(), fixed(35), 0, Measure::HalfRange, bracket, &|_| true)
+                .unwrap();
         assert!((got / peak - 1.0).abs() < 2e-4, "{ratio}: {got}");
         assert!((omega - at).abs() < 0.02, "{ratio}: {omega}");
     }
@@ -244,6 +247,105 @@ fn a_range_gets_its_steps_and_harmonics_from_the_tolerance() {
                 let line = 0.5 * (half_range(&pair[0], true, 1) + half_range(&pair[1], true, 1));
                 assert!((line / exact - 1.0).abs() < 5.0 * tolerance, "{middle}: {line} {exact}");
             }
+        }
+    }
+}
+
+/// Three masses in a row with opposite forces on the outer ones: the middle one stays at rest.
+fn antisymmetric_row() -> System {
+    System {
+        mass: faer::Mat::identity(3, 3),
+        damping: faer::mat![[1.0, -0.3, 0.0], [-0.3, 0.9, -0.3], [0.0, -0.3, 1.0]],
+        stiffness: faer::mat![[1e3, -3e2, 0.0], [-3e2, 9e2, -3e2], [0.0, -3e2, 1e3]],
+        dampers: vec![(0, None, 500.0, 1.0), (2, None, 500.0, 1.0)],
+        forces: vec![(0, 1, 2.0, 0.0), (2, 1, -2.0, 0.0)],
+    }
+}
+
+#[test]
+fn a_dof_that_symmetry_keeps_still_costs_nothing() {
+    let system = antisymmetric_row();
+    let model = system.model();
+    let balance = ForcedBalance::new(&model, fixed(7), &[0, 1, 2]).unwrap();
+    let curve = sweep_range(balance, 20.0, 50.0).unwrap();
+    assert!(all_converged(&curve) && curve.points.len() < 400, "{}", curve.points.len());
+    let curve = solve(&system, Settings::default(), &grid(20.0, 50.0, 60));
+    assert!(all_converged(&curve));
+    assert!(curve.points.iter().all(|p| p.harmonics <= 27));
+}
+
+#[test]
+fn a_range_ends_even_where_nothing_converges_or_nothing_damps() {
+    let model = snecma_beam(20.313).model();
+    let mut hopeless = fixed(15);
+    hopeless.newton.max_iterations = 1;
+    let balance = ForcedBalance::new(&model, hopeless, &[1]).unwrap();
+    let curve = sweep_range(balance, 150.0, 230.0).unwrap();
+    assert!(curve.points.len() < 1000 && !all_converged(&curve));
+    let mut undamped = snecma_beam(1.0);
+    undamped.damping = faer::Mat::zeros(3, 3);
+    let model = undamped.model();
+    for (from, to) in [(100.0, 300.0), (300.0, 100.0)] {
+        let balance = ForcedBalance::new(&model, fixed(3), &[1]).unwrap();
+        let curve = sweep_range(balance, from, to).unwrap();
+        assert_eq!(curve.points[curve.points.len() - 1].omega, to);
+        assert!(curve.points.len() < 20_000, "{}", curve.points.len());
+    }
+}
+
+#[test]
+fn a_failed_point_does_not_raise_the_harmonics_of_those_after_it() {
+    let system = System {
+        mass: faer::mat![[1.0]],
+        damping: faer::mat![[0.0]],
+        stiffness: faer::mat![[1500.0]],
+        dampers: vec![(0, None, 1000.0, 1.0)],
+        forces: vec![(0, 1, 5.0, 0.0)],
+    };
+    // At 10 rad/s the fifth harmonic meets the undamped 50 rad/s of the stuck mass.
+    let curve = solve(&system, Settings::default(), &[21.0, 22.0, 10.0, 23.0, 24.0]);
+    assert_eq!(curve.points[2].status, PointStatus::Singular);
+    assert!(curve.points[2].error_estimate[0].is_nan());
+    assert!(curve.points[3..].iter().all(|p| p.harmonics <= 13));
+    // A discarded harmonic on that resonance leaves no finite estimate.
+    let curve = solve(&system, fixed(3), &[10.0]);
+    assert_eq!(curve.points[0].error_estimate[0], f64::INFINITY);
+}
+
+/// Largest and median ratio of the estimated to the true sum of harmonic changes, and the share
+/// of points at which the estimate misses more than a factor of three.
+fn estimate_against_truth(stiffness: f64, load: f64, highest: usize) -> (f64, f64) {
+    let mut beam = snecma_beam(load);
+    beam.dampers[0].2 = stiffness;
+    let omega = grid(120.0, 290.0, 86);
+    let (kept, exact) = (solve(&beam, fixed(highest), &omega), solve(&beam, fixed(121), &omega));
+    let mut ratios = Vec::new();
+    for (p, q) in kept.points.iter().zip(&exact.points) {
+        let series = |p: &Point, k: usize| {
+            if k <= p.harmonics {
+                p.displacement[p.harmonics + 1 + k]
+            } else {
+                faer::c64::new(0.0, 0.0)
+            }
+        };
+        let truth: f64 = (0..=121).map(|k| (series(p, k) - series(q, k)).norm()).sum();
+        if truth > 1e-4 * series(q, 1).norm() {
+            ratios.push(p.error_estimate[1] / truth);
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    let low = ratios.iter().filter(|r| **r < 1.0 / 3.0).count() as f64 / ratios.len() as f64;
+    (ratios[ratios.len() / 2], low)
+}
+
+#[test]
+fn error_estimates_match_true_errors_in_size() {
+    for (stiffness, load) in [(2.4e7, 6.563), (2.4e7, 20.313), (2.4e7, 31.475), (2.4e9, 20.313)] {
+        for highest in [3, 7, 15, 21] {
+            let (median, low) = estimate_against_truth(stiffness, load, highest);
+            let case = format!("{stiffness:e} N/m, {load} N, H = {highest}: {median:.2}, {low:.2}");
+            assert!(median > 0.7 && median < 4.0, "{case}");
+            assert!(low < 0.1, "{case}");
         }
     }
 }

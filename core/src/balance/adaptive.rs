@@ -14,6 +14,8 @@ use std::time::Instant;
 const LONGEST: f64 = 1.0 / 60.0;
 /// Shortest step relative to the frequency.
 const SHORTEST: f64 = 1e-7;
+/// Distance, relative to the frequency, at which a step passes an undamped resonance.
+const ASIDE: f64 = 1e-8;
 
 /// Solves from `from` to `to` [rad/s], in either direction, with steps such that straight lines
 /// between the points stay within the tolerance of the curve.
@@ -56,7 +58,13 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
                 if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * last.omega) };
             let omega = if step >= room { stop } else { last.omega + direction * length };
             let guess = tangent(&mut balance, last, omega);
-            let point = balance.solve(omega, guess.as_ref())?;
+            let point = match balance.solve(omega, guess.as_ref()) {
+                // The user has not asked for this frequency: pass beside the resonance.
+                Err(Error::UndampedResonance { .. }) => {
+                    balance.solve(omega + direction * ASIDE * omega, guess.as_ref())?
+                }
+                solved => solved?,
+            };
             if point.status == PointStatus::NotComputed {
                 interrupted = true;
                 break;

@@ -7,12 +7,15 @@ use super::unknowns::scatter;
 use crate::contact::{FrictionLaw, Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::solve::{Parametrised, System};
+use crate::solve::{norm, Parametrised, System};
 use crate::structure::Receptance;
 use crate::timing::Profile;
 use crate::Error;
 use faer::linalg::solvers::{PartialPivLu, Solve as _};
 use faer::{c64, Mat};
+
+/// Share of the largest contact force below which a contact counts as carrying nothing.
+const CARRIES_NOTHING: f64 = 1e-3;
 
 /// What a homotopy scales, from easy to the problem at hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,7 +130,7 @@ impl<'a> Condensed<'a> {
         self.loads.iter().flat_map(|load| load.value.iter().copied()).collect()
     }
 
-    /// Whether any contact has a tangent at the last evaluated unknowns.
+    /// Whether no contact has a tangent at the last evaluated unknowns.
     pub fn is_linear(&self) -> bool {
         self.loads.iter().all(|load| !load.active)
     }
@@ -203,8 +206,8 @@ impl<'a> Condensed<'a> {
         }
     }
 
-    /// Adds to the slip load of a softened contact what its lost stiffness takes off the force:
-    /// the compliance goes on carrying the full stiffness.
+    /// Adds to the slip load of a softened contact what its lost stiffness takes off the force,
+    /// `q = (1 − λ) D u + q_λ(u)`: the compliance goes on carrying the full stiffness.
     fn add_lost_stiffness(
         &self,
         index: usize,
@@ -313,6 +316,30 @@ impl System for Condensed<'_> {
         for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
             *r = x - self.load_scale * stuck - *r;
         }
+    }
+
+    /// Contact by contact: a stiff contact moves little, and its force is its stiffness times that
+    /// little. A contact that carries next to nothing is measured against the largest force.
+    fn relative_size(&self, step: &[f64], x: &[f64]) -> f64 {
+        let slots = self.table.harmonics().slots();
+        let stiffness = |i: usize| self.model.contact_stiffness()[(i, i)];
+        let force = |i: usize, u: &[f64], q: &[f64]| {
+            let f: Vec<f64> = u.iter().zip(q).map(|(u, q)| stiffness(i) * u - q).collect();
+            norm(&f)
+        };
+        let slip_load = self.slip_load();
+        let points = || {
+            let parts = x.chunks_exact(slots).zip(slip_load.chunks_exact(slots));
+            parts.zip(step.chunks_exact(slots)).enumerate()
+        };
+        let largest = points().map(|(i, ((u, q), _))| force(i, u, q)).fold(0.0, f64::max);
+        points()
+            .map(|(i, ((u, _), step))| {
+                let least = CARRIES_NOTHING * largest / stiffness(i).max(f64::MIN_POSITIVE);
+                let reference = norm(u).max(least.min(norm(x))).max(f64::MIN_POSITIVE);
+                norm(step) / reference
+            })
+            .fold(0.0, f64::max)
     }
 
     fn interrupted(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::forced::ForcedBalance;
 use super::settings::{HarmonicChoice, Settings};
 use super::sweep::check_frequency;
-use super::PointStatus;
+use super::{PointStatus, Progress};
 use crate::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use crate::model::Model;
 use crate::Error;
@@ -15,7 +15,8 @@ const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
 /// Maximises the amplitude of one DOF over `[low, high]` [rad/s] from `guess` by Brent's method
 /// (golden section and parabolas), every value a solution of its own. Returns the frequency and
-/// the amplitude; points that do not converge count as minus infinity.
+/// the amplitude, minus infinity if no point in the bracket converges. When `progress` ends the
+/// search, the points after it count as not converged.
 ///
 /// # Errors
 /// As for a sweep; a bracket that is not ordered.
@@ -25,6 +26,7 @@ pub fn refine_peak(
     dof: usize,
     measure: Measure,
     [low, guess, high]: [f64; 3],
+    progress: &Progress<'_>,
 ) -> Result<(f64, f64), Error> {
     check_frequency("peak: lower bound", low)?;
     check_frequency("peak: upper bound", high)?;
@@ -33,7 +35,7 @@ pub fn refine_peak(
     }
     let observe = [dof];
     let settings = with_one_order(model, settings, &observe, [low, guess, high])?;
-    let mut balance = ForcedBalance::new(model, settings, &observe)?;
+    let mut balance = ForcedBalance::new(model, settings, &observe)?.watched(progress);
     let mut start = None;
     let mut height = |omega: f64| -> Result<f64, Error> {
         let point = balance.solve(omega, start.as_ref())?;

@@ -28,6 +28,12 @@ pub struct Settings {
     pub newton: NewtonSettings,
 }
 
+/// Highest order that may be asked for: its tables grow with the square, and a period with more
+/// turning points is no vibration.
+pub const HIGHEST_ORDER: usize = 1000;
+/// Finest tolerance: Newton's method ends at 1e-10.
+const FINEST_TOLERANCE: f64 = 1e-8;
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -58,8 +64,15 @@ impl Settings {
                 &format!("must be at least {highest_forced}, the highest forced harmonic"),
             ));
         }
-        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
-            return Err(Error::value("tolerance", self.tolerance, "must lie between 0 and 1"));
+        for (entry, order) in [(entry, kept), ("max_harmonics", self.max_harmonics)] {
+            if order > HIGHEST_ORDER {
+                let remedy = format!("must be at most {HIGHEST_ORDER}");
+                return Err(Error::value(entry, order as f64, &remedy));
+            }
+        }
+        if !(FINEST_TOLERANCE..1.0).contains(&self.tolerance) {
+            let remedy = format!("must lie between {FINEST_TOLERANCE:e} and 1");
+            return Err(Error::value("tolerance", self.tolerance, &remedy));
         }
         if self.newton.max_iterations == 0 {
             return Err(Error::value("max_iterations", 0.0, "must be at least 1"));

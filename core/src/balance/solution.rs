@@ -10,7 +10,7 @@ use faer::c64;
 pub enum PointStatus {
     /// Solved.
     Converged,
-    /// Newton's method and homotopy both failed.
+    /// Newton's method and both homotopies failed.
     Stalled,
     /// The equations are singular: an undamped resonance at an unforced harmonic.
     Singular,

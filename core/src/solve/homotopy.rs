@@ -19,6 +19,8 @@ const FIRST_SCALES: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-5];
 /// First and shortest step of the logarithm of the parameter.
 const FIRST_STEP: f64 = 0.5;
 const SHORTEST_STEP: f64 = 1e-4;
+/// Newton iterations that a whole path may take.
+const BUDGET: usize = 5000;
 
 /// Finds an easy solution and follows it to the problem itself, with steps that shrink on failure
 /// and grow on success. `x` is a start and, on return, the solution.
@@ -48,7 +50,7 @@ pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonS
     };
     x.copy_from_slice(&trial);
     let mut step = FIRST_STEP;
-    while logarithm < 0.0 && step >= SHORTEST_STEP {
+    while logarithm < 0.0 && step >= SHORTEST_STEP && iterations < BUDGET {
         let next = (logarithm + step).min(0.0);
         trial.copy_from_slice(x);
         system.predict((next - logarithm).exp(), &mut trial);
@@ -66,5 +68,8 @@ pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonS
         }
     }
     system.set_scale(1.0);
+    if logarithm < 0.0 && report.outcome == Outcome::Converged {
+        report.outcome = Outcome::Stalled;
+    }
     Report { iterations, ..report }
 }

@@ -14,6 +14,12 @@ pub trait System {
     /// Residual at `x`; keeps what [`System::solve`] needs.
     fn residual(&mut self, x: &[f64], out: &mut [f64]);
 
+    /// Size of `step` relative to `x`: the largest over all groups of unknowns that must be
+    /// accurate by themselves.
+    fn relative_size(&self, step: &[f64], x: &[f64]) -> f64 {
+        norm(step) / norm(x).max(f64::MIN_POSITIVE)
+    }
+
     /// Whether the caller wants to end the analysis; asked once per iteration.
     fn interrupted(&self) -> bool {
         false
@@ -23,8 +29,16 @@ pub trait System {
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool;
 }
 
-/// Euclidean norm.
+/// Euclidean norm, without under- or overflow of the squares.
 #[must_use]
 pub fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+    let sum: f64 = x.iter().map(|v| v * v).sum();
+    if sum.is_finite() && sum > 1e-200 {
+        return sum.sqrt();
+    }
+    let largest = x.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    if largest == 0.0 || !largest.is_finite() {
+        return sum;
+    }
+    largest * x.iter().map(|v| (v / largest).powi(2)).sum::<f64>().sqrt()
 }

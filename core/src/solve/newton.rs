@@ -67,7 +67,8 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         if !size_of_step.is_finite() {
             return report(Outcome::Singular, size_of_residual, x);
         }
-        let close = size_of_step <= 1e-9 * norm(x);
+        let relative_step = system.relative_size(&step, x);
+        let close = relative_step <= 1e-9;
         let mut length = 1.0;
         let size_of_trial = loop {
             for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(&step) {
@@ -88,11 +89,11 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         // Where Newton's method converges, the error shrinks as the residual does: the error left
         // is the step times the contraction just seen.
         let contraction = size_of_trial / size_of_residual.max(f64::MIN_POSITIVE);
-        let left = length * size_of_step * contraction.min(1.0);
+        let left = relative_step * contraction.min(1.0);
         x.copy_from_slice(&trial);
         std::mem::swap(&mut residual, &mut trial_residual);
         size_of_residual = size_of_trial;
-        if close || (length == 1.0 && left <= settings.tolerance * norm(x)) {
+        if close || (length == 1.0 && left <= settings.tolerance) {
             return report(Outcome::Converged, size_of_residual, x);
         }
     }

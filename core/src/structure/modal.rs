@@ -15,8 +15,12 @@ use super::{Compliance, DirectCompliance, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 
-/// Off-diagonal modal damping, relative to the largest entry, that still counts as rounding.
+/// Modal damping between two modes, relative to their own, that still counts as none, …
 const COUPLING: f64 = 1e-10;
+/// … or, relative to the largest entry and per mode, that still counts as rounding.
+const ROUNDING: f64 = 1e-15;
+/// Floor of the denominators of free modes, see [`Spectrum::weight`].
+const FREE_FLOOR: f64 = 1e-8;
 /// Distance to an undamped resonance, relative to the squared frequency, that is refused.
 const RESONANCE: f64 = 1e-9;
 
@@ -88,11 +92,11 @@ impl ModalCompliance {
         let in_stuck = stuck.project(structure.damping());
         let in_free = free.project(structure.damping());
         let (base, spectrum, right, left, restraint) = if is_diagonal(in_stuck.as_ref()) {
-            let (spectrum, shapes) = real_spectrum(&stuck, in_stuck.as_ref());
+            let (spectrum, shapes) = real_spectrum(&stuck, in_stuck.as_ref(), 0.0);
             let left = shapes.transpose().to_owned();
             (ModalBase::Stuck, spectrum, shapes, left, None)
         } else if is_diagonal(in_free.as_ref()) {
-            let (spectrum, shapes) = real_spectrum(&free, in_free.as_ref());
+            let (spectrum, shapes) = real_spectrum(&free, in_free.as_ref(), FREE_FLOOR);
             let left = shapes.transpose().to_owned();
             let restraint = Some(ports.stiffness.clone());
             (ModalBase::Free, spectrum, shapes, left, restraint)
@@ -156,7 +160,7 @@ impl ModalCompliance {
 
     /// Refuses a frequency at which an undamped mode of the stuck base resonates.
     fn check_resonance(&self, harmonic: usize, omega: f64) -> Result<(), Error> {
-        let Spectrum::Real { omega_squared, damping } = &self.spectrum else {
+        let Spectrum::Real { omega_squared, damping, .. } = &self.spectrum else {
             return Ok(());
         };
         if self.base != ModalBase::Stuck {
@@ -165,10 +169,13 @@ impl ModalCompliance {
         let squared = (harmonic as f64 * omega).powi(2);
         for (j, (&natural, &c)) in omega_squared.iter().zip(damping).enumerate() {
             let distance = (natural - squared).abs() + harmonic as f64 * omega * c.abs();
+            if distance > RESONANCE * squared {
+                continue;
+            }
             let seen = (0..self.contact_left.nrows())
                 .any(|i| self.contact_left[(i, j)].norm() > 0.0)
                 || self.load(harmonic).is_some_and(|load| load[j].norm() > 0.0);
-            if seen && distance <= RESONANCE * squared {
+            if seen {
                 return Err(Error::UndampedResonance {
                     omega,
                     harmonic,
@@ -303,9 +310,13 @@ impl ModalCompliance {
 }
 
 fn is_diagonal(matrix: MatRef<'_, f64>) -> bool {
-    let limit = COUPLING * matrix.norm_max();
     let size = matrix.nrows();
-    (0..size).all(|j| (0..size).all(|i| i == j || matrix[(i, j)].abs() <= limit))
+    let rounding = ROUNDING * size as f64 * matrix.norm_max();
+    let coupled = |i: usize, j: usize| {
+        let own = (matrix[(i, i)] * matrix[(j, j)]).abs().sqrt();
+        i != j && matrix[(i, j)].abs() > (COUPLING * own).max(rounding)
+    };
+    !(0..size).any(|j| (0..size).any(|i| coupled(i, j)))
 }
 
 pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {

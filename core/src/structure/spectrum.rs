@@ -9,7 +9,12 @@ use faer::{c64, Mat, MatRef};
 #[derive(Debug, Clone)]
 pub(super) enum Spectrum {
     /// `1 / (ω_j² − ω² + iω c_j)`.
-    Real { omega_squared: Vec<f64>, damping: Vec<f64> },
+    Real {
+        omega_squared: Vec<f64>,
+        damping: Vec<f64>,
+        /// Least modulus of a denominator, relative to ω².
+        floor: f64,
+    },
     /// `1 / (iω − s_j)`.
     Complex { poles: Vec<c64> },
 }
@@ -18,13 +23,14 @@ impl Spectrum {
     /// Weight of mode j at `omega` and its derivative in ω.
     pub(super) fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
         match self {
-            Self::Real { omega_squared, damping } => {
+            Self::Real { omega_squared, damping, floor } => {
                 let squared = omega * omega;
                 let mut denominator = c64::new(omega_squared[j] - squared, omega * damping[j]);
                 // An undamped mode of the free base met exactly is no resonance of the stuck
-                // structure: stepping aside by rounding's square root keeps eight digits.
-                if denominator.norm() < 1e-8 * squared {
-                    denominator = c64::new(0.0, 1e-8 * squared);
+                // structure, but leaves 0/0. A floor ε on the denominator costs a relative error ε
+                // and a cancellation 1e-16/ε: least at the square root of rounding.
+                if denominator.norm() < floor * squared {
+                    denominator = c64::new(0.0, floor * squared);
                 }
                 let weight = denominator.inv();
                 let slope = weight * weight * c64::new(2.0 * omega, -damping[j]);
@@ -48,10 +54,15 @@ impl Spectrum {
 }
 
 /// Modal denominators and shapes of real modes with a diagonal modal damping.
-pub(super) fn real_spectrum(modes: &RealModes, damping: MatRef<'_, f64>) -> (Spectrum, Mat<c64>) {
+pub(super) fn real_spectrum(
+    modes: &RealModes,
+    damping: MatRef<'_, f64>,
+    floor: f64,
+) -> (Spectrum, Mat<c64>) {
     let spectrum = Spectrum::Real {
         omega_squared: modes.omega_squared.clone(),
         damping: (0..damping.nrows()).map(|j| damping[(j, j)]).collect(),
+        floor,
     };
     (spectrum, complex(modes.shapes.as_ref()))
 }
