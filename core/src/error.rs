@@ -39,6 +39,14 @@ pub enum Error {
         /// Lowest natural frequency of the stuck structure in rad/s.
         lowest: f64,
     },
+    /// A mode has a negative squared frequency.
+    #[error(
+        "stiffness: not positive semidefinite (omega^2 = {squared:.6e} in its lowest mode), so the structure is statically unstable and has no natural frequency there; check its signs and supports"
+    )]
+    Unstable {
+        /// Squared natural frequency in (rad/s)².
+        squared: f64,
+    },
     /// The frequency grid meets a resonance of the stuck structure that nothing damps.
     #[error(
         "omega = {omega:?} rad/s: harmonic {harmonic} hits the undamped natural frequency {natural:.6} rad/s of the stuck structure; add damping or move this frequency"

@@ -170,6 +170,12 @@ fn rigid_body_motion_is_refused_where_the_mean_matters() {
 }
 
 #[test]
+fn an_unstable_structure_has_no_natural_frequencies() {
+    let refused = natural_frequencies(mat![[1.0]].as_ref(), mat![[-4.0]].as_ref());
+    assert!(matches!(refused, Err(Error::Unstable { squared }) if (squared + 4.0).abs() < 1e-12));
+}
+
+#[test]
 fn bad_matrices_are_refused_with_their_entry() {
     let good = mat![[2.0, 0.1], [0.1, 1.0]];
     let refused = |m: &Mat<f64>, c: &Mat<f64>, k: &Mat<f64>| {

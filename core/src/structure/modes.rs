@@ -53,15 +53,23 @@ impl RealModes {
     }
 }
 
+/// Squared natural frequencies above minus this share of the highest are rounding of zero.
+const ROUNDING: f64 = 1e-8;
+
 /// Natural frequencies [rad/s] of mass and stiffness, ascending.
 ///
 /// # Errors
-/// As [`real_modes`].
+/// As [`real_modes`], or the structure is statically unstable.
 pub fn natural_frequencies(
     mass: MatRef<'_, f64>,
     stiffness: MatRef<'_, f64>,
 ) -> Result<Vec<f64>, Error> {
-    Ok(real_modes(mass, stiffness)?.frequencies())
+    let modes = real_modes(mass, stiffness)?;
+    let highest = modes.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
+    match modes.omega_squared.first() {
+        Some(&squared) if squared < -ROUNDING * highest => Err(Error::Unstable { squared }),
+        _ => Ok(modes.frequencies()),
+    }
 }
 
 /// Inverse of a well-conditioned complex matrix.
