@@ -76,6 +76,8 @@ def test_jenkins_between_two_dofs():
         ({"stiffness": math.nan}, "at 'damper': stiffness: nan is not a number"),
         ({"stiffness": math.inf}, "stiffness inf; take about 1000 times the local structure"),
         ({"stiffness": "2.4e7 N/m"}, "stiffness: '2.4e7 N/m' is not a number; .*SI units"),
+        ({"stiffness": 10**400}, "stiffness: 1000.* is too large; give a number below 1e308"),
+        ({"slip_force": -(10**5000)}, "slip_force: <int> is too large"),
         ({"stiffness": None}, "stiffness: None is not a number"),
         ({"stiffness": 1j}, "stiffness: 1j is complex"),
         ({"slip_force": -5}, "at 'damper': slip_force -5 is negative"),
@@ -176,7 +178,8 @@ def test_static_load_is_exactly_real():
         ({"amplitude": "20 N"}, "amplitude: '20 N' is not a number"),
         ({"phase": math.nan}, "phase: nan"),
         ({"phase": "90 deg"}, "phase: '90 deg' is not a number"),
-        ({"harmonic": -1}, "harmonic: -1 lies below 0"),
+        ({"harmonic": -1}, "harmonic: -1 lies below 0; give at least 0"),
+        ({"harmonic": 10**400}, "harmonic: 1000.* is too large; give at most 2147483647"),
         ({"harmonic": 1.5}, "harmonic: 1.5 is not an integer"),
         ({"harmonic": 2.0}, "harmonic: 2.0 is not an integer"),
         ({"harmonic": True}, "harmonic: True is not an integer"),
@@ -254,6 +257,8 @@ def test_contacts_carry_their_names():
         ({"forces": [Force("tpi", 1.0)]}, r"^force 1: unknown dof 'tpi'; did you mean 'tip'\?$"),
         ({"forces": Force("tip", 1.0)}, r"forces: Force.* is not a list; write forces=\[...\]"),
         ({"forces": [("tip", 1.0)]}, r"force 1: \('tip', 1.0\) is no force; give a Force"),
+        ({"contacts": np.array(None)}, "contacts: array.* is not a list"),
+        ({"forces": np.array(1)}, "forces: array.* is not a list"),
         ({"structure": np.eye(3)}, "structure: array.* is not a Structure"),
     ],
 )
@@ -284,12 +289,13 @@ def test_contacts_and_points_by_position_or_name():
     ("ref", "message"),
     [
         ("rot", "unknown contact 'rot'; did you mean 'root'"),
-        (2, r"contact 2: the model has 2 contact\(s\); count from 0 to 1"),
-        (-1, "contact: -1 lies below 0; count from 0"),
+        (2, "there is no contact at position 2; the model has 2, at 0 to 1$"),
+        (-1, "contact: -1 lies below 0; give at least 0"),
         (0.0, "contact: 0.0 is not an integer"),
         (None, "contact: None is not an integer"),
         ("root", r"contact 'root': it has 2 points; write \('root', 0\)"),
-        (("root", 2), r"point 2: contact 'root' has 2 point\(s\); count from 0 to 1"),
+        ((1, 2), "no point at position 2; contact 'root' has 2"),
+        (("root", 2), "no point at position 2; contact 'root' has 2, at 0 to 1$"),
         (("root", "x"), "contact 'root': point: 'x' is not an integer"),
         (("root", 0, 0), "write \\(contact, point\\)"),
     ],
@@ -300,7 +306,7 @@ def test_point_refuses(ref, message):
 
 
 def test_a_model_without_contacts_has_none():
-    with pytest.raises(ModelError, match=r"the model has 0 contact.*give the model a contact"):
+    with pytest.raises(ModelError, match="there is no contact at position 0; the model has none"):
         model().contact_index(0)
     with pytest.raises(ModelError, match="unknown contact 'jenkins'; there is none"):
         model().contact_index("jenkins")
@@ -380,13 +386,20 @@ def test_zero_stiffness_is_no_contact():
     [
         ("jenkins", r"slipping: 'jenkins' is not a list; write slipping=\[...\]"),
         (0, "slipping: 0 is not a list"),
+        (np.array(0), r"slipping: array\(0\) is not a list"),
         (["jenkin"], "unknown contact 'jenkin'; did you mean 'jenkins'"),
-        ([("jenkins", 1)], "point 1: contact 'jenkins' has 1 point"),
+        ([("jenkins", 1)], "no point at position 1; contact 'jenkins' has 1, at position 0$"),
     ],
 )
 def test_natural_frequencies_refuses(slipping, message):
     with pytest.raises(ModelError, match=message):
         natural_frequencies(snecma_beam(), slipping)
+
+
+@pytest.mark.parametrize("other", ["x", None, snecma_structure()])
+def test_natural_frequencies_of_no_model(other):
+    with pytest.raises(ModelError, match=r"^model: .* is not a Model; give ss\.Model"):
+        natural_frequencies(other)
 
 
 def test_forces_add_up_by_harmonic():
@@ -416,6 +429,8 @@ def test_everything_exported_is_there():
         assert getattr(ss, name) is not None
         assert name in dir(ss)
     assert set(ss._HOMES) | set(ss._MODULES) == set(ss.__all__)
+    assert ss.plot.curves is not None
+    assert ss.study.Study is not None
     assert ss.reference.snecma_beam is snecma_beam
 
 

@@ -172,15 +172,30 @@ def test_refuses_damping(damping, message):
 
 
 @pytest.mark.parametrize(
+    "law", [Rayleigh(mass=1e308), Rayleigh(stiffness=-1e308), ModalDamping(1e308)]
+)
+def test_refuses_laws_whose_matrix_is_not_finite(law):
+    with pytest.raises(ModelError, match=r"damping: (Rayleigh|Modal).* makes entries beyond 1e308"):
+        Structure(M, K, law)
+
+
+def test_the_largest_entries_are_kept_without_a_warning():
+    assert Structure([[1.0]], [[1.7e308]]).stiffness[0, 0] == 1.7e308
+    with pytest.raises(ModelError, match=r"stiffness: 1e\+308 at"):
+        Structure(np.eye(2), [[0, 1e308], [-1e308, 0]])
+
+
+@pytest.mark.parametrize(
     ("law", "arguments", "message"),
     [
         (Rayleigh, {"mass": np.nan}, "Rayleigh mass factor: nan is not a finite number"),
         (Rayleigh, {"stiffness": "2.6e-5"}, "Rayleigh stiffness factor: '2.6e-5' is not a number"),
+        (Rayleigh, {"mass": 10**400}, "1000.* is too large; give a number below 1e308"),
         (Rayleigh, {"mass": True}, "True is not a number"),
         (ModalDamping, {"ratio": np.inf}, "damping ratio: inf is not a finite number"),
         (ModalDamping, {"ratio": 0.1j}, "is complex; give a real number"),
         (ModalDamping, {"ratio": "0.1"}, "'0.1' is not a number"),
-        (ModalDamping, {"ratio": [0.1, np.nan]}, "damping ratio of mode 1: nan"),
+        (ModalDamping, {"ratio": [0.1, np.nan]}, "damping ratio at position 1: nan"),
         (ModalDamping, {"ratio": None}, "None is not a number"),
     ],
 )
@@ -190,7 +205,7 @@ def test_damping_laws_refuse(law, arguments, message):
 
 
 def test_modal_damping_means_nothing_for_negative_stiffness():
-    with pytest.raises(ModelError, match=r"mode 0 has omega\^2 = -1 < 0"):
+    with pytest.raises(ModelError, match=r"the lowest mode has omega\^2 = -1 < 0"):
         Structure(np.eye(2), np.diag([4.0, -1.0]), ModalDamping(0.01))
 
 
@@ -202,8 +217,9 @@ def test_modal_damping_means_nothing_for_negative_stiffness():
         (["a", "", "c"], "dofs: name 2: '' is empty"),
         (["a", "b", "  "], "dofs: name 3: '  ' is empty"),
         ([0, 1, 2], "dofs: name 1: 0 is not text; give a name in quotes"),
-        ("abc", "dofs: 'abc' is not a list of names"),
-        (3, "dofs: 3 is not a list of names"),
+        ("abc", "dofs: 'abc' is not a list; write dofs="),
+        (np.array("a"), r"dofs: array\('a'.* is not a list"),
+        (3, "dofs: 3 is not a list; write dofs="),
     ],
 )
 def test_refuses_names(dofs, message):

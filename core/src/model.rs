@@ -44,7 +44,7 @@ impl Model {
         let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
         for (index, Contact { law, rows: own }) in contacts.into_iter().enumerate() {
             let size = law.points();
-            let entry = format!("contact {index}");
+            let entry = format!("contact {}", index + 1);
             if (own.nrows(), own.ncols()) != (size, structure.dofs()) {
                 return Err(Error::shape(
                     &entry,

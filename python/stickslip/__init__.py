@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from stickslip import reference
+    from stickslip import plot, reference, study
     from stickslip._core import __version__
     from stickslip.analyses.forced_response import forced_response
     from stickslip.errors import Interrupted, ModelError
@@ -36,8 +36,10 @@ __all__ = [
     "join",
     "load",
     "natural_frequencies",
+    "plot",
     "read_matrix",
     "reference",
+    "study",
 ]
 
 _HOMES = {
@@ -58,7 +60,7 @@ _HOMES = {
     "natural_frequencies": "model",
     "read_matrix": "io",
 }
-_MODULES = ("reference",)
+_MODULES = ("plot", "reference", "study")
 
 
 def __getattr__(name: str) -> object:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import difflib
-import re
+import os
 from collections.abc import Iterable, Sequence
 from numbers import Integral, Real
-from typing import Protocol, TypeAlias, runtime_checkable
+from pathlib import Path
+from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,12 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.errors import ModelError
 
 __all__ = [
+    "MAX_COUNT",
     "MAX_DENSE",
     "Matrix",
     "MatrixLike",
     "SparseMatrix",
     "brief",
+    "choice",
+    "file_path",
     "listed",
+    "members",
     "real_matrix",
     "real_number",
     "text",
@@ -30,9 +35,13 @@ __all__ = [
 MAX_DENSE = 5000
 """Largest sparse matrix, in rows, that is made dense."""
 
+MAX_COUNT = 2**31 - 1
+"""Largest number that counts something."""
+
 Matrix: TypeAlias = NDArray[np.float64]
 _SHOWN = 6
 _LONGEST = 60
+_Member = TypeVar("_Member")
 
 
 @runtime_checkable
@@ -53,8 +62,13 @@ MatrixLike: TypeAlias = ArrayLike | SparseMatrix
 
 
 def brief(value: object) -> str:
-    """Return what `repr` says, on one line and cut to 60 characters."""
-    line = re.sub(r"\s*\n\s*", " ", repr(value))
+    """Return what `repr` says, on one line and cut to 60 characters; it never raises."""
+    try:
+        shown = repr(value)
+    except Exception:
+        # Foreign classes may fail in any way, and Python refuses to write very long integers.
+        shown = f"<{type(value).__name__}>"
+    line = " ".join(part.strip() for part in shown.splitlines())
     return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 3]}..."
 
 
@@ -78,7 +92,7 @@ def unknown(kind: str, name: object, known: Iterable[str]) -> str:
     names = list(known)
     near = difflib.get_close_matches(name, names, n=1) if isinstance(name, str) else []
     if near:
-        return f"unknown {kind} {brief(name)}; did you mean {near[0]!r}?"
+        return f"unknown {kind} {brief(name)}; did you mean {brief(near[0])}?"
     if not names:
         return f"unknown {kind} {brief(name)}; there is none"
     return f"unknown {kind} {brief(name)}; known: {listed(names)}"
@@ -87,7 +101,7 @@ def unknown(kind: str, name: object, known: Iterable[str]) -> str:
 def listed(names: Sequence[str]) -> str:
     """Return the first names in quotes, and how many there are if that is not all."""
     more = f", ... ({len(names)} in all)" if len(names) > _SHOWN else ""
-    return ", ".join(map(repr, names[:_SHOWN])) + more
+    return ", ".join(map(brief, names[:_SHOWN])) + more
 
 
 def text(value: object, entry: str) -> str:
@@ -103,6 +117,56 @@ def text(value: object, entry: str) -> str:
     if not value.strip():
         raise ModelError(f"{entry}: {brief(value)} is empty; give a name")
     return value
+
+
+def choice(value: object, entry: str, choices: Iterable[str]) -> str:
+    """Return one of the names in `choices`.
+
+    Raises
+    ------
+    ModelError
+        If `value` is not text or none of them; the message gives the nearest one.
+    """
+    names = list(choices)
+    if not isinstance(value, str):
+        raise ModelError(f"{entry}: {brief(value)} is not text; known: {listed(names)}")
+    if value not in names:
+        raise ModelError(f"{entry}: {unknown('choice', value, names)}")
+    return str(value)
+
+
+def members(value: Iterable[_Member], entry: str, remedy: str) -> tuple[_Member, ...]:
+    """Return the members of a list, or of anything else that can be gone through.
+
+    Raises
+    ------
+    ModelError
+        If `value` is text, a single object or an array without dimensions.
+    """
+    try:
+        # The array without dimensions is an `Iterable`, and fails only here.
+        walk = None if isinstance(value, str | bytes) else iter(value)
+    except TypeError:
+        walk = None
+    if walk is None:
+        raise ModelError(f"{entry}: {brief(value)} is not a list; write {remedy}")
+    return tuple(walk)
+
+
+def file_path(path: object, entry: str) -> Path:
+    """Return the path of a file.
+
+    Raises
+    ------
+    ModelError
+        If `path` is neither text nor path-like, or empty, or holds a null character.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise ModelError(f"{entry}: {brief(path)} is not a path; give text or a pathlib.Path")
+    name = os.fspath(path)
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise ModelError(f"{entry}: {brief(path)} is no file name; give one in quotes")
+    return Path(name)
 
 
 def real_number(value: object, entry: str, *, finite: bool = True) -> float:
@@ -128,28 +192,36 @@ def real_number(value: object, entry: str, *, finite: bool = True) -> float:
         raise ModelError(f"{entry}: {brief(value)} is complex; give a real number")
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ModelError(f"{entry}: {brief(value)} is not a number; give a real number in SI units")
-    number = float(value)
+    try:
+        number = float(value)
+    except OverflowError:
+        raise ModelError(
+            f"{entry}: {brief(value)} is too large; give a number below 1e308"
+        ) from None
     if np.isnan(number) or (finite and np.isinf(number)):
         kind = "finite number" if finite else "number"
         raise ModelError(f"{entry}: {number} is not a {kind}; give a real number in SI units")
     return number
 
 
-def whole_number(value: object, entry: str, *, smallest: int = 0) -> int:
-    """Return an integer that is not below `smallest`.
+def whole_number(value: object, entry: str, *, smallest: int = 0, largest: int = MAX_COUNT) -> int:
+    """Return an integer from `smallest` to `largest`.
 
     Raises
     ------
     ModelError
-        If `value` is not an integer (1.0 and True are not) or lies below `smallest`.
+        If `value` is not an integer (1.0 and True are not) or lies outside.
     """
     if isinstance(value, bool) or not isinstance(value, Integral):
         raise ModelError(
             f"{entry}: {brief(value)} is not an integer; give {smallest}, {smallest + 1}, ..."
         )
-    if value < smallest:
-        raise ModelError(f"{entry}: {brief(value)} lies below {smallest}; count from {smallest}")
-    return int(value)
+    number = int(value)
+    if number < smallest:
+        raise ModelError(f"{entry}: {brief(value)} lies below {smallest}; give at least {smallest}")
+    if number > largest:
+        raise ModelError(f"{entry}: {brief(value)} is too large; give at most {largest}")
+    return number
 
 
 def real_matrix(value: object, entry: str) -> Matrix:
@@ -195,4 +267,6 @@ def real_matrix(value: object, entry: str) -> Matrix:
             f"{entry}: {array.ndim} dimension(s), shape {array.shape}; give rows and columns, "
             "a diagonal as np.diag(values)"
         )
-    return np.array(array, dtype=np.float64, order="C")
+    # Long doubles beyond 1e308 become infinite, which is refused where entries are checked.
+    with np.errstate(over="ignore"):
+        return np.array(array, dtype=np.float64, order="C")

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
+from numbers import Real
 from typing import TYPE_CHECKING
 
+from stickslip.checks import brief
 from stickslip.errors import ModelError
 
 if TYPE_CHECKING:
@@ -59,6 +61,8 @@ _KINDS = {
 }
 
 _TEXT = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*")
+# pint would compute 9**9**9 to the last digit.
+_POWER_OF_NUMBER = re.compile(r"[\d)]\s*(?:\*\*|[\^²³])")
 _UNIT = re.compile(r"[A-Za-zµμ°%²³·*/^()\s\d.+-]*")
 
 
@@ -91,17 +95,15 @@ def quantity(value: float | str, unit: str, entry: str, *, finite: bool = True) 
     """
     if isinstance(value, str):
         return _parse(value, unit, entry)
-    if isinstance(value, bool) or not _is_real(value):
+    if isinstance(value, bool) or not isinstance(value, Real):
         raise _refusal(value, unit, entry, f"is not {_kind(unit)}")
-    number = float(value)
+    try:
+        number = float(value)
+    except OverflowError:
+        raise _refusal(value, unit, entry, "is too large") from None
     if math.isnan(number) or (finite and math.isinf(number)):
         raise _refusal(number, unit, entry, "is not finite" if finite else "is not a number")
     return number
-
-
-def _is_real(value: object) -> bool:
-    # numpy's scalars know __float__ as well, and so do its arrays of one element: those are refused
-    return hasattr(value, "__float__") and not hasattr(value, "__len__")
 
 
 def _parse(text: str, unit: str, entry: str) -> float:
@@ -126,8 +128,8 @@ def _factor(given: str, unit: str, text: str, entry: str) -> float:
     from pint.errors import DimensionalityError, PintError
 
     registry = _registry()
-    if _UNIT.fullmatch(given) is None:
-        raise _refusal(text, unit, entry, f"has an unknown unit '{given}'")
+    if _UNIT.fullmatch(given) is None or _POWER_OF_NUMBER.search(given):
+        raise _refusal(text, unit, entry, f"has an unknown unit {brief(given)}")
     try:
         one = registry.Quantity(1.0, registry.parse_units(given))
         return float(one.to(unit).magnitude)
@@ -135,7 +137,7 @@ def _factor(given: str, unit: str, text: str, entry: str) -> float:
         raise _refusal(text, unit, entry, f"is not {_kind(unit)}") from None
     except (PintError, ValueError, TypeError, ArithmeticError, SyntaxError, TokenError):
         # what pint's expression reader raises on a malformed unit depends on the malformation
-        raise _refusal(text, unit, entry, f"has an unknown unit '{given}'") from None
+        raise _refusal(text, unit, entry, f"has an unknown unit {brief(given)}") from None
 
 
 @cache
@@ -155,4 +157,6 @@ def _kind(unit: str) -> str:
 def _refusal(value: object, unit: str, entry: str, problem: str) -> ModelError:
     example = _KINDS.get(unit, ("", f"1 {unit}"))[1]
     plain = f"a number in {unit}" if unit else "a plain number"
-    return ModelError(f"{entry} = {value!r} {problem}; write for instance '{example}' or {plain}")
+    return ModelError(
+        f"{entry} = {brief(value)} {problem}; write for instance '{example}' or {plain}"
+    )

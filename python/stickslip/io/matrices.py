@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.checks import Matrix, listed, real_matrix, unknown
+from stickslip.checks import Matrix, brief, file_path, listed, real_matrix, text, unknown
 from stickslip.errors import ModelError
 from stickslip.io.harwell_boeing import read_harwell_boeing
+from stickslip.io.matlab import require_sound
 from stickslip.io.matrix_market import read_matrix_market
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["read_matrix"]
 
+_LONGEST = 80
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _MATLAB_NUMBERS = {"double", "single", "sparse", "logical"} | {
     f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)
@@ -49,11 +51,13 @@ def read_matrix(path: str | os.PathLike[str], key: str | None = None) -> Matrix:
         If the file is missing, damaged or of an unknown kind; if `key` is unknown, or needed and
         missing; if the matrix is complex, not finite, not two-dimensional, or sparse and too large.
     """
-    file = Path(path)
+    file = file_path(path, "path")
+    if key is not None:
+        text(key, f"{file}: key")
     reader = _READERS.get(_ending(file))
     if reader is None:
         raise ModelError(f"{file}: {unknown('file ending', _ending(file), _READERS)}")
-    if not file.is_file():
+    if not os.path.isfile(file):
         raise ModelError(f"{file}: no such file; check the path")
     # The readers' libraries raise whatever they stumble over in a damaged file, struct.error and
     # MemoryError among it.
@@ -66,7 +70,7 @@ def read_matrix(path: str | os.PathLike[str], key: str | None = None) -> Matrix:
     except ModelError:
         raise
     except Exception as error:
-        cause = " ".join(str(error).split()) or type(error).__name__
+        cause = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
         raise ModelError(
             f"{file}: cannot be read as {_ending(file)}: {cause}; write the file again"
         ) from error
@@ -85,7 +89,7 @@ def _ending(file: Path) -> str:
 
 
 def _entry(file: Path, key: str | None) -> str:
-    return f"{file}" if key is None else f"{file}: {key!r}"
+    return f"{file}" if key is None else f"{file}: {brief(key)}"
 
 
 def _choose(file: Path, key: str | None, known: Iterable[str]) -> str:
@@ -101,7 +105,7 @@ def _choose(file: Path, key: str | None, known: Iterable[str]) -> str:
 
 def _refuse_key(file: Path, key: str | None) -> None:
     if key is not None:
-        raise ModelError(f"{file}: key {key!r}, but the file holds one matrix; leave key out")
+        raise ModelError(f"{file}: key {brief(key)}, but the file holds one matrix; leave key out")
 
 
 def _read_numpy(file: Path, key: str | None) -> object:
@@ -127,10 +131,11 @@ def _read_matlab(file: Path, key: str | None) -> object:
         return _read_matlab_hdf5(file, key)
     from scipy.io import loadmat, whosmat
 
+    require_sound(file)
     kinds = {name: kind for name, _, kind in whosmat(file)}
     name = _choose(file, key, kinds)
     if kinds[name] not in _MATLAB_NUMBERS:
-        raise ModelError(f"{file}: {name!r} is a {kinds[name]}; save the matrix by itself")
+        raise ModelError(f"{file}: {brief(name)} is a {kinds[name]}; save the matrix by itself")
     return loadmat(file, variable_names=[name])[name]
 
 
@@ -148,9 +153,9 @@ def _read_matlab_hdf5(file: Path, key: str | None) -> object:
             return _read_matlab_sparse(file, name, variable)
         kind = variable.attrs.get("MATLAB_class", b"double").decode()
         if kind not in _MATLAB_NUMBERS:
-            raise ModelError(f"{file}: {name!r} is a {kind}; save the matrix by itself")
+            raise ModelError(f"{file}: {brief(name)} is a {kind}; save the matrix by itself")
         if variable.dtype.names:
-            raise ModelError(f"{file}: {name!r}: complex entries; give real matrices")
+            raise ModelError(f"{file}: {brief(name)}: complex entries; give real matrices")
         # HDF5 counts in rows, MATLAB in columns.
         return np.asarray(variable[()]).T
 
@@ -159,14 +164,14 @@ def _read_matlab_sparse(file: Path, name: str, group: h5py.Group) -> object:
     from scipy.sparse import csc_array
 
     if "MATLAB_sparse" not in group.attrs:
-        raise ModelError(f"{file}: {name!r} is a struct; save the matrix by itself")
+        raise ModelError(f"{file}: {brief(name)} is a struct; save the matrix by itself")
     pointers = group["jc"][()]
     rows = int(group.attrs["MATLAB_sparse"])
     if "data" not in group:
         return csc_array((rows, len(pointers) - 1))
     values = group["data"][()]
     if values.dtype.names:
-        raise ModelError(f"{file}: {name!r}: complex entries; give real matrices")
+        raise ModelError(f"{file}: {brief(name)}: complex entries; give real matrices")
     return csc_array((values, group["ir"][()], pointers), shape=(rows, len(pointers) - 1))
 
 

@@ -150,10 +150,10 @@ class Jenkins(Contact):
             text(self.other, "jenkins contact: other")
         if self.dof == self.other:
             raise ModelError(
-                f"jenkins contact: both ends at dof {self.dof!r}; name another dof, or leave "
+                f"jenkins contact: both ends at dof {brief(self.dof)}; name another dof, or leave "
                 "`other` out for the ground"
             )
-        entry = f"jenkins contact at {self.dof!r}"
+        entry = f"jenkins contact at {brief(self.dof)}"
         stiffness = real_number(self.stiffness, f"{entry}: stiffness", finite=False)
         slip_force = real_number(self.slip_force, f"{entry}: slip_force", finite=False)
         if stiffness < 0.0:
@@ -269,7 +269,7 @@ def contact_from_spec(spec: Mapping[str, object]) -> Contact:
     law, dofs, parameters = (spec.get(key) for key in keys[:3])
     if not isinstance(law, str) or law not in LAWS:
         raise ModelError(f"contact: {unknown('law', law, LAWS)}")
-    if isinstance(dofs, str) or not isinstance(dofs, list | tuple):
+    if not isinstance(dofs, list | tuple):
         raise ModelError(f"{law} contact: dofs {brief(dofs)} is not a list of names")
     if not isinstance(parameters, Mapping):
         raise ModelError(f"{law} contact: parameters {brief(parameters)} is not a table")

@@ -6,7 +6,7 @@ import cmath
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from stickslip.checks import real_number, text, unknown, whole_number
+from stickslip.checks import brief, real_number, text, unknown, whole_number
 from stickslip.errors import ModelError
 
 __all__ = ["Force", "force_from_spec"]
@@ -41,7 +41,7 @@ class Force:
 
     def __post_init__(self) -> None:
         text(self.dof, "force: dof")
-        entry = f"force at {self.dof!r}"
+        entry = f"force at {brief(self.dof)}"
         harmonic = whole_number(self.harmonic, f"{entry}: harmonic")
         phase = real_number(self.phase, f"{entry}: phase")
         if harmonic == 0 and phase != 0.0:
@@ -99,7 +99,7 @@ def force_from_spec(spec: Mapping[str, object]) -> Force:
         if key not in spec:
             raise ModelError(f"force: {key} is missing; give {key}")
     dof = text(spec["dof"], "force: dof")
-    entry = f"force at {dof!r}"
+    entry = f"force at {brief(dof)}"
     return Force(
         dof,
         real_number(spec["amplitude"], f"{entry}: amplitude"),

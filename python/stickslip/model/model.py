@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import brief, real_number, unknown, whole_number
+from stickslip.checks import brief, members, real_number, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.force import Force
@@ -94,7 +94,7 @@ class Model:
             for dof in contact.dofs:
                 if dof not in known:
                     reason = unknown("dof", dof, known)
-                    raise ModelError(f"contact {number} ({contact.name!r}): {reason}")
+                    raise ModelError(f"contact {number} ({brief(contact.name)}): {reason}")
         for number, force in enumerate(self.forces, 1):
             if force.dof not in known:
                 raise ModelError(f"force {number}: {unknown('dof', force.dof, known)}")
@@ -155,15 +155,16 @@ class Model:
             if len(point) != 2:
                 raise ModelError(f"contact point {brief(point)}: write (contact, point)")
             contact = self.contact_index(point[0])
-            position = whole_number(point[1], f"contact {point[0]!r}: point")
-            _require_position(
-                "point", position, self.contacts[contact].points, f"contact {point[0]!r}"
-            )
+            owner = f"contact {brief(self.contact_names[contact])}"
+            position = whole_number(point[1], f"{owner}: point")
+            _require_position("point", position, self.contacts[contact].points, owner)
             return contact, position
         contact = self.contact_index(point)
         points = self.contacts[contact].points
         if points != 1:
-            raise ModelError(f"contact {point!r}: it has {points} points; write ({point!r}, 0)")
+            raise ModelError(
+                f"contact {brief(point)}: it has {points} points; write ({brief(point)}, 0)"
+            )
         return contact, 0
 
     def scaled(self, *, force: float = 1.0, slip_force: float = 1.0) -> Model:
@@ -248,11 +249,12 @@ def natural_frequencies(model: Model, slipping: Iterable[PointRef] = ()) -> NDAr
     Raises
     ------
     ModelError
-        If there is no such contact or point.
+        If `model` is no `Model`, or there is no such contact or point.
     """
-    if isinstance(slipping, str) or not isinstance(slipping, Iterable):
-        raise ModelError(f"slipping: {brief(slipping)} is not a list; write slipping=[...]")
-    points = sorted({model.point(point) for point in slipping})
+    if not isinstance(model, Model):
+        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+    refs = members(slipping, "slipping", "slipping=[...]")
+    points = sorted({model.point(ref) for ref in refs})
     problem = model.problem
     try:
         return problem.natural_frequencies(points)
@@ -261,9 +263,7 @@ def natural_frequencies(model: Model, slipping: Iterable[PointRef] = ()) -> NDAr
 
 
 def _listed(items: Iterable[_Item], entry: str, kind: type[object]) -> tuple[_Item, ...]:
-    if not isinstance(items, Iterable):
-        raise ModelError(f"{entry}s: {brief(items)} is not a list; write {entry}s=[...]")
-    listed = tuple(items)
+    listed = members(items, f"{entry}s", f"{entry}s=[...]")
     for number, item in enumerate(listed, 1):
         if not isinstance(item, kind):
             raise ModelError(
@@ -278,7 +278,7 @@ def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
     for number, contact in enumerate(contacts, 1):
         if contact.name in taken:
             raise ModelError(
-                f"contact {number} ({contact.name!r}): contact {taken[contact.name]} has this "
+                f"contact {number} ({brief(contact.name)}): contact {taken[contact.name]} has this "
                 "name already; give another name="
             )
         if contact.name is not None:
@@ -297,5 +297,5 @@ def _free_name(law: str, taken: Set[str]) -> str:
 
 def _require_position(kind: str, position: int, size: int, owner: str) -> None:
     if position >= size:
-        remedy = f"count from 0 to {size - 1}" if size else f"give the model a {kind}"
-        raise ModelError(f"{kind} {position}: {owner} has {size} {kind}(s); {remedy}")
+        places = ("none", "1, at position 0")[size] if size < 2 else f"{size}, at 0 to {size - 1}"
+        raise ModelError(f"there is no {kind} at position {position}; {owner} has {places}")

@@ -9,7 +9,16 @@ from typing import TypeAlias
 
 import numpy as np
 
-from stickslip.checks import Matrix, MatrixLike, brief, real_matrix, real_number, text, unknown
+from stickslip.checks import (
+    Matrix,
+    MatrixLike,
+    brief,
+    members,
+    real_matrix,
+    real_number,
+    text,
+    unknown,
+)
 from stickslip.errors import ModelError
 
 __all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
@@ -56,8 +65,14 @@ class Rayleigh:
         -------
         ndarray of float64, shape (N, N)
             Damping [kg/s].
+
+        Raises
+        ------
+        ModelError
+            If it is not finite.
         """
-        return self.mass * mass + self.stiffness * stiffness
+        with np.errstate(over="ignore", invalid="ignore"):
+            return _finite(self.mass * mass + self.stiffness * stiffness, self)
 
 
 @dataclass(frozen=True)
@@ -86,7 +101,7 @@ class ModalDamping:
         ratio: float | tuple[float, ...]
         if isinstance(given, Sequence) and not isinstance(given, str):
             ratio = tuple(
-                real_number(value, f"damping ratio of mode {mode}")
+                real_number(value, f"damping ratio at position {mode}")
                 for mode, value in enumerate(given)
             )
         else:
@@ -109,7 +124,7 @@ class ModalDamping:
         Raises
         ------
         ModelError
-            If the number of ratios is not N, or the stiffness has a negative eigenvalue.
+            If there are not N ratios, an eigenvalue is negative, or the damping is not finite.
         """
         from scipy.linalg import eigh
 
@@ -122,13 +137,21 @@ class ModalDamping:
         squares, modes = eigh(stiffness, mass)
         if squares[0] < -1e-8 * np.abs(squares).max():
             raise ModelError(
-                f"damping: mode 0 has omega^2 = {squares[0]:.6g} < 0, a ratio means nothing there; "
-                "give a damping matrix"
+                f"damping: the lowest mode has omega^2 = {squares[0]:.6g} < 0, a ratio means "
+                "nothing there; give a damping matrix"
             )
         # The eigenvalues of rigid-body modes are rounding noise of either sign.
         omega = np.sqrt(np.clip(squares, 0.0, None))
         shapes = mass @ modes
-        return np.asarray((shapes * (2.0 * ratios * omega)) @ shapes.T, dtype=np.float64)
+        with np.errstate(over="ignore", invalid="ignore"):
+            damping = (shapes * (2.0 * ratios * omega)) @ shapes.T
+        return _finite(np.asarray(damping, dtype=np.float64), self)
+
+
+def _finite(damping: Matrix, law: Rayleigh | ModalDamping) -> Matrix:
+    if not np.isfinite(damping).all():
+        raise ModelError(f"damping: {brief(law)} makes entries beyond 1e308; give smaller numbers")
+    return damping
 
 
 DampingLaw: TypeAlias = Rayleigh | ModalDamping
@@ -261,7 +284,7 @@ def join(structures: Mapping[str, Structure]) -> Structure:
     for part, structure in structures.items():
         text(part, "join: name of a part")
         if not isinstance(structure, Structure):
-            raise ModelError(f"join: part {part!r} is {brief(structure)}; give a Structure")
+            raise ModelError(f"join: part {brief(part)} is {brief(structure)}; give a Structure")
     parts = list(structures.values())
     return Structure(
         mass=_blocks([part.mass for part in parts]),
@@ -284,14 +307,15 @@ def _blocks(matrices: Sequence[Matrix]) -> Matrix:
 def _names(dofs: Iterable[str] | None, size: int) -> tuple[str, ...]:
     if dofs is None:
         return tuple(map(str, range(size)))
-    if isinstance(dofs, str) or not isinstance(dofs, Iterable):
-        raise ModelError(f'dofs: {brief(dofs)} is not a list of names; write dofs=["tip", ...]')
-    names = tuple(text(name, f"dofs: name {place}") for place, name in enumerate(dofs, 1))
+    given = members(dofs, "dofs", 'dofs=["tip", ...]')
+    names = tuple(text(name, f"dofs: name {place}") for place, name in enumerate(given, 1))
     if len(names) != size:
         raise ModelError(f"dofs: {len(names)} names for {size} dofs; give one name per matrix row")
     if len(set(names)) < size:
         twice = next(name for position, name in enumerate(names) if name in names[:position])
-        raise ModelError(f"dofs: {twice!r} is given more than once; give every dof its own name")
+        raise ModelError(
+            f"dofs: {brief(twice)} is given more than once; give every dof its own name"
+        )
     return tuple(map(str, names))
 
 
@@ -307,7 +331,7 @@ def _require_finite(matrix: Matrix, entry: str, names: tuple[str, ...]) -> None:
     if not np.isfinite(matrix).all():
         row, column = np.argwhere(~np.isfinite(matrix))[0]
         raise ModelError(
-            f"{entry}: {matrix[row, column]} at ({names[row]!r}, {names[column]!r}); "
+            f"{entry}: {matrix[row, column]} at ({brief(names[row])}, {brief(names[column])}); "
             "every entry must be finite"
         )
 
@@ -315,7 +339,8 @@ def _require_finite(matrix: Matrix, entry: str, names: tuple[str, ...]) -> None:
 def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
     """Average out rounded digits; refuse what cannot be rounding."""
     _require_finite(matrix, entry, names)
-    difference = np.abs(matrix - matrix.T)
+    with np.errstate(over="ignore"):
+        difference = np.abs(matrix - matrix.T)
     if difference.max() > _ASYMMETRY * np.abs(matrix).max():
         row, column = np.unravel_index(difference.argmax(), difference.shape)
         triangular = not (np.tril(matrix, -1).any() and np.triu(matrix, 1).any())
@@ -324,11 +349,12 @@ def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
             if triangular
             else "give a symmetric matrix (skew terms belong to damping)"
         )
+        one, other = brief(names[row]), brief(names[column])
         raise ModelError(
-            f"{entry}: {matrix[row, column]:.9g} at ({names[row]!r}, {names[column]!r}) but "
-            f"{matrix[column, row]:.9g} at ({names[column]!r}, {names[row]!r}); {remedy}"
+            f"{entry}: {matrix[row, column]:.9g} at ({one}, {other}) but "
+            f"{matrix[column, row]:.9g} at ({other}, {one}); {remedy}"
         )
-    return 0.5 * (matrix + matrix.T)
+    return 0.5 * matrix + 0.5 * matrix.T
 
 
 def _require_positive(mass: Matrix, names: tuple[str, ...]) -> None:
@@ -337,7 +363,7 @@ def _require_positive(mass: Matrix, names: tuple[str, ...]) -> None:
     values, vectors = np.linalg.eigh(mass)
     name = names[int(np.abs(vectors[:, 0]).argmax())]
     raise ModelError(
-        f"mass: smallest eigenvalue {values[0]:.6g} (mostly dof {name!r}), largest "
+        f"mass: smallest eigenvalue {values[0]:.6g} (mostly dof {brief(name)}), largest "
         f"{values[-1]:.6g}; it must be positive definite: condense massless dofs out"
     )
 
@@ -357,10 +383,7 @@ def _is_positive(mass: Matrix) -> bool:
 
 
 def _damping(
-    damping: MatrixLike | DampingLaw | None,
-    mass: Matrix,
-    stiffness: Matrix,
-    names: tuple[str, ...],
+    damping: MatrixLike | DampingLaw | None, mass: Matrix, stiffness: Matrix, names: tuple[str, ...]
 ) -> Matrix:
     if damping is None:
         return np.zeros_like(mass)
@@ -368,7 +391,7 @@ def _damping(
         return damping.matrix(mass, stiffness)
     if isinstance(damping, Real):
         raise ModelError(
-            f"damping: {damping} is not a matrix; write ModalDamping({damping}) for a ratio"
+            f"damping: {brief(damping)} is not a matrix; write ModalDamping({brief(damping)})"
         )
     matrix = real_matrix(damping, "damping")
     _require_shape(matrix, "damping", len(mass))

@@ -45,7 +45,12 @@ from stickslip.units import quantity
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
 
-__all__ = ["AnalysisTable", "ForcedResponseTable", "OmegaRange"]
+__all__ = ["AnalysisTable", "ForcedResponseTable", "OmegaRange", "level_name"]
+
+
+def level_name(level: float) -> str:
+    """Return a level as the name of its curve has it."""
+    return f"{level:.10g}"
 
 
 class OmegaRange(Table):
@@ -53,7 +58,7 @@ class OmegaRange(Table):
 
     begin: Omega = Field(alias="from", description="First frequency.", examples=["20 rad/s"])
     end: Omega = Field(alias="to", description="Last frequency.", examples=["50 Hz"])
-    points: Annotated[int, Field(ge=2)] | None = Field(
+    points: Annotated[int, Field(ge=2, le=10_000_000)] | None = Field(
         default=None,
         description="Number of points; left out: chosen to the tolerance.",
         examples=[400],
@@ -147,10 +152,10 @@ class ForcedResponseTable(Table):
 
     @model_validator(mode="after")
     def _require_distinct_levels(self) -> Self:
-        levels = self.levels or ()
-        if len(set(levels)) < len(levels):
-            twice = next(level for level in levels if levels.count(level) > 1)
-            raise ValueError(f"levels holds {twice:g} twice; each level is one curve")
+        names = [level_name(level) for level in self.levels or ()]
+        if len(set(names)) < len(names):
+            twice = next(name for name in names if names.count(name) > 1)
+            raise ValueError(f"levels holds {twice} twice, to 10 digits; each level is one curve")
         return self
 
     @model_validator(mode="after")

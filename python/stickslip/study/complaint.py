@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-import reprlib
 from collections.abc import Mapping, Sequence
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from stickslip.checks import unknown
+from stickslip.checks import brief, unknown
 from stickslip.study.entries import HERE
 
 __all__ = ["complaint"]
@@ -19,15 +18,16 @@ _PHRASES = {
     "int_from_float": "is not a whole number",
     "string_type": "is not a text",
     "string_too_short": "is empty",
-    "string_pattern_mismatch": 'does not make a file name; leave out the signs / \\ : * ? " < > |',
+    "string_pattern_mismatch": 'is no file name; give letters, none of / \\ : * ? " < > |',
     "tuple_type": "is not a list",
     "list_type": "is not a list",
     "model_type": "is not a table",
     "model_attributes_type": "is not a table",
     "dict_type": "is not a table",
     "greater_than_equal": "is below the least allowed, {ge}",
-    "too_short": "has too few entries, the least is {min_length}",
-    "too_long": "has too many entries, the most is {max_length}",
+    "less_than_equal": "is above the most allowed, {le}",
+    "too_short": "has too few entries; give at least {min_length}",
+    "too_long": "has too many entries; give at most {max_length}",
 }
 
 
@@ -74,7 +74,7 @@ def _worded(finding: ErrorDetails) -> str:
             return _brackets(entry, value)
         case kind:
             phrase = _PHRASES[kind].format(**context) if kind in _PHRASES else finding["msg"]
-            return f"{entry} = {reprlib.repr(value)} {phrase}"
+            return f"{entry} = {brief(value)} {phrase}"
 
 
 def _choice(table: Mapping[str, object], key: str, choices: Sequence[str]) -> str:
@@ -86,7 +86,7 @@ def _choice(table: Mapping[str, object], key: str, choices: Sequence[str]) -> st
 def _brackets(entry: str, value: object) -> str:
     name = entry.split()[0]
     header = f"[[{name}]]" if name in ("contact", "force") else f"[{name}]"
-    return f"{entry} = {reprlib.repr(value)} is not written as a table; begin it with {header}"
+    return f"{entry} = {brief(value)} is not written as a table; begin it with {header}"
 
 
 def _path(location: Sequence[int | str]) -> list[int | str]:

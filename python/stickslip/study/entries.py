@@ -16,7 +16,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from stickslip.checks import unknown
+from stickslip.checks import MAX_COUNT, brief, real_number, unknown
 from stickslip.errors import ModelError
 from stickslip.units import quantity
 
@@ -48,8 +48,8 @@ HERE = "\0"
 def _quantity(unit: str, bound: str = "", *, finite: bool = True) -> BeforeValidator:
     def read(value: float | str) -> float:
         number = quantity(value, unit, HERE, finite=finite)
-        if (bound == "positive" and number <= 0) or (bound == "not negative" and number < 0):
-            raise ModelError(f"{HERE} = {value!r} must be {bound}")
+        if (bound == "be positive" and number <= 0) or (bound == "not be negative" and number < 0):
+            raise ModelError(f"{HERE} = {brief(value)} must {bound}")
         return number
 
     return BeforeValidator(read)
@@ -67,26 +67,30 @@ def _dof(value: object) -> object:
 
 Newtons = Annotated[float, _quantity("N"), _quantity_schema("20.3 N", "1.2 kN")]
 SlipForce = Annotated[
-    float, _quantity("N", "not negative", finite=False), _quantity_schema("246 N", "1.2 kN")
+    float, _quantity("N", "not be negative", finite=False), _quantity_schema("246 N", "1.2 kN")
 ]
 StiffnessValue = Annotated[
-    float, _quantity("N/m", "not negative"), _quantity_schema("24 kN/mm", "1e6 N/m")
+    float, _quantity("N/m", "not be negative"), _quantity_schema("24 kN/mm", "1e6 N/m")
 ]
 Angle = Annotated[float, _quantity("rad"), _quantity_schema("90 deg", "1.57 rad")]
 Omega = Annotated[
-    float, _quantity("rad/s", "positive"), _quantity_schema("20 rad/s", "25 Hz", "1500 rpm")
+    float, _quantity("rad/s", "be positive"), _quantity_schema("20 rad/s", "25 Hz", "1500 rpm")
 ]
 Ratio = Annotated[float, _quantity(""), _quantity_schema("0.1 %")]
-Tolerance = Annotated[float, _quantity("", "positive"), _quantity_schema("0.1 %")]
-Factor = Annotated[float, _quantity("", "positive"), WithJsonSchema({"type": "number"})]
+Tolerance = Annotated[float, _quantity("", "be positive"), _quantity_schema("0.1 %")]
+Factor = Annotated[float, _quantity("", "be positive"), WithJsonSchema({"type": "number"})]
 Rate = Annotated[float, _quantity("1/s"), _quantity_schema("7.49 1/s")]
 Time = Annotated[float, _quantity("s"), _quantity_schema("2.6e-5 s")]
-Number = Annotated[float, _quantity(""), WithJsonSchema({"type": "number"})]
+Number = Annotated[
+    float,
+    BeforeValidator(lambda value: real_number(value, HERE)),
+    WithJsonSchema({"type": "number"}),
+]
 Dof = Annotated[
     str, BeforeValidator(_dof), WithJsonSchema({"type": ["string", "integer"], "examples": ["tip"]})
 ]
 Text = Annotated[str, Field(min_length=1)]
-Count = Annotated[int, Field(ge=1)]
+Count = Annotated[int, Field(ge=1, le=MAX_COUNT)]
 
 
 class Table(BaseModel):

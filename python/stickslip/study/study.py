@@ -7,15 +7,18 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
+from os.path import isfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import ValidationError
 
+from stickslip.checks import brief, file_path
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure
+from stickslip.study.analysis_tables import level_name
 from stickslip.study.complaint import complaint
 from stickslip.study.tables import MatrixFile, ModalDampingTable, RayleighDamping, StudyTables
 
@@ -92,7 +95,7 @@ class Study:
             The file is missing, is no TOML, has an unknown key, or any entry is refused: one line
             beginning with the path.
         """
-        path = Path(path)
+        path = file_path(path, "study file")
         try:
             text = path.read_text(encoding="utf-8")
         except FileNotFoundError:
@@ -146,7 +149,7 @@ class Study:
         if levels is None:
             return (Case(self.name, None, self.model),)
         return tuple(
-            Case(f"{self.name}-{level:.10g}", level, self.model.scaled(force=level))
+            Case(f"{self.name}-{level_name(level)}", level, self.model.scaled(force=level))
             for level in levels
         )
 
@@ -229,9 +232,15 @@ def json_schema() -> dict[str, object]:
 
 def _read(text: str) -> StudyTables:
     try:
-        return StudyTables.model_validate(tomllib.loads(text))
+        content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ModelError(f"not valid TOML: {error}") from None
+    except (ValueError, RecursionError):
+        # Python reads integers of at most 4300 digits; lists nest without end.
+        raise ModelError("not readable: a number is too long, or lists nest too deep") from None
+
+    try:
+        return StudyTables.model_validate(content)
     except ValidationError as error:
         raise ModelError(complaint(error)) from None
 
@@ -279,10 +288,12 @@ def _matrix(source: str | MatrixFile | Rows, folder: Path, entry: str) -> Matrix
     if isinstance(source, tuple):
         return np.array(source, dtype=np.float64)
     name, key = (source, None) if isinstance(source, str) else (source.file, source.key)
-    path = folder / name
-    if not path.is_file():
-        raise ModelError(f"{entry} = '{name}': no such file in {folder}{_neighbour(path)}")
-    return read_matrix(path, key)
+    path = folder / file_path(name, entry)
+    if not isfile(path):
+        place = path.parent.resolve()
+        raise ModelError(f"{entry} = {brief(name)}: no such file in {place}{_neighbour(path)}")
+    with _named(entry):
+        return read_matrix(path, key)
 
 
 def _neighbour(path: Path) -> str:
@@ -290,20 +301,30 @@ def _neighbour(path: Path) -> str:
     folder = path.parent
     if not folder.is_dir():
         return f"; there is no folder {folder} either"
-    near = get_close_matches(path.name, [file.name for file in folder.iterdir()], n=1)
+    near = get_close_matches(path.name, [file.name for file in folder.iterdir()], 1, 0.75)
     return f"; did you mean '{near[0]}'?" if near else ""
 
 
 def _check_dofs(tables: StudyTables, model: Model) -> None:
     observed = tables.analysis.observe or model.structure.dofs
-    for number, dof in enumerate(tables.analysis.observe or (), 1):
-        with _named(f"analysis: observe[{number}]"):
-            model.structure.index(dof)
+    _check_names("analysis: observe", tables.analysis.observe or (), model)
+    _check_names("output: dofs", tables.output.dofs or (), model)
     for number, dof in enumerate(tables.output.dofs or (), 1):
-        with _named(f"output: dofs[{number}]"):
-            model.structure.index(dof)
-            if dof not in observed:
-                raise ModelError(f"'{dof}' is not kept; add it to 'observe' in [analysis]")
+        if dof not in observed:
+            raise ModelError(
+                f"output: dofs[{number}]: {brief(dof)} is not kept; add it to 'observe' in "
+                "[analysis]"
+            )
+
+
+def _check_names(entry: str, names: Sequence[str], model: Model) -> None:
+    first: dict[str, int] = {}
+    key = entry.split()[-1]
+    for number, name in enumerate(names, 1):
+        with _named(f"{entry}[{number}]"):
+            model.structure.index(name)
+            if first.setdefault(name, number) < number:
+                raise ModelError(f"{brief(name)} is {key}[{first[name]}] too; name it once")
 
 
 def _part(

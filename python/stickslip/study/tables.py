@@ -14,6 +14,7 @@ from pydantic import (
     model_validator,
 )
 
+from stickslip.checks import MAX_COUNT, brief, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Force, Jenkins
 from stickslip.study.analysis_tables import AnalysisTable
@@ -100,6 +101,29 @@ def _rows(value: object) -> object:
     return value
 
 
+def _damping(value: object) -> object:
+    forms = ("rayleigh", "modal", "file")
+    if isinstance(value, Mapping) and not value:
+        raise ModelError(f"{HERE} = {{}} is empty; write {{rayleigh = ...}} or {{modal = ...}}")
+    if isinstance(value, Mapping) and not {*forms, "key"} & value.keys():
+        raise ModelError(f"{HERE}: {unknown('key', next(iter(value)), forms)}")
+    return value
+
+
+def _two_dofs(value: object) -> object:
+    if isinstance(value, list) and len(value) != 2:
+        raise ModelError(
+            f"{HERE} = {brief(value)} names {len(value)} dofs; give two, or write dof = ... for a "
+            "contact to ground"
+        )
+    return value
+
+
+def _length_unit(value: object) -> object:
+    # both the micro sign and the Greek letter
+    return "um" if value in ("\u00b5m", "\u03bcm") else value
+
+
 Rows = Annotated[
     tuple[Annotated[tuple[Number, ...], Strict(False)], ...], Strict(False), BeforeValidator(_rows)
 ]
@@ -128,6 +152,7 @@ DampingSource = Annotated[
             "is neither a matrix, nor {rayleigh = {mass = ..., stiffness = ...}}, nor {modal = ...}"
         ),
     ),
+    BeforeValidator(_damping),
 ]
 
 
@@ -158,7 +183,7 @@ class JenkinsTable(Table):
     dof: Dof | None = Field(
         default=None, description="The DOF, for a contact to ground.", examples=["tip"]
     )
-    dofs: Annotated[tuple[Dof, Dof], Strict(False)] | None = Field(
+    dofs: Annotated[tuple[Dof, Dof], Strict(False), BeforeValidator(_two_dofs)] | None = Field(
         default=None,
         description="The two DOFs, for a contact between them.",
         examples=[["left.tip", "right.tip"]],
@@ -172,6 +197,11 @@ class JenkinsTable(Table):
         if (self.dof is None) == (self.dofs is None):
             raise ValueError(
                 "give either 'dof', for a contact to ground, or 'dofs', the two it lies between"
+            )
+        if self.dofs is not None and self.dofs[0] == self.dofs[1]:
+            raise ValueError(
+                f"both ends at dof {brief(self.dofs[0])}; name another, or write dof = "
+                f"{brief(self.dofs[0])} for a contact to ground"
             )
         return self
 
@@ -193,7 +223,7 @@ class ForceTable(Table):
     dof: Dof = Field(description="The DOF it acts on.")
     amplitude: Newtons = Field(description="Amplitude.", examples=["20.3 N", 20.3])
     phase: Angle = Field(default=0.0, description="Phase.", examples=["90 deg"])
-    harmonic: Annotated[int, Field(ge=0)] = Field(
+    harmonic: Annotated[int, Field(ge=0, le=MAX_COUNT)] = Field(
         default=1, description="Multiple of omega; 0: a static load."
     )
 
@@ -225,15 +255,20 @@ class OutputTable(Table):
     omega_unit: Literal["rad/s", "Hz"] = Field(
         default="rad/s", description="Unit of the frequency axis."
     )
-    length_unit: Literal["m", "mm", "um"] = Field(
+    length_unit: Annotated[Literal["m", "mm", "um"], BeforeValidator(_length_unit)] = Field(
         default="m", description="Unit of the amplitudes."
     )
+
+
+# Something other than dots and blanks, so that it is no folder.
+_SIGN = r'/\\:*?"<>|\x00-\x1f'
+_FILE_NAME = rf"^[^{_SIGN}]*[^{_SIGN}.\s][^{_SIGN}]*$"
 
 
 class StudyTables(Table):
     """A study: a structure with contacts and forces, and what to compute of it."""
 
-    name: Annotated[str, Field(pattern=r'^[^/\\:*?"<>|\x00-\x1f]+$')] | None = Field(
+    name: Annotated[str, Field(pattern=_FILE_NAME)] | None = Field(
         default=None, description="Name of the result files; left out: that of the study file."
     )
     description: str = Field(default="", description="What is studied, for the reader.")
