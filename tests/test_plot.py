@@ -149,9 +149,22 @@ def test_undamped_limits(ax):
     structure = ss.Structure([[2.0]], [[8.0]], dofs=["x"])
     contact = ss.Jenkins("x", stiffness=10.0, slip_force=1.0)
     model = ss.Model(structure, [contact], [ss.Force("x", 0.5)])
-    plot.curves(ss.forced_response(model, [1.0, 1.5, 4.0, 5.0], 3), "x", ax=ax)
+    plot.curves(ss.forced_response(model, [1.0, 1.5, 4.0, 5.0], 3), "x", ax=ax, peaks=False)
     for line in lines(ax, "limit"):
         assert np.isfinite(line.get_ydata()).all()
+
+
+def test_limits_are_prepared_once_per_model(monkeypatch, ax):
+    made = []
+    whole = ss.plot.limits.limit_model
+    monkeypatch.setattr(
+        "stickslip.plot.limits.limit_model", lambda *a, **o: made.append(a) or whole(*a, **o)
+    )
+    frf = ss.forced_response(snecma_beam(), GRID[::6], 5)
+    for dof in ("tip", "damper", "tip"):
+        plot.curves(frf, dof, ax=ax, peaks=False)
+    assert len(made) == 2
+    assert len(lines(ax, "limit")) == 6
 
 
 def test_levels_per_force(levels, ax):
@@ -232,7 +245,9 @@ def test_error_band(frf, levels, ax):
 
 def test_failed_points_leave_gaps_and_crosses(ax):
     frf = ss.forced_response(snecma_beam(), GRID, 9, max_iterations=1)
-    plot.curves(frf, "tip", ax=ax)
+    with pytest.warns(UserWarning, match="beside the maximum"):
+        plot.curves(frf, "tip", ax=ax)
+    assert not [line for line in ax.lines if line.get_marker() == "o"]
     failed = ~frf.converged
     assert np.isnan(lines(ax, "response")[0].get_ydata()[failed]).all()
     (crosses,) = [line for line in ax.lines if line.get_marker() == "x"]
@@ -253,18 +268,26 @@ def test_single_point_and_linear_model(ax):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"omega_unit": "rpm"}, "unknown omega_unit 'rpm'; known: 'rad/s', 'Hz'"),
-        ({"length_unit": "nm"}, "unknown length_unit 'nm'"),
-        ({"normalise": "forces"}, r"unknown normalise 'forces'; did you mean 'force'\?, or None"),
-        ({"measure": "peak"}, "unknown measure 'peak'"),
-        ({"labels": ["a", "b"]}, "labels: 2 for 1 results; give a list, one each"),
-        ({"labels": "a"}, "labels: 1 for 1 results; give a list, one each"),
+        ({"omega_unit": "rpm"}, "omega_unit: unknown choice 'rpm'; known: 'rad/s', 'Hz'"),
+        ({"length_unit": "nm"}, "length_unit: unknown choice 'nm'"),
+        ({"normalise": "forces"}, r"normalise: unknown choice 'forces'; did you mean 'force'\?"),
+        ({"measure": "peak"}, "measure: unknown choice 'peak'"),
+        ({"labels": ["a", "b"]}, "labels: 2 for 1 results; give one each"),
+        ({"labels": "a"}, "labels: 'a' is not a list; give one text per result"),
+        ({"labels": 1.0}, "labels: 1.0 is not a list"),
+        ({"labels": [1.0]}, r"labels\[0\]: 1.0 is not text"),
+        ({"normalise": np.array(["force"])}, r"normalise: array.* is not text"),
+        ({"normalise": ["force"]}, r"normalise: .* is not text"),
+        ({"omega_unit": ["Hz"]}, r"omega_unit: .* is not text"),
+        ({"length_unit": np.array(["m", "mm"])}, r"length_unit: .* is not text"),
+        ({"measure": ["max"]}, r"measure: .* is not text"),
+        ({"ax": "x"}, "ax: 'x' is not a matplotlib Axes"),
     ],
 )
 def test_wrong_options(frf, options, message):
     before = Figure().add_subplot()
     with pytest.raises(ss.ModelError, match=message):
-        plot.curves(frf, "tip", ax=before, **options)
+        plot.curves(frf, "tip", **{"ax": before} | options)
     assert not before.lines
 
 
@@ -273,6 +296,20 @@ def test_wrong_results(frf, ax):
         plot.curves([], "tip", ax=ax)
     with pytest.raises(ss.ModelError, match="unknown dof 'tpi'; did you mean 'tip'"):
         plot.curves(frf, "tpi", ax=ax)
+    for dof in (["tip"], np.array(["tip", "mode"]), None):
+        with pytest.raises(ss.ModelError, match=r"dof: .* is not text"):
+            plot.curves(frf, dof, ax=ax)
+    for wrong in ("x", 1.0, None):
+        with pytest.raises(ss.ModelError, match=r"results: .* is not a ForcedResponse"):
+            plot.curves(wrong, "tip", ax=ax)
+        for draw, what in ((plot.waveform, ["tip", 0]), (plot.hysteresis, [0, 0]), (plot.slip, [])):
+            with pytest.raises(ss.ModelError, match=r"result: .* is not a ForcedResponse"):
+                draw(wrong, *what, ax=ax)
+    with pytest.raises(ss.ModelError, match=r"results\[1\]: 'x' is not a ForcedResponse"):
+        plot.curves([frf, "x"], "tip", ax=ax)
+    for wrong in (3, [3]):
+        with pytest.raises(ss.ModelError, match=r"dof.*: 3 is not text"):
+            plot.waveform(frf, wrong, 0, ax=ax)
     still = ss.forced_response(ss.Model(frf.model.structure), GRID, 1)
     with pytest.raises(ss.ModelError, match="needs a harmonic force, and a result has none"):
         plot.curves([frf, still], "tip", ax=ax, normalise="force")

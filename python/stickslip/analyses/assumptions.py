@@ -41,7 +41,14 @@ _BASES = {
 
 
 def assumptions_of(
-    model: Model, settings: Settings, dofs: tuple[str, ...], arrays: Arrays, *, half_wave: bool
+    model: Model,
+    settings: Settings,
+    dofs: tuple[str, ...],
+    arrays: Arrays,
+    *,
+    half_wave: bool,
+    missing: int = 0,
+    interrupted: bool = False,
 ) -> tuple[str, ...]:
     """Say what a forced response took for granted, one text per assumption.
 
@@ -57,6 +64,10 @@ def assumptions_of(
         What came out.
     half_wave : bool
         Whether only odd harmonics were solved for.
+    missing : int, optional
+        Number of points asked for that are not among the arrays.
+    interrupted : bool, optional
+        Whether the run was stopped before its end.
 
     Returns
     -------
@@ -64,16 +75,18 @@ def assumptions_of(
         One sentence or two each; those that do not apply are left out.
     """
     base = model.problem.modal_base
-    texts = (
-        _harmonics(settings, arrays, half_wave),
-        _residual(model, settings, arrays),
-        _BASES.get(base, f"The compliance is evaluated by {base}."),
-        _frequencies(settings, arrays),
-        _observed(model, dofs),
-        _damping(model.structure.damping),
-        _truncation(dofs, arrays),
-        _failures(arrays),
-    )
+    # Numbers far outside any unit overflow when squared; what is not finite then is left out.
+    with np.errstate(all="ignore"):
+        texts = (
+            _harmonics(settings, arrays, half_wave),
+            _residual(model, settings, arrays),
+            _BASES.get(base, f"The compliance is evaluated by {base}."),
+            _frequencies(settings, arrays, missing, interrupted=interrupted),
+            _observed(model, dofs),
+            _damping(model.structure.damping),
+            _truncation(dofs, arrays),
+            _failures(arrays),
+        )
     return tuple(text for text in texts if text)
 
 
@@ -110,9 +123,21 @@ def _residual(model: Model, settings: Settings, arrays: Arrays) -> str:
     )
 
 
-def _frequencies(settings: Settings, arrays: Arrays) -> str:
+def _frequencies(settings: Settings, arrays: Arrays, missing: int, *, interrupted: bool) -> str:
+    count = arrays.omega.size
+    reached = f"{arrays.omega[-1] if count else np.nan:.6g} rad/s"
     if settings.span is None:
-        return ""
+        if not missing:
+            return ""
+        return (
+            f"The run was interrupted after {count} of {count + missing} frequencies, at {reached}."
+        )
+    if interrupted:
+        start, end = settings.span
+        return (
+            f"The run from {start:g} to {end:g} rad/s was interrupted: its {count} frequencies, "
+            f"chosen to a tolerance of {settings.tolerance:g}, end at {reached}."
+        )
     low, high = sorted(settings.span)
     return (
         f"The {arrays.omega.size} frequencies between {low:g} and {high:g} rad/s were chosen to a "
@@ -160,16 +185,16 @@ def _truncation(dofs: tuple[str, ...], arrays: Arrays) -> str:
     # The exact half range of every dof and point would cost as much as the solution; the root
     # sum of squares finds the point, and only there is the range taken.
     size = np.sqrt((np.abs(arrays.displacement[:, 1:]) ** 2).sum(axis=1))
-    size[~arrays.solved] = np.nan
-    if not np.isfinite(size).any() or not np.nanmax(size) > 0.0:
+    size[~(arrays.solved[:, None] & np.isfinite(size))] = 0.0
+    if not size.max(initial=0.0) > 0.0:
         return ""
     # What moves by rounding only has no relative error worth naming.
-    noise = np.maximum(1e-6 * np.nanmax(size, axis=0, initial=0.0), 1e-12 * np.nanmax(size))
-    ratio = np.where(size > noise, arrays.error_estimate / np.where(size > noise, size, 1.0), 0.0)
-    point, dof = np.unravel_index(int(np.nanargmax(ratio)), ratio.shape)
+    known = size > np.maximum(1e-6 * size.max(axis=0), 1e-12 * size.max())
+    ratio = np.where(known, arrays.error_estimate / np.where(known, size, 1.0), 0.0)
+    point, dof = np.unravel_index(int(np.nan_to_num(ratio, nan=0.0).argmax()), ratio.shape)
     series = np.ascontiguousarray(arrays.displacement[point : point + 1, :, dof])
     share = float(arrays.error_estimate[point, dof] / amplitude_of(series, "half_range")[0])
-    if share <= LARGE_ERROR:
+    if not share > LARGE_ERROR:
         return ""
     return (
         f"The discarded harmonics could still change {dofs[dof]!r} by {share:.1%} at omega = "

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.analyses.assumptions import assumptions_of
-from stickslip.checks import real_number, text, unknown, whole_number
+from stickslip.analyses.memory import require_memory
+from stickslip.checks import brief, choice, real_number, text, unknown, whole_number
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
@@ -44,7 +45,7 @@ class Settings:
     harmonics : int or "auto", optional
         Highest harmonic kept, or "auto": per point, as many as `tolerance` asks for.
     tolerance : float, optional
-        Relative accuracy of what is chosen automatically, above 0 and at most 0.5.
+        Relative accuracy of what is chosen automatically, from 1e-8 to 0.5.
     residual : {"centred", "from_rest"} or float, optional
         Force that a contact holds at mid-range of its displacement if it never slips, where the
         steady state leaves it open: none, what it builds up from zero displacement, or this force
@@ -79,7 +80,7 @@ class Settings:
             "harmonics": _harmonics(self.harmonics, limit),
             "tolerance": _tolerance(self.tolerance),
             "residual": _residual(self.residual),
-            "method": _method(self.method),
+            "method": choice(self.method, "method", METHODS),
             "max_harmonics": limit,
             "max_iterations": iterations,
             "span": None if self.span is None else _span(self.span),
@@ -122,7 +123,7 @@ def forced_response(
     harmonics : int or "auto", optional
         Highest harmonic kept, or "auto": per point, as many as `tolerance` asks for.
     tolerance : float, optional
-        Relative accuracy of automatic harmonics and steps, above 0 and at most 0.5.
+        Relative accuracy of automatic harmonics and steps, from 1e-8 to 0.5.
     residual : {"centred", "from_rest"} or float, optional
         Force [N] that a contact holds at mid-range of its displacement if it never slips; the
         steady state alone does not determine it. See `ForcedResponse.residual_bounds`.
@@ -145,10 +146,10 @@ def forced_response(
     Raises
     ------
     ModelError
-        If an argument is of the wrong type or outside its range, or the model has a static load
-        that nothing holds.
+        If an argument is of the wrong type or outside its range, the result would not fit into
+        the memory, or the model has a static load that nothing holds.
     Interrupted
-        On Ctrl-C; its `result` holds what had been computed.
+        On Ctrl-C; its `result` holds the points that had been computed.
 
     References
     ----------
@@ -157,7 +158,7 @@ def forced_response(
     the error estimate are this package's.
     """
     if not isinstance(model, Model):
-        raise ModelError(f"model: {model!r} is not a Model; give ss.Model(structure, ...)")
+        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
     grid = _grid(omega)
     settings = Settings(
         harmonics=harmonics,
@@ -170,13 +171,21 @@ def forced_response(
     )
     dofs = _observed(observe, model)
     if progress is not None and not callable(progress):
-        raise ModelError(f"progress: {progress!r} cannot be called; give a function of a fraction")
+        raise ModelError(
+            f"progress: {brief(progress)} cannot be called; give a function of a fraction"
+        )
+    if not isinstance(grid, tuple):
+        kept = settings.fixed_harmonics or max(
+            (force.harmonic for force in model.forces), default=1
+        )
+        points = sum(contact.points for contact in model.contacts)
+        require_memory(grid.size, max(kept, 1), len(dofs), points)
     _require_held(model, settings.residual)
     solution = _solve(model, grid, dofs, settings, progress)
     result = _result(model, settings, dofs, solution)
     if result.interrupted:
         done = sum(status is not Status.NOT_COMPUTED for status in result.status)
-        of_all = "" if settings.span else f" of {result.omega.size}"
+        of_all = f" of {grid.size}" if isinstance(grid, np.ndarray) else ""
         raise Interrupted(
             f"forced response interrupted after {done}{of_all} points, which the result of this "
             "exception holds",
@@ -228,7 +237,15 @@ def _result(
         interrupted=solution.interrupted,
         timings=dict(solution.timings),
         counters=dict(solution.counters),
-        assumptions=assumptions_of(model, settings, dofs, arrays, half_wave=solution.half_wave),
+        assumptions=assumptions_of(
+            model,
+            settings,
+            dofs,
+            arrays,
+            half_wave=solution.half_wave,
+            missing=solution.omega.size - arrays.omega.size,
+            interrupted=solution.interrupted,
+        ),
     )
 
 
@@ -252,7 +269,7 @@ def _grid(omega: ArrayLike | Span) -> NDArray[np.float64] | Span:
     bad = np.flatnonzero(~(np.isfinite(grid) & (grid > 0.0)))
     if bad.size:
         raise ModelError(
-            f"omega: entry {bad[0]} is {grid[bad[0]]:g}; give finite frequencies above 0 rad/s"
+            f"omega[{bad[0]}] is {grid[bad[0]]:g}; give finite frequencies above 0 rad/s"
         )
     return grid
 
@@ -285,23 +302,17 @@ def _harmonics(harmonics: object, limit: int) -> int | Literal["auto"]:
 
 def _tolerance(tolerance: object) -> float:
     value = real_number(tolerance, "tolerance")
-    if not 0.0 < value <= 0.5:
-        raise ModelError(f"tolerance: {value:g}; give a fraction above 0 and up to 0.5")
+    if not 1e-8 <= value <= 0.5:
+        raise ModelError(f"tolerance: {value:g}; give a fraction from 1e-8 to 0.5")
     return value
 
 
 def _residual(residual: object) -> Residual:
-    if residual == "centred" or residual == "from_rest":
-        return residual
     if isinstance(residual, str):
-        raise ModelError(f"{unknown('residual', residual, RESIDUALS)}, or a force in N")
+        if residual not in RESIDUALS:
+            raise ModelError(f"{unknown('residual', residual, RESIDUALS)}, or a force in N")
+        return "centred" if residual == "centred" else "from_rest"
     return real_number(residual, "residual")
-
-
-def _method(method: object) -> str:
-    if method not in METHODS:
-        raise ModelError(unknown("method", method, METHODS))
-    return str(method)
 
 
 def _observed(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:
@@ -309,12 +320,12 @@ def _observed(observe: Iterable[str] | str | None, model: Model) -> tuple[str, .
     if observe is None:
         return known
     if not isinstance(observe, Iterable):
-        raise ModelError(f"observe: {observe!r} is not a list of names; write [{known[0]!r}]")
+        raise ModelError(f"observe: {brief(observe)} is not a list of names; write [{known[0]!r}]")
     names = (observe,) if isinstance(observe, str) else tuple(observe)
     if not names:
         raise ModelError("observe: no dof; name at least one, or leave it out for all")
     for position, name in enumerate(names):
-        text(name, f"observe: entry {position}")
+        text(name, f"observe[{position}]")
         if name not in known:
             raise ModelError(f"observe: {unknown('dof', name, known)}")
         if name in names[:position]:

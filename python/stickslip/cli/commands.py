@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from functools import partial, wraps
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple, ParamSpec, cast
+from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
 
 import typer
 
+from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded
 from stickslip.errors import Interrupted, ModelError
 
 if TYPE_CHECKING:
@@ -28,18 +28,14 @@ if TYPE_CHECKING:
 
 __all__ = ["app"]
 
-NOT_CONVERGED, REFUSED, DEFECT, STOPPED = 1, 2, 70, 130
-
-P = ParamSpec("P")
-
 Files = Annotated[
     list[Path], typer.Argument(help="Result files of 'stickslip run'.", metavar="RESULT.nc")
 ]
 
 app = typer.Typer(
     name="stickslip",
+    cls=Commands,
     help="Steady vibration of structures damped by dry friction.",
-    no_args_is_help=True,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -49,39 +45,6 @@ app = typer.Typer(
 def _epilog(*examples: str) -> str:
     # paragraphs, because the help would join lines
     return "\n\n".join(("[bold]Examples[/bold]", *(f"  {example}" for example in examples)))
-
-
-def _guarded(command: Callable[P, None]) -> Callable[P, None]:
-    """Turn what a command raises into one line on standard error and an exit code."""
-
-    @wraps(command)
-    def guarded(*args: P.args, **kwargs: P.kwargs) -> None:
-        from stickslip.cli.console import complain
-
-        if os.environ.get("STICKSLIP_DEBUG", "0") not in ("", "0"):
-            return command(*args, **kwargs)
-        try:
-            command(*args, **kwargs)
-        except (typer.Exit, typer.Abort, BrokenPipeError):
-            raise
-        except KeyboardInterrupt as error:
-            complain("interrupted", str(error) or "nothing more was saved")
-            raise typer.Exit(STOPPED) from None
-        except ModelError as error:
-            complain("error", str(error))
-            raise typer.Exit(REFUSED) from None
-        except OSError as error:
-            complain("error", f"{error.filename or 'file'}: {error.strerror or error}")
-            raise typer.Exit(REFUSED) from None
-        except Exception as error:
-            cause = " ".join(f"{type(error).__name__}: {error}".split())
-            advice = (
-                "this is a defect of stickslip; set STICKSLIP_DEBUG=1 to see where, and report it"
-            )
-            complain("error", f"{cause} ({advice})")
-            raise typer.Exit(DEFECT) from None
-
-    return guarded
 
 
 def _print_version(wanted: bool) -> None:
@@ -139,14 +102,15 @@ class Clock(dict[str, float]):
 
 
 @app.command(
+    cls=Command,
     epilog=_epilog(
         "stickslip run study.toml",
         "stickslip run study.toml --out results/first --timings",
         "stickslip run study.toml --quiet --no-plot",
     )
-    + "\n\nExit code 0: all points converged; 1: some did not; 2: the study is refused."
+    + "\n\nExit code 0: all points converged; 1: some did not; 2: the study is refused.",
 )
-@_guarded
+@guarded
 def run(
     study: Annotated[Path, typer.Argument(help="Study file.", metavar="STUDY.toml")],
     out: Annotated[Path, typer.Option(help="Folder for the results.", metavar="DIR")] = Path(
@@ -185,7 +149,7 @@ def run(
 
 
 def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curve]:
-    from stickslip.cli.console import progress
+    from stickslip.cli.console import complain, progress
 
     curves: list[Curve] = []
     cases = study.cases
@@ -198,6 +162,7 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curv
                     result.save(file)
                 curves.append(Curve(case, result, file))
         except Interrupted as stop:
+            complain("interrupted", "saving what was computed")
             # under another name, so that a complete curve of an earlier run is not lost
             file = out / f"{cases[len(curves)].name}-partial.nc"
             cast("ForcedResponse", stop.result).save(file)
@@ -228,8 +193,11 @@ def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> 
 
 def _warn(results: Sequence[tuple[str, ForcedResponse]]) -> None:
     """Name what did not converge, and end with the exit code that says so."""
-    from stickslip.cli.console import complain, failures
+    from stickslip.cli.console import cautions, complain, failures
 
+    for name, result in results:
+        for line in cautions(name, result):
+            complain("warning", line)
     lines = [line for name, result in results for line in failures(name, result)]
     for line in lines:
         complain("warning", line)
@@ -258,8 +226,8 @@ def _draw_study(study: Study, curves: Sequence[Curve], picture: Path) -> None:
 # ---------------------------------------------------------------------------- show, plot, schema
 
 
-@app.command(epilog=_epilog("stickslip show results/snecma-beam-20.313.nc"))
-@_guarded
+@app.command(cls=Command, epilog=_epilog("stickslip show results/snecma-beam-20.313.nc"))
+@guarded
 def show(results: Files) -> None:
     """Print what results hold: the model, the peaks, what was assumed, what did not converge."""
     from stickslip import load
@@ -279,14 +247,15 @@ def show(results: Files) -> None:
 
 
 @app.command(
+    cls=Command,
     epilog=_epilog(
         "stickslip plot results/snecma-beam-*.nc",
         "stickslip plot results/snecma-beam-*.nc --dof tip --hertz --linear --out tip.pdf",
         "stickslip plot results/snecma-beam-20.313.nc --dof tip --waveform 170",
         'stickslip plot results/snecma-beam-20.313.nc --loop "27 Hz"',
-    )
+    ),
 )
-@_guarded
+@guarded
 def plot(
     results: Files,
     dof: Annotated[
@@ -377,8 +346,8 @@ def _index(result: ForcedResponse, text: str, option: str) -> int:
     return result.index(omega)
 
 
-@app.command(epilog=_epilog("stickslip schema --out stickslip.schema.json"))
-@_guarded
+@app.command(cls=Command, epilog=_epilog("stickslip schema --out stickslip.schema.json"))
+@guarded
 def schema(
     out: Annotated[
         Path | None, typer.Option(help="File to write; default: the terminal.", metavar="FILE")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 import time
 from collections import defaultdict
@@ -15,12 +16,13 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from stickslip.errors import ModelError
 from stickslip.units import quantity
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse, Summary
 
-__all__ = ["complain", "facts", "failures", "peaks", "progress", "stages", "tell"]
+__all__ = ["cautions", "complain", "facts", "failures", "peaks", "progress", "stages", "tell"]
 
 _STAGES = {
     "compliance": "compliance",
@@ -30,11 +32,28 @@ _STAGES = {
 }
 _PLAIN_WIDTH = 10_000
 _PATIENCE = 0.5
+_NARROW = 80
 
 
 def tell(text: str) -> None:
-    """Print a line on standard output."""
-    print(text)
+    """Print a line on standard output; nothing once its reader has gone.
+
+    Raises
+    ------
+    ModelError
+        If it cannot be written, for lack of space for instance.
+    """
+    try:
+        print(text, flush=True)
+    except OSError as error:
+        # What is still buffered would fail once more at the end of the program.
+        sink = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(sink, sys.stdout.fileno())
+        os.close(sink)
+        if not isinstance(error, BrokenPipeError):
+            raise ModelError(
+                f"standard output: {error.strerror}; results that were announced are saved"
+            ) from None
 
 
 def complain(kind: str, text: str) -> None:
@@ -108,23 +127,25 @@ def peaks(
         table.add_column(heading, justify="right", overflow="fold")
     shown = list(dofs)
     length = quantity(f"1 {length_unit}", "m", "unit of length")
-    at_edge = False
+    at_edge = beside_gap = False
     for name, result in results:
-        rows = {row.dof: row for row in result.summary()}
-        for row in (rows[dof] for dof in shown if dof in rows):
+        for row in result.summary([dof for dof in shown if dof in result.dofs]):
             cells = (*_peak(row, length), _converged(result))
             table.add_row(*([name] if label else []), *cells)
             at_edge = at_edge or row.at_edge
+            beside_gap = beside_gap or row.beside_gap
     _print(table)
     if at_edge:
         tell("* at an end of the computed frequencies: the true peak may lie outside")
+    if beside_gap:
+        tell("? beside points that are not solved: the true peak may be there, and higher")
 
 
 def _peak(row: Summary, length: float) -> tuple[str, ...]:
-    edge = "*" if row.at_edge else ""
+    mark = "*" * row.at_edge + "?" * row.beside_gap
     return (
         row.dof,
-        f"{row.omega:#.6g}{edge}",
+        f"{row.omega:#.6g}{mark}",
         f"{row.omega / (2 * pi):#.6g}",
         f"{row.amplitude / length:.4e}",
         f"{row.error_estimate / length:.0e}",
@@ -167,6 +188,12 @@ def failures(name: str, result: ForcedResponse) -> list[str]:
         f"{_where(where)} rad/s. {status.advice}"
         for status, where in places.items()
     ]
+
+
+def cautions(name: str, result: ForcedResponse) -> list[str]:
+    """Return the assumptions that put the numbers in doubt, one line each."""
+    doubtful = ("The discarded harmonics could", "The damping leaves", "The damping is negative")
+    return [f"{name}: {line}" for line in result.assumptions if line.startswith(doubtful)]
 
 
 def _where(omega: list[float]) -> str:
@@ -230,16 +257,21 @@ def _listed(names: Sequence[str], most: int = 8) -> str:
 
 
 def _table() -> Table:
-    if sys.stdout.isatty():
+    if _framed():
         return Table(box=SIMPLE_HEAD, show_edge=False)
     return Table(box=None, padding=(0, 2, 0, 0))
 
 
+def _framed() -> bool:
+    return sys.stdout.isatty() and Console().width >= _NARROW
+
+
 def _print(table: Table) -> None:
-    if sys.stdout.isatty():
+    if _framed():
         Console(highlight=False, markup=False).print(table)
         return
-    # the reader is a program or a file: lines are not broken and carry no blanks at their end
+    # the reader is a program, a file or a narrow terminal: lines are not broken and carry no
+    # blanks at their end
     page = io.StringIO()
     Console(file=page, width=_PLAIN_WIDTH, highlight=False, markup=False, no_color=True).print(
         table

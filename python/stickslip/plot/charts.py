@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypedDict
 
 import numpy as np
 
-from stickslip.checks import unknown
+from stickslip.checks import choice
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
+from stickslip.plot.arguments import at, dofs_of, require_solved, result_of, results_of
 from stickslip.plot.curve_view import CurveView, names_of, span_of
 from stickslip.plot.limits import force_level
 from stickslip.plot.style import (
@@ -119,15 +120,14 @@ def curves(
     Raises
     ------
     ModelError
-        If there is no result, or no such degree of freedom, measure or unit; if the number of
-        labels is not that of the results; or if a curve without force is to be normalised.
+        If an argument is of the wrong type; if there is no result, or no such degree of freedom,
+        measure or unit; if the number of labels is not that of the results; or if a curve without
+        force is to be normalised.
     """
-    listed = [results] if isinstance(results, ForcedResponse) else list(results)
-    if not listed:
-        raise ModelError("results: empty; give at least one ForcedResponse")
+    listed = results_of(results)
     names = names_of(listed, labels)
-    if normalise not in (None, "force"):
-        raise ModelError(f"{unknown('normalise', normalise, ['force'])}, or None")
+    if normalise is not None:
+        choice(normalise, "normalise", ["force"])
     omega, length = omega_scale(omega_unit), length_scale(length_unit)
     for result in listed:
         result.amplitude(dof, measure)  # what is unknown is refused before anything is drawn
@@ -183,11 +183,9 @@ def waveform(
     ModelError
         If there is no such degree of freedom or unit, or no solved point of that position.
     """
-    dofs = [dof] if isinstance(dof, str) else list(dof)
-    if not dofs:
-        raise ModelError("dof: empty; name at least one")
-    length = length_scale(length_unit)
-    _require_solved(result, [index])
+    dofs = dofs_of(dof)
+    result, length = result_of(result), length_scale(length_unit)
+    require_solved(result, [index])
     waves = [result.waveform(one, index, samples) for one in dofs]
     made, ax = ax is None, new_axes(ax)
     time = np.linspace(0.0, 1.0, samples + 1)
@@ -196,7 +194,7 @@ def waveform(
     ax.set_xlim(0.0, 1.0)
     ax.set_xlabel("time over period t/T")
     ax.set_ylabel(f"displacement{f' of {dofs[0]}' if len(dofs) == 1 else ''} [{length.label}]")
-    ax.set_title(_at(result, index), fontsize="medium")
+    ax.set_title(at(result, index), fontsize="medium")
     finish(ax, made=made)
     return ax
 
@@ -240,8 +238,8 @@ def hysteresis(
     indices = list(index) if isinstance(index, Sequence | np.ndarray) else [index]
     if not indices:
         raise ModelError("index: empty; give the position of at least one point")
-    length = length_scale(length_unit)
-    _require_solved(result, indices)
+    result, length = result_of(result), length_scale(length_unit)
+    require_solved(result, indices)
     loops = _loops(result, contact, indices, samples)
     made, ax = ax is None, new_axes(ax)
     for loop, colour in zip(loops, colours(len(loops)), strict=True):
@@ -253,7 +251,7 @@ def hysteresis(
     number, point = result.locate(contact)
     title = result.model.contact_names[number] + ("" if point is None else f"[{point}]")
     if len(indices) == 1:
-        title += f" at {_at(result, indices[0])}"
+        title += f" at {at(result, indices[0])}"
     if len(loops) == 1:
         title += f": {loops[0].label}"
     ax.set_title(title, fontsize="medium")
@@ -291,7 +289,7 @@ def slip(
     ModelError
         If there is no contact, or no such contact or unit.
     """
-    omega = omega_scale(omega_unit)
+    result, omega = result_of(result), omega_scale(omega_unit)
     contacts = range(len(result.model.contacts)) if contact is None else [contact]
     lines = [line for one in contacts for line in _shares(result, one)]
     if not lines:
@@ -366,7 +364,7 @@ def _loops(
             if len(lost) > 1:
                 label = f"point {point}: {label}"
             if len(indices) > 1:
-                label = f"{_at(result, index)}: {label}"
+                label = f"{at(result, index)}: {label}"
             loops.append(_Loop(_closed(u[:, point]), _closed(f[:, point]), label))
     return loops
 
@@ -380,19 +378,6 @@ def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float]
         return [(name, shares[:, 0])]
     first = only or 0
     return [(f"{name}[{first + point}]", share) for point, share in enumerate(shares.T)]
-
-
-def _require_solved(result: ForcedResponse, indices: Sequence[int]) -> None:
-    for index in indices:
-        status = result.status[result.position(index)]
-        if not status.solved:
-            raise ModelError(
-                f"index: {_at(result, index)} has no solution to draw ({status}). {status.advice}"
-            )
-
-
-def _at(result: ForcedResponse, index: int) -> str:
-    return f"ω = {result.omega[index]:.5g} rad/s"
 
 
 def _closed(period: Float) -> Float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.plot.arguments import labels_of
 from stickslip.plot.limits import force_level, limit_curve
 from stickslip.plot.style import FREE, GREY, LIMIT, RESPONSE, STUCK, Scale
 from stickslip.results import ForcedResponse
@@ -124,11 +125,11 @@ class CurveView:
         )
 
     def mark_peak(self, result: ForcedResponse, colour: Colour, *, named: bool) -> None:
-        """Mark the refined peak, unless it is merely where the computed range ends."""
+        """Mark the refined peak, unless the true one may lie outside or in a gap."""
         if not result.arrays.solved.any():
             return
         peak = result.peak(self.dof, self.measure)
-        if peak.at_edge:
+        if peak.at_edge or peak.beside_gap:
             return
         x, y = self.omega.factor * peak.omega, self._factor(result.model) * peak.amplitude
         self.ax.plot(
@@ -176,13 +177,10 @@ def names_of(results: Sequence[ForcedResponse], labels: Sequence[str] | None) ->
     Raises
     ------
     ModelError
-        If the number of labels is not that of the results.
+        If the labels are not texts, or not as many as the results.
     """
     if labels is not None:
-        if isinstance(labels, str) or len(labels) != len(results):
-            count = 1 if isinstance(labels, str) else len(labels)
-            raise ModelError(f"labels: {count} for {len(results)} results; give a list, one each")
-        return list(labels)
+        return labels_of(labels, len(results))
     traits = [_traits(result) for result in results]
     telling = [key for key in traits[0] if len({trait.get(key) for trait in traits}) > 1]
     if len(results) == 1:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -17,6 +17,8 @@ __all__ = ["force_level", "limit_curve", "limit_model"]
 _POINTS = 400
 # Points beside each resonance, so that a damping ratio down to 1e-4 still shows its peak.
 _NEAR = np.geomspace(1e-6, 0.05, 30)
+# Limits by (stuck, static), as long as their models live: their modes cost most of a drawing.
+_KNOWN: WeakKeyDictionary[Model, dict[tuple[bool, bool], tuple[Model, Float]]] = WeakKeyDictionary()
 
 
 def force_level(model: Model) -> float:
@@ -93,15 +95,11 @@ def limit_curve(
         If a law has no single stiffness, or the measure is "max" and a static load pushes the
         limit structure away.
     """
-    linear = limit_model(model, stuck=stuck)
-    if measure != "max":
-        # They move the mean only, and a free structure may have no equilibrium under them.
-        dynamic = [replace(force) for force in linear.forces if force.harmonic]
-        linear = Model(linear.structure, forces=dynamic)
+    linear, natural = _linear(model, stuck=stuck, static=measure == "max")
     harmonics = max((force.harmonic for force in linear.forces), default=1)
     result = forced_response(
         linear,
-        _frequencies(linear, span),
+        _frequencies(linear, natural, span),
         max(harmonics, 1),
         observe=[dof],
         max_harmonics=max(harmonics, 1),
@@ -109,10 +107,22 @@ def limit_curve(
     return result.omega, result.amplitude(dof, measure)
 
 
-def _frequencies(linear: Model, span: tuple[float, float]) -> Float:
+def _linear(model: Model, *, stuck: bool, static: bool) -> tuple[Model, Float]:
+    """Return the limit with its natural frequencies; its modes are computed once per model."""
+    known = _KNOWN.setdefault(model, {})
+    if (stuck, static) not in known:
+        linear = limit_model(model, stuck=stuck)
+        if not static:
+            # They move the mean only, and a free structure may have no equilibrium under them.
+            dynamic = [force for force in linear.forces if force.harmonic]
+            linear = Model(linear.structure, forces=dynamic)
+        known[stuck, static] = linear, natural_frequencies(linear)
+    return known[stuck, static]
+
+
+def _frequencies(linear: Model, natural: Float, span: tuple[float, float]) -> Float:
     low, high = span
     forced = sorted({force.harmonic for force in linear.forces if force.harmonic})
-    natural = natural_frequencies(linear)
     resonances = np.concatenate([natural / harmonic for harmonic in forced] or [natural])
     resonances = resonances[(resonances > low) & (resonances < high)]
     near = np.concatenate([1.0 - _NEAR, 1.0 + _NEAR])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from stickslip.checks import unknown
+from stickslip.checks import brief, choice
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
 
@@ -70,23 +70,22 @@ _LENGTH: dict[str, Scale] = {
 
 def omega_scale(unit: str) -> Scale:
     """Return the factor on angular frequencies, and the label of their axis."""
-    if unit not in _OMEGA:
-        raise ModelError(unknown("omega_unit", unit, _OMEGA))
-    return _OMEGA[unit]
+    return _OMEGA[choice(unit, "omega_unit", _OMEGA)]
 
 
 def length_scale(unit: str) -> Scale:
     """Return the factor on lengths, and the symbol of the unit."""
-    if unit not in _LENGTH:
-        raise ModelError(unknown("length_unit", unit, _LENGTH))
-    return _LENGTH[unit]
+    return _LENGTH[choice(unit, "length_unit", _LENGTH)]
 
 
 def new_axes(ax: Axes | None) -> Axes:
     """Return the given axes, or those of a new figure that `plt.show()` will show."""
-    if ax is not None:
+    from matplotlib import axes, pyplot
+
+    if isinstance(ax, axes.Axes):
         return ax
-    from matplotlib import pyplot
+    if ax is not None:
+        raise ModelError(f"ax: {brief(ax)} is not a matplotlib Axes; leave it out for a new figure")
 
     _, made = pyplot.subplots(figsize=_SIZE, layout="constrained")
     return made

@@ -82,6 +82,8 @@ class Arrays:
     def of(cls, solution: _core.Solution) -> Arrays:
         """Take over what the core returns, blanking the numbers that mean nothing.
 
+        Of an interrupted run only the computed points are kept, unless there is none.
+
         Parameters
         ----------
         solution : _core.Solution
@@ -92,7 +94,11 @@ class Arrays:
         Arrays
             Copies.
         """
-        values = {entry.name: np.array(getattr(solution, entry.name)) for entry in fields(cls)}
+        computed = solution.status != Status.NOT_COMPUTED.code
+        kept = computed if computed.any() else slice(None)
+        values = {
+            entry.name: np.array(getattr(solution, entry.name)[kept]) for entry in fields(cls)
+        }
         # Where nothing was solved the core keeps no harmonic, and zeros would look like motion.
         missing = values["harmonics"] == 0
         for name in ("displacement", "contact_displacement", "contact_force"):

@@ -65,19 +65,22 @@ _VARIABLES: Mapping[str, tuple[str, tuple[str, ...], str, str]] = {
 }
 
 
-def to_dataset(result: ForcedResponse) -> xr.Dataset:
+def to_dataset(result: ForcedResponse, *, derived: bool = True) -> xr.Dataset:
     """Return a forced response as a dataset.
 
     Parameters
     ----------
     result : ForcedResponse
         The result.
+    derived : bool, optional
+        Whether to add the amplitude, which follows from the displacement.
 
     Returns
     -------
     xarray.Dataset
         Dimensions omega, harmonic, dof and point (of contact). The attributes `settings`,
-        `assumptions`, `timings` and `counters` are JSON texts.
+        `assumptions`, `timings` and `counters` are JSON texts. All
+        numbers are copies.
     """
     import xarray as xr
 
@@ -86,7 +89,7 @@ def to_dataset(result: ForcedResponse) -> xr.Dataset:
     arrays = result.arrays
     dataset = xr.Dataset(
         {
-            name: (dims, getattr(arrays, source), {"units": unit, "long_name": meaning})
+            name: (dims, getattr(arrays, source).copy(), {"units": unit, "long_name": meaning})
             for name, (source, dims, unit, meaning) in _VARIABLES.items()
         },
         coords=_coordinates(result),
@@ -102,11 +105,12 @@ def to_dataset(result: ForcedResponse) -> xr.Dataset:
             "interrupted": int(result.interrupted),
         },
     )
-    dataset["amplitude"] = (
-        ("omega", "dof"),
-        np.stack([result.amplitude(dof) for dof in result.dofs], axis=1),
-        {"units": "m", "long_name": "half peak-to-peak amplitude of the displacement"},
-    )
+    if derived:
+        dataset["amplitude"] = (
+            ("omega", "dof"),
+            np.stack([result.amplitude(dof) for dof in result.dofs], axis=1),
+            {"units": "m", "long_name": "half peak-to-peak amplitude of the displacement"},
+        )
     dataset["status"].attrs |= {
         "flag_values": np.array([status.code for status in Status], dtype=np.uint8),
         "flag_meanings": " ".join(status.replace(" ", "_") for status in Status),
@@ -148,7 +152,7 @@ def _coordinates(result: ForcedResponse) -> dict[Hashable, object]:
     return {
         "omega": (
             "omega",
-            result.omega,
+            result.omega.copy(),
             {"units": "rad/s", "long_name": "angular frequency of the excitation"},
         ),
         "harmonic": (

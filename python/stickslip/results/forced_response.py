@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from functools import partial
 from os import PathLike
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from stickslip.checks import unknown
+from stickslip.checks import choice, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
 from stickslip.results.contact_motion import ContactMotion
-from stickslip.results.peaks import Peak, Summary, highest
+from stickslip.results.peaks import Peak, Summary, highest, rows
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -50,9 +52,9 @@ class ForcedResponse(ContactMotion):
         Whether only odd harmonics were solved for, because forces and laws are half-wave symmetric.
     interrupted : bool
         Whether the run was stopped before its end.
-    timings : dict of float
+    timings : mapping of float
         Seconds by stage.
-    counters : dict of int
+    counters : mapping of int
         Evaluations by kind.
     assumptions : tuple of str
         What was taken for granted, and what to look at before the numbers are used.
@@ -66,6 +68,16 @@ class ForcedResponse(ContactMotion):
     assumptions: tuple[str, ...]
     _amplitudes: dict[tuple[str, Measure], Float] = field(default_factory=dict, init=False)
     _peaks: dict[tuple[str, Measure], Peak] = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        for name in ("timings", "counters"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    def __reduce__(self) -> tuple[Callable[[], ForcedResponse], tuple[()]]:
+        # What is only kept to save time stays behind, and a mapping proxy cannot be pickled.
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.init}
+        values |= {"timings": dict(self.timings), "counters": dict(self.counters)}
+        return partial(ForcedResponse, **values), ()
 
     def __repr__(self) -> str:
         omega = self.omega
@@ -115,7 +127,7 @@ class ForcedResponse(ContactMotion):
         ModelError
             If there is no such degree of freedom or measure, or the former was not observed.
         """
-        key = (dof, _measure(measure))
+        key = _key(dof, measure)
         if key not in self._amplitudes:
             values = amplitude_of(np.ascontiguousarray(self.coefficients(dof)), measure)
             self._amplitudes[key] = constant(np.where(self.arrays.solved, values, np.nan))
@@ -183,15 +195,20 @@ class ForcedResponse(ContactMotion):
         Returns
         -------
         Peak
-            `omega`, `amplitude` (not below any computed point) and `at_edge`.
+            `omega`, `amplitude` (not below any computed point), `at_edge` and `beside_gap`.
 
         Raises
         ------
         ModelError
             If there is no such degree of freedom or measure, the former was not observed, or no
             point is solved.
+
+        Warns
+        -----
+        UserWarning
+            If a point beside the maximum is not solved.
         """
-        key = (dof, _measure(measure))
+        key = _key(dof, measure)
         if key not in self._peaks:
             self._peaks[key] = highest(self, dof, measure)
         return self._peaks[key]
@@ -216,17 +233,25 @@ class ForcedResponse(ContactMotion):
         """
         return self.arrays.error_estimate[:, self._column(dof)]
 
-    def summary(self) -> list[Summary]:
-        """Return the peak of every observed degree of freedom, one row each.
+    def summary(self, dofs: Iterable[str] | str | None = None) -> list[Summary]:
+        """Return the peaks of degrees of freedom, one row each.
+
+        Parameters
+        ----------
+        dofs : iterable of str, optional
+            Observed degrees of freedom. Default: all.
 
         Returns
         -------
         list of Summary
             Empty if no point is solved.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, or it was not observed.
         """
-        if not self.arrays.solved.any():
-            return []
-        return [self._row(dof) for dof in self.dofs]
+        return rows(self, self.dofs if dofs is None else dofs)
 
     def to_dataset(self) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.
@@ -355,27 +380,13 @@ class ForcedResponse(ContactMotion):
         return plot.slip(self, contact, ax=ax, omega_unit=omega_unit)
 
     def _column(self, dof: str) -> int:
-        if dof in self.dofs:
+        if text(dof, "dof") in self.dofs:
             return self.dofs.index(dof)
         if dof in self.model.structure.dofs:
             raise ModelError(f"dof {dof!r}: it was not observed; add it to observe and run again")
         raise ModelError(unknown("dof", dof, self.dofs))
 
-    def _row(self, dof: str) -> Summary:
-        peak = self.peak(dof)
-        solved = np.flatnonzero(self.arrays.solved)
-        near = int(solved[np.abs(self.omega[solved] - peak.omega).argmin()])
-        return Summary(
-            dof,
-            peak.omega,
-            peak.amplitude,
-            float(self.error_estimate(dof)[near]),
-            int(self.harmonics[near]),
-            peak.at_edge,
-        )
 
-
-def _measure(measure: Measure) -> Measure:
-    if measure not in get_args(Measure):
-        raise ModelError(unknown("measure", measure, get_args(Measure)))
-    return measure
+def _key(dof: str, measure: Measure) -> tuple[str, Measure]:
+    choice(measure, "measure", get_args(Measure))
+    return text(dof, "dof"), measure

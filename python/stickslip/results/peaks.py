@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from stickslip.checks import brief
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float, Int, Measure
+from stickslip.results.arrays import Bool, Float, Int, Measure
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
 
-__all__ = ["Peak", "Summary", "highest"]
+__all__ = ["Peak", "Summary", "highest", "rows"]
 
 RIVAL = 0.9
 """Local maxima from this share of the largest may be the true peak once they are refined."""
@@ -27,6 +30,8 @@ class Peak(NamedTuple):
     """Amplitude [m]."""
     at_edge: bool
     """Whether it lies at an end of the computed frequencies: the true peak may be outside."""
+    beside_gap: bool = False
+    """Whether a point beside it is not solved: the true peak may be there."""
 
 
 class Summary(NamedTuple):
@@ -44,6 +49,8 @@ class Summary(NamedTuple):
     """Highest harmonic kept at the nearest computed point."""
     at_edge: bool
     """Whether the peak lies at an end of the computed frequencies."""
+    beside_gap: bool = False
+    """Whether a point beside the peak is not solved."""
 
 
 def highest(result: ForcedResponse, dof: str, measure: Measure) -> Peak:
@@ -52,7 +59,8 @@ def highest(result: ForcedResponse, dof: str, measure: Measure) -> Peak:
     Parameters
     ----------
     result : ForcedResponse
-        The curve. Points that are not solved are passed over.
+        The curve. Points that are not solved are passed over, and warned of where they lie beside
+        the peak.
     dof : str
         An observed degree of freedom.
     measure : {"half_range", "max", "fundamental"}
@@ -68,30 +76,87 @@ def highest(result: ForcedResponse, dof: str, measure: Measure) -> Peak:
     ModelError
         If no point is solved.
     """
-    omega, amplitude = _curve(result.omega, result.amplitude(dof, measure))
+    omega, amplitude, gap = _curve(result.omega, result.amplitude(dof, measure))
     if not omega.size:
         raise ModelError(
             f"peak of {dof!r}: none of the {result.omega.size} points is solved; see status"
         )
     best = int(amplitude.argmax())
+    beside_gap = bool(gap[best])
     peak = (float(omega[best]), float(amplitude[best]))
     for top in _rivals(amplitude):
+        beside_gap = beside_gap or bool(gap[top])
         low, high = omega[max(top - 1, 0)], omega[min(top + 1, omega.size - 1)]
         if low < high and amplitude[top] > 0.0:
             refined = _refined(result, dof, measure, (low, high, omega[top]))
             peak = max(peak, refined, key=lambda point: point[1])
     # The maximisation resolves frequencies to 1e-8.
     at_edge = bool(np.isclose(peak[0], omega[[0, -1]], rtol=1e-7, atol=0.0).any())
-    return Peak(*peak, at_edge)
+    if beside_gap:
+        unsolved = int((~result.arrays.solved).sum())
+        warnings.warn(
+            f"peak of {dof!r}: {unsolved} of {result.omega.size} points are not solved, some of "
+            "them beside the maximum, which may be higher there; see status for the remedy",
+            stacklevel=3,
+        )
+    return Peak(*peak, at_edge, beside_gap)
 
 
-def _curve(omega: Float, amplitude: Float) -> tuple[Float, Float]:
-    """Sort the solved points by frequency; of equal frequencies keep the larger amplitude."""
-    known = np.isfinite(amplitude)
-    omega, amplitude = omega[known], amplitude[known]
+def rows(result: ForcedResponse, dofs: Iterable[str] | str) -> list[Summary]:
+    """Return the peaks of degrees of freedom with the numbers of the nearest solved points.
+
+    Parameters
+    ----------
+    result : ForcedResponse
+        The curves.
+    dofs : iterable of str, or str
+        Observed degrees of freedom.
+
+    Returns
+    -------
+    list of Summary
+        Empty if no point is solved.
+
+    Raises
+    ------
+    ModelError
+        If there is no such degree of freedom, or it was not observed.
+    """
+    if not isinstance(dofs, Iterable):
+        raise ModelError(f"dofs: {brief(dofs)} is not a list of names; leave it out for all")
+    names = (dofs,) if isinstance(dofs, str) else tuple(dofs)
+    for dof in names:
+        result.amplitude(dof)  # refuses what is unknown
+    return [_row(result, dof) for dof in names] if result.arrays.solved.any() else []
+
+
+def _row(result: ForcedResponse, dof: str) -> Summary:
+    peak = result.peak(dof)
+    solved = np.flatnonzero(result.arrays.solved)
+    near = int(solved[np.abs(result.omega[solved] - peak.omega).argmin()])
+    return Summary(
+        dof,
+        peak.omega,
+        peak.amplitude,
+        float(result.error_estimate(dof)[near]),
+        int(result.harmonics[near]),
+        peak.at_edge,
+        peak.beside_gap,
+    )
+
+
+def _curve(omega: Float, amplitude: Float) -> tuple[Float, Float, Bool]:
+    """Sort the solved points by frequency, and tell which of them have an unsolved neighbour.
+
+    Of equal frequencies the larger amplitude is kept.
+    """
     order = np.lexsort((-amplitude, omega))
     omega, first = np.unique(omega[order], return_index=True)
-    return omega, amplitude[order][first]
+    amplitude = amplitude[order][first]
+    known = np.isfinite(amplitude)
+    around = np.concatenate(([True], known, [True]))
+    gap = ~(around[:-2] & around[2:])
+    return omega[known], amplitude[known], gap[known]
 
 
 def _rivals(amplitude: Float) -> Int:

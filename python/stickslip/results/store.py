@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.analyses.forced_response import Settings
+from stickslip.checks import file_path
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.contact import contact_from_spec
@@ -43,7 +44,8 @@ def save(result: ForcedResponse, path: str | os.PathLike[str]) -> None:
     """Write a result with its model to a NetCDF 4 file, whole or not at all.
 
     Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
-    reader opens the file. Contacts and forces are JSON texts, one per variable entry.
+    reader opens the file; the amplitude, which follows from the displacement, is left out. Contacts
+    and forces are JSON texts, one per variable entry.
 
     Parameters
     ----------
@@ -57,12 +59,12 @@ def save(result: ForcedResponse, path: str | os.PathLike[str]) -> None:
     ModelError
         If the folder does not exist or the file cannot be written.
     """
-    target = Path(path)
+    target = file_path(path, "path")
     if target.is_dir():
         raise ModelError(f"{target}: is a folder; give the name of a file in it")
     if not target.parent.is_dir():
         raise ModelError(f"{target}: there is no folder {target.parent}; create it first")
-    dataset = _split(to_dataset(result).assign(_model_variables(result.model)))
+    dataset = _split(to_dataset(result, derived=False).assign(_model_variables(result.model)))
     dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": KIND}
     try:
         with _whole(target) as temporary:
@@ -91,7 +93,7 @@ def load(path: str | os.PathLike[str]) -> ForcedResponse:
     ModelError
         If there is no such file, it is damaged, from elsewhere, or of a newer format.
     """
-    source = Path(path)
+    source = file_path(path, "path")
     if not source.is_file():
         raise ModelError(f"{source}: {'is a folder' if source.is_dir() else 'no such file'}")
     dataset = _read(source)
@@ -241,7 +243,7 @@ def _encoding(dataset: xr.Dataset) -> dict[Hashable, dict[str, object]]:
             continue
         encoding[name] = {"_FillValue": None}
         if variable.ndim and variable.size:
-            encoding[name] |= {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
+            encoding[name] |= {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True}
     return encoding
 
 

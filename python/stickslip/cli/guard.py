@@ -1,0 +1,110 @@
+"""What goes wrong on the command line, as one line on standard error and an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any, ParamSpec, TypeAlias, cast
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from stickslip.errors import ModelError
+
+__all__ = ["NOT_CONVERGED", "Command", "Commands", "guarded"]
+
+NOT_CONVERGED, REFUSED, DEFECT, STOPPED = 1, 2, 70, 130
+
+P = ParamSpec("P")
+# These classes are typer's or click's, as the version of typer has it.
+Parameter: TypeAlias = Any
+Context: TypeAlias = Any
+# Its own base class has moved from click into typer.
+_Refusal = cast("type[Exception]", typer.BadParameter.__mro__[2])
+
+
+def _untyped(parameters: list[Parameter]) -> list[Parameter]:
+    """Show flags in the help without a type: they take no value."""
+    for parameter in parameters:
+        if getattr(parameter, "is_flag", False):
+            parameter.metavar = ""
+    return parameters
+
+
+class Command(TyperCommand):
+    """A command with flags that are shown without a type."""
+
+    def get_params(self, ctx: Context) -> list[Parameter]:
+        """Return arguments and options."""
+        return _untyped(super().get_params(ctx))
+
+
+class Commands(TyperGroup):
+    """The commands; what cannot be understood of a command line is refused in one line."""
+
+    def get_params(self, ctx: Context) -> list[Parameter]:
+        """Return the options."""
+        return _untyped(super().get_params(ctx))
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        windows_expand_args: bool = True,
+        **extra: Any,
+    ) -> object:
+        """Run the command that the arguments name."""
+        from stickslip.cli.console import complain
+
+        if not (sys.argv[1:] if args is None else args):
+            args = ["--help"]
+        try:
+            code = super().main(args, prog_name, complete_var, False, windows_expand_args, **extra)
+        except typer.Abort:
+            code = STOPPED
+        except _Refusal as error:
+            line = " ".join(cast("typer.BadParameter", error).format_message().split()).rstrip(".")
+            complain("error", f"{line}; see stickslip --help")
+            code = REFUSED
+        sys.exit(code if isinstance(code, int) else 0)
+
+
+def guarded(command: Callable[P, None]) -> Callable[P, None]:
+    """Turn what a command raises into one line on standard error and an exit code."""
+
+    @wraps(command)
+    def safe(*args: P.args, **kwargs: P.kwargs) -> None:
+        from stickslip.cli.console import complain
+
+        if os.environ.get("STICKSLIP_DEBUG", "0") not in ("", "0"):
+            return command(*args, **kwargs)
+        try:
+            with warnings.catch_warnings():
+                # the table marks these peaks
+                warnings.filterwarnings("ignore", message="peak of ", category=UserWarning)
+                command(*args, **kwargs)
+        except (typer.Exit, typer.Abort):
+            raise
+        except KeyboardInterrupt as error:
+            complain("interrupted", str(error) or "nothing more was saved")
+            raise typer.Exit(STOPPED) from None
+        except ModelError as error:
+            complain("error", str(error))
+            raise typer.Exit(REFUSED) from None
+        except OSError as error:
+            complain("error", f"{error.filename or 'file'}: {error.strerror or error}")
+            raise typer.Exit(REFUSED) from None
+        except Exception as error:
+            cause = " ".join(f"{type(error).__name__}: {error}".split())
+            advice = (
+                "this is a defect of stickslip; set STICKSLIP_DEBUG=1 to see where, and report it"
+            )
+            complain("error", f"{cause} ({advice})")
+            raise typer.Exit(DEFECT) from None
+
+    return safe
