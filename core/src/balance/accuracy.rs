@@ -18,8 +18,8 @@ use faer::c64;
 
 /// The extended balance reaches at least this far beyond the kept harmonics, …
 const MARGIN: usize = 4;
-/// … to this multiple of them, …
-const MULTIPLE: usize = 2;
+/// … by half of them, …
+const SHARE: f64 = 0.5;
 /// … and past the highest stuck natural frequency by this factor, …
 const PAST_LAST_MODE: f64 = 1.2;
 /// … as far as its Newton system stays below this many unknowns: it must not cost more than the
@@ -37,7 +37,8 @@ pub(super) fn extended_order(
     let per_order = if kept.half_wave() { 1 } else { 2 };
     let affordable = UNKNOWNS / (per_order * slipping.max(1));
     let reach = (PAST_LAST_MODE * last_mode / omega).min(UNKNOWNS as f64) as usize;
-    let wanted = reach.max(MULTIPLE * kept.highest() + 3).min(affordable);
+    let beyond = kept.highest() + (SHARE * kept.highest() as f64) as usize;
+    let wanted = reach.max(beyond).min(affordable);
     // Steps of four keep the number of sample tables small along a curve.
     wanted.max(kept.highest() + MARGIN).next_multiple_of(4)
 }
