@@ -3,6 +3,7 @@
 mod arrays;
 mod problem;
 mod response;
+mod watch;
 
 use pyo3::prelude::*;
 

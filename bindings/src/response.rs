@@ -2,12 +2,11 @@
 
 use crate::arrays::{block, is_half_wave, refused, series, table, vector};
 use crate::problem::Problem;
+use crate::watch::Watch;
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::cell::{Cell, RefCell};
-use std::time::{Duration, Instant};
 use stickslip_core::balance::{
     refine_peak, sweep, sweep_range, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
     HIGHEST_ORDER,
@@ -15,9 +14,6 @@ use stickslip_core::balance::{
 use stickslip_core::contact::{Motion, Residual};
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::solve::NewtonSettings;
-
-/// Time between two looks at Python: often enough for Ctrl-C, rare enough to cost nothing.
-const LOOK: Duration = Duration::from_millis(100);
 
 /// Frequencies: a grid, or a range whose steps the core chooses.
 #[derive(FromPyObject)]
@@ -213,40 +209,6 @@ impl Solution {
         counters.set_item("factorisations", profile.factorisations)?;
         counters.set_item("homotopies", profile.homotopies)?;
         Ok(counters)
-    }
-}
-
-/// Looks at Python from time to time while the core works: progress out, Ctrl-C in.
-struct Watch<'a> {
-    progress: Option<&'a Py<PyAny>>,
-    last: Cell<Instant>,
-    raised: RefCell<Option<PyErr>>,
-}
-
-impl<'a> Watch<'a> {
-    fn new(progress: Option<&'a Py<PyAny>>) -> Self {
-        Self { progress, last: Cell::new(Instant::now()), raised: RefCell::new(None) }
-    }
-
-    /// `false` once an exception is pending.
-    fn look(&self, share: f64) -> bool {
-        if self.raised.borrow().is_some() {
-            return false;
-        }
-        if self.last.get().elapsed() < LOOK {
-            return true;
-        }
-        self.last.set(Instant::now());
-        Python::attach(|py| {
-            let told = self.progress.map_or(Ok(()), |call| call.call1(py, (share,)).map(drop));
-            match told.and_then(|()| py.check_signals()) {
-                Ok(()) => true,
-                Err(error) => {
-                    self.raised.replace(Some(error));
-                    false
-                }
-            }
-        })
     }
 }
 

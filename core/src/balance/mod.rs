@@ -5,6 +5,7 @@ mod accuracy;
 mod adaptive;
 mod condensed;
 mod forced;
+mod jacobian;
 mod peak;
 mod scale;
 mod settings;

@@ -1,0 +1,261 @@
+//! The condensed equations as a system for Newton's method and homotopy.
+//!
+//! The Jacobian `I − G ∂Q` has nontrivial columns only for contacts that slip; the Newton
+//! direction is found from their block and carried to the stuck contacts by substitution.
+
+use super::condensed::{Condensed, Path};
+use crate::contact::SlipLoad;
+use crate::solve::{norm, Parametrised, System};
+use crate::timing::Profile;
+use faer::linalg::solvers::Solve as _;
+use faer::Mat;
+
+/// Share of the largest contact force below which a contact counts as carrying nothing.
+const CARRIES_NOTHING: f64 = 1e-3;
+
+impl Condensed<'_> {
+    /// Assembles and factors `I − G_AA ∂Q_A` of the active points.
+    fn factorise(&mut self) {
+        let slots = self.table.harmonics().slots();
+        self.active.clear();
+        for (load, points) in self.loads.iter().zip(self.model.points()) {
+            if load.active {
+                self.active.extend(points.clone());
+            }
+        }
+        let mut matrix = Mat::<f64>::identity(self.active.len() * slots, self.active.len() * slots);
+        let mut first = 0;
+        for (load, points) in self.loads.iter().zip(self.model.points()) {
+            if load.active {
+                self.subtract_contact(load, points.clone(), first, &mut matrix);
+                first += points.len();
+            }
+        }
+        self.factor = Some(matrix.partial_piv_lu());
+    }
+
+    /// Subtracts `G ∂Q` of one contact, whose first active column block is `first`.
+    fn subtract_contact(
+        &self,
+        load: &SlipLoad,
+        points: std::ops::Range<usize>,
+        first: usize,
+        matrix: &mut Mat<f64>,
+    ) {
+        let harmonics = self.table.harmonics();
+        let slots = harmonics.slots();
+        let contacts = self.model.compliance().contacts();
+        let size = points.len() * slots;
+        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
+            let Some(slot) = harmonics.slot(order) else { continue };
+            for (row, &point) in self.active.iter().enumerate() {
+                let target = row * slots + slot;
+                for (local, source) in points.clone().enumerate() {
+                    let g = receptance.contact[source * contacts + point];
+                    let cosines = &load.tangent[(local * slots + slot) * size..][..size];
+                    if order == 0 {
+                        for (j, dq) in cosines.iter().enumerate() {
+                            matrix[(target, first * slots + j)] -= g.re * dq;
+                        }
+                        continue;
+                    }
+                    let sines = &load.tangent[(local * slots + slot + 1) * size..][..size];
+                    for (j, (a, b)) in cosines.iter().zip(sines).enumerate() {
+                        let column = first * slots + j;
+                        matrix[(target, column)] -= g.re * a + g.im * b;
+                        matrix[(target + 1, column)] -= g.re * b - g.im * a;
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl System for Condensed<'_> {
+    fn size(&self) -> usize {
+        self.stuck.len()
+    }
+
+    fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+        let mut loads = std::mem::take(&mut self.loads);
+        let mut law_time = std::time::Duration::ZERO;
+        Profile::time(&mut law_time, || {
+            for (index, load) in loads.iter_mut().enumerate() {
+                let motion = self.motion(index, x);
+                match &self.softened {
+                    None => self.model.laws()[index].slip_load(motion, true, load),
+                    Some((share, laws)) => {
+                        laws[index].slip_load(motion, true, load);
+                        self.add_lost_stiffness(index, 1.0 - share, motion, load);
+                    }
+                }
+            }
+        });
+        self.profile.law += law_time;
+        self.profile.evaluations += 1;
+        self.loads = loads;
+        self.factor = None;
+        out.fill(0.0);
+        self.add_response(&self.slip_load(), out);
+        for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
+            *r = x - self.load_scale * stuck - *r;
+        }
+    }
+
+    /// Contact by contact: a stiff contact moves little, and its force is its stiffness times that
+    /// little. A contact that carries next to nothing is measured against the largest force.
+    fn relative_size(&self, step: &[f64], x: &[f64]) -> f64 {
+        let slots = self.table.harmonics().slots();
+        let stiffness = |i: usize| self.model.contact_stiffness()[(i, i)];
+        let force = |i: usize, u: &[f64], q: &[f64]| {
+            let f: Vec<f64> = u.iter().zip(q).map(|(u, q)| stiffness(i) * u - q).collect();
+            norm(&f)
+        };
+        let slip_load = self.slip_load();
+        let points = || {
+            let parts = x.chunks_exact(slots).zip(slip_load.chunks_exact(slots));
+            parts.zip(step.chunks_exact(slots)).enumerate()
+        };
+        let largest = points().map(|(i, ((u, q), _))| force(i, u, q)).fold(0.0, f64::max);
+        points()
+            .map(|(i, ((u, _), step))| {
+                let least = CARRIES_NOTHING * largest / stiffness(i).max(f64::MIN_POSITIVE);
+                let reference = norm(u).max(least.min(norm(x))).max(f64::MIN_POSITIVE);
+                norm(step) / reference
+            })
+            .fold(0.0, f64::max)
+    }
+
+    fn interrupted(&self) -> bool {
+        self.interrupted.is_some_and(|ask| ask())
+    }
+
+    fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
+        let start = std::time::Instant::now();
+        let slots = self.table.harmonics().slots();
+        step.copy_from_slice(rhs);
+        if self.is_linear() {
+            return true;
+        }
+        if self.factor.is_none() {
+            self.factorise();
+            self.profile.factorisations += 1;
+        }
+        let Some(factor) = &self.factor else { return false };
+        let mut block = Mat::from_fn(self.active.len() * slots, 1, |i, _| {
+            rhs[self.active[i / slots] * slots + i % slots]
+        });
+        factor.solve_in_place(&mut block);
+        // Active points take the block's solution; the others follow from step = rhs + G ∂Q step.
+        let mut active_step = vec![0.0; step.len()];
+        for i in 0..block.nrows() {
+            active_step[self.active[i / slots] * slots + i % slots] = block[(i, 0)];
+        }
+        if self.active.len() * slots < step.len() {
+            let mut change = vec![0.0; step.len()];
+            self.add_tangent_product(&active_step, &mut change);
+            self.add_response(&change, step);
+        }
+        for &point in &self.active {
+            let range = point * slots..(point + 1) * slots;
+            step[range.clone()].copy_from_slice(&active_step[range]);
+        }
+        self.profile.linear_solve += start.elapsed();
+        step.iter().all(|s| s.is_finite())
+    }
+}
+
+impl Parametrised for Condensed<'_> {
+    fn set_scale(&mut self, scale: f64) {
+        match self.path {
+            Path::Load => self.load_scale = scale,
+            Path::Stiffness => {
+                let soften = || self.model.laws().iter().map(|law| law.softened(scale)).collect();
+                self.softened = (scale < 1.0).then(|| (scale, soften()));
+            }
+        }
+    }
+
+    fn easy_start(&self, x: &mut [f64]) {
+        if self.path == Path::Load {
+            x.iter_mut().zip(&self.stuck).for_each(|(x, stuck)| *x = self.load_scale * stuck);
+        }
+    }
+
+    fn predict(&self, growth: f64, x: &mut [f64]) {
+        // Beyond the onset of slip a solution grows roughly with its load.
+        if self.path == Path::Load {
+            x.iter_mut().for_each(|x| *x *= growth);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Jenkins;
+    use crate::contact::Residual;
+    use crate::fourier::{Harmonics, SampleTable};
+    use crate::model::Contact;
+    use crate::model::Model;
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::c64;
+    use faer::mat;
+
+    /// Two masses with one contact that slips, one between the masses and one that sticks.
+    fn model(static_load: f64) -> Model {
+        let mass = mat![[2.0, 0.1], [0.1, 1.0]];
+        let stiffness = mat![[300.0, -100.0], [-100.0, 150.0]];
+        let damping = mat![[0.5, -0.1], [0.2, 0.4]];
+        let structure =
+            Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+        let contact = |row: [f64; 2], stiffness, slip_force| Contact {
+            law: Box::new(Jenkins::new(stiffness, slip_force).unwrap()),
+            rows: Mat::from_fn(1, 2, |_, j| row[j]),
+        };
+        let contacts = vec![
+            contact([1.0, 0.0], 80.0, 0.3),
+            contact([1.0, -1.0], 200.0, 0.2),
+            contact([0.0, 1.0], 50.0, 1e4),
+        ];
+        let load = |harmonic, force: f64| HarmonicLoad {
+            harmonic,
+            amplitude: vec![c64::new(force, 0.2 * force), c64::new(-0.3 * force, 0.0)],
+        };
+        Model::new(structure, contacts, vec![load(1, 4.0), load(0, static_load)]).unwrap()
+    }
+
+    #[test]
+    fn newton_directions_match_differences_of_the_residual() {
+        for (static_load, half_wave) in [(0.0, true), (3.0, false)] {
+            let model = model(static_load);
+            let table = SampleTable::new(Harmonics::new(5, half_wave));
+            let mut equations = Condensed::new(&model, &table, Residual::Centred, false);
+            equations.set_omega(9.0).unwrap();
+            let size = equations.size();
+            let x: Vec<f64> =
+                (0..size).map(|i| 0.02 * (1.0 + i as f64).sin() / (1.0 + i as f64 / 3.0)).collect();
+            let (mut ahead, mut behind) = (vec![0.0; size], vec![0.0; size]);
+            let rhs: Vec<f64> = (0..size).map(|i| (0.7 * i as f64).cos()).collect();
+            let mut step = vec![0.0; size];
+            equations.residual(&x, &mut ahead);
+            assert!(equations.loads[0].active && equations.loads[1].active);
+            assert_eq!(equations.loads[2].active, !half_wave);
+            assert!(equations.solve(&rhs, &mut step));
+            let h = 1e-7 / norm_max(&step);
+            let shifted = |sign: f64| -> Vec<f64> {
+                x.iter().zip(&step).map(|(x, s)| x + sign * h * s).collect()
+            };
+            equations.residual(&shifted(1.0), &mut ahead);
+            equations.residual(&shifted(-1.0), &mut behind);
+            for ((a, b), expected) in ahead.iter().zip(&behind).zip(&rhs) {
+                let difference = (a - b) / (2.0 * h);
+                assert!((difference - expected).abs() < 1e-6, "{difference} {expected}");
+            }
+        }
+    }
+
+    fn norm_max(x: &[f64]) -> f64 {
+        x.iter().map(|v| v.abs()).fold(0.0, f64::max)
+    }
+}
