@@ -5,35 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from small_study import ANALYSIS, ONE_CONTACT, ONE_FORCE, SMALL, STRUCTURE
 from stickslip import ModelError, reference
 from stickslip.study import Study, json_schema
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "snecma-beam"
-
-STRUCTURE = """
-[structure]
-mass = [[2, 0.5], [0.5, 1]]
-stiffness = [[800, -200], [-200, 200]]
-dofs = ["root", "tip"]
-"""
-ONE_CONTACT = """
-[[contact]]
-law = "jenkins"
-dof = "root"
-stiffness = 1e3
-slip_force = 2
-"""
-ONE_FORCE = """
-[[force]]
-dof = "tip"
-amplitude = 1
-"""
-ANALYSIS = """
-[analysis]
-omega = {from = 1, to = 30, points = 5}
-harmonics = 3
-"""
-SMALL = STRUCTURE + ONE_CONTACT + ONE_FORCE + ANALYSIS
 
 
 def test_the_example_is_the_reference_beam():

@@ -312,8 +312,8 @@ fn a_failed_point_does_not_raise_the_harmonics_of_those_after_it() {
     assert_eq!(curve.points[0].error_estimate[0], f64::INFINITY);
 }
 
-/// Largest and median ratio of the estimated to the true sum of harmonic changes, and the share
-/// of points at which the estimate misses more than a factor of three.
+/// Median ratio of the estimated to the true sum of harmonic changes, and the share of points at
+/// which the estimate is less than a third of the truth.
 fn estimate_against_truth(stiffness: f64, load: f64, highest: usize) -> (f64, f64) {
     let mut beam = snecma_beam(load);
     beam.dampers[0].2 = stiffness;

@@ -257,12 +257,10 @@ mod tests {
 
     #[test]
     fn a_pair_between_two_samples_is_found() {
-        // u' = 1 + eps - cos(theta - s) dips below zero in a window far narrower than the grid.
+        // The slope cos 2x − (1 − d) cos x, x = θ − shift, is d at x = 0 and has two zeros near it.
         let shift = 0.5 * std::f64::consts::FRAC_PI_2 / 16.0 + 0.3;
         let depth = 1e-4;
         let harmonics = Harmonics::new(4, false);
-        // slope = d - (1 - cos(2 (theta - shift))) cannot be written without the mean of the
-        // slope, so build it from orders 1..4: cos 2x - cos x has a double root at x = 0.
         let mut series = vec![0.0; harmonics.slots()];
         let mut add = |k: usize, amplitude: f64| {
             let slot = harmonics.slot(k).unwrap();
