@@ -140,6 +140,14 @@ impl FrictionLaw for Jenkins {
         }
     }
 
+    fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
+        let trial = force[0] + self.stiffness * du[0];
+        force[0] = trial.clamp(-self.slip_force, self.slip_force);
+        if let Some(gain) = gain {
+            gain[0] = f64::from(u8::from(trial == force[0]));
+        }
+    }
+
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
         let span = motion.table.harmonics().span();
         out[0] = match Cycle::new(motion, self.stiffness, self.slip_force) {

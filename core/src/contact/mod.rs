@@ -98,6 +98,11 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// exactly: the tangent is the derivative of this value, history included.
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad);
 
+    /// Return map of one increment: takes the contact forces through a change `du` of the relative
+    /// displacements. `gain`, if asked for, is the derivative of the new forces in the trial forces
+    /// `f + D du`, points × points, row by row.
+    fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>);
+
     /// Slip share and friction work of every point.
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]);
 
