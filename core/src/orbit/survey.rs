@@ -2,7 +2,7 @@
 
 use super::quadrature::Quadrature;
 use crate::contact::{PointState, PointSummary};
-use crate::motion::{sign_changes, value, Arc, Event, ModalSystem, Passage};
+use crate::motion::{value, Arc, Event, Extremes, ModalSystem, Passage};
 use faer::c64;
 use std::f64::consts::TAU;
 
@@ -21,7 +21,8 @@ pub(super) struct Survey<'a> {
     series: Vec<c64>,
     /// Rows that give the observed DOFs, and after them the contact displacements.
     shapes: Vec<Vec<f64>>,
-    /// Lowest and highest value of each.
+    extremes: Extremes,
+    /// Lowest and highest value of each shape.
     pub(super) range: Vec<[f64; 2]>,
     pub(super) contacts: Vec<PointSummary>,
     pub(super) events: Vec<Event>,
@@ -52,6 +53,7 @@ impl<'a> Survey<'a> {
             series: vec![c64::new(0.0, 0.0); (highest + 1) * (system.modes() + system.points())],
             range: vec![[f64::INFINITY, f64::NEG_INFINITY]; shapes.len()],
             shapes,
+            extremes: Extremes::default(),
             contacts: vec![PointSummary::default(); system.points()],
             events: Vec::new(),
             work: 0.0,
@@ -113,27 +115,10 @@ impl<'a> Survey<'a> {
 
     /// Widens the ranges by the extremes on an arc.
     fn widen(&mut self, arc: &Arc<'_>) {
-        let (mut series, mut slope, mut zeros) = (Vec::new(), Vec::new(), Vec::new());
         for (shape, range) in self.shapes.iter().zip(&mut self.range) {
-            arc.series.project(shape.iter().copied(), arc.length, &mut series);
-            let mut include = |value: f64| {
-                range[0] = range[0].min(value);
-                range[1] = range[1].max(value);
-            };
-            include(series[0]);
-            include(value(&series, 1.0));
-            let reach: f64 = series[1..].iter().map(|a| a.abs()).sum();
-            if series[0] + reach <= range[1] && series[0] - reach >= range[0] {
-                continue;
-            }
-            slope.clear();
-            slope.extend(series[1..].iter().enumerate().map(|(n, a)| (n + 1) as f64 * a));
-            sign_changes(&slope, &mut zeros);
-            for &x in &zeros {
-                let value = value(&series, x);
-                range[0] = range[0].min(value);
-                range[1] = range[1].max(value);
-            }
+            let shape = shape.iter().copied();
+            arc.series.project(shape, arc.length, &mut self.extremes.series);
+            self.extremes.widen(range);
         }
     }
 
