@@ -2,7 +2,8 @@
 
 use crate::contact::FrictionLaw;
 use crate::structure::{
-    compliance, natural_frequencies, Compliance, HarmonicLoad, Ports, Structure,
+    compliance, natural_frequencies, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure,
+    HarmonicLoad, Ports, Structure,
 };
 use crate::Error;
 use faer::{Mat, Side};
@@ -25,6 +26,19 @@ pub struct Model {
     points: Vec<Range<usize>>,
     compliance: Box<dyn Compliance>,
     modal_base: &'static str,
+    /// The cyclic structure of a travelling wave, with the rows of B on the next sector.
+    wave: Option<(CyclicStructure, Mat<f64>)>,
+}
+
+/// One contact of a sector: its law and the rows of B on the sector itself and on the next one.
+#[derive(Debug)]
+pub struct SectorContact {
+    /// The friction law.
+    pub law: Box<dyn FrictionLaw>,
+    /// Rows on the sector itself, points × N.
+    pub own: Mat<f64>,
+    /// Rows on the next sector, points × N.
+    pub next: Mat<f64>,
 }
 
 impl Model {
@@ -38,42 +52,54 @@ impl Model {
         contacts: Vec<Contact>,
         loads: Vec<HarmonicLoad>,
     ) -> Result<Self, Error> {
-        let total: usize = contacts.iter().map(|contact| contact.law.points()).sum();
-        let mut rows = Mat::zeros(total, structure.dofs());
-        let mut stiffness = Mat::zeros(total, total);
-        let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
-        for (index, Contact { law, rows: own }) in contacts.into_iter().enumerate() {
-            let size = law.points();
-            let entry = format!("contact {}", index + 1);
-            if (own.nrows(), own.ncols()) != (size, structure.dofs()) {
-                return Err(Error::shape(
-                    &entry,
-                    format!("rows of shape {size} x {}", structure.dofs()),
-                    format!("{} x {}", own.nrows(), own.ncols()),
-                ));
-            }
-            if (0..size).any(|i| (0..own.ncols()).any(|j| !own[(i, j)].is_finite())) {
-                return Err(Error::value(entry, f64::NAN, "its rows must be finite"));
-            }
-            let own_stiffness = law.stiffness();
-            rows.get_mut(first..first + size, ..).copy_from(&own);
-            stiffness.get_mut(first..first + size, first..first + size).copy_from(&own_stiffness);
-            points.push(first..first + size);
-            laws.push(law);
-            first += size;
-        }
-        let ports = Ports { rows, stiffness, loads };
+        let dofs = structure.dofs();
+        let gathered = Gathered::new(dofs, contacts.into_iter().map(|c| (c.law, vec![c.rows])))?;
+        let Gathered { laws, points, mut rows, stiffness } = gathered;
+        let ports = Ports { rows: rows.remove(0), stiffness, loads };
         let (compliance, modal_base) = compliance(&structure, &ports)?;
-        Ok(Self { structure, ports, laws, points, compliance, modal_base })
+        Ok(Self { structure, ports, laws, points, compliance, modal_base, wave: None })
     }
 
-    /// The structure without its contacts.
+    /// One sector of a tuned bladed disk in a travelling wave; `loads` are those on sector 0.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn travelling_wave(
+        cyclic: CyclicStructure,
+        contacts: Vec<SectorContact>,
+        loads: Vec<HarmonicLoad>,
+    ) -> Result<Self, Error> {
+        let dofs = cyclic.dofs();
+        let parts = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
+        let Gathered { laws, points, mut rows, stiffness } = Gathered::new(dofs, parts)?;
+        let (next, own) = (rows.remove(1), rows.remove(0));
+        let sector = CyclicPorts {
+            own: own.clone(),
+            next: next.clone(),
+            stiffness: stiffness.clone(),
+            loads: loads.clone(),
+        };
+        let structure = cyclic.sector()?;
+        let compliance = Box::new(CyclicCompliance::new(cyclic.clone(), sector)?);
+        let ports = Ports { rows: own, stiffness, loads };
+        let modal_base = "waves";
+        let wave = Some((cyclic, next));
+        Ok(Self { structure, ports, laws, points, compliance, modal_base, wave })
+    }
+
+    /// Whether this is one sector of a disk in a travelling wave.
+    #[must_use]
+    pub fn is_travelling_wave(&self) -> bool {
+        self.wave.is_some()
+    }
+
+    /// The structure without its contacts; of a travelling wave, the sector by itself.
     #[must_use]
     pub fn structure(&self) -> &Structure {
         &self.structure
     }
 
-    /// Contacts and loads of the structure.
+    /// Contacts and loads of the structure; of a travelling wave, without the next sector.
     #[must_use]
     pub fn ports(&self) -> &Ports {
         &self.ports
@@ -130,6 +156,31 @@ impl Model {
     /// # Errors
     /// A point that does not exist, or an eigenvalue iteration that fails.
     pub fn natural_frequencies(&self, slipping: &[(usize, usize)]) -> Result<Vec<f64>, Error> {
+        let (stick, stiffness) = self.partition(slipping)?;
+        let rows = picked(&self.ports.rows, &stick);
+        let restrained = self.structure.restrained_stiffness(rows.as_ref(), stiffness.as_ref());
+        natural_frequencies(self.structure.mass(), restrained.as_ref())
+    }
+
+    /// The same for a travelling wave, at a nodal diameter of its disk.
+    ///
+    /// # Errors
+    /// As [`Model::natural_frequencies`]; a model that is no travelling wave.
+    pub fn wave_frequencies(
+        &self,
+        diameter: usize,
+        slipping: &[(usize, usize)],
+    ) -> Result<Vec<f64>, Error> {
+        let Some((cyclic, next)) = &self.wave else {
+            return Err(Error::shape("model", "a travelling wave", "a structure without symmetry"));
+        };
+        let (stick, stiffness) = self.partition(slipping)?;
+        let (own, next) = (picked(&self.ports.rows, &stick), picked(next, &stick));
+        cyclic.natural_frequencies(diameter, own.as_ref(), next.as_ref(), stiffness.as_ref())
+    }
+
+    /// The points that stick, and their stiffness with the slipping ones condensed.
+    fn partition(&self, slipping: &[(usize, usize)]) -> Result<(Vec<usize>, Mat<f64>), Error> {
         let total = self.ports.rows.nrows();
         let mut slips = vec![false; total];
         for &(contact, point) in slipping {
@@ -149,10 +200,56 @@ impl Model {
         }
         let (slip, stick): (Vec<usize>, Vec<usize>) = (0..total).partition(|&i| slips[i]);
         let stiffness = condensed(&self.ports.stiffness, &stick, &slip)?;
-        let rows =
-            Mat::from_fn(stick.len(), self.structure.dofs(), |i, j| self.ports.rows[(stick[i], j)]);
-        let restrained = self.structure.restrained_stiffness(rows.as_ref(), stiffness.as_ref());
-        natural_frequencies(self.structure.mass(), restrained.as_ref())
+        Ok((stick, stiffness))
+    }
+}
+
+fn picked(rows: &Mat<f64>, which: &[usize]) -> Mat<f64> {
+    Mat::from_fn(which.len(), rows.ncols(), |i, j| rows[(which[i], j)])
+}
+
+/// Contacts one after the other, their rows and their stiffness.
+struct Gathered {
+    laws: Vec<Box<dyn FrictionLaw>>,
+    points: Vec<Range<usize>>,
+    /// Rows of B, one matrix per part of the structure that they act on.
+    rows: Vec<Mat<f64>>,
+    stiffness: Mat<f64>,
+}
+
+impl Gathered {
+    fn new(
+        dofs: usize,
+        contacts: impl Iterator<Item = (Box<dyn FrictionLaw>, Vec<Mat<f64>>)>,
+    ) -> Result<Self, Error> {
+        let contacts: Vec<_> = contacts.collect();
+        let total: usize = contacts.iter().map(|(law, _)| law.points()).sum();
+        let mut rows = vec![Mat::zeros(total, dofs); 2];
+        let mut stiffness = Mat::zeros(total, total);
+        let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
+        for (index, (law, parts)) in contacts.into_iter().enumerate() {
+            let size = law.points();
+            let entry = format!("contact {}", index + 1);
+            for (part, rows) in parts.iter().zip(&mut rows) {
+                if (part.nrows(), part.ncols()) != (size, dofs) {
+                    return Err(Error::shape(
+                        &entry,
+                        format!("rows of shape {size} x {dofs}"),
+                        format!("{} x {}", part.nrows(), part.ncols()),
+                    ));
+                }
+                if (0..size).any(|i| (0..dofs).any(|j| !part[(i, j)].is_finite())) {
+                    return Err(Error::value(entry, f64::NAN, "its rows must be finite"));
+                }
+                rows.get_mut(first..first + size, ..).copy_from(part);
+            }
+            let own = law.stiffness();
+            stiffness.get_mut(first..first + size, first..first + size).copy_from(&own);
+            points.push(first..first + size);
+            laws.push(law);
+            first += size;
+        }
+        Ok(Self { laws, points, rows, stiffness })
     }
 }
 

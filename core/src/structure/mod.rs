@@ -4,6 +4,7 @@
 //! harmonic k produces when all contacts stick. That form stays well scaled at high harmonics,
 //! needs no partition of the matrices and takes ω as an unknown.
 
+mod cyclic;
 mod direct;
 mod flexibility;
 mod modal;
@@ -13,6 +14,7 @@ mod restraint;
 mod spectrum;
 mod system;
 
+pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
 pub use direct::DirectCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
 pub use modes::{natural_frequencies, real_modes, RealModes};

@@ -1,0 +1,154 @@
+//! One sector in a travelling wave against the whole disk, and the converged table.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{snecma_beam, System, SLIP_FORCE, STIFFNESS};
+use faer::{c64, Mat};
+use std::f64::consts::TAU;
+use stickslip_core::balance::{
+    refine_peak, sweep, ForcedBalance, HarmonicChoice, PointStatus, Settings,
+};
+use stickslip_core::contact::Jenkins;
+use stickslip_core::fourier::Measure;
+use stickslip_core::model::{Model, SectorContact};
+use stickslip_core::structure::{CyclicMatrix, CyclicStructure, HarmonicLoad};
+
+const COUPLING: f64 = 1e5;
+
+/// A ring of beams coupled at their tips; `between` adds a damper between neighbouring tips.
+fn ring(sectors: usize, engine_order: usize, between: Option<(f64, f64)>) -> Model {
+    let beam = snecma_beam(20.313);
+    let zero = Mat::zeros(3, 3);
+    let mut stiffness = beam.stiffness.clone();
+    stiffness[(1, 1)] += 2.0 * COUPLING;
+    let mut next = zero.clone();
+    next[(1, 1)] = -COUPLING;
+    let row = |dof: usize, sign: f64| Mat::from_fn(1, 3, |_, j| if j == dof { sign } else { 0.0 });
+    let mut contacts = vec![SectorContact {
+        law: Box::new(Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap()),
+        own: row(0, 1.0),
+        next: Mat::zeros(1, 3),
+    }];
+    if let Some((k, limit)) = between {
+        contacts.push(SectorContact {
+            law: Box::new(Jenkins::new(k, limit).unwrap()),
+            own: row(1, 1.0),
+            next: row(1, -1.0),
+        });
+    }
+    let mut amplitude = vec![c64::new(0.0, 0.0); 3];
+    amplitude[1] = c64::new(20.313, 0.0);
+    let cyclic = CyclicStructure {
+        mass: CyclicMatrix::new(beam.mass, zero.clone()),
+        damping: CyclicMatrix::new(beam.damping, zero),
+        stiffness: CyclicMatrix::new(stiffness, next),
+        sectors,
+        engine_order,
+    };
+    Model::travelling_wave(cyclic, contacts, vec![HarmonicLoad { harmonic: 1, amplitude }]).unwrap()
+}
+
+/// The same ring, all sectors assembled.
+fn assembly(sectors: usize, engine_order: usize, between: Option<(f64, f64)>) -> Model {
+    let beam = snecma_beam(20.313);
+    let n = 3 * sectors;
+    let spread = |a: &Mat<f64>| {
+        Mat::from_fn(n, n, |i, j| if i / 3 == j / 3 { a[(i % 3, j % 3)] } else { 0.0 })
+    };
+    let mut stiffness = spread(&beam.stiffness);
+    for i in 0..sectors {
+        let (a, b) = (3 * i + 1, 3 * ((i + 1) % sectors) + 1);
+        stiffness[(a, a)] += COUPLING;
+        stiffness[(b, b)] += COUPLING;
+        stiffness[(a, b)] -= COUPLING;
+        stiffness[(b, a)] -= COUPLING;
+    }
+    let phase = |i: usize| TAU * ((i * engine_order) % sectors) as f64 / sectors as f64;
+    let dampers = (0..sectors).flat_map(|i| {
+        let ground = (3 * i, None, STIFFNESS, SLIP_FORCE);
+        let pair =
+            between.map(|(k, limit)| (3 * i + 1, Some(3 * ((i + 1) % sectors) + 1), k, limit));
+        std::iter::once(ground).chain(pair)
+    });
+    System {
+        mass: spread(&beam.mass),
+        damping: spread(&beam.damping),
+        stiffness,
+        dampers: dampers.collect(),
+        forces: (0..sectors).map(|i| (3 * i + 1, 1, 20.313, phase(i))).collect(),
+    }
+    .model()
+}
+
+fn fixed(highest: usize) -> Settings {
+    Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
+}
+
+#[test]
+fn a_sector_moves_as_the_whole_disk() {
+    for (between, highest, engine_order) in [
+        (None, 7, 2),
+        (Some((2e5, 8.0)), 7, 5),
+        (Some((2e5, 8.0)), 5, 3),
+        (None, 5, 0),
+        (None, 5, 6),
+    ] {
+        let sectors = 12;
+        let (wave, whole) =
+            (ring(sectors, engine_order, between), assembly(sectors, engine_order, between));
+        let omega: Vec<f64> = (0..16).map(|i| 160.0 + 40.0 * f64::from(i)).collect();
+        let everywhere: Vec<usize> = (0..3 * sectors).collect();
+        let one =
+            sweep(ForcedBalance::new(&wave, fixed(highest), &[0, 1, 2]).unwrap(), &omega).unwrap();
+        let all = sweep(ForcedBalance::new(&whole, fixed(highest), &everywhere).unwrap(), &omega)
+            .unwrap();
+        let mut slips = false;
+        for (sector, disk) in one.points.iter().zip(&all.points) {
+            assert_eq!(
+                (sector.status, disk.status),
+                (PointStatus::Converged, PointStatus::Converged)
+            );
+            let size = sector.displacement.iter().map(|x| x.norm()).fold(0.0, f64::max);
+            let orders = highest + 1;
+            slips |= sector.contacts.iter().any(|c| c.slip_fraction > 0.0);
+            for blade in 0..sectors {
+                for dof in 0..3 {
+                    for k in 0..orders {
+                        let turn =
+                            TAU * ((blade * k * engine_order) % sectors) as f64 / sectors as f64;
+                        let expected =
+                            sector.displacement[dof * orders + k] * c64::from_polar(1.0, turn);
+                        let found = disk.displacement[(3 * blade + dof) * orders + k];
+                        assert!((expected - found).norm() < 1e-9 * size, "{blade} {dof} {k}");
+                    }
+                }
+            }
+        }
+        assert!(slips);
+    }
+}
+
+/// Guillen (1999), section 4.5: ring of 36 beams, engine order 2, converged peaks.
+#[test]
+fn the_tuned_ring_of_36_beams() {
+    let ring = ring(36, 2, None);
+    for (highest, expected) in
+        [(1, 8.0014e-5), (3, 8.3035e-5), (7, 8.6130e-5), (15, 8.3912e-5), (35, 8.4116e-5)]
+    {
+        let omega: Vec<f64> = (0..120).map(|i| 150.0 + f64::from(i)).collect();
+        let curve =
+            sweep(ForcedBalance::new(&ring, fixed(highest), &[0]).unwrap(), &omega).unwrap();
+        let top = (0..omega.len())
+            .max_by(|&a, &b| {
+                let size = |i: usize| curve.points[i].displacement[1].norm();
+                size(a).total_cmp(&size(b))
+            })
+            .unwrap();
+        let bracket = [omega[top] - 6.0, omega[top], omega[top] + 6.0];
+        let (_, peak) =
+            refine_peak(&ring, fixed(highest), 0, Measure::HalfRange, bracket, &|_| true).unwrap();
+        assert!((peak / expected - 1.0).abs() < 1e-4, "{highest}: {peak} {expected}");
+    }
+}
