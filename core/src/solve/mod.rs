@@ -1,8 +1,10 @@
 //! Solvers that know nothing of friction: a system has a residual and a Newton direction.
 
+mod cyclic_tridiagonal;
 mod homotopy;
 mod newton;
 
+pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
 
