@@ -12,15 +12,15 @@ const ROUNDING: f64 = 1e-15;
 #[inline]
 #[must_use]
 pub fn value(a: &[f64], x: f64) -> f64 {
-    a.iter().rev().fold(0.0, |sum, a| sum.mul_add(x, *a))
+    a.iter().rev().fold(0.0, |sum, a| sum * x + a)
 }
 
 /// Value and derivative.
 fn jet(a: &[f64], x: f64) -> [f64; 2] {
     let (mut value, mut slope) = (0.0_f64, 0.0_f64);
     for a in a.iter().rev() {
-        slope = slope.mul_add(x, value);
-        value = value.mul_add(x, *a);
+        slope = slope * x + value;
+        value = value * x + a;
     }
     [value, slope]
 }
