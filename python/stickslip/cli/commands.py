@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, cast
 import typer
 
 from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded
-from stickslip.errors import Interrupted
+from stickslip.errors import Interrupted, ModelError
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse

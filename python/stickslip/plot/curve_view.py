@@ -135,7 +135,7 @@ class CurveView:
         curve = exact + factor * certificate.error[:, column]
         self.ax.vlines(x, exact, curve, color="crimson", lw=1.4, zorder=2.6)
         largest = np.abs(certificate.relative[:, column])
-        worst = f", largest error {np.nanmax(largest):.2g}" if np.isfinite(largest).any() else ""
+        worst = f" (error ≤ {np.nanmax(largest):.2g})" if np.isfinite(largest).any() else ""
         self.ax.plot(
             x,
             exact,
@@ -145,7 +145,7 @@ class CurveView:
             mfc="white",
             mec="crimson",
             zorder=2.7,
-            label=f"exact orbits{worst}",
+            label=f"exact{worst}",
         )
 
     def mark_peak(self, result: ForcedResponse, colour: Colour, *, named: bool) -> None:

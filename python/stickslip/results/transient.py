@@ -111,6 +111,8 @@ class Transient(Result):
             return TransientStatus.INTERRUPTED
         if self.settled:
             return TransientStatus.SETTLED
+        if self.periods < self.settings.periods:
+            return TransientStatus.HALTED
         asked = self.settings.tolerance is not None
         return TransientStatus.NOT_SETTLED if asked else TransientStatus.COMPLETED
 
@@ -366,13 +368,11 @@ class Transient(Result):
             Empty if not one period was completed.
         """
         rows = []
-        for dof in self.dofs:
-            before, *last = self.amplitudes(dof)[-2:] if self.periods else (0.0,)
-            if not self.periods:
-                return []
-            now = float(last[0] if last else before)
-            change = abs(now - before) / now if last and now else np.nan
-            rows.append(Settled(dof, now, float(change)))
+        for dof in self.dofs if self.periods else ():
+            before, now = self.amplitudes(dof)[[-2, -1] if self.periods > 1 else [-1, -1]]
+            known = self.periods > 1 and now > 0.0
+            change = abs(now - before) / now if known else np.nan
+            rows.append(Settled(dof, float(now), float(change)))
         return rows
 
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:

@@ -15,6 +15,7 @@ class TransientStatus(StrEnum):
     COMPLETED = "completed"
     UNBOUNDED = "unbounded"
     INTERRUPTED = "interrupted"
+    HALTED = "halted"
 
     @property
     def advice(self) -> str:
@@ -40,5 +41,9 @@ _ADVICE = {
     ),
     TransientStatus.INTERRUPTED: (
         "The run was stopped before its end. Continue with start=result.final."
+    ),
+    TransientStatus.HALTED: (
+        "Contacts changed between stick and slip without end at one instant. "
+        "Change the start slightly, or take rk4."
     ),
 }
