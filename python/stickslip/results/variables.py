@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Variable",
     "attributes",
+    "coordinate",
     "dof_coordinate",
     "names",
     "parts",
@@ -76,6 +77,19 @@ def read(table: Mapping[str, Variable], dataset: xr.Dataset) -> dict[str, NDArra
             raise ValueError(f"{name} has dimensions {variable.dims} instead of {entry.dims}")
         arrays[entry.source] = variable.values
     return arrays
+
+
+def coordinate(dataset: xr.Dataset, name: str) -> NDArray[np.generic]:
+    """Return the numbers along a dimension.
+
+    Raises
+    ------
+    KeyError
+        If they are missing: xarray would count the entries instead.
+    """
+    if name not in dataset.variables:
+        raise KeyError(name)
+    return dataset[name].values
 
 
 def attributes(result: Result, settings: DataclassInstance, title: str) -> dict[str, object]:
