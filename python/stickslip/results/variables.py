@@ -60,7 +60,7 @@ def written(table: Mapping[str, Variable], arrays: object) -> dict[Hashable, obj
     }
 
 
-def read(table: Mapping[str, Variable], dataset: xr.Dataset) -> dict[str, NDArray[np.generic]]:
+def read(table: Mapping[str, Variable], dataset: xr.Dataset) -> dict[str, NDArray[Any]]:
     """Return the arrays of a result that a dataset holds, by their names in the result.
 
     Raises
@@ -70,7 +70,7 @@ def read(table: Mapping[str, Variable], dataset: xr.Dataset) -> dict[str, NDArra
     ValueError
         If a variable has other dimensions.
     """
-    arrays = {}
+    arrays: dict[str, NDArray[Any]] = {}
     for name, entry in table.items():
         variable = dataset[name]
         if variable.dims != entry.dims:
@@ -79,7 +79,7 @@ def read(table: Mapping[str, Variable], dataset: xr.Dataset) -> dict[str, NDArra
     return arrays
 
 
-def coordinate(dataset: xr.Dataset, name: str) -> NDArray[np.generic]:
+def coordinate(dataset: xr.Dataset, name: str) -> NDArray[Any]:
     """Return the numbers along a dimension.
 
     Raises
@@ -89,7 +89,8 @@ def coordinate(dataset: xr.Dataset, name: str) -> NDArray[np.generic]:
     """
     if name not in dataset.variables:
         raise KeyError(name)
-    return dataset[name].values
+    values: NDArray[Any] = dataset[name].values
+    return values
 
 
 def attributes(result: Result, settings: DataclassInstance, title: str) -> dict[str, object]:
