@@ -80,6 +80,9 @@ def test_events_of_several_contacts(ax):
 def test_orbits_in_the_figures_of_forced_responses(exact, ax):
     plot.curves(exact, "tip", ax=ax)
     assert not any("not solved" in text for text in legend(ax))
+    balance = ss.forced_response(exact.model, exact.omega, 5)
+    plot.curves([exact, balance], "tip", ax=(both := Figure().add_subplot()))
+    assert legend(both)[-2:] == ["exact", "H = 5"]
     plot.waveform(exact, "tip", 10, ax=(wave := Figure().add_subplot()))
     np.testing.assert_array_equal(wave.lines[0].get_ydata()[:-1], exact.waveform("tip", 10, 512))
     plot.hysteresis(exact, 0, 10, ax=(loop := Figure().add_subplot()))
@@ -148,13 +151,15 @@ def test_poincare_section(run, ax):
     assert cloud.get_array().tolist() == list(range(5, 31))
 
 
-def test_spectrum(run, ax):
+def test_spectrum(ax):
+    run = ss.transient(snecma_beam(), 170.0, 30, samples=16)
     plot.spectrum(run, "tip", ax=ax, last=8, omega_unit="rad/s")
     *marks, line = ax.lines
     found = run.spectrum("tip", last=8)
     np.testing.assert_allclose(line.get_xdata(), 2 * np.pi * found.frequency)
     assert line.get_xdata()[np.nanargmax(line.get_ydata())] == pytest.approx(170.0)
     assert [mark.get_xdata()[0] for mark in marks][:2] == pytest.approx([170.0, 340.0])
+    assert len(marks) == 8
     assert ax.get_yscale() == "log"
     assert ax.get_ylabel() == "power spectral density of tip [m²/Hz]"
 

@@ -159,23 +159,7 @@ class Transient(Result):
         return self.arrays.displacement[:, self._column(dof)]
 
     def velocity(self, dof: str) -> Float:
-        """Return a velocity over `time`.
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m/s].
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
-        """
+        """Return a velocity over `time`, shape (n,) [m/s]; see `displacement`."""
         return self.arrays.velocity[:, self._column(dof)]
 
     def contact_force(self, contact: PointRef) -> Float:
@@ -199,23 +183,7 @@ class Transient(Result):
         return self._select(self.arrays.contact_force, contact)
 
     def contact_displacement(self, contact: PointRef) -> Float:
-        """Return the relative displacement at the contacts over `time`.
-
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
-
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            [m].
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
-        """
+        """Return the relative displacement at the contacts over `time` [m]; see `contact_force`."""
         return self._select(self.arrays.contact_displacement, contact)
 
     def poincare(self, dof: str) -> tuple[Float, Float]:
