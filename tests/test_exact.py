@@ -174,6 +174,31 @@ def test_multipliers(exact):
     assert (np.diff(size, axis=1) <= 1e-12).all()
 
 
+def test_multipliers_are_those_of_small_disturbances():
+    """Central differences of one period of the exact flow, from a state that sticks."""
+    beam = snecma_beam(25.0)
+    orbit = ss.exact_response(beam, [200.0])
+    start = orbit.state(0).vector
+    assert abs(start[6]) < 246.0
+    sizes = np.array([1e-4, 1e-3, 1e-4, 1e-2, 1e-1, 1e-2, 2e2])
+    columns = []
+    for entry, size in enumerate(1e-6 * sizes):
+        ends = []
+        for side in (1.0, -1.0):
+            moved = start.copy()
+            moved[entry] += side * size
+            state = ss.State.of_vector(beam, moved)
+            ends.append(ss.transient(beam, 200.0, 1, start=state).final.vector)
+        columns.append((ends[0] - ends[1]) / (2.0 * size))
+    disturbed = np.linalg.eigvals(np.array(columns).T)
+    order = np.argsort(-np.abs(disturbed))
+    np.testing.assert_allclose(
+        np.sort_complex(disturbed[order][:6]),
+        np.sort_complex(orbit.multipliers[0][:6]),
+        atol=1e-6,
+    )
+
+
 def test_negative_damping_is_seen_to_be_unstable():
     structure = ss.Structure([[1.0]], [[4.0]], [[-0.01]], ["x"])
     free = ss.exact_response(ss.Model(structure, forces=[ss.Force("x", 1.0)]), [1.0, 3.0])
@@ -223,6 +248,15 @@ def test_an_interrupted_run_keeps_its_points(tmp_path):
     assert any("interrupted after" in text for text in partial.assumptions)
     partial.save(tmp_path / "partial.nc")
     assert ss.load(tmp_path / "partial.nc").omega.size == partial.omega.size
+
+
+def test_an_interrupted_choice_of_frequencies_keeps_the_balance():
+    def stop(_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(ss.Interrupted, match="interrupted while its frequencies were chosen") as it:
+        ss.exact_response(snecma_beam(), (20.0, 350.0), tolerance=1e-6, progress=stop)
+    assert it.value.result.omega[0] == 20.0
 
 
 def test_a_point_without_orbit_says_so(monkeypatch):
