@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
     from stickslip.analyses.transient import transient
+    from stickslip.disk import BladedDisk, Coupling, Interface, MistunedDisk
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
@@ -27,11 +28,15 @@ if TYPE_CHECKING:
     from stickslip.results.transient import Transient
 
 __all__ = [
+    "BladedDisk",
+    "Coupling",
     "ExactResponse",
     "Force",
     "ForcedResponse",
+    "Interface",
     "Interrupted",
     "Jenkins",
+    "MistunedDisk",
     "ModalDamping",
     "Model",
     "ModelError",
@@ -55,11 +60,15 @@ __all__ = [
 ]
 
 _HOMES = {
+    "BladedDisk": "disk",
+    "Coupling": "disk",
     "ExactResponse": "results.exact_response",
     "Force": "model",
     "ForcedResponse": "results",
     "Interrupted": "errors",
+    "Interface": "disk",
     "Jenkins": "model",
+    "MistunedDisk": "disk",
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",

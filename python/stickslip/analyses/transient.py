@@ -13,6 +13,7 @@ from stickslip.analyses.arguments import (
     observed_dofs,
     require_model,
     require_progress,
+    require_time,
 )
 from stickslip.analyses.assumptions import transient_assumptions
 from stickslip.analyses.memory import require_numbers
@@ -150,6 +151,7 @@ def transient(
     3.1). The exact flow is this package's.
     """
     require_model(model)
+    require_time(model)
     settings = TransientSettings(
         omega=omega,
         scheme=scheme,
