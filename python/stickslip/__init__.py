@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
     from stickslip.analyses.transient import transient
-    from stickslip.disk import BladedDisk, Coupling, Interface, MistunedDisk
+    from stickslip.disk import BladedDisk, Coupling, Interface, MistunedDisk, cyclic_sector
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
@@ -47,6 +47,7 @@ __all__ = [
     "Transient",
     "__version__",
     "certify",
+    "cyclic_sector",
     "exact_response",
     "forced_response",
     "join",
@@ -79,6 +80,7 @@ _HOMES = {
     "Transient": "results.transient",
     "__version__": "_core",
     "certify": "analyses.certify",
+    "cyclic_sector": "disk",
     "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, NoReturn
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import Matrix, brief, unknown, whole_number
+from stickslip.disk.arguments import NEXT, orders_of, require_couplings, require_interface
 from stickslip.disk.coupling import Coupling, Interface
 from stickslip.disk.cyclic import CyclicMatrices
 from stickslip.errors import ModelError
@@ -26,10 +27,7 @@ if TYPE_CHECKING:
     from stickslip.disk.mistuned import MistunedDisk
     from stickslip.disk.nodal_diameters import NodalDiameters
 
-__all__ = ["NEXT", "BladedDisk"]
-
-NEXT = "next."
-"""Prefix of the degrees of freedom of the next sector, in contacts between two sectors."""
+__all__ = ["BladedDisk"]
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -113,12 +111,12 @@ class BladedDisk(Model):
     ) -> None:
         super().__init__(structure, contacts, forces)
         springs = listed_items(couplings, "coupling", Coupling)
-        _require_couplings(springs, structure)
-        _require_interface(interface, structure)
+        require_couplings(springs, structure)
+        require_interface(interface, structure)
         values = {
             "sectors": whole_number(sectors, "sectors", smallest=2),
             "engine_order": whole_number(engine_order, "engine_order"),
-            "engine_orders": MappingProxyType(_orders(engine_orders)),
+            "engine_orders": MappingProxyType(orders_of(engine_orders)),
             "couplings": springs,
             "interface": interface,
             "matrices": CyclicMatrices.of(structure, springs, interface),
@@ -321,11 +319,6 @@ class BladedDisk(Model):
         -------
         NodalDiameters
             Frequencies with all contacts stuck, and with those points slipping.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
         """
         from stickslip.disk.nodal_diameters import nodal_diameters
 
@@ -401,49 +394,3 @@ def _rebuilt(
         engine_orders=engine_orders,
         interface=interface,
     )
-
-
-def _orders(orders: Mapping[int, int] | None) -> dict[int, int]:
-    if orders is None:
-        return {}
-    if not isinstance(orders, Mapping):
-        raise ModelError(
-            f"engine_orders: {brief(orders)} is no mapping; write {{harmonic: engine order}}"
-        )
-    return {
-        whole_number(harmonic, "engine_orders: harmonic", smallest=1): whole_number(
-            order, f"engine_orders[{brief(harmonic)}]"
-        )
-        for harmonic, order in orders.items()
-    }
-
-
-def _require_couplings(couplings: tuple[Coupling, ...], structure: Structure) -> None:
-    for number, coupling in enumerate(couplings, 1):
-        for dof in coupling.ends:
-            if dof not in structure.dofs:
-                _refuse_coupling(number, dof, structure)
-
-
-def _refuse_coupling(number: int, dof: str, structure: Structure) -> NoReturn:
-    bare = dof.removeprefix(NEXT)
-    if bare in structure.dofs:
-        raise ModelError(
-            f"coupling {number}: {brief(dof)}: its second end is in the next sector anyway; write "
-            f"{brief(bare)}"
-        )
-    raise ModelError(f"coupling {number}: {unknown('dof', dof, structure.dofs)}")
-
-
-def _require_interface(interface: Interface | None, structure: Structure) -> None:
-    if interface is None:
-        return
-    if not isinstance(interface, Interface):
-        raise ModelError(
-            f"interface: {brief(interface)} is no Interface; write ss.Interface(stiffness=K1)"
-        )
-    if len(interface) != len(structure):
-        raise ModelError(
-            f"interface: {len(interface)} x {len(interface)} for a sector of {len(structure)} "
-            "dofs; give blocks of the size of its matrices"
-        )

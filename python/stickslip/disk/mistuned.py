@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import brief, members, unknown
-from stickslip.disk.bladed_disk import NEXT, BladedDisk
+from stickslip.disk.arguments import NEXT
+from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.ring import Ring, SectorContact
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact

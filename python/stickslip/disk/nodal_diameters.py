@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.disks import DiameterOptions, SafeOptions
+    from stickslip.plot import DiameterOptions, SafeOptions
 
 __all__ = ["NodalDiameters", "nodal_diameters"]
 
@@ -28,7 +28,7 @@ class NodalDiameters:
     """Natural frequencies at the nodal diameters 0 to n/2, rounded down.
 
     A wave of nodal diameter d that runs the other way round, n - d, has the same frequencies unless
-    gyroscopic terms part them; those of `damping` play no part here.
+    gyroscopic terms part them; those belong to the damping, which plays no part here.
     """
 
     disk: BladedDisk

@@ -1,5 +1,6 @@
 """Plots of results on Matplotlib axes."""
 
+from stickslip.plot.blades import BladeBarOptions, BladeCurveOptions, blade_bars, blade_curves
 from stickslip.plot.charts import (
     CurveOptions,
     Frame,
@@ -9,6 +10,7 @@ from stickslip.plot.charts import (
     slip,
     waveform,
 )
+from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
 from stickslip.plot.orbits import MultiplierOptions, events, multipliers
 from stickslip.plot.transients import (
     HistoryOptions,
@@ -22,21 +24,29 @@ from stickslip.plot.transients import (
 )
 
 __all__ = [
+    "BladeBarOptions",
+    "BladeCurveOptions",
     "CurveOptions",
+    "DiameterOptions",
     "Frame",
     "HistoryOptions",
     "LoopOptions",
     "MultiplierOptions",
     "PoincareOptions",
+    "SafeOptions",
     "SpectrumOptions",
+    "blade_bars",
+    "blade_curves",
     "contact_history",
     "curves",
     "events",
     "history",
     "hysteresis",
     "multipliers",
+    "nodal_diameters",
     "phase",
     "poincare",
+    "safe",
     "slip",
     "spectrum",
     "waveform",
