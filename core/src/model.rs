@@ -3,7 +3,7 @@
 use crate::contact::FrictionLaw;
 use crate::structure::{
     compliance, natural_frequencies, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure,
-    HarmonicLoad, Ports, Structure,
+    HarmonicLoad, Ports, Ring, RingCoupling, RingSector, Structure,
 };
 use crate::Error;
 use faer::{Mat, Side};
@@ -54,8 +54,8 @@ impl Model {
     ) -> Result<Self, Error> {
         let dofs = structure.dofs();
         let gathered = Gathered::new(dofs, contacts.into_iter().map(|c| (c.law, vec![c.rows])))?;
-        let Gathered { laws, points, mut rows, stiffness } = gathered;
-        let ports = Ports { rows: rows.remove(0), stiffness, loads };
+        let Gathered { laws, points, rows: [rows, _], stiffness } = gathered;
+        let ports = Ports { rows, stiffness, loads };
         let (compliance, modal_base) = compliance(&structure, &ports)?;
         Ok(Self { structure, ports, laws, points, compliance, modal_base, wave: None })
     }
@@ -71,8 +71,7 @@ impl Model {
     ) -> Result<Self, Error> {
         let dofs = cyclic.dofs();
         let parts = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
-        let Gathered { laws, points, mut rows, stiffness } = Gathered::new(dofs, parts)?;
-        let (next, own) = (rows.remove(1), rows.remove(0));
+        let Gathered { laws, points, rows: [own, next], stiffness } = Gathered::new(dofs, parts)?;
         let sector = CyclicPorts {
             own: own.clone(),
             next: next.clone(),
@@ -85,6 +84,49 @@ impl Model {
         let modal_base = "waves";
         let wave = Some((cyclic, next));
         Ok(Self { structure, ports, laws, points, compliance, modal_base, wave })
+    }
+
+    /// A disk of sectors that may differ, each coupled to the next one and the last to the first;
+    /// contacts and loads are given sector by sector.
+    ///
+    /// # Errors
+    /// As [`Model::new`]; other numbers of contacts than in sector 0.
+    pub fn ring(
+        structures: Vec<Structure>,
+        coupling: RingCoupling,
+        contacts: Vec<Vec<SectorContact>>,
+        loads: Vec<Vec<HarmonicLoad>>,
+    ) -> Result<Self, Error> {
+        let count = structures.len();
+        if (contacts.len(), loads.len()) != (count, count) {
+            return Err(Error::shape(
+                "sectors",
+                format!("contacts and loads of {count} sectors"),
+                format!("{} and {}", contacts.len(), loads.len()),
+            ));
+        }
+        let mut parts = Vec::with_capacity(count);
+        let (mut laws, mut points) = (Vec::new(), Vec::new());
+        for ((structure, contacts), loads) in structures.into_iter().zip(contacts).zip(loads) {
+            let rows = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
+            let own = Gathered::new(structure.dofs(), rows)?;
+            let first = points.last().map_or(0, |last: &Range<usize>| last.end);
+            points.extend(own.points.iter().map(|r| first + r.start..first + r.end));
+            laws.extend(own.laws);
+            let [own_rows, next] = own.rows;
+            parts.push(RingSector {
+                structure,
+                own: own_rows,
+                next,
+                stiffness: own.stiffness,
+                loads,
+            });
+        }
+        let ring = Ring::new(parts, coupling)?;
+        let (structure, ports) = ring.assembled()?;
+        let compliance = Box::new(ring);
+        let modal_base = "sectors";
+        Ok(Self { structure, ports, laws, points, compliance, modal_base, wave: None })
     }
 
     /// Whether this is one sector of a disk in a travelling wave.
@@ -213,7 +255,7 @@ struct Gathered {
     laws: Vec<Box<dyn FrictionLaw>>,
     points: Vec<Range<usize>>,
     /// Rows of B, one matrix per part of the structure that they act on.
-    rows: Vec<Mat<f64>>,
+    rows: [Mat<f64>; 2],
     stiffness: Mat<f64>,
 }
 
@@ -224,7 +266,7 @@ impl Gathered {
     ) -> Result<Self, Error> {
         let contacts: Vec<_> = contacts.collect();
         let total: usize = contacts.iter().map(|(law, _)| law.points()).sum();
-        let mut rows = vec![Mat::zeros(total, dofs); 2];
+        let mut rows = [Mat::zeros(total, dofs), Mat::zeros(total, dofs)];
         let mut stiffness = Mat::zeros(total, total);
         let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
         for (index, (law, parts)) in contacts.into_iter().enumerate() {

@@ -33,7 +33,7 @@ pub(super) fn extended_order(
     model: &Model,
     slipping: usize,
 ) -> usize {
-    let last_mode = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
+    let last_mode = model.compliance().highest_frequency();
     let per_order = if kept.half_wave() { 1 } else { 2 };
     let affordable = UNKNOWNS / (per_order * slipping.max(1));
     let reach = (PAST_LAST_MODE * last_mode / omega).min(UNKNOWNS as f64) as usize;
