@@ -3,14 +3,14 @@
 use super::accuracy::{errors, extended_order};
 use super::condensed::{Condensed, Path};
 use super::scale::Scale;
-use super::settings::{HarmonicChoice, Settings};
+use super::settings::{HarmonicChoice, Method, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::{gather, Unknowns};
 use super::Progress;
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::solve::{homotopy, newton, Outcome, Report, System as _};
+use crate::solve::{broyden, homotopy, newton, Outcome, Report, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -188,7 +188,7 @@ impl<'a> ForcedBalance<'a> {
         self.profile.factorisations += profile.factorisations;
     }
 
-    /// Newton's method from the start, then homotopy, then a status that says so.
+    /// The chosen method from the start, then homotopy, then a status that says so.
     fn solve_equations(
         &mut self,
         equations: &mut Condensed<'_>,
@@ -207,7 +207,7 @@ impl<'a> ForcedBalance<'a> {
             || equations.stuck_response().to_vec(),
             |unknowns| unknowns.recast(harmonics),
         );
-        let mut report = newton(equations, &mut x, self.settings.newton);
+        let mut report = self.iterate(equations, &mut x);
         if !matches!(report.outcome, Outcome::Converged | Outcome::Interrupted) {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
@@ -230,7 +230,19 @@ impl<'a> ForcedBalance<'a> {
         Ok(point)
     }
 
-    /// Homotopy after Newton's method has failed: first in the contact stiffness, whose path is
+    /// The chosen method from `x`.
+    fn iterate(&mut self, equations: &mut Condensed<'_>, x: &mut [f64]) -> Report {
+        let Method::Broyden(first) = self.settings.method else {
+            return newton(equations, x, self.settings.newton);
+        };
+        let (report, effort) = broyden(equations, x, self.settings.newton, first);
+        equations.profile.factorisations += effort.jacobians;
+        self.profile.updates += effort.updates;
+        self.profile.restarts += usize::from(effort.jacobians > 1);
+        report
+    }
+
+    /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact stiffness, whose path is
     /// smooth even for nearly rigid contacts, then in the load.
     fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
         for path in [Path::Stiffness, Path::Load] {

@@ -14,24 +14,56 @@ use faer::Mat;
 const CARRIES_NOTHING: f64 = 1e-3;
 
 impl Condensed<'_> {
+    /// Residual, with the tangents of the laws or without.
+    fn evaluate(&mut self, x: &[f64], tangent: bool, out: &mut [f64]) {
+        let mut loads = std::mem::take(&mut self.loads);
+        let mut law_time = std::time::Duration::ZERO;
+        Profile::time(&mut law_time, || {
+            for (index, load) in loads.iter_mut().enumerate() {
+                let motion = self.motion(index, x);
+                match &self.softened {
+                    None => self.model.laws()[index].slip_load(motion, tangent, load),
+                    Some((share, laws)) => {
+                        laws[index].slip_load(motion, tangent, load);
+                        self.add_lost_stiffness(index, 1.0 - share, motion, tangent, load);
+                    }
+                }
+            }
+        });
+        self.profile.law += law_time;
+        self.profile.evaluations += 1;
+        self.loads = loads;
+        self.factor = None;
+        out.fill(0.0);
+        self.add_response(&self.slip_load(), out);
+        for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
+            *r = x - self.load_scale * stuck - *r;
+        }
+    }
+
+    /// Assembles `I − G ∂Q` of the points in `active`.
+    fn assemble(&self) -> Mat<f64> {
+        let size = self.active.len() * self.table.harmonics().slots();
+        let mut matrix = Mat::<f64>::identity(size, size);
+        for (load, points) in self.loads.iter().zip(self.model.points()) {
+            // The points of a contact stand together in `active`, or not at all.
+            let first = self.active.iter().position(|point| points.contains(point));
+            if let (true, Some(first)) = (load.active, first) {
+                self.subtract_contact(load, points.clone(), first, &mut matrix);
+            }
+        }
+        matrix
+    }
+
     /// Assembles and factors `I − G_AA ∂Q_A` of the active points.
     fn factorise(&mut self) {
-        let slots = self.table.harmonics().slots();
         self.active.clear();
         for (load, points) in self.loads.iter().zip(self.model.points()) {
             if load.active {
                 self.active.extend(points.clone());
             }
         }
-        let mut matrix = Mat::<f64>::identity(self.active.len() * slots, self.active.len() * slots);
-        let mut first = 0;
-        for (load, points) in self.loads.iter().zip(self.model.points()) {
-            if load.active {
-                self.subtract_contact(load, points.clone(), first, &mut matrix);
-                first += points.len();
-            }
-        }
-        self.factor = Some(matrix.partial_piv_lu());
+        self.factor = Some(self.assemble().partial_piv_lu());
     }
 
     /// Subtracts `G ∂Q` of one contact, whose first active column block is `first`.
@@ -77,29 +109,19 @@ impl System for Condensed<'_> {
     }
 
     fn residual(&mut self, x: &[f64], out: &mut [f64]) {
-        let mut loads = std::mem::take(&mut self.loads);
-        let mut law_time = std::time::Duration::ZERO;
-        Profile::time(&mut law_time, || {
-            for (index, load) in loads.iter_mut().enumerate() {
-                let motion = self.motion(index, x);
-                match &self.softened {
-                    None => self.model.laws()[index].slip_load(motion, true, load),
-                    Some((share, laws)) => {
-                        laws[index].slip_load(motion, true, load);
-                        self.add_lost_stiffness(index, 1.0 - share, motion, load);
-                    }
-                }
-            }
-        });
-        self.profile.law += law_time;
-        self.profile.evaluations += 1;
-        self.loads = loads;
-        self.factor = None;
-        out.fill(0.0);
-        self.add_response(&self.slip_load(), out);
-        for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
-            *r = x - self.load_scale * stuck - *r;
-        }
+        self.evaluate(x, true, out);
+    }
+
+    fn value(&mut self, x: &[f64], out: &mut [f64]) {
+        self.evaluate(x, false, out);
+    }
+
+    fn jacobian(&mut self, x: &[f64], residual: &mut [f64], out: &mut Mat<f64>) {
+        self.evaluate(x, true, residual);
+        let start = std::time::Instant::now();
+        self.active = (0..self.model.compliance().contacts()).collect();
+        *out = self.assemble();
+        self.profile.linear_solve += start.elapsed();
     }
 
     /// Contact by contact: a stiff contact moves little, and its force is its stiffness times that
@@ -136,6 +158,10 @@ impl System for Condensed<'_> {
         step.copy_from_slice(rhs);
         if self.is_linear() {
             return true;
+        }
+        // Nothing can be solved after an evaluation without tangents.
+        if self.loads.iter().any(|load| load.active && load.tangent.is_empty()) {
+            return false;
         }
         if self.factor.is_none() {
             self.factorise();

@@ -16,7 +16,7 @@ mod unknowns;
 pub use adaptive::sweep_range;
 pub use forced::ForcedBalance;
 pub use peak::refine_peak;
-pub use settings::{HarmonicChoice, Settings, HIGHEST_ORDER};
+pub use settings::{HarmonicChoice, Method, Settings, HIGHEST_ORDER};
 pub use solution::{Point, PointStatus, Solution};
 pub use sweep::sweep;
 

@@ -51,7 +51,7 @@ pub struct Motion<'a> {
 pub struct SlipLoad {
     /// q, laid out as the displacement [N].
     pub value: Vec<f64>,
-    /// ∂q/∂u, row by row, valid if it was asked for [N/m].
+    /// ∂q/∂u, row by row, empty unless it was asked for [N/m].
     pub tangent: Vec<f64>,
     /// Whether the tangent differs from zero: a contact that sticks for good is a linear spring
     /// and drops out of the Newton system.
@@ -62,8 +62,8 @@ impl SlipLoad {
     pub(crate) fn reset(&mut self, size: usize, tangent: bool) {
         self.value.clear();
         self.value.resize(size, 0.0);
+        self.tangent.clear();
         if tangent {
-            self.tangent.clear();
             self.tangent.resize(size * size, 0.0);
         }
         self.active = false;

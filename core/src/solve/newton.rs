@@ -13,7 +13,7 @@ pub struct NewtonSettings {
 
 impl Default for NewtonSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-10, max_iterations: 50 }
+        Self { tolerance: 1e-11, max_iterations: 50 }
     }
 }
 
