@@ -50,6 +50,7 @@ impl<'a> ForcedBalance<'a> {
     pub fn new(model: &'a Model, settings: Settings, observe: &'a [usize]) -> Result<Self, Error> {
         let forced = model.compliance().forced_harmonics();
         settings.check(&forced)?;
+        settings.check_resolution(model.resolves())?;
         if let Some(&dof) = observe.iter().find(|&&dof| dof >= model.compliance().dofs()) {
             return Err(Error::value(
                 "observe",

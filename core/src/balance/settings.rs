@@ -97,4 +97,22 @@ impl Settings {
         }
         Ok(())
     }
+
+    /// Checks the settings against the highest harmonic that the evaluation of the laws resolves:
+    /// the error estimate looks as far beyond the kept harmonics as they reach.
+    ///
+    /// # Errors
+    /// Too few samples for the harmonics that may be kept.
+    pub fn check_resolution(&self, resolved: usize) -> Result<(), Error> {
+        let (entry, kept) = match self.harmonics {
+            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
+            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
+        };
+        let most = resolved.saturating_sub(1) / 2;
+        if kept > most {
+            let remedy = format!("needs at least {} samples; lower it to {most}", 4 * (kept + 1));
+            return Err(Error::value(entry, kept as f64, &remedy));
+        }
+        Ok(())
+    }
 }

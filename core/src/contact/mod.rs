@@ -7,8 +7,11 @@
 
 mod cycle;
 mod jenkins;
+mod march_rate;
+mod marched;
 
 pub use jenkins::Jenkins;
+pub use marched::Marched;
 
 use crate::fourier::SampleTable;
 use crate::Error;
@@ -97,6 +100,18 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// Slip load of a periodic motion and, if asked for, its tangent. Both belong to each other
     /// exactly: the tangent is the derivative of this value, history included.
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad);
+
+    /// Highest harmonic that the evaluation resolves; all of them where it is exact.
+    fn resolves(&self) -> usize {
+        usize::MAX
+    }
+
+    /// Slip load of a contact of one point whose displacement stays between `low` and `high` without
+    /// slip, with its derivatives in the two; `None` if it slips. Laws of several points have no
+    /// such rule: a march of them starts without slip.
+    fn stuck_load(&self, _residual: Residual, _low: f64, _high: f64) -> Option<[f64; 3]> {
+        None
+    }
 
     /// Return map of one increment: takes the contact forces through a change `du` of the relative
     /// displacements. `gain`, if asked for, is the derivative of the new forces in the trial forces
