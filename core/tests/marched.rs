@@ -209,10 +209,9 @@ fn coupled_points_keep_their_history_in_the_tangent() {
             };
             let own = [element(0, STIFFNESS, SLIP_FORCE), element(1, 1.3, 0.7)];
             let slots = one.len();
-            for slot in 0..slots {
-                for i in 0..2 {
-                    let want = t[(0, i)] * own[0][slot] + t[(1, i)] * own[1][slot];
-                    assert!((got.value[i * slots + slot] - want).abs() < 1e-12);
+            for (i, value) in got.value.chunks_exact(slots).enumerate() {
+                for (value, (a, b)) in value.iter().zip(own[0].iter().zip(&own[1])) {
+                    assert!((value - t[(0, i)] * a - t[(1, i)] * b).abs() < 1e-12);
                 }
             }
         }

@@ -30,7 +30,7 @@ const GENEROUS: f64 = 0.05;
 pub struct ForcedBalance<'a> {
     pub(super) model: &'a Model,
     pub(super) settings: Settings,
-    observe: &'a [usize],
+    pub(super) observe: &'a [usize],
     half_wave: bool,
     forced: Vec<usize>,
     tables: BTreeMap<usize, Arc<SampleTable>>,
@@ -309,19 +309,30 @@ impl<'a> ForcedBalance<'a> {
             law.summary(equations.motion(index, x), &mut summaries[range]);
         }
         point.contacts = summaries;
-        if status != PointStatus::Converged {
-            return Ok(point);
+        if status == PointStatus::Converged {
+            self.estimate(harmonics, x, &mut point)?;
         }
+        Ok(point)
+    }
+
+    /// Writes the error estimate of a solution `x`.
+    pub(super) fn estimate(
+        &mut self,
+        harmonics: &Harmonics,
+        x: &[f64],
+        point: &mut Point,
+    ) -> Result<(), Error> {
         point.error_estimate = vec![0.0; self.observe.len()];
-        if point.contacts.iter().all(|contact| contact.slip_fraction == 0.0) {
-            return Ok(point);
-        }
         let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
-        let table = self.table(extended_order(harmonics, omega, self.model, slipping));
+        if slipping == 0 {
+            return Ok(());
+        }
+        let order = extended_order(harmonics, point.omega, self.model, slipping);
+        let table = self.table(order);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
         point.error_estimate =
-            errors(self.model, &table, residual, &solution, self.observe, &point)?;
-        Ok(point)
+            errors(self.model, &table, residual, &solution, self.observe, point)?;
+        Ok(())
     }
 }

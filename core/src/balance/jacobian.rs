@@ -5,6 +5,7 @@
 
 use super::condensed::{Condensed, Path};
 use crate::contact::SlipLoad;
+use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
 use crate::timing::Profile;
 use faer::linalg::solvers::Solve as _;
@@ -103,6 +104,33 @@ impl Condensed<'_> {
     }
 }
 
+/// Size of a step contact by contact: a stiff contact moves little, and its force is its stiffness
+/// times that little. A contact that carries next to nothing is measured against the largest force.
+pub(super) fn contactwise(
+    model: &Model,
+    slots: usize,
+    slip_load: &[f64],
+    step: &[f64],
+    x: &[f64],
+) -> f64 {
+    let stiffness = |i: usize| model.contact_stiffness()[(i, i)];
+    let force = |i: usize, u: &[f64], q: &[f64]| {
+        u.iter().zip(q).map(|(u, q)| (stiffness(i) * u - q).powi(2)).sum::<f64>().sqrt()
+    };
+    let points = || {
+        let parts = x.chunks_exact(slots).zip(slip_load.chunks_exact(slots));
+        parts.zip(step.chunks_exact(slots)).enumerate()
+    };
+    let largest = points().map(|(i, ((u, q), _))| force(i, u, q)).fold(0.0, f64::max);
+    let size = norm(x);
+    points()
+        .map(|(i, ((u, _), step))| {
+            let least = CARRIES_NOTHING * largest / stiffness(i).max(f64::MIN_POSITIVE);
+            norm(step) / norm(u).max(least.min(size)).max(f64::MIN_POSITIVE)
+        })
+        .fold(0.0, f64::max)
+}
+
 impl System for Condensed<'_> {
     fn size(&self) -> usize {
         self.stuck.len()
@@ -124,28 +152,9 @@ impl System for Condensed<'_> {
         self.profile.linear_solve += start.elapsed();
     }
 
-    /// Contact by contact: a stiff contact moves little, and its force is its stiffness times that
-    /// little. A contact that carries next to nothing is measured against the largest force.
     fn relative_size(&self, step: &[f64], x: &[f64]) -> f64 {
         let slots = self.table.harmonics().slots();
-        let stiffness = |i: usize| self.model.contact_stiffness()[(i, i)];
-        let force = |i: usize, u: &[f64], q: &[f64]| {
-            let f: Vec<f64> = u.iter().zip(q).map(|(u, q)| stiffness(i) * u - q).collect();
-            norm(&f)
-        };
-        let slip_load = self.slip_load();
-        let points = || {
-            let parts = x.chunks_exact(slots).zip(slip_load.chunks_exact(slots));
-            parts.zip(step.chunks_exact(slots)).enumerate()
-        };
-        let largest = points().map(|(i, ((u, q), _))| force(i, u, q)).fold(0.0, f64::max);
-        points()
-            .map(|(i, ((u, _), step))| {
-                let least = CARRIES_NOTHING * largest / stiffness(i).max(f64::MIN_POSITIVE);
-                let reference = norm(u).max(least.min(norm(x))).max(f64::MIN_POSITIVE);
-                norm(step) / reference
-            })
-            .fold(0.0, f64::max)
+        contactwise(self.model, slots, &self.slip_load(), step, x)
     }
 
     fn interrupted(&self) -> bool {
@@ -223,7 +232,6 @@ mod tests {
     use crate::contact::Residual;
     use crate::fourier::{Harmonics, SampleTable};
     use crate::model::Contact;
-    use crate::model::Model;
     use crate::structure::{HarmonicLoad, Structure};
     use faer::c64;
     use faer::mat;

@@ -9,6 +9,7 @@ mod jacobian;
 mod peak;
 mod scale;
 mod settings;
+mod single_harmonic;
 mod solution;
 mod sweep;
 mod unknowns;
@@ -17,6 +18,7 @@ pub use adaptive::sweep_range;
 pub use forced::ForcedBalance;
 pub use peak::refine_peak;
 pub use settings::{HarmonicChoice, Method, Settings, HIGHEST_ORDER};
+pub use single_harmonic::single_harmonic;
 pub use solution::{Point, PointStatus, Solution};
 pub use sweep::sweep;
 

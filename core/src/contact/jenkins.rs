@@ -7,7 +7,9 @@
 //! their derivative is exact with them: f is continuous, hence moving interval ends add nothing.
 
 use super::cycle::{Cycle, Slip, Stick};
-use super::{scalar, FrictionLaw, Motion, Parameters, PointSummary, Residual, SlipLoad};
+use super::{
+    scalar, Describing, FrictionLaw, Motion, Parameters, PointSummary, Residual, SlipLoad,
+};
 use crate::fourier::{Harmonics, IntervalSums};
 use crate::Error;
 use faer::Mat;
@@ -148,6 +150,10 @@ impl FrictionLaw for Jenkins {
         let (load, by_middle, by_range) =
             self.held_load(residual, 0.5 * (low + high), 0.5 * (high - low));
         Some([load, 0.5 * (by_middle - by_range), 0.5 * (by_middle + by_range)])
+    }
+
+    fn describing(&self, amplitude: f64) -> Option<Describing> {
+        Some(Describing::of_jenkins(self.stiffness, self.slip_force, amplitude))
     }
 
     fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {

@@ -7,7 +7,7 @@
 //! form, and comparisons with those that have one.
 
 use super::march_rate::{is_identity, is_unit_row, Rate};
-use super::{FrictionLaw, Motion, PointSummary, Residual, SlipLoad};
+use super::{Describing, FrictionLaw, Motion, PointSummary, Residual, SlipLoad};
 use crate::fourier::Harmonics;
 use crate::Error;
 use faer::Mat;
@@ -292,6 +292,10 @@ impl FrictionLaw for Marched {
 
     fn stuck_load(&self, residual: Residual, low: f64, high: f64) -> Option<[f64; 3]> {
         self.law.stuck_load(residual, low, high)
+    }
+
+    fn describing(&self, amplitude: f64) -> Option<Describing> {
+        self.law.describing(amplitude)
     }
 
     fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {

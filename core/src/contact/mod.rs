@@ -6,10 +6,12 @@
 //! [`law`].
 
 mod cycle;
+mod describing;
 mod jenkins;
 mod march_rate;
 mod marched;
 
+pub use describing::Describing;
 pub use jenkins::Jenkins;
 pub use marched::Marched;
 
@@ -110,6 +112,12 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// slip, with its derivatives in the two; `None` if it slips. Laws of several points have no
     /// such rule: a march of them starts without slip.
     fn stuck_load(&self, _residual: Residual, _low: f64, _high: f64) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// Describing function of a law of one point under a harmonic displacement of the given
+    /// amplitude, if it has one in closed form.
+    fn describing(&self, _amplitude: f64) -> Option<Describing> {
         None
     }
 
