@@ -3,6 +3,8 @@
 mod arrays;
 mod problem;
 mod response;
+mod settings;
+mod single_harmonic;
 mod watch;
 
 use pyo3::prelude::*;
@@ -17,5 +19,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(response::peak, module)?)?;
     module.add_function(wrap_pyfunction!(response::amplitude, module)?)?;
     module.add_function(wrap_pyfunction!(response::contact_force, module)?)?;
+    module.add_function(wrap_pyfunction!(settings::automatic_samples, module)?)?;
+    module.add_function(wrap_pyfunction!(single_harmonic::single_harmonic, module)?)?;
     Ok(())
 }
