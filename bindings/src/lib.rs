@@ -1,10 +1,12 @@
 //! Python skin of `stickslip-core`: arrays in, arrays out. No mathematics here.
 
 mod arrays;
+mod orbits;
 mod problem;
 mod response;
 mod settings;
 mod single_harmonic;
+mod transient;
 mod watch;
 
 use pyo3::prelude::*;
@@ -21,5 +23,11 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(response::contact_force, module)?)?;
     module.add_function(wrap_pyfunction!(settings::automatic_samples, module)?)?;
     module.add_function(wrap_pyfunction!(single_harmonic::single_harmonic, module)?)?;
+    module.add_class::<orbits::Orbits>()?;
+    module.add_function(wrap_pyfunction!(orbits::exact_response, module)?)?;
+    module.add_function(wrap_pyfunction!(orbits::exact_peak, module)?)?;
+    module.add_function(wrap_pyfunction!(orbits::orbit_history, module)?)?;
+    module.add_class::<transient::History>()?;
+    module.add_function(wrap_pyfunction!(transient::transient, module)?)?;
     Ok(())
 }

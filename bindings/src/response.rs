@@ -1,34 +1,27 @@
 //! Forced response: settings in, curves out, progress and Ctrl-C in between.
 
-use crate::arrays::{block, is_half_wave, refused, series, table, vector};
+use crate::arrays::{indices, is_half_wave, padded, refused, series, table, vector};
 use crate::problem::Problem;
-use crate::settings::{evaluated, parse_method, settings, ResidualArgument};
+pub use crate::settings::ResidualArgument;
+use crate::settings::{evaluated, parse_method, settings};
 use crate::watch::Watch;
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_core::balance::{
-    refine_peak, sweep, sweep_range, ForcedBalance, Point, PointStatus, Progress, HIGHEST_ORDER,
+    self, refine_peak, sweep, sweep_range, ForcedBalance, Point, PointStatus, Progress,
+    HIGHEST_ORDER,
 };
 use stickslip_core::contact::Motion;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
+use stickslip_core::timing::Profile;
 
 /// Frequencies: a grid, or a range whose steps the core chooses.
 #[derive(FromPyObject)]
 pub enum Frequencies<'py> {
     Range((f64, f64)),
     Grid(PyReadonlyArray1<'py, f64>),
-}
-
-/// DOF indices as the core counts them.
-pub fn dof_indices(observe: &PyReadonlyArray1<'_, i64>) -> PyResult<Vec<usize>> {
-    observe
-        .as_array()
-        .iter()
-        .map(|&dof| usize::try_from(dof))
-        .collect::<Result<_, _>>()
-        .map_err(|_| PyValueError::new_err("observe: DOF indices must not be negative"))
 }
 
 /// Runs a sweep without the GIL. Ctrl-C keeps what was solved; anything else that a progress
@@ -38,19 +31,10 @@ pub fn swept(
     progress: Option<&Py<PyAny>>,
     observed: usize,
     contacts: usize,
-    work: impl FnOnce(&Progress<'_>) -> Result<stickslip_core::balance::Solution, stickslip_core::Error>
-        + Send,
+    work: impl FnOnce(&Progress<'_>) -> Result<balance::Solution, stickslip_core::Error> + Send,
 ) -> PyResult<Solution> {
-    let (inner, raised) = py.detach(|| {
-        let watch = Watch::new(progress);
-        let inner = work(&|share| watch.look(share));
-        (inner, watch.raised.into_inner())
-    });
-    if let Some(error) = raised {
-        if !error.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) {
-            return Err(error);
-        }
-    }
+    let (inner, watch) = Watch::during(py, progress, work);
+    watch.raise_unless_interrupt(py)?;
     Ok(Solution { inner: inner.map_err(refused)?, observed, contacts })
 }
 
@@ -67,24 +51,13 @@ impl Solution {
         &self.inner.points
     }
 
-    /// Pads the amplitudes of every point to the highest order of the curve.
     fn amplitudes<'py>(
         &self,
         py: Python<'py>,
         columns: usize,
         of: impl Fn(&Point) -> &[Complex64],
     ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        let orders = 1 + self.points().iter().map(|p| p.harmonics).max().unwrap_or(0);
-        let mut values = vec![Complex64::new(0.0, 0.0); self.points().len() * orders * columns];
-        for (n, point) in self.points().iter().enumerate() {
-            let own = point.harmonics + 1;
-            for (column, series) in of(point).chunks_exact(own).enumerate() {
-                for (order, value) in series.iter().enumerate() {
-                    values[(n * orders + order) * columns + column] = *value;
-                }
-            }
-        }
-        block(py, [self.points().len(), orders, columns], values)
+        padded(py, columns, self.points().iter().map(|p| (p.harmonics, of(p))))
     }
 
     fn rows<'py>(
@@ -135,16 +108,7 @@ impl Solution {
 
     #[getter]
     fn status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        vector(
-            py,
-            self.points().iter().map(|p| match p.status {
-                PointStatus::Converged => 0,
-                PointStatus::Stalled => 1,
-                PointStatus::Singular => 2,
-                PointStatus::NotComputed => 3,
-                PointStatus::HarmonicsLimit => 4,
-            }),
-        )
+        vector(py, self.points().iter().map(|p| status_code(p.status)))
     }
 
     #[getter]
@@ -181,33 +145,56 @@ impl Solution {
 
     #[getter]
     fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let profile = &self.inner.profile;
-        let timings = PyDict::new(py);
-        for (stage, time) in [
-            ("compliance", profile.compliance),
-            ("law", profile.law),
-            ("linear_solve", profile.linear_solve),
-            ("recovery", profile.recovery),
-            ("total", profile.total),
-        ] {
-            timings.set_item(stage, time.as_secs_f64())?;
-        }
-        Ok(timings)
+        timings(py, &self.inner.profile)
     }
 
     #[getter]
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let profile = &self.inner.profile;
-        let counters = PyDict::new(py);
-        counters
-            .set_item("iterations", self.points().iter().map(|p| p.iterations).sum::<usize>())?;
-        counters.set_item("evaluations", profile.evaluations)?;
-        counters.set_item("factorisations", profile.factorisations)?;
-        counters.set_item("updates", profile.updates)?;
-        counters.set_item("restarts", profile.restarts)?;
-        counters.set_item("homotopies", profile.homotopies)?;
-        Ok(counters)
+        let iterations = self.points().iter().map(|p| p.iterations).sum();
+        counters(py, &self.inner.profile, iterations)
     }
+}
+
+/// Number of a status, as Python knows it.
+pub fn status_code(status: PointStatus) -> u8 {
+    match status {
+        PointStatus::Converged => 0,
+        PointStatus::Stalled => 1,
+        PointStatus::Singular => 2,
+        PointStatus::NotComputed => 3,
+        PointStatus::HarmonicsLimit => 4,
+    }
+}
+
+/// Seconds by stage.
+pub fn timings<'py>(py: Python<'py>, profile: &Profile) -> PyResult<Bound<'py, PyDict>> {
+    let timings = PyDict::new(py);
+    for (stage, time) in [
+        ("compliance", profile.compliance),
+        ("law", profile.law),
+        ("linear_solve", profile.linear_solve),
+        ("recovery", profile.recovery),
+        ("total", profile.total),
+    ] {
+        timings.set_item(stage, time.as_secs_f64())?;
+    }
+    Ok(timings)
+}
+
+/// Work by kind.
+pub fn counters<'py>(
+    py: Python<'py>,
+    profile: &Profile,
+    iterations: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let counters = PyDict::new(py);
+    counters.set_item("iterations", iterations)?;
+    counters.set_item("evaluations", profile.evaluations)?;
+    counters.set_item("factorisations", profile.factorisations)?;
+    counters.set_item("updates", profile.updates)?;
+    counters.set_item("restarts", profile.restarts)?;
+    counters.set_item("homotopies", profile.homotopies)?;
+    Ok(counters)
 }
 
 /// Harmonic balance over a grid or a range of frequencies.
@@ -231,7 +218,7 @@ pub fn forced_response(
     let method = parse_method(method, jacobian)?;
     let settings =
         settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
-    let observe = dof_indices(&observe)?;
+    let observe = indices(&observe)?;
     let grid = match &omega {
         Frequencies::Grid(grid) => grid.as_array().to_vec(),
         Frequencies::Range(_) => Vec::new(),
@@ -277,13 +264,9 @@ pub fn peak(
     let model = evaluated(problem, march)?;
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
-    let (found, raised) = py.detach(|| {
-        let watch = Watch::new(None);
-        let look = |share: f64| watch.look(share);
-        let found = refine_peak(&model, settings, dof, measure, bracket, &look);
-        (found, watch.raised.into_inner())
-    });
-    raised.map_or(Ok(()), Err)?;
+    let (found, watch) =
+        Watch::during(py, None, |look| refine_peak(&model, settings, dof, measure, bracket, look));
+    watch.raise()?;
     found.map_err(refused)
 }
 

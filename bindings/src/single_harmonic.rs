@@ -1,7 +1,8 @@
 //! The single-harmonic response: a grid in, curves out.
 
+use crate::arrays::indices;
 use crate::problem::Problem;
-use crate::response::{dof_indices, swept, Solution};
+use crate::response::{swept, Solution};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use stickslip_core::balance::{self, ForcedBalance, HarmonicChoice, Settings};
@@ -23,7 +24,7 @@ pub fn single_harmonic(
         newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
         ..Settings::default()
     };
-    let (grid, observe) = (omega.as_array().to_vec(), dof_indices(&observe)?);
+    let (grid, observe) = (omega.as_array().to_vec(), indices(&observe)?);
     let model = &problem.model;
     swept(py, progress.as_ref(), observe.len(), model.compliance().contacts(), |look| {
         let balance = ForcedBalance::new(model, settings, &observe)?.watched(look);

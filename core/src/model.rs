@@ -95,6 +95,18 @@ impl Model {
         self.laws.iter().map(|law| law.resolves()).min().unwrap_or(usize::MAX)
     }
 
+    /// The structure without its contacts.
+    #[must_use]
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// Contacts and loads of the structure.
+    #[must_use]
+    pub fn ports(&self) -> &Ports {
+        &self.ports
+    }
+
     /// The friction laws, in the order of the contacts.
     #[must_use]
     pub fn laws(&self) -> &[Box<dyn FrictionLaw>] {

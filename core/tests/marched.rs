@@ -11,7 +11,7 @@ use stickslip_core::balance::{
     refine_peak, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus, Settings, Solution,
 };
 use stickslip_core::contact::{
-    FrictionLaw, Jenkins, Marched, Motion, PointSummary, Residual, SlipLoad,
+    FrictionLaw, Jenkins, Marched, Motion, PointState, PointSummary, Residual, SlipLoad,
 };
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::model::{Contact, Model};
@@ -137,6 +137,18 @@ impl FrictionLaw for Coupled {
                 }
             }
         }
+    }
+
+    fn limits(&self) -> Vec<f64> {
+        vec![f64::INFINITY; 2]
+    }
+
+    fn tangent(&self, _: &[PointState]) -> Mat<f64> {
+        self.stiffness()
+    }
+
+    fn slip_rate(&self, _: &[PointState]) -> Mat<f64> {
+        Mat::zeros(2, 2)
     }
 
     fn summary(&self, _: Motion<'_>, _: &mut [PointSummary]) {}

@@ -16,10 +16,12 @@ mod unknowns;
 
 pub use adaptive::sweep_range;
 pub use forced::ForcedBalance;
+pub(crate) use peak::brent;
 pub use peak::refine_peak;
 pub use settings::{HarmonicChoice, Method, Settings, HIGHEST_ORDER};
 pub use single_harmonic::single_harmonic;
 pub use solution::{Point, PointStatus, Solution};
+pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
 
 /// Called between points and between Newton iterations with the share of the work done; `false`

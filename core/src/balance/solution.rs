@@ -47,7 +47,7 @@ pub struct Point {
 }
 
 impl Point {
-    pub(super) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {
+    pub(crate) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {
         Self {
             omega,
             status,

@@ -7,7 +7,7 @@
 //! form, and comparisons with those that have one.
 
 use super::march_rate::{is_identity, is_unit_row, Rate};
-use super::{Describing, FrictionLaw, Motion, PointSummary, Residual, SlipLoad};
+use super::{Describing, FrictionLaw, Motion, PointState, PointSummary, Residual, SlipLoad};
 use crate::fourier::Harmonics;
 use crate::Error;
 use faer::Mat;
@@ -300,6 +300,18 @@ impl FrictionLaw for Marched {
 
     fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
         self.law.advance(du, force, gain);
+    }
+
+    fn limits(&self) -> Vec<f64> {
+        self.law.limits()
+    }
+
+    fn tangent(&self, points: &[PointState]) -> Mat<f64> {
+        self.law.tangent(points)
+    }
+
+    fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
+        self.law.slip_rate(points)
     }
 
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
