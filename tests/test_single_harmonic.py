@@ -31,7 +31,7 @@ PEAKS = (
 )
 
 
-@pytest.mark.parametrize(("load", "peaks"), zip(SNECMA_LOADS, PEAKS, strict=True))
+@pytest.mark.parametrize(("load", "peaks"), list(zip(SNECMA_LOADS, PEAKS, strict=True)))
 def test_every_load_agrees_with_the_balance_of_one_harmonic_and_the_table(load, peaks):
     model = snecma_beam(load)
     frf, other = ss.single_harmonic(model, GRID), ss.forced_response(model, GRID, harmonics=1)
