@@ -183,6 +183,34 @@ fn stuck_contacts_hold_the_assumed_residual() {
     }
 }
 
+#[test]
+fn hard_cases_close() {
+    let mass_on_friction = |force: f64| System {
+        mass: faer::mat![[1.0]],
+        damping: faer::mat![[0.0]],
+        stiffness: faer::mat![[0.0]],
+        dampers: vec![(0, None, 100.0, 1.0)],
+        forces: vec![(0, 1, force, 0.0)],
+    };
+    let mut rigid = snecma_beam(20.313);
+    rigid.dampers[0].2 = 2.4e12;
+    let mut light = snecma_beam(2.0);
+    light.damping = faer::Scale(1e-2) * &light.damping;
+    // A floating mass held by friction alone, a nearly rigid damper, little viscous damping.
+    for (system, frequencies) in [
+        (mass_on_friction(0.9), [3.0, 9.9, 11.0, 25.0]),
+        (mass_on_friction(1.5), [3.0, 9.9, 11.0, 25.0]),
+        (rigid, [150.0, 190.0, 225.0, 240.0]),
+        (light, [159.0, 200.0, 225.5, 226.0]),
+    ] {
+        for omega in frequencies {
+            let orbit = orbit(&system, omega);
+            assert_eq!(orbit.response.status, PointStatus::Converged, "{omega}");
+            assert!(orbit.response.residual < 1e-11);
+        }
+    }
+}
+
 fn assert_balanced(system: &System, omega: f64) -> Result<(), TestCaseError> {
     let orbit = orbit(system, omega);
     prop_assert_eq!(orbit.response.status, PointStatus::Converged);

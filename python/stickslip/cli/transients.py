@@ -82,14 +82,13 @@ def panels(results: Sequence[Transient], dofs: Sequence[str], output: OutputTabl
 
     drawn: list[Panel] = []
     for result in results:
-        shown = [dof for dof in dofs if dof in result.dofs] or list(result.dofs[:1])
         unit = output.length_unit
-        drawn += [partial(plot.history, result, dof, length_unit=unit) for dof in shown]
+        drawn += [partial(plot.history, result, dof, length_unit=unit) for dof in dofs]
         drawn += [
             partial(plot.contact_history, result, contact)
             for contact in result.model.contact_names[:2]
         ]
-        drawn.append(partial(plot.poincare, result, shown[0], length_unit=unit))
+        drawn.append(partial(plot.poincare, result, dofs[0], length_unit=unit))
         if result.kept_periods:
-            drawn.append(partial(plot.spectrum, result, shown[0], omega_unit=output.omega_unit))
+            drawn.append(partial(plot.spectrum, result, dofs[0], omega_unit=output.omega_unit))
     return drawn

@@ -15,6 +15,7 @@ from stickslip.plot.limits import force_level, limit_curve
 from stickslip.plot.style import FREE, GREY, LIMIT, RESPONSE, STUCK, Scale
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Measure
+from stickslip.results.exact_response import ExactResponse
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -223,7 +224,8 @@ def _traits(result: ForcedResponse) -> dict[str, str]:
         for key, symbol, unit in (("slip_force", "F_d", "N"), ("stiffness", "k_d", "N/m")):
             if key in parameters:
                 traits[f"{symbol}{of}"] = f"${symbol}$ = {parameters[key]:.4g} {unit}{of}"
-    traits["H"] = f"H = {result.settings.harmonics}"
+    exact = isinstance(result, ExactResponse)
+    traits["H"] = "exact" if exact else f"H = {result.settings.harmonics}"
     return traits
 
 

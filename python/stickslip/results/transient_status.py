@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import NamedTuple
 
-__all__ = ["TransientStatus"]
+__all__ = ["Settled", "TransientStatus"]
 
 
 class TransientStatus(StrEnum):
@@ -47,3 +48,14 @@ _ADVICE = {
         "Change the start slightly, or take rk4."
     ),
 }
+
+
+class Settled(NamedTuple):
+    """One row of `Transient.summary`."""
+
+    dof: str
+    """Degree of freedom."""
+    amplitude: float
+    """Half peak-to-peak in the last period [m]."""
+    change: float
+    """Its change from the period before, relative; not-a-number after one period."""

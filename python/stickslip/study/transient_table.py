@@ -36,7 +36,7 @@ class TransientTable(AnalysisEntries):
     )
     scheme: Literal["exact", "rk4"] = Field(
         default="exact",
-        description="'exact': closed form between stick and slip; 'rk4': Runge-Kutta steps.",
+        description="'exact': from event to event; 'rk4': Runge-Kutta steps.",
     )
     tolerance: Tolerance | None = Field(
         default=None,
