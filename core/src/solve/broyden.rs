@@ -1,6 +1,8 @@
 //! Broyden's method: Newton's method with a Jacobian that is never taken anew while it serves, but
 //! corrected along every step (Guillen 1999, section 3.4.2).
 
+use super::line_search::LineSearch;
+use super::newton::SHORTEST_STEP;
 use super::qr::Qr;
 use super::{norm, NewtonSettings, Outcome, Report, System};
 use faer::Mat;
@@ -26,9 +28,8 @@ pub struct BroydenEffort {
 
 /// Relative step of the forward differences: half the digits.
 const DIFFERENCE: f64 = 1.5e-8;
-/// Shortest step along a direction of a fresh Jacobian, …
-const SHORTEST_STEP: f64 = 1.0 / 256.0;
-/// … and of an updated one, which a fresh one replaces rather than a longer search.
+/// Shortest step along a direction of an updated Jacobian, which a fresh one replaces rather than
+/// a longer search.
 const SHORTEST_UPDATED_STEP: f64 = 0.5;
 /// An updated Jacobian is given up where the residual shrinks by less than this factor.
 const SLOW: f64 = 0.7;
@@ -42,7 +43,8 @@ pub fn broyden(
     first: FirstJacobian,
 ) -> (Report, BroydenEffort) {
     let size = system.size();
-    let [mut residual, mut step, mut trial, mut trial_residual] = [(); 4].map(|()| vec![0.0; size]);
+    let (mut residual, mut step) = (vec![0.0; size], vec![0.0; size]);
+    let mut trial = LineSearch::new(size);
     let mut effort = BroydenEffort::default();
     let mut matrix = Mat::zeros(size, size);
     let mut factors: Option<Qr> = None;
@@ -78,23 +80,8 @@ pub fn broyden(
         let relative_step = system.relative_size(&step, x);
         let close = relative_step <= settings.tolerance;
         let shortest = if fresh { SHORTEST_STEP } else { SHORTEST_UPDATED_STEP };
-        let mut length = 1.0;
-        let size_of_trial = loop {
-            for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(&step) {
-                *t = x - length * s;
-            }
-            system.value(&trial, &mut trial_residual);
-            let size_of_trial = norm(&trial_residual);
-            // At rounding level the residual need not fall any more.
-            if close || size_of_trial <= (1.0 - 1e-4 * length) * size_of_residual {
-                break Some(size_of_trial);
-            }
-            length *= 0.5;
-            if length < shortest {
-                break None;
-            }
-        };
-        let Some(size_of_trial) = size_of_trial else {
+        let evaluate = |x: &[f64], out: &mut [f64]| system.value(x, out);
+        if !trial.along(evaluate, x, &step, size_of_residual, shortest, close) {
             if fresh {
                 // What the caller reads from the last evaluation belongs to `x` again.
                 system.value(x, &mut residual);
@@ -102,14 +89,14 @@ pub fn broyden(
             }
             factors = None;
             continue;
-        };
-        let contraction = size_of_trial / size_of_residual.max(f64::MIN_POSITIVE);
+        }
+        let contraction = trial.contraction(size_of_residual);
         // Steps that shrink by a constant factor c leave c/(1 − c) of the last one.
         let left = relative_step * (contraction / (1.0 - contraction).max(0.1)).min(1.0);
-        x.copy_from_slice(&trial);
-        std::mem::swap(&mut residual, &mut trial_residual);
-        size_of_residual = size_of_trial;
-        if close || (length == 1.0 && left <= settings.tolerance) {
+        x.copy_from_slice(&trial.x);
+        std::mem::swap(&mut residual, &mut trial.residual);
+        size_of_residual = trial.size;
+        if close || (trial.length == 1.0 && left <= settings.tolerance) {
             return report(Outcome::Converged, size_of_residual, x, effort);
         }
         if !fresh && contraction > SLOW {
@@ -118,10 +105,10 @@ pub fn broyden(
         }
         // The secant error is the residual itself: y − A s = F₊ − (1 − λ) F for s = −λ A⁻¹ F.
         // The divisor is the squared norm of the step, (3.33) corrected.
-        let divisor = -length * norm(&step).powi(2);
-        let secant = residual.iter().zip(&trial_residual);
-        trial = secant.map(|(new, old)| (new - (1.0 - length) * old) / divisor).collect();
-        current.update(&trial, &step);
+        let (rest, divisor) = (1.0 - trial.length, -trial.length * norm(&step).powi(2));
+        let secant = |(new, old): (&f64, &f64)| (new - rest * old) / divisor;
+        let change: Vec<f64> = residual.iter().zip(&trial.residual).map(secant).collect();
+        current.update(&change, &step);
         effort.updates += 1;
     }
     let residual = size_of_residual / norm(x).max(f64::MIN_POSITIVE);
@@ -129,8 +116,8 @@ pub fn broyden(
     (Report { outcome: Outcome::Stalled, iterations, residual }, effort)
 }
 
-/// Residual and Jacobian by forward differences. Each unknown is moved by a small share of the group of
-/// unknowns that must be accurate by itself.
+/// Residual and Jacobian by forward differences. Each unknown is moved by a small share of the
+/// group of unknowns that must be accurate by itself.
 pub(super) fn differences<S: System + ?Sized>(
     system: &mut S,
     x: &[f64],

@@ -2,6 +2,7 @@
 
 mod broyden;
 mod homotopy;
+mod line_search;
 mod newton;
 mod qr;
 
