@@ -108,7 +108,11 @@ class ExactResponse(ForcedResponse):
 
     @cached_property
     def stable(self) -> Bool:
-        """Whether all multipliers but the neutral ones lie inside the unit circle, shape (n,)."""
+        """Whether all multipliers but the neutral ones lie inside the unit circle, shape (n,).
+
+        A structure that nothing holds while its contacts slip stays where it is pushed to: that is
+        one more multiplier of 1, and not stable.
+        """
         size = np.abs(self.multipliers)
         counted = np.arange(size.shape[1]) >= self.neutral[:, None]
         return constant(self.arrays.solved & ~(counted & ~(size < 1.0)).any(axis=1))
