@@ -1,6 +1,6 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
-use crate::contact::FrictionLaw;
+use crate::contact::{FrictionLaw, Marched};
 use crate::structure::{
     compliance, natural_frequencies, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure,
     HarmonicLoad, Ports, Ring, RingCoupling, RingSector, Structure,
@@ -8,6 +8,7 @@ use crate::structure::{
 use crate::Error;
 use faer::{Mat, Side};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// One contact: its law and the rows of B that give its relative displacements.
 #[derive(Debug)]
@@ -20,11 +21,11 @@ pub struct Contact {
 
 /// Structure, contacts and loads, with the compliance of the stuck structure at hand.
 pub struct Model {
-    structure: Structure,
-    ports: Ports,
+    structure: Arc<Structure>,
+    ports: Arc<Ports>,
     laws: Vec<Box<dyn FrictionLaw>>,
     points: Vec<Range<usize>>,
-    compliance: Box<dyn Compliance>,
+    compliance: Arc<dyn Compliance>,
     modal_base: &'static str,
     /// The cyclic structure of a travelling wave, with the rows of B on the next sector.
     wave: Option<(CyclicStructure, Mat<f64>)>,
@@ -57,7 +58,42 @@ impl Model {
         let Gathered { laws, points, rows: [rows, _], stiffness } = gathered;
         let ports = Ports { rows, stiffness, loads };
         let (compliance, modal_base) = compliance(&structure, &ports)?;
-        Ok(Self { structure, ports, laws, points, compliance, modal_base, wave: None })
+        Ok(Self {
+            structure: Arc::new(structure),
+            ports: Arc::new(ports),
+            laws,
+            points,
+            compliance: compliance.into(),
+            modal_base,
+            wave: None,
+        })
+    }
+
+    /// The same problem with every law evaluated by marching through `samples` instants per period
+    /// (see [`Marched`]), on the same decomposition.
+    ///
+    /// # Errors
+    /// An odd or too small number of samples.
+    pub fn marched(&self, samples: usize) -> Result<Self, Error> {
+        let mut laws: Vec<Box<dyn FrictionLaw>> = Vec::with_capacity(self.laws.len());
+        for law in &self.laws {
+            laws.push(Box::new(Marched::new(law.softened(1.0), samples)?));
+        }
+        Ok(Self {
+            structure: Arc::clone(&self.structure),
+            ports: Arc::clone(&self.ports),
+            laws,
+            points: self.points.clone(),
+            compliance: Arc::clone(&self.compliance),
+            modal_base: self.modal_base,
+            wave: self.wave.clone(),
+        })
+    }
+
+    /// Highest harmonic that the evaluation of every law resolves.
+    #[must_use]
+    pub fn resolves(&self) -> usize {
+        self.laws.iter().map(|law| law.resolves()).min().unwrap_or(usize::MAX)
     }
 
     /// One sector of a tuned bladed disk in a travelling wave; `loads` are those on sector 0.
@@ -79,11 +115,16 @@ impl Model {
             loads: loads.clone(),
         };
         let structure = cyclic.sector()?;
-        let compliance = Box::new(CyclicCompliance::new(cyclic.clone(), sector)?);
-        let ports = Ports { rows: own, stiffness, loads };
-        let modal_base = "waves";
-        let wave = Some((cyclic, next));
-        Ok(Self { structure, ports, laws, points, compliance, modal_base, wave })
+        let compliance = CyclicCompliance::new(cyclic.clone(), sector)?;
+        Ok(Self {
+            structure: Arc::new(structure),
+            ports: Arc::new(Ports { rows: own, stiffness, loads }),
+            laws,
+            points,
+            compliance: Arc::new(compliance),
+            modal_base: "waves",
+            wave: Some((cyclic, next)),
+        })
     }
 
     /// A disk of sectors that may differ, each coupled to the next one and the last to the first;
@@ -124,9 +165,15 @@ impl Model {
         }
         let ring = Ring::new(parts, coupling)?;
         let (structure, ports) = ring.assembled()?;
-        let compliance = Box::new(ring);
-        let modal_base = "sectors";
-        Ok(Self { structure, ports, laws, points, compliance, modal_base, wave: None })
+        Ok(Self {
+            structure: Arc::new(structure),
+            ports: Arc::new(ports),
+            laws,
+            points,
+            compliance: Arc::new(ring),
+            modal_base: "sectors",
+            wave: None,
+        })
     }
 
     /// Whether this is one sector of a disk in a travelling wave.
