@@ -1,13 +1,14 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
-use crate::contact::FrictionLaw;
+use crate::contact::{FrictionLaw, Marched};
 use crate::structure::{
     compliance, natural_frequencies, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure,
-    HarmonicLoad, Ports, Structure,
+    HarmonicLoad, Ports, Ring, RingCoupling, RingSector, Structure,
 };
 use crate::Error;
 use faer::{Mat, Side};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// One contact: its law and the rows of B that give its relative displacements.
 #[derive(Debug)]
@@ -20,11 +21,11 @@ pub struct Contact {
 
 /// Structure, contacts and loads, with the compliance of the stuck structure at hand.
 pub struct Model {
-    structure: Structure,
-    ports: Ports,
+    structure: Arc<Structure>,
+    ports: Arc<Ports>,
     laws: Vec<Box<dyn FrictionLaw>>,
     points: Vec<Range<usize>>,
-    compliance: Box<dyn Compliance>,
+    compliance: Arc<dyn Compliance>,
     modal_base: &'static str,
     /// The cyclic structure of a travelling wave, with the rows of B on the next sector.
     wave: Option<(CyclicStructure, Mat<f64>)>,
@@ -54,10 +55,45 @@ impl Model {
     ) -> Result<Self, Error> {
         let dofs = structure.dofs();
         let gathered = Gathered::new(dofs, contacts.into_iter().map(|c| (c.law, vec![c.rows])))?;
-        let Gathered { laws, points, mut rows, stiffness } = gathered;
-        let ports = Ports { rows: rows.remove(0), stiffness, loads };
+        let Gathered { laws, points, rows: [rows, _], stiffness } = gathered;
+        let ports = Ports { rows, stiffness, loads };
         let (compliance, modal_base) = compliance(&structure, &ports)?;
-        Ok(Self { structure, ports, laws, points, compliance, modal_base, wave: None })
+        Ok(Self {
+            structure: Arc::new(structure),
+            ports: Arc::new(ports),
+            laws,
+            points,
+            compliance: compliance.into(),
+            modal_base,
+            wave: None,
+        })
+    }
+
+    /// The same problem with every law evaluated by marching through `samples` instants per period
+    /// (see [`Marched`]), on the same decomposition.
+    ///
+    /// # Errors
+    /// An odd or too small number of samples.
+    pub fn marched(&self, samples: usize) -> Result<Self, Error> {
+        let mut laws: Vec<Box<dyn FrictionLaw>> = Vec::with_capacity(self.laws.len());
+        for law in &self.laws {
+            laws.push(Box::new(Marched::new(law.softened(1.0), samples)?));
+        }
+        Ok(Self {
+            structure: Arc::clone(&self.structure),
+            ports: Arc::clone(&self.ports),
+            laws,
+            points: self.points.clone(),
+            compliance: Arc::clone(&self.compliance),
+            modal_base: self.modal_base,
+            wave: self.wave.clone(),
+        })
+    }
+
+    /// Highest harmonic that the evaluation of every law resolves.
+    #[must_use]
+    pub fn resolves(&self) -> usize {
+        self.laws.iter().map(|law| law.resolves()).min().unwrap_or(usize::MAX)
     }
 
     /// One sector of a tuned bladed disk in a travelling wave; `loads` are those on sector 0.
@@ -71,8 +107,7 @@ impl Model {
     ) -> Result<Self, Error> {
         let dofs = cyclic.dofs();
         let parts = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
-        let Gathered { laws, points, mut rows, stiffness } = Gathered::new(dofs, parts)?;
-        let (next, own) = (rows.remove(1), rows.remove(0));
+        let Gathered { laws, points, rows: [own, next], stiffness } = Gathered::new(dofs, parts)?;
         let sector = CyclicPorts {
             own: own.clone(),
             next: next.clone(),
@@ -80,11 +115,65 @@ impl Model {
             loads: loads.clone(),
         };
         let structure = cyclic.sector()?;
-        let compliance = Box::new(CyclicCompliance::new(cyclic.clone(), sector)?);
-        let ports = Ports { rows: own, stiffness, loads };
-        let modal_base = "waves";
-        let wave = Some((cyclic, next));
-        Ok(Self { structure, ports, laws, points, compliance, modal_base, wave })
+        let compliance = CyclicCompliance::new(cyclic.clone(), sector)?;
+        Ok(Self {
+            structure: Arc::new(structure),
+            ports: Arc::new(Ports { rows: own, stiffness, loads }),
+            laws,
+            points,
+            compliance: Arc::new(compliance),
+            modal_base: "waves",
+            wave: Some((cyclic, next)),
+        })
+    }
+
+    /// A disk of sectors that may differ, each coupled to the next one and the last to the first;
+    /// contacts and loads are given sector by sector.
+    ///
+    /// # Errors
+    /// As [`Model::new`]; other numbers of contacts than in sector 0.
+    pub fn ring(
+        structures: Vec<Structure>,
+        coupling: RingCoupling,
+        contacts: Vec<Vec<SectorContact>>,
+        loads: Vec<Vec<HarmonicLoad>>,
+    ) -> Result<Self, Error> {
+        let count = structures.len();
+        if (contacts.len(), loads.len()) != (count, count) {
+            return Err(Error::shape(
+                "sectors",
+                format!("contacts and loads of {count} sectors"),
+                format!("{} and {}", contacts.len(), loads.len()),
+            ));
+        }
+        let mut parts = Vec::with_capacity(count);
+        let (mut laws, mut points) = (Vec::new(), Vec::new());
+        for ((structure, contacts), loads) in structures.into_iter().zip(contacts).zip(loads) {
+            let rows = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
+            let own = Gathered::new(structure.dofs(), rows)?;
+            let first = points.last().map_or(0, |last: &Range<usize>| last.end);
+            points.extend(own.points.iter().map(|r| first + r.start..first + r.end));
+            laws.extend(own.laws);
+            let [own_rows, next] = own.rows;
+            parts.push(RingSector {
+                structure,
+                own: own_rows,
+                next,
+                stiffness: own.stiffness,
+                loads,
+            });
+        }
+        let ring = Ring::new(parts, coupling)?;
+        let (structure, ports) = ring.assembled()?;
+        Ok(Self {
+            structure: Arc::new(structure),
+            ports: Arc::new(ports),
+            laws,
+            points,
+            compliance: Arc::new(ring),
+            modal_base: "sectors",
+            wave: None,
+        })
     }
 
     /// Whether this is one sector of a disk in a travelling wave.
@@ -213,7 +302,7 @@ struct Gathered {
     laws: Vec<Box<dyn FrictionLaw>>,
     points: Vec<Range<usize>>,
     /// Rows of B, one matrix per part of the structure that they act on.
-    rows: Vec<Mat<f64>>,
+    rows: [Mat<f64>; 2],
     stiffness: Mat<f64>,
 }
 
@@ -224,7 +313,7 @@ impl Gathered {
     ) -> Result<Self, Error> {
         let contacts: Vec<_> = contacts.collect();
         let total: usize = contacts.iter().map(|(law, _)| law.points()).sum();
-        let mut rows = vec![Mat::zeros(total, dofs); 2];
+        let mut rows = [Mat::zeros(total, dofs), Mat::zeros(total, dofs)];
         let mut stiffness = Mat::zeros(total, total);
         let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
         for (index, (law, parts)) in contacts.into_iter().enumerate() {

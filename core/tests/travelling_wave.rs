@@ -13,7 +13,9 @@ use stickslip_core::balance::{
 use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
 use stickslip_core::model::{Model, SectorContact};
-use stickslip_core::structure::{CyclicMatrix, CyclicStructure, HarmonicLoad};
+use stickslip_core::structure::{
+    CyclicMatrix, CyclicStructure, HarmonicLoad, Receptance, RingCoupling, Structure,
+};
 
 const COUPLING: f64 = 1e5;
 
@@ -80,6 +82,82 @@ fn assembly(sectors: usize, engine_order: usize, between: Option<(f64, f64)>) ->
         forces: (0..sectors).map(|i| (3 * i + 1, 1, 20.313, phase(i))).collect(),
     }
     .model()
+}
+
+/// The same ring as sectors that may differ, the stiffness of each beam scaled by `factors`.
+fn sectors(factors: &[f64], engine_order: usize, between: Option<(f64, f64)>) -> Model {
+    let beam = snecma_beam(20.313);
+    let count = factors.len();
+    let zero = Mat::zeros(3, 3);
+    let mut next = zero.clone();
+    next[(1, 1)] = -COUPLING;
+    let row = |dof: usize, sign: f64| Mat::from_fn(1, 3, |_, j| if j == dof { sign } else { 0.0 });
+    let contacts = || {
+        let ground = SectorContact {
+            law: Box::new(Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap()),
+            own: row(0, 1.0),
+            next: Mat::zeros(1, 3),
+        };
+        let pair = between.map(|(k, limit)| SectorContact {
+            law: Box::new(Jenkins::new(k, limit).unwrap()),
+            own: row(1, 1.0),
+            next: row(1, -1.0),
+        });
+        std::iter::once(ground).chain(pair).collect()
+    };
+    let structure = |factor: f64| {
+        let mut stiffness = faer::Scale(factor) * &beam.stiffness;
+        stiffness[(1, 1)] += 2.0 * COUPLING;
+        Structure::new(beam.mass.as_ref(), beam.damping.as_ref(), stiffness.as_ref()).unwrap()
+    };
+    let load = |i: usize| {
+        let mut amplitude = vec![c64::new(0.0, 0.0); 3];
+        let phase = TAU * ((i * engine_order) % count) as f64 / count as f64;
+        amplitude[1] = c64::from_polar(20.313, phase);
+        vec![HarmonicLoad { harmonic: 1, amplitude }]
+    };
+    Model::ring(
+        factors.iter().map(|factor| structure(*factor)).collect(),
+        RingCoupling { mass: zero.clone(), damping: zero, stiffness: next },
+        (0..count).map(|_| contacts()).collect(),
+        (0..count).map(load).collect(),
+    )
+    .unwrap()
+}
+
+#[test]
+fn a_ring_of_sectors_is_the_whole_disk() {
+    for (between, engine_order) in [(None, 2), (Some((2e5, 8.0)), 5)] {
+        let factors = [1.0; 12];
+        let (ring, whole) =
+            (sectors(&factors, engine_order, between), assembly(12, engine_order, between));
+        for (harmonic, omega) in [(1, 190.0), (3, 200.0), (7, 170.0)] {
+            let blank = Receptance { slope: Some(Default::default()), ..Receptance::default() };
+            let (mut ours, mut theirs) = (blank.clone(), blank);
+            ring.compliance().receptance(harmonic, omega, &mut ours).unwrap();
+            whole.compliance().receptance(harmonic, omega, &mut theirs).unwrap();
+            let same = |a: &[c64], b: &[c64]| {
+                let size = b.iter().map(|z| z.norm()).fold(1e-300, f64::max);
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).norm() < 1e-10 * size)
+            };
+            assert!(same(&ours.contact, &theirs.contact));
+            assert!(same(&ours.stuck, &theirs.stuck));
+            let (ours, theirs) = (ours.slope.unwrap(), theirs.slope.unwrap());
+            assert!(same(&ours.0, &theirs.0));
+            assert!(same(&ours.1, &theirs.1));
+        }
+        let everywhere: Vec<usize> = (0..36).collect();
+        let omega: Vec<f64> = (0..8).map(|i| 160.0 + 40.0 * f64::from(i)).collect();
+        let solve = |model: &Model| {
+            sweep(ForcedBalance::new(model, fixed(5), &everywhere).unwrap(), &omega).unwrap()
+        };
+        for (a, b) in solve(&ring).points.iter().zip(&solve(&whole).points) {
+            let size = b.displacement.iter().map(|x| x.norm()).fold(0.0, f64::max);
+            for (a, b) in a.displacement.iter().zip(&b.displacement) {
+                assert!((a - b).norm() < 1e-9 * size);
+            }
+        }
+    }
 }
 
 fn fixed(highest: usize) -> Settings {

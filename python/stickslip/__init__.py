@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.certify import certify
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
     from stickslip.disk import BladedDisk, Coupling, Interface, MistunedDisk, cyclic_sector
     from stickslip.errors import Interrupted, ModelError
@@ -56,6 +57,7 @@ __all__ = [
     "plot",
     "read_matrix",
     "reference",
+    "single_harmonic",
     "study",
     "transient",
 ]
@@ -87,6 +89,7 @@ _HOMES = {
     "load": "results.store",
     "natural_frequencies": "model",
     "read_matrix": "io",
+    "single_harmonic": "analyses.single_harmonic",
     "transient": "analyses.transient",
 }
 _MODULES = ("plot", "reference", "study")

@@ -33,14 +33,14 @@ pub(super) fn extended_order(
     model: &Model,
     slipping: usize,
 ) -> usize {
-    let last_mode = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
+    let last_mode = model.compliance().highest_frequency();
     let per_order = if kept.half_wave() { 1 } else { 2 };
     let affordable = UNKNOWNS / (per_order * slipping.max(1));
     let reach = (PAST_LAST_MODE * last_mode / omega).min(UNKNOWNS as f64) as usize;
     let beyond = kept.highest() + (SHARE * kept.highest() as f64) as usize;
     let wanted = reach.max(beyond).min(affordable);
     // Steps of four keep the number of sample tables small along a curve.
-    wanted.max(kept.highest() + MARGIN).next_multiple_of(4)
+    wanted.max(kept.highest() + MARGIN).next_multiple_of(4).min(model.resolves())
 }
 
 /// Sum over all harmonics of the change that the extended balance would bring to each observed

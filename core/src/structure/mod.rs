@@ -11,6 +11,8 @@ mod modal;
 mod modes;
 mod ports;
 mod restraint;
+mod ring;
+mod ring_order;
 mod spectrum;
 mod system;
 
@@ -19,6 +21,8 @@ pub use direct::DirectCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
 pub use modes::{natural_frequencies, real_modes, RealModes};
 pub use ports::{HarmonicLoad, Ports};
+pub use ring::{Ring, RingCoupling, RingLayout, RingSector};
+pub use ring_order::{RingMotion, RingOrder};
 pub use system::Structure;
 
 use crate::Error;
@@ -86,8 +90,18 @@ pub trait Compliance: Send + Sync {
         out: &mut [c64],
     ) -> Result<(), Error>;
 
+    /// The ring of sectors that this is, if it is one: its equations need no dense receptance.
+    fn ring(&self) -> Option<&Ring> {
+        None
+    }
+
     /// Natural frequencies of the stuck structure, ascending [rad/s].
     fn stuck_frequencies(&self) -> &[f64];
+
+    /// Highest natural frequency of the stuck structure, or about it [rad/s].
+    fn highest_frequency(&self) -> f64 {
+        self.stuck_frequencies().last().copied().unwrap_or(0.0)
+    }
 
     /// Natural frequencies with all contacts removed, ascending [rad/s].
     fn free_frequencies(&self) -> &[f64];
