@@ -1,17 +1,20 @@
 //! The problem: structure, contacts and loads in numbers.
 
-use crate::arrays::{matrix, refused, vector};
-use numpy::{Complex64, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use crate::arrays::{matrices, matrix, refused, vector};
+use numpy::{Complex64, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 use stickslip_core::contact::{law, Parameters};
 use stickslip_core::model::{Contact, Model, SectorContact};
-use stickslip_core::structure::{CyclicMatrix, CyclicStructure, HarmonicLoad, Structure};
+use stickslip_core::structure::{
+    CyclicMatrix, CyclicStructure, HarmonicLoad, RingCoupling, Structure,
+};
 
 type Matrix<'py> = PyReadonlyArray2<'py, f64>;
 type ContactSpec<'py> = (String, Matrix<'py>, Bound<'py, PyDict>);
 type SectorContactSpec<'py> = (String, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
+type SectorMatrices<'py> = PyReadonlyArray3<'py, f64>;
 type Forces<'py> = Vec<(usize, PyReadonlyArray1<'py, Complex64>)>;
 
 /// A structure with its contacts and loads, decomposed once.
@@ -73,22 +76,42 @@ impl Problem {
         let [mass, damping, stiffness] = [mass, damping, stiffness]
             .map(|(own, next)| CyclicMatrix::new(matrix(&own), matrix(&next)));
         let cyclic = CyclicStructure { mass, damping, stiffness, sectors, engine_order };
-        let specs = contacts
-            .into_iter()
-            .map(|(name, own, next, dictionary)| {
-                Ok((name, matrix(&own), matrix(&next), parameters(&dictionary)?))
-            })
-            .collect::<PyResult<Vec<_>>>()?;
+        let contacts = sector_contacts(contacts)?;
         let loads = harmonic_loads(forces);
+        let model =
+            py.detach(|| Model::travelling_wave(cyclic, contacts, loads)).map_err(refused)?;
+        Ok(Self { model: Arc::new(model) })
+    }
+
+    /// Builds a ring of sectors that may differ. Matrices are `(blocks of the sectors, block that
+    /// couples each to the next)`; contacts and forces are given sector by sector, as of a wave.
+    #[staticmethod]
+    fn ring(
+        py: Python<'_>,
+        mass: (SectorMatrices<'_>, Matrix<'_>),
+        damping: (SectorMatrices<'_>, Matrix<'_>),
+        stiffness: (SectorMatrices<'_>, Matrix<'_>),
+        contacts: Vec<Vec<SectorContactSpec<'_>>>,
+        forces: Vec<Forces<'_>>,
+    ) -> PyResult<Self> {
+        let coupling = RingCoupling {
+            mass: matrix(&mass.1),
+            damping: matrix(&damping.1),
+            stiffness: matrix(&stiffness.1),
+        };
+        let [mass, damping, stiffness] =
+            [mass.0, damping.0, stiffness.0].map(|stack| matrices(&stack));
+        let contacts = contacts.into_iter().map(sector_contacts).collect::<PyResult<Vec<_>>>()?;
+        let loads = forces.into_iter().map(harmonic_loads).collect();
         let model = py
             .detach(|| {
-                let contacts = specs
-                    .into_iter()
-                    .map(|(name, own, next, parameters)| {
-                        Ok(SectorContact { law: law(&name, &parameters)?, own, next })
-                    })
-                    .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
-                Model::travelling_wave(cyclic, contacts, loads)
+                let structures = mass
+                    .iter()
+                    .zip(&damping)
+                    .zip(&stiffness)
+                    .map(|((m, c), k)| Structure::new(m.as_ref(), c.as_ref(), k.as_ref()))
+                    .collect::<Result<Vec<_>, _>>()?;
+                Model::ring(structures, coupling, contacts, loads)
             })
             .map_err(refused)?;
         Ok(Self { model: Arc::new(model) })
@@ -140,6 +163,16 @@ fn parameters(dictionary: &Bound<'_, PyDict>) -> PyResult<Parameters> {
         parameters.insert(key.extract()?, values);
     }
     Ok(parameters)
+}
+
+fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<SectorContact>> {
+    contacts
+        .into_iter()
+        .map(|(name, own, next, dictionary)| {
+            let law = law(&name, &parameters(&dictionary)?).map_err(refused)?;
+            Ok(SectorContact { law, own: matrix(&own), next: matrix(&next) })
+        })
+        .collect()
 }
 
 fn harmonic_loads(forces: Forces<'_>) -> Vec<HarmonicLoad> {

@@ -32,6 +32,14 @@ class Problem:
         contacts: Sequence[SectorContact],
         forces: Sequence[tuple[int, Complex]],
     ) -> Problem: ...
+    @staticmethod
+    def ring(
+        mass: tuple[Float, Float],
+        damping: tuple[Float, Float],
+        stiffness: tuple[Float, Float],
+        contacts: Sequence[Sequence[SectorContact]],
+        forces: Sequence[Sequence[tuple[int, Complex]]],
+    ) -> Problem: ...
     def wave_frequencies(self, diameter: int, slipping: Sequence[tuple[int, int]]) -> Float: ...
     def natural_frequencies(self, slipping: Sequence[tuple[int, int]]) -> Float: ...
     @property

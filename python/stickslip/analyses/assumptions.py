@@ -43,6 +43,10 @@ _BASES = {
         "the disk at nodal diameter k E modulo n. With positive damping that is its only steady "
         "state."
     ),
+    "sectors": (
+        "The sectors of the ring are solved one by one, from their own modes, and joined exactly "
+        "where neighbours touch."
+    ),
     "direct": (
         "The modes cannot be separated well: the compliance is solved for at every frequency."
     ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +19,9 @@ from stickslip.model.contact import Contact
 from stickslip.model.force import Force
 from stickslip.model.model import Model
 from stickslip.model.structure import Structure
+
+if TYPE_CHECKING:
+    from stickslip import _core
 
 __all__ = ["MistunedDisk", "deviating"]
 
@@ -98,6 +102,36 @@ class MistunedDisk(Model):
             self.contacts if contacts is None else contacts,
             self.forces if forces is None else forces,
         )
+
+    @cached_property
+    def problem(self) -> _core.Problem:
+        """The ring as the compiled core sees it, sector by sector, built once.
+
+        Raises
+        ------
+        ModelError
+            If the core refuses the numbers.
+        """
+        from stickslip import _core
+
+        ring = self.ring
+        contacts: list[list[_core.SectorContact]] = [[] for _ in range(self.sectors)]
+        for one in ring.contacts:
+            contacts[one.sector].append((one.law, one.own, one.next, one.parameters))
+        forces = [
+            [(harmonic, load[sector]) for harmonic, load in ring.loads]
+            for sector in range(self.sectors)
+        ]
+        try:
+            return _core.Problem.ring(
+                (ring.mass, ring.mass_next),
+                (ring.damping, ring.damping_next),
+                (ring.stiffness, ring.stiffness_next),
+                contacts,
+                forces,
+            )
+        except ValueError as error:
+            raise ModelError(str(error)) from error
 
     @cached_property
     def ring(self) -> Ring:
