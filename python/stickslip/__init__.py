@@ -16,7 +16,14 @@ if TYPE_CHECKING:
     from stickslip.analyses.forced_response import forced_response
     from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
-    from stickslip.disk import BladedDisk, Coupling, Interface, MistunedDisk, cyclic_sector
+    from stickslip.disk import (
+        BladedDisk,
+        Coupling,
+        Interface,
+        MistunedDisk,
+        cyclic_sector,
+        mistuning_pattern,
+    )
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
@@ -53,6 +60,7 @@ __all__ = [
     "forced_response",
     "join",
     "load",
+    "mistuning_pattern",
     "natural_frequencies",
     "plot",
     "read_matrix",
@@ -87,6 +95,7 @@ _HOMES = {
     "forced_response": "analyses.forced_response",
     "join": "model",
     "load": "results.store",
+    "mistuning_pattern": "disk",
     "natural_frequencies": "model",
     "read_matrix": "io",
     "single_harmonic": "analyses.single_harmonic",

@@ -26,7 +26,6 @@ __all__ = [
     "beam_pair",
     "beam_ring",
     "laxalde_blisk",
-    "ring_pattern",
     "rubber_beam",
     "single_dof",
     "snecma_beam",
@@ -187,32 +186,6 @@ def beam_ring(
         [Force("tip", force)],
         engine_order=engine_order,
     )
-
-
-def ring_pattern(sectors: int = 36, deviation: float = 0.07, seed: int = 0) -> Matrix:
-    """Return a uniform mistuning pattern of the ring of beams, for `BladedDisk.mistuned`.
-
-    Parameters
-    ----------
-    sectors : int, optional
-        Number of beams.
-    deviation : float, optional
-        Standard deviation.
-    seed : int, optional
-        Seed of NumPy's default generator. The pattern of the dissertation is not printed; converged
-        results of seed 0 are in the documentation.
-
-    Returns
-    -------
-    ndarray of float64, shape (sectors,)
-        Deviations of the stiffness.
-
-    References
-    ----------
-    Guillen (1999), section 4.5: E_i = (1 + S r_i) E_0.
-    """
-    bound = 3.0**0.5
-    return deviation * np.random.default_rng(seed).uniform(-bound, bound, sectors)
 
 
 def laxalde_blisk(engine_order: int = 2, force: float = 1.0) -> BladedDisk:

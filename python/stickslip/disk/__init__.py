@@ -5,6 +5,7 @@ from stickslip.disk.boundary import cyclic_sector
 from stickslip.disk.coupling import Coupling, Interface
 from stickslip.disk.mistuned import MistunedDisk
 from stickslip.disk.nodal_diameters import NodalDiameters
+from stickslip.disk.pattern import mistuning_pattern
 from stickslip.disk.ring import Ring
 
 __all__ = [
@@ -15,4 +16,5 @@ __all__ = [
     "NodalDiameters",
     "Ring",
     "cyclic_sector",
+    "mistuning_pattern",
 ]

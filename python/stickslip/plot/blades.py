@@ -108,11 +108,14 @@ def blade_bars(
         place = result.position(index)
         heights, title = amplitudes[place], f"ω = {result.omega[place]:.5g} rad/s"
     level = None if tuned is None else _tuned_level(result, tuned, dof, measure, index)
+    from matplotlib.ticker import MaxNLocator
+
     made, ax = ax is None, new_axes(ax)
     blades = result.blades(dof)
     ax.bar(blades, length.factor * heights, width=0.8, color=_COLOUR, label="mistuned")
     if level is not None:
         ax.axhline(length.factor * level, color=GREY, lw=1.2, ls=STUCK, label="tuned")
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlim(-0.7, result.model.sectors - 0.3)  # type: ignore[attr-defined]
     ax.set_xlabel("blade")
     ax.set_ylabel(f"amplitude of {dof} [{length.label}]")

@@ -159,6 +159,8 @@ def safe(
 def _draw_diameters(
     table: NodalDiameters | BladedDisk, ax: Axes | None, omega_unit: OmegaUnit, *, slipping: bool
 ) -> tuple[Axes, NodalDiameters]:
+    from matplotlib.ticker import MaxNLocator
+
     if isinstance(table, BladedDisk):
         table = table.nodal_diameters()
     if not isinstance(table, NodalDiameters):
@@ -181,6 +183,7 @@ def _draw_diameters(
             **looks,
         )
         free[0].set_label("slipping")
+    drawn.xaxis.set_major_locator(MaxNLocator(integer=True))
     drawn.set_xlabel("nodal diameter")
     drawn.set_ylabel(omega.label.replace("angular frequency ω", "natural frequency"))
     drawn.set_xlim(-0.3, float(table.diameters[-1]) + 0.3)
