@@ -4,6 +4,8 @@ mod arrays;
 mod orbits;
 mod problem;
 mod response;
+mod settings;
+mod single_harmonic;
 mod transient;
 mod watch;
 
@@ -19,6 +21,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(response::peak, module)?)?;
     module.add_function(wrap_pyfunction!(response::amplitude, module)?)?;
     module.add_function(wrap_pyfunction!(response::contact_force, module)?)?;
+    module.add_function(wrap_pyfunction!(settings::automatic_samples, module)?)?;
+    module.add_function(wrap_pyfunction!(single_harmonic::single_harmonic, module)?)?;
     module.add_class::<orbits::Orbits>()?;
     module.add_function(wrap_pyfunction!(orbits::exact_response, module)?)?;
     module.add_function(wrap_pyfunction!(orbits::exact_peak, module)?)?;

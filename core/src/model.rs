@@ -1,12 +1,13 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
-use crate::contact::FrictionLaw;
+use crate::contact::{FrictionLaw, Marched};
 use crate::structure::{
     compliance, natural_frequencies, Compliance, HarmonicLoad, Ports, Structure,
 };
 use crate::Error;
 use faer::{Mat, Side};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// One contact: its law and the rows of B that give its relative displacements.
 #[derive(Debug)]
@@ -19,11 +20,11 @@ pub struct Contact {
 
 /// Structure, contacts and loads, with the compliance of the stuck structure at hand.
 pub struct Model {
-    structure: Structure,
-    ports: Ports,
+    structure: Arc<Structure>,
+    ports: Arc<Ports>,
     laws: Vec<Box<dyn FrictionLaw>>,
     points: Vec<Range<usize>>,
-    compliance: Box<dyn Compliance>,
+    compliance: Arc<dyn Compliance>,
     modal_base: &'static str,
 }
 
@@ -64,7 +65,34 @@ impl Model {
         }
         let ports = Ports { rows, stiffness, loads };
         let (compliance, modal_base) = compliance(&structure, &ports)?;
-        Ok(Self { structure, ports, laws, points, compliance, modal_base })
+        let (structure, ports) = (Arc::new(structure), Arc::new(ports));
+        Ok(Self { structure, ports, laws, points, compliance: compliance.into(), modal_base })
+    }
+
+    /// The same problem with every law evaluated by marching through `samples` instants per period
+    /// (see [`Marched`]), on the same decomposition.
+    ///
+    /// # Errors
+    /// An odd or too small number of samples.
+    pub fn marched(&self, samples: usize) -> Result<Self, Error> {
+        let mut laws: Vec<Box<dyn FrictionLaw>> = Vec::with_capacity(self.laws.len());
+        for law in &self.laws {
+            laws.push(Box::new(Marched::new(law.softened(1.0), samples)?));
+        }
+        Ok(Self {
+            structure: Arc::clone(&self.structure),
+            ports: Arc::clone(&self.ports),
+            laws,
+            points: self.points.clone(),
+            compliance: Arc::clone(&self.compliance),
+            modal_base: self.modal_base,
+        })
+    }
+
+    /// Highest harmonic that the evaluation of every law resolves.
+    #[must_use]
+    pub fn resolves(&self) -> usize {
+        self.laws.iter().map(|law| law.resolves()).min().unwrap_or(usize::MAX)
     }
 
     /// The structure without its contacts.

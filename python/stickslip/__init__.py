@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.certify import certify
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
@@ -50,6 +51,7 @@ __all__ = [
     "plot",
     "read_matrix",
     "reference",
+    "single_harmonic",
     "study",
     "transient",
 ]
@@ -76,6 +78,7 @@ _HOMES = {
     "load": "results.store",
     "natural_frequencies": "model",
     "read_matrix": "io",
+    "single_harmonic": "analyses.single_harmonic",
     "transient": "analyses.transient",
 }
 _MODULES = ("plot", "reference", "study")

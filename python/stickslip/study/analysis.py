@@ -10,6 +10,7 @@ from stickslip.study.analysis_tables import ForcedResponseTable
 from stickslip.study.certify_table import CertifyTable
 from stickslip.study.entries import chosen_by
 from stickslip.study.exact_table import ExactTable
+from stickslip.study.single_harmonic_table import SingleHarmonicTable
 from stickslip.study.transient_table import TransientTable
 
 __all__ = ["AnalysisTable"]
@@ -18,9 +19,16 @@ AnalysisTable = Annotated[
     Annotated[ForcedResponseTable, Tag("<forced-response>")]
     | Annotated[ExactTable, Tag("<exact>")]
     | Annotated[TransientTable, Tag("<transient>")]
-    | Annotated[CertifyTable, Tag("<certify>")],
+    | Annotated[CertifyTable, Tag("<certify>")]
+    | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")],
     chosen_by(
-        "kind", "forced-response", "exact", "transient", "certify", default="forced-response"
+        "kind",
+        "forced-response",
+        "exact",
+        "transient",
+        "certify",
+        "single-harmonic",
+        default="forced-response",
     ),
 ]
 """Each further analysis joins this union with a table of its own."""
