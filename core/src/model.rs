@@ -7,6 +7,7 @@ use crate::structure::{
 use crate::Error;
 use faer::{Mat, Side};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// One contact: its law and the rows of B that give its relative displacements.
 #[derive(Debug)]
@@ -19,11 +20,11 @@ pub struct Contact {
 
 /// Structure, contacts and loads, with the compliance of the stuck structure at hand.
 pub struct Model {
-    structure: Structure,
+    structure: Arc<Structure>,
     ports: Ports,
     laws: Vec<Box<dyn FrictionLaw>>,
     points: Vec<Range<usize>>,
-    compliance: Box<dyn Compliance>,
+    compliance: Arc<dyn Compliance>,
     modal_base: &'static str,
 }
 
@@ -64,6 +65,35 @@ impl Model {
         }
         let ports = Ports { rows, stiffness, loads };
         let (compliance, modal_base) = compliance(&structure, &ports)?;
+        let (structure, compliance) = (Arc::new(structure), Arc::from(compliance));
+        Ok(Self { structure, ports, laws, points, compliance, modal_base })
+    }
+
+    /// The same structure, contacts and loads under other laws. The decomposition is shared if the
+    /// stiffness of the contacts is the same.
+    ///
+    /// # Errors
+    /// Laws that do not fit the contacts, an eigenvalue iteration that fails.
+    pub fn with_laws(&self, laws: Vec<Box<dyn FrictionLaw>>) -> Result<Self, Error> {
+        let sizes = |laws: &[Box<dyn FrictionLaw>]| laws.iter().map(|l| l.points()).collect();
+        let (expected, got): (Vec<usize>, Vec<usize>) = (sizes(&self.laws), sizes(&laws));
+        if expected != got {
+            return Err(Error::shape("laws", format!("{expected:?} points"), format!("{got:?}")));
+        }
+        let mut ports = self.ports.clone();
+        for (law, range) in laws.iter().zip(&self.points) {
+            ports
+                .stiffness
+                .get_mut(range.clone(), range.clone())
+                .copy_from(&law.stiffness());
+        }
+        let (compliance, modal_base) = if ports.stiffness == self.ports.stiffness {
+            (Arc::clone(&self.compliance), self.modal_base)
+        } else {
+            let (compliance, base) = compliance(&self.structure, &ports)?;
+            (Arc::from(compliance), base)
+        };
+        let (structure, points) = (Arc::clone(&self.structure), self.points.clone());
         Ok(Self { structure, ports, laws, points, compliance, modal_base })
     }
 

@@ -6,6 +6,7 @@ mod adaptive;
 mod condensed;
 mod forced;
 mod jacobian;
+mod linearised;
 mod peak;
 mod scale;
 mod settings;
@@ -15,10 +16,12 @@ mod unknowns;
 
 pub use adaptive::sweep_range;
 pub use forced::ForcedBalance;
+pub use linearised::{Cause, Linearised};
 pub use peak::refine_peak;
 pub use settings::{HarmonicChoice, Settings, HIGHEST_ORDER};
 pub use solution::{Point, PointStatus, Solution};
 pub use sweep::sweep;
+pub use unknowns::Unknowns;
 
 /// Called between points and between Newton iterations with the share of the work done; `false`
 /// ends the analysis and keeps what is solved.
