@@ -8,6 +8,7 @@
 //! | [`structure`] | M, C, K, modes and the compliance of the stuck structure |
 //! | [`contact`] | friction laws behind one trait: series of u in, series of slip load and tangent out |
 //! | [`balance`] | the harmonic balance equations and their sweeps over frequency |
+//! | [`design`] | peaks followed along a parameter, and the parameter that makes them least |
 //! | [`solve`] | Newton's method and homotopy, which know nothing of friction |
 //!
 //! Units are SI throughout; `x(t) = Re Σ X_k exp(i k ω t)`, and a real series is stored as
@@ -15,6 +16,7 @@
 
 pub mod balance;
 pub mod contact;
+pub mod design;
 pub mod error;
 pub mod fourier;
 pub mod model;

@@ -186,13 +186,38 @@ impl<'a> Linearised<'a> {
         let mut slopes = Vec::with_capacity(causes.len());
         for &cause in causes {
             slopes.push(match self.contact_rate(cause) {
-                Some(contact_rate) => {
-                    let rate = self.displacement_rate(dof, cause, &contact_rate)?;
-                    gradient.iter().zip(&rate).map(|(g, r)| g * r).sum()
-                }
+                Some(rate) => self.slope(dof, &gradient, cause, &rate)?,
                 None => f64::NAN,
             });
         }
         Ok((amplitude(self.equations.table, &series, measure), slopes))
+    }
+
+    /// Amplitude of one DOF with its derivative and that of the contact displacements in
+    /// frequency; `None` where the Jacobian is singular.
+    ///
+    /// # Errors
+    /// As [`Linearised::new`].
+    pub fn frequency_jet(
+        &mut self,
+        dof: usize,
+        measure: Measure,
+    ) -> Result<Option<(f64, f64, Vec<f64>)>, Error> {
+        let series = self.displacement(dof)?;
+        let gradient = amplitude_gradient(self.equations.table, &series, measure);
+        let Some(rate) = self.contact_rate(Cause::Frequency) else { return Ok(None) };
+        let slope = self.slope(dof, &gradient, Cause::Frequency, &rate)?;
+        Ok(Some((amplitude(self.equations.table, &series, measure), slope, rate)))
+    }
+
+    fn slope(
+        &self,
+        dof: usize,
+        gradient: &[f64],
+        cause: Cause,
+        contact_rate: &[f64],
+    ) -> Result<f64, Error> {
+        let rate = self.displacement_rate(dof, cause, contact_rate)?;
+        Ok(gradient.iter().zip(&rate).map(|(g, r)| g * r).sum())
     }
 }

@@ -16,6 +16,7 @@ mod unknowns;
 
 pub use adaptive::sweep_range;
 pub use forced::ForcedBalance;
+pub(crate) use forced::Memory;
 pub use linearised::{Cause, Linearised};
 pub use peak::refine_peak;
 pub use settings::{HarmonicChoice, Settings, HIGHEST_ORDER};
