@@ -1,6 +1,7 @@
 //! Python skin of `stickslip-core`: arrays in, arrays out. No mathematics here.
 
 mod arrays;
+mod design;
 mod problem;
 mod response;
 mod watch;
@@ -17,5 +18,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(response::peak, module)?)?;
     module.add_function(wrap_pyfunction!(response::amplitude, module)?)?;
     module.add_function(wrap_pyfunction!(response::contact_force, module)?)?;
+    module.add_class::<design::Peaks>()?;
+    module.add_function(wrap_pyfunction!(design::damper_curve, module)?)?;
+    module.add_function(wrap_pyfunction!(design::optimal_damper, module)?)?;
+    module.add_function(wrap_pyfunction!(design::sensitivity, module)?)?;
     Ok(())
 }

@@ -30,7 +30,7 @@ pub enum ResidualArgument {
 }
 
 impl ResidualArgument {
-    fn parse(&self) -> PyResult<Residual> {
+    pub(crate) fn parse(&self) -> PyResult<Residual> {
         match self {
             Self::Force(force) => Ok(Residual::Value(*force)),
             Self::Name(name) if name == "centred" => Ok(Residual::Centred),
@@ -42,7 +42,7 @@ impl ResidualArgument {
     }
 }
 
-fn settings(
+pub(crate) fn settings(
     harmonics: Option<usize>,
     tolerance: f64,
     residual: &ResidualArgument,

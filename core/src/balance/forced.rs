@@ -208,11 +208,7 @@ impl<'a> ForcedBalance<'a> {
     }
 
     pub(crate) fn add_profile(&mut self, profile: &Profile) {
-        self.profile.compliance += profile.compliance;
-        self.profile.law += profile.law;
-        self.profile.linear_solve += profile.linear_solve;
-        self.profile.evaluations += profile.evaluations;
-        self.profile.factorisations += profile.factorisations;
+        self.profile.add(profile);
     }
 
     /// Newton's method from the start, then homotopy, then a status that says so.

@@ -30,7 +30,7 @@ impl Unknowns {
     }
 
     /// The same series in another set of harmonics: common ones are kept, new ones are zero.
-    pub(super) fn recast(&self, harmonics: &Harmonics) -> Vec<f64> {
+    pub(crate) fn recast(&self, harmonics: &Harmonics) -> Vec<f64> {
         let (from, to) = (self.harmonics.slots(), harmonics.slots());
         if self.harmonics == *harmonics {
             return self.values.clone();

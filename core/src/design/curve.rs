@@ -263,6 +263,7 @@ impl<'a> Follower<'a> {
         let causes: Vec<_> = member.causes.iter().map(|(cause, _)| *cause).collect();
         let Target { dof, measure, .. } = *self.target;
         let (_, slopes) = linearised.amplitude(dof, measure, &causes)?;
+        self.memory.profile.add(linearised.profile());
         Ok(slopes.iter().zip(&member.causes).map(|(slope, (_, share))| slope * share).sum())
     }
 }

@@ -67,11 +67,7 @@ impl Search<'_, '_> {
     /// As for a solution at one frequency.
     pub(super) fn run(mut self, seeds: &[Sample]) -> Result<Option<Found>, Error> {
         for omega in first_look(self.target.span, seeds) {
-            let start = seeds
-                .iter()
-                .min_by(|a, b| distance(a, omega).total_cmp(&distance(b, omega)))
-                .filter(|_| self.samples.is_empty())
-                .map(|seed| seed.extrapolated(omega));
+            let start = self.beside(seeds, omega);
             if let Some(sample) = self.solve(omega, start)? {
                 self.samples.push(sample);
             }
@@ -149,7 +145,7 @@ impl Search<'_, '_> {
 
     /// Solves at one frequency, from `start` or from the samples around it.
     fn solve(&mut self, omega: f64, start: Option<Unknowns>) -> Result<Option<Sample>, Error> {
-        let start = start.or_else(|| self.predicted(omega));
+        let start = start.or_else(|| predicted(&self.samples, omega));
         let point = match self.balance.solve(omega, start.as_ref()) {
             Err(Error::UndampedResonance { .. }) => {
                 self.balance.solve(omega * (1.0 + ASIDE), start.as_ref())?
@@ -173,14 +169,19 @@ impl Search<'_, '_> {
         Ok(Some(Sample { knot, unknowns: unknowns.clone(), rate }))
     }
 
-    /// A start from the samples around a frequency: their cubic, or the tangent of the nearest.
-    fn predicted(&self, omega: f64) -> Option<Unknowns> {
-        let after = self.samples.partition_point(|sample| sample.knot.at < omega);
-        match (after.checked_sub(1).map(|i| &self.samples[i]), self.samples.get(after)) {
-            (Some(left), Some(right)) => Some(left.interpolated(right, omega)),
-            (Some(one), None) | (None, Some(one)) => Some(one.extrapolated(omega)),
-            (None, None) => None,
+    /// A start from a similar response: its solution, moved by as much as the last sample differs
+    /// from it.
+    fn beside(&self, seeds: &[Sample], omega: f64) -> Option<Unknowns> {
+        let mut start = predicted(seeds, omega)?;
+        if let Some(last) = self.samples.last() {
+            let similar = predicted(seeds, last.knot.at)?.recast(last.unknowns.harmonics());
+            let harmonics = last.unknowns.harmonics().clone();
+            let values = start.recast(&harmonics);
+            let moves = last.unknowns.values().iter().zip(&similar);
+            let values = values.iter().zip(moves).map(|(x, (new, old))| x + (new - old));
+            start = Unknowns::new(harmonics, values.collect());
         }
+        Some(start)
     }
 }
 
@@ -203,8 +204,14 @@ impl Sample {
     }
 }
 
-fn distance(sample: &Sample, omega: f64) -> f64 {
-    (sample.knot.at - omega).abs()
+/// A start from samples around a frequency: their cubic, or the tangent of the nearest.
+fn predicted(samples: &[Sample], omega: f64) -> Option<Unknowns> {
+    let after = samples.partition_point(|sample| sample.knot.at < omega);
+    match (after.checked_sub(1).map(|i| &samples[i]), samples.get(after)) {
+        (Some(left), Some(right)) => Some(left.interpolated(right, omega)),
+        (Some(one), None) | (None, Some(one)) => Some(one.extrapolated(omega)),
+        (None, None) => None,
+    }
 }
 
 /// Even frequencies over the range, and the maxima of a similar response.
