@@ -1,6 +1,6 @@
 //! NumPy arrays to matrices and series, and back.
 
-use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
+use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stickslip_core::fourier::Harmonics;
@@ -54,12 +54,32 @@ pub fn table<'py, T: numpy::Element + Clone>(
     PyArray1::from_vec(py, values).reshape([rows, columns])
 }
 
-/// A three-dimensional array.
-pub fn block<'py>(
+/// Amplitudes `(points, orders, columns)` of points that each have their own highest order, padded
+/// with zeros to the highest of all.
+pub fn padded<'py, 'a>(
     py: Python<'py>,
-    shape: [usize; 3],
-    values: Vec<Complex64>,
+    columns: usize,
+    points: impl ExactSizeIterator<Item = (usize, &'a [Complex64])> + Clone,
 ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
     use numpy::PyArrayMethods as _;
-    PyArray1::from_vec(py, values).reshape(shape)
+    let count = points.len();
+    let orders = 1 + points.clone().map(|(highest, _)| highest).max().unwrap_or(0);
+    let mut values = vec![Complex64::new(0.0, 0.0); count * orders * columns];
+    for (n, (highest, amplitudes)) in points.enumerate() {
+        for (column, series) in amplitudes.chunks_exact(highest + 1).enumerate() {
+            for (order, value) in series.iter().enumerate() {
+                values[(n * orders + order) * columns + column] = *value;
+            }
+        }
+    }
+    PyArray1::from_vec(py, values).reshape([count, orders, columns])
+}
+
+/// Indices of DOFs.
+pub fn indices(observe: &PyReadonlyArray1<'_, i64>) -> PyResult<Vec<usize>> {
+    let dofs = observe.as_array();
+    dofs.iter()
+        .map(|&dof| usize::try_from(dof))
+        .collect::<Result<_, _>>()
+        .map_err(|_| PyValueError::new_err("observe: DOF indices must not be negative"))
 }

@@ -2,8 +2,10 @@
 
 mod arrays;
 mod design;
+mod orbits;
 mod problem;
 mod response;
+mod transient;
 mod watch;
 
 use pyo3::prelude::*;
@@ -22,5 +24,11 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(design::damper_curve, module)?)?;
     module.add_function(wrap_pyfunction!(design::optimal_damper, module)?)?;
     module.add_function(wrap_pyfunction!(design::sensitivity, module)?)?;
+    module.add_class::<orbits::Orbits>()?;
+    module.add_function(wrap_pyfunction!(orbits::exact_response, module)?)?;
+    module.add_function(wrap_pyfunction!(orbits::exact_peak, module)?)?;
+    module.add_function(wrap_pyfunction!(orbits::orbit_history, module)?)?;
+    module.add_class::<transient::History>()?;
+    module.add_function(wrap_pyfunction!(transient::transient, module)?)?;
     Ok(())
 }

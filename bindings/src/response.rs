@@ -1,6 +1,6 @@
 //! Forced response: settings in, curves out, progress and Ctrl-C in between.
 
-use crate::arrays::{block, is_half_wave, refused, series, table, vector};
+use crate::arrays::{indices, is_half_wave, padded, refused, series, table, vector};
 use crate::problem::Problem;
 use crate::watch::Watch;
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
@@ -14,6 +14,7 @@ use stickslip_core::balance::{
 use stickslip_core::contact::{Motion, Residual};
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::solve::NewtonSettings;
+use stickslip_core::timing::Profile;
 
 /// Frequencies: a grid, or a range whose steps the core chooses.
 #[derive(FromPyObject)]
@@ -30,7 +31,7 @@ pub enum ResidualArgument {
 }
 
 impl ResidualArgument {
-    pub(crate) fn parse(&self) -> PyResult<Residual> {
+    pub fn parse(&self) -> PyResult<Residual> {
         match self {
             Self::Force(force) => Ok(Residual::Value(*force)),
             Self::Name(name) if name == "centred" => Ok(Residual::Centred),
@@ -71,24 +72,13 @@ impl Solution {
         &self.inner.points
     }
 
-    /// Pads the amplitudes of every point to the highest order of the curve.
     fn amplitudes<'py>(
         &self,
         py: Python<'py>,
         columns: usize,
         of: impl Fn(&Point) -> &[Complex64],
     ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        let orders = 1 + self.points().iter().map(|p| p.harmonics).max().unwrap_or(0);
-        let mut values = vec![Complex64::new(0.0, 0.0); self.points().len() * orders * columns];
-        for (n, point) in self.points().iter().enumerate() {
-            let own = point.harmonics + 1;
-            for (column, series) in of(point).chunks_exact(own).enumerate() {
-                for (order, value) in series.iter().enumerate() {
-                    values[(n * orders + order) * columns + column] = *value;
-                }
-            }
-        }
-        block(py, [self.points().len(), orders, columns], values)
+        padded(py, columns, self.points().iter().map(|p| (p.harmonics, of(p))))
     }
 
     fn rows<'py>(
@@ -139,16 +129,7 @@ impl Solution {
 
     #[getter]
     fn status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        vector(
-            py,
-            self.points().iter().map(|p| match p.status {
-                PointStatus::Converged => 0,
-                PointStatus::Stalled => 1,
-                PointStatus::Singular => 2,
-                PointStatus::NotComputed => 3,
-                PointStatus::HarmonicsLimit => 4,
-            }),
-        )
+        vector(py, self.points().iter().map(|p| status_code(p.status)))
     }
 
     #[getter]
@@ -185,31 +166,54 @@ impl Solution {
 
     #[getter]
     fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let profile = &self.inner.profile;
-        let timings = PyDict::new(py);
-        for (stage, time) in [
-            ("compliance", profile.compliance),
-            ("law", profile.law),
-            ("linear_solve", profile.linear_solve),
-            ("recovery", profile.recovery),
-            ("total", profile.total),
-        ] {
-            timings.set_item(stage, time.as_secs_f64())?;
-        }
-        Ok(timings)
+        timings(py, &self.inner.profile)
     }
 
     #[getter]
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let profile = &self.inner.profile;
-        let counters = PyDict::new(py);
-        counters
-            .set_item("iterations", self.points().iter().map(|p| p.iterations).sum::<usize>())?;
-        counters.set_item("evaluations", profile.evaluations)?;
-        counters.set_item("factorisations", profile.factorisations)?;
-        counters.set_item("homotopies", profile.homotopies)?;
-        Ok(counters)
+        let iterations = self.points().iter().map(|p| p.iterations).sum();
+        counters(py, &self.inner.profile, iterations)
     }
+}
+
+/// Number of a status, as Python knows it.
+pub fn status_code(status: PointStatus) -> u8 {
+    match status {
+        PointStatus::Converged => 0,
+        PointStatus::Stalled => 1,
+        PointStatus::Singular => 2,
+        PointStatus::NotComputed => 3,
+        PointStatus::HarmonicsLimit => 4,
+    }
+}
+
+/// Seconds by stage.
+pub fn timings<'py>(py: Python<'py>, profile: &Profile) -> PyResult<Bound<'py, PyDict>> {
+    let timings = PyDict::new(py);
+    for (stage, time) in [
+        ("compliance", profile.compliance),
+        ("law", profile.law),
+        ("linear_solve", profile.linear_solve),
+        ("recovery", profile.recovery),
+        ("total", profile.total),
+    ] {
+        timings.set_item(stage, time.as_secs_f64())?;
+    }
+    Ok(timings)
+}
+
+/// Work by kind.
+pub fn counters<'py>(
+    py: Python<'py>,
+    profile: &Profile,
+    iterations: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let counters = PyDict::new(py);
+    counters.set_item("iterations", iterations)?;
+    counters.set_item("evaluations", profile.evaluations)?;
+    counters.set_item("factorisations", profile.factorisations)?;
+    counters.set_item("homotopies", profile.homotopies)?;
+    Ok(counters)
 }
 
 /// Harmonic balance over a grid or a range of frequencies.
@@ -232,12 +236,7 @@ pub fn forced_response(
         return Err(PyValueError::new_err(format!("method = \"{method}\": must be \"newton\"")));
     }
     let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
-    let observe: Vec<usize> = observe
-        .as_array()
-        .iter()
-        .map(|&dof| usize::try_from(dof))
-        .collect::<Result<_, _>>()
-        .map_err(|_| PyValueError::new_err("observe: DOF indices must not be negative"))?;
+    let observe = indices(&observe)?;
     let grid = match &omega {
         Frequencies::Grid(grid) => grid.as_array().to_vec(),
         Frequencies::Range(_) => Vec::new(),
@@ -247,24 +246,14 @@ pub fn forced_response(
         Frequencies::Grid(_) => None,
     };
     let model = &problem.model;
-    let (inner, raised) = py.detach(|| {
-        let watch = Watch::new(progress.as_ref());
-        let look = |share: f64| watch.look(share);
-        let inner = ForcedBalance::new(model, settings, &observe).and_then(|balance| {
-            let balance = balance.watched(&look);
-            match range {
-                Some((from, to)) => sweep_range(balance, from, to),
-                None => sweep(balance, &grid),
-            }
-        });
-        (inner, watch.raised.into_inner())
-    });
-    // Ctrl-C keeps what was solved; anything else a progress callback raises is its own.
-    if let Some(error) = raised {
-        if !error.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) {
-            return Err(error);
+    let (inner, watch) = Watch::during(py, progress.as_ref(), |look| {
+        let balance = ForcedBalance::new(model, settings, &observe)?.watched(look);
+        match range {
+            Some((from, to)) => sweep_range(balance, from, to),
+            None => sweep(balance, &grid),
         }
-    }
+    });
+    watch.raise_unless_interrupt(py)?;
     Ok(Solution {
         inner: inner.map_err(refused)?,
         observed: observe.len(),
@@ -292,13 +281,10 @@ pub fn peak(
     let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
-    let (found, raised) = py.detach(|| {
-        let watch = Watch::new(None);
-        let look = |share: f64| watch.look(share);
-        let found = refine_peak(&problem.model, settings, dof, measure, bracket, &look);
-        (found, watch.raised.into_inner())
+    let (found, watch) = Watch::during(py, None, |look| {
+        refine_peak(&problem.model, settings, dof, measure, bracket, look)
     });
-    raised.map_or(Ok(()), Err)?;
+    watch.raise()?;
     found.map_err(refused)
 }
 

@@ -1,5 +1,6 @@
 //! Progress out of the core, Ctrl-C into it.
 
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
@@ -11,16 +12,29 @@ const LOOK: Duration = Duration::from_millis(100);
 pub struct Watch<'a> {
     progress: Option<&'a Py<PyAny>>,
     last: Cell<Instant>,
-    pub raised: RefCell<Option<PyErr>>,
+    raised: RefCell<Option<PyErr>>,
 }
 
 impl<'a> Watch<'a> {
-    pub fn new(progress: Option<&'a Py<PyAny>>) -> Self {
+    fn new(progress: Option<&'a Py<PyAny>>) -> Self {
         Self { progress, last: Cell::new(Instant::now()), raised: RefCell::new(None) }
     }
 
+    /// Runs `work` without the interpreter, looking at it from time to time.
+    pub fn during<T: Send>(
+        py: Python<'_>,
+        progress: Option<&'a Py<PyAny>>,
+        work: impl FnOnce(&dyn Fn(f64) -> bool) -> T + Send,
+    ) -> (T, Raised) {
+        py.detach(|| {
+            let watch = Watch::new(progress);
+            let value = work(&|share| watch.look(share));
+            (value, Raised(watch.raised.into_inner()))
+        })
+    }
+
     /// `false` once an exception is pending.
-    pub fn look(&self, share: f64) -> bool {
+    fn look(&self, share: f64) -> bool {
         if self.raised.borrow().is_some() {
             return false;
         }
@@ -38,5 +52,24 @@ impl<'a> Watch<'a> {
                 }
             }
         })
+    }
+}
+
+/// What Python has raised meanwhile.
+pub struct Raised(Option<PyErr>);
+
+impl Raised {
+    /// Raises it.
+    pub fn raise(self) -> PyResult<()> {
+        self.0.map_or(Ok(()), Err)
+    }
+
+    /// Raises it unless it is Ctrl-C, which keeps what was solved; anything else that a progress
+    /// callback raises is its own.
+    pub fn raise_unless_interrupt(self, py: Python<'_>) -> PyResult<()> {
+        match self.0 {
+            Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => Err(error),
+            _ => Ok(()),
+        }
     }
 }

@@ -10,6 +10,8 @@
 //! | [`balance`] | the harmonic balance equations and their sweeps over frequency |
 //! | [`design`] | peaks followed along a parameter, and the parameter that makes them least |
 //! | [`solve`] | Newton's method and homotopy, which know nothing of friction |
+//! | [`motion`] | motion in time: the exact flow between events, Runge-Kutta |
+//! | [`orbit`] | exact periodic orbits by shooting, Floquet multipliers |
 //!
 //! Units are SI throughout; `x(t) = Re Σ X_k exp(i k ω t)`, and a real series is stored as
 //! cosine and sine coefficients, `X_k = a_k − i b_k`.
@@ -20,6 +22,8 @@ pub mod design;
 pub mod error;
 pub mod fourier;
 pub mod model;
+pub mod motion;
+pub mod orbit;
 pub mod solve;
 pub mod structure;
 pub mod timing;

@@ -97,6 +97,18 @@ impl Model {
         Ok(Self { structure, ports, laws, points, compliance, modal_base })
     }
 
+    /// The structure without its contacts.
+    #[must_use]
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// Contacts and loads of the structure.
+    #[must_use]
+    pub fn ports(&self) -> &Ports {
+        &self.ports
+    }
+
     /// The friction laws, in the order of the contacts.
     #[must_use]
     pub fn laws(&self) -> &[Box<dyn FrictionLaw>] {

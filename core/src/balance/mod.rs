@@ -18,9 +18,11 @@ pub use adaptive::sweep_range;
 pub use forced::ForcedBalance;
 pub(crate) use forced::Memory;
 pub use linearised::{Cause, Linearised};
+pub(crate) use peak::brent;
 pub use peak::refine_peak;
 pub use settings::{HarmonicChoice, Settings, HIGHEST_ORDER};
 pub use solution::{Point, PointStatus, Solution};
+pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
 pub use unknowns::Unknowns;
 

@@ -44,7 +44,7 @@ pub fn refine_peak(
         }
         let harmonics = Harmonics::new(point.harmonics, balance.half_wave());
         let mut series = vec![0.0; harmonics.slots()];
-        super::unknowns::scatter_series(&harmonics, &point.displacement, &mut series);
+        harmonics.write_series(&point.displacement, &mut series);
         start = point.unknowns;
         Ok(amplitude(&SampleTable::new(harmonics), &series, measure))
     };
@@ -71,7 +71,7 @@ fn with_one_order(
 }
 
 /// Brent's maximiser without derivatives.
-fn brent(
+pub(crate) fn brent(
     mut low: f64,
     guess: f64,
     mut high: f64,

@@ -59,7 +59,7 @@ impl Point {
         matches!(self.status, PointStatus::Converged | PointStatus::HarmonicsLimit)
     }
 
-    pub(super) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {
+    pub(crate) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {
         Self {
             omega,
             status,

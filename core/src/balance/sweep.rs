@@ -36,7 +36,7 @@ pub fn sweep(mut balance: ForcedBalance<'_>, omega: &[f64]) -> Result<Solution, 
     Ok(finish(balance, points, interrupted, start))
 }
 
-pub(super) fn check_frequency(entry: &str, omega: f64) -> Result<(), Error> {
+pub(crate) fn check_frequency(entry: &str, omega: f64) -> Result<(), Error> {
     // Squares of frequencies must stay finite.
     if omega > 0.0 && omega < 1e100 {
         return Ok(());

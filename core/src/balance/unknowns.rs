@@ -74,12 +74,3 @@ pub fn gather(harmonics: &Harmonics, order: usize, series: &[f64], out: &mut Vec
         c64::new(point[slot], imaginary)
     }));
 }
-
-/// Writes the amplitudes X_0, X_1, … of one series into its real layout.
-pub fn scatter_series(harmonics: &Harmonics, amplitudes: &[c64], out: &mut [f64]) {
-    for order in harmonics.orders() {
-        if let Some(amplitude) = amplitudes.get(order) {
-            scatter(harmonics, order, std::slice::from_ref(amplitude), out);
-        }
-    }
-}

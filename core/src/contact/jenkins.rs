@@ -7,7 +7,9 @@
 //! their derivative is exact with them: f is continuous, hence moving interval ends add nothing.
 
 use super::cycle::{Cycle, Slip, Stick};
-use super::{scalar, FrictionLaw, Motion, Parameters, PointSummary, Residual, SlipLoad};
+use super::{
+    scalar, FrictionLaw, Motion, Parameters, PointState, PointSummary, Residual, SlipLoad,
+};
 use crate::fourier::{Harmonics, IntervalSums};
 use crate::Error;
 use faer::Mat;
@@ -146,6 +148,19 @@ impl FrictionLaw for Jenkins {
         if let Some(gain) = gain {
             gain[0] = f64::from(u8::from(trial == force[0]));
         }
+    }
+
+    fn limits(&self) -> Vec<f64> {
+        vec![if self.stiffness == 0.0 { 0.0 } else { self.slip_force }]
+    }
+
+    fn tangent(&self, points: &[PointState]) -> Mat<f64> {
+        let sticks = points[0] == PointState::Stuck && self.slip_force > 0.0;
+        Mat::from_fn(1, 1, |_, _| if sticks { self.stiffness } else { 0.0 })
+    }
+
+    fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
+        Mat::from_fn(1, 1, |_, _| points[0].sign().abs())
     }
 
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {

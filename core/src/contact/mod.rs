@@ -80,6 +80,39 @@ pub struct PointSummary {
     pub dissipation: f64,
 }
 
+/// What a contact point does at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PointState {
+    /// It sticks.
+    Stuck,
+    /// It slips with positive force: the relative displacement grows.
+    Forward,
+    /// It slips with negative force.
+    Backward,
+}
+
+impl PointState {
+    /// Direction of slip: 1, −1, or 0 in stick.
+    #[must_use]
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Stuck => 0.0,
+            Self::Forward => 1.0,
+            Self::Backward => -1.0,
+        }
+    }
+
+    /// Slip in the direction of `sign`.
+    #[must_use]
+    pub fn slipping(sign: f64) -> Self {
+        if sign > 0.0 {
+            Self::Forward
+        } else {
+            Self::Backward
+        }
+    }
+}
+
 /// A friction law between one or several relative displacements and their forces.
 pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// Number of relative displacements.
@@ -103,6 +136,17 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// displacements. `gain`, if asked for, is the derivative of the new forces in the trial forces
     /// `f + D du`, points × points, row by row.
     fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>);
+
+    /// Slip limit of every point [N]: 0 if it never carries a force, infinite if it never slips.
+    fn limits(&self) -> Vec<f64>;
+
+    /// `∂f/∂u` while the points are in these states, points × points [N/m]. The law is linear
+    /// between two changes of them.
+    fn tangent(&self, points: &[PointState]) -> Mat<f64>;
+
+    /// Slip per relative displacement, `s' = R u'`, while the points are in these states,
+    /// points × points; rows of points that stick are zero.
+    fn slip_rate(&self, points: &[PointState]) -> Mat<f64>;
 
     /// Slip share and friction work of every point.
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]);

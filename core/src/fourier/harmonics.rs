@@ -101,6 +101,19 @@ impl Harmonics {
         series[first].hypot(series[first + 1])
     }
 
+    /// Writes amplitudes X_0, X_1, … as real coefficients; those that are not kept are left out.
+    pub fn write_series(&self, amplitudes: &[faer::c64], series: &mut [f64]) {
+        for order in self.orders() {
+            let (Some(amplitude), Some(slot)) = (amplitudes.get(order), self.slot(order)) else {
+                continue;
+            };
+            series[slot] = amplitude.re;
+            if order > 0 {
+                series[slot + 1] = -amplitude.im;
+            }
+        }
+    }
+
     /// Value and first two derivatives of a series at the angle `theta`.
     #[must_use]
     pub fn jet(&self, series: &[f64], theta: f64) -> [f64; 3] {

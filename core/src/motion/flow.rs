@@ -1,0 +1,280 @@
+//! The exact flow: power series from event to event.
+//!
+//! A point that sticks begins to slip where its force reaches its limit; a point that slips sticks
+//! where its slip velocity vanishes. Both are zeros of polynomials, located to rounding.
+
+use super::modal_system::{ModalSystem, Regime};
+use super::polynomial::first_zero;
+use super::power_series::{PowerSeries, DEGREE};
+use super::state::State;
+use crate::contact::PointState;
+use crate::model::Model;
+
+/// Leading coefficient, relative to the largest, that counts as zero: a point is at its limit.
+const AT_LIMIT: f64 = 1e-14;
+/// The same for the next coefficients of a point that is at its limit.
+const AT_REST: f64 = 1e-9;
+/// Changes of state at one instant after which the states are contradictory.
+const CHANGES: usize = 8;
+
+/// A contact point changes from stick to slip or back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// Time in the period [s].
+    pub time: f64,
+    /// Contact point.
+    pub point: usize,
+    /// What it does from now on.
+    pub state: PointState,
+}
+
+/// A stretch of the motion without events.
+#[derive(Debug)]
+pub struct Arc<'a> {
+    /// Motion as a power series.
+    pub series: &'a PowerSeries,
+    /// Time at its start [s].
+    pub start: f64,
+    /// Length in τ of the series.
+    pub length: f64,
+    /// States of the contact points.
+    pub regime: &'a Regime,
+}
+
+impl Arc<'_> {
+    /// Length [s].
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.length / self.series.rate()
+    }
+}
+
+/// What an observer of the flow sees, in order of time.
+#[derive(Debug)]
+pub enum Passage<'a> {
+    /// A stretch without events.
+    Arc(Arc<'a>),
+    /// An event, with the velocity [m/s] of all contact points and the regimes before and after.
+    Event {
+        /// The event.
+        event: Event,
+        /// Relative velocities at the contacts [m/s].
+        speed: &'a [f64],
+        /// Before the event.
+        before: &'a Regime,
+        /// After it.
+        after: &'a Regime,
+    },
+}
+
+/// Why a flow ended early.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Halt {
+    /// The motion has grown out of the range of numbers.
+    Unbounded,
+    /// Contacts change state without end at one instant.
+    Contradiction,
+}
+
+/// What a contact point is to do next.
+enum Next {
+    /// Change its state at once.
+    Now(PointState),
+    /// Change its state at τ.
+    At(f64, PointState),
+    /// Go on to the end of the window.
+    Stay,
+}
+
+/// The flow of a model excited at one frequency.
+pub struct Flow<'a> {
+    model: &'a Model,
+    system: &'a ModalSystem,
+    omega: f64,
+    series: PowerSeries,
+    scratch: Vec<f64>,
+    /// Steps taken since the start.
+    pub steps: usize,
+    /// Events met since the start.
+    pub events: usize,
+}
+
+impl<'a> Flow<'a> {
+    /// The flow of a model at a frequency [rad/s].
+    #[must_use]
+    pub fn new(model: &'a Model, system: &'a ModalSystem, omega: f64) -> Self {
+        let series = PowerSeries::new(system, omega);
+        Self { model, system, omega, series, scratch: Vec::new(), steps: 0, events: 0 }
+    }
+
+    /// Moves a state on to the time `until` [s].
+    ///
+    /// # Errors
+    /// The motion becomes unbounded, or contacts do not settle on a state.
+    pub fn run(
+        &mut self,
+        state: &mut State,
+        until: f64,
+        observe: &mut dyn FnMut(Passage<'_>),
+    ) -> Result<(), Halt> {
+        let mut regime = Regime::new(self.model, &state.points);
+        let mut changes = 0;
+        while state.time < until {
+            if !state.is_bounded() {
+                return Err(Halt::Unbounded);
+            }
+            self.series.expand(self.system, &regime, self.omega, state);
+            self.steps += 1;
+            let natural = self.series.reach();
+            let rest = (until - state.time) * self.series.rate();
+            let last = natural >= rest;
+            let mut length = natural.min(rest);
+            let mut change = None;
+            for point in 0..self.system.points() {
+                match self.next(&regime, point, natural, length) {
+                    Next::Stay => {}
+                    Next::Now(to) => {
+                        (length, change) = (0.0, Some((point, to)));
+                        break;
+                    }
+                    Next::At(tau, to) => (length, change) = (tau, Some((point, to))),
+                }
+            }
+            if length > 0.0 {
+                changes = 0;
+                let start = state.time;
+                observe(Passage::Arc(Arc { series: &self.series, start, length, regime: &regime }));
+                self.move_on(state, length);
+                if last && change.is_none() {
+                    state.time = until;
+                }
+            }
+            let Some((point, to)) = change else { continue };
+            changes += 1;
+            if changes > CHANGES * self.system.points() {
+                return Err(Halt::Contradiction);
+            }
+            self.events += 1;
+            state.points[point] = to;
+            let limit = self.system.limits[point];
+            let side = if to == PointState::Stuck { state.force[point] } else { to.sign() };
+            state.force[point] = limit.copysign(side);
+            let after = Regime::new(self.model, &state.points);
+            let speed = self.system.contact_displacement(&state.velocity);
+            observe(Passage::Event {
+                event: Event { time: state.time, point, state: to },
+                speed: &speed,
+                before: &regime,
+                after: &after,
+            });
+            regime = after;
+        }
+        Ok(())
+    }
+
+    fn move_on(&self, state: &mut State, length: f64) {
+        self.series.motion_at(length, &mut state.displacement, &mut state.velocity);
+        for (point, force) in state.force.iter_mut().enumerate() {
+            let limit = self.system.limits[point];
+            *force = self.series.force_at(point, length).clamp(-limit, limit);
+        }
+        state.time += length / self.series.rate();
+    }
+
+    /// What a point does within `length` of τ, and whether it can begin the step as it is.
+    fn next(&mut self, regime: &Regime, point: usize, natural: f64, length: f64) -> Next {
+        let limit = self.system.limits[point];
+        if !(limit > 0.0 && limit.is_finite()) {
+            return Next::Stay;
+        }
+        let state = regime.points[point];
+        if state != PointState::Stuck {
+            self.fill_slip_velocity(regime, point, state.sign(), natural);
+            return match self.leaves(length / natural, 0.0) {
+                Some(0.0) => Next::Now(PointState::Stuck),
+                Some(share) => Next::At(share * natural, PointState::Stuck),
+                None => Next::Stay,
+            };
+        }
+        let force = self.series.force(point);
+        let mut scale = 1.0;
+        let mut reach = 0.0;
+        for f in &force[1..] {
+            scale *= length;
+            reach += f.abs() * scale;
+        }
+        if reach < limit - force[0].abs() {
+            return Next::Stay;
+        }
+        let mut first = Next::Stay;
+        let mut window = length;
+        for side in [1.0, -1.0] {
+            self.fill_margin(point, side, natural);
+            match self.leaves(window / natural, limit) {
+                Some(0.0) => return Next::Now(PointState::slipping(side)),
+                Some(share) => {
+                    window = share * natural;
+                    first = Next::At(window, PointState::slipping(side));
+                }
+                None => {}
+            }
+        }
+        first
+    }
+
+    /// Slip velocity in the direction of slip, on the unit interval.
+    fn fill_slip_velocity(&mut self, regime: &Regime, point: usize, sign: f64, natural: f64) {
+        self.scratch.clear();
+        self.scratch.resize(DEGREE, 0.0);
+        for other in 0..self.system.points() {
+            let rate = sign * regime.slip_rate[(point, other)];
+            if rate == 0.0 {
+                continue;
+            }
+            for (n, (a, u)) in
+                self.scratch.iter_mut().zip(&self.series.contact(other)[1..]).enumerate()
+            {
+                *a += rate * (n + 1) as f64 * u;
+            }
+        }
+        rescale(&mut self.scratch, natural);
+    }
+
+    /// Distance of the force from its limit on one side, on the unit interval.
+    fn fill_margin(&mut self, point: usize, side: f64, natural: f64) {
+        self.scratch.clear();
+        self.scratch.extend(self.series.force(point).iter().map(|f| -side * f));
+        self.scratch[0] += self.system.limits[point];
+        rescale(&mut self.scratch, natural);
+    }
+
+    /// First zero of the polynomial at hand up to `share` of the unit interval: 0 if it is at zero
+    /// and falls. `scale` is what its value counts against.
+    fn leaves(&mut self, share: f64, scale: f64) -> Option<f64> {
+        let a = &mut self.scratch;
+        let sum = |a: &[f64]| a.iter().map(|a| a.abs()).sum::<f64>();
+        let mut from = 0;
+        if a[0] <= AT_LIMIT * scale.max(sum(&a[1..])) {
+            from = 1;
+            while from < 4 && a[from].abs() <= AT_REST * sum(&a[from + 1..]) {
+                from += 1;
+            }
+            if a[from] <= 0.0 {
+                // Nothing moves: the point may stay as it is.
+                return if sum(&a[from..]) == 0.0 { None } else { Some(0.0) };
+            }
+        }
+        let a = &mut a[from..];
+        rescale(a, share);
+        first_zero(a).map(|x| x * share)
+    }
+}
+
+/// `Σ a_n (length x)ⁿ`.
+fn rescale(a: &mut [f64], length: f64) {
+    let mut scale = 1.0;
+    for a in a {
+        *a *= scale;
+        scale *= length;
+    }
+}

@@ -1,0 +1,229 @@
+//! The equations of motion in the modes of the structure without contacts.
+
+use crate::contact::PointState;
+use crate::model::Model;
+use crate::structure::real_modes;
+use crate::Error;
+use faer::{c64, Mat};
+
+/// Modal damping.
+#[derive(Debug, Clone)]
+pub(super) enum Damping {
+    /// One coefficient per mode: the damping is proportional.
+    Diagonal(Vec<f64>),
+    /// A full modal matrix.
+    Full(Mat<f64>),
+}
+
+/// `η'' + Φᵀ C Φ η' + Ω² η + (B Φ)ᵀ f = Φᵀ P(t)`, with `x = Φ η` and `u = B Φ η`.
+///
+/// The modes of the free structure serve in every state of the contacts, so that nothing has to be
+/// decomposed when a contact changes from stick to slip.
+#[derive(Debug, Clone)]
+pub struct ModalSystem {
+    pub(super) omega_squared: Vec<f64>,
+    pub(super) damping: Damping,
+    /// Φ.
+    shapes: Mat<f64>,
+    /// Φᵀ M, the inverse of Φ.
+    to_modes: Mat<f64>,
+    /// B Φ, contact after contact.
+    pub(super) contacts: Vec<f64>,
+    /// Φᵀ P_k per forced harmonic.
+    pub(super) loads: Vec<(usize, Vec<c64>)>,
+    /// Highest rate of the motion [1/s]: the unit of time of a power series.
+    rate: f64,
+    /// Slip limits of all points [N].
+    pub(super) limits: Vec<f64>,
+    /// Diagonal of the contact stiffness D [N/m].
+    stiffness: Vec<f64>,
+}
+
+impl ModalSystem {
+    /// The modal form of a model.
+    ///
+    /// # Errors
+    /// The eigenvalue iteration fails.
+    pub fn new(model: &Model) -> Result<Self, Error> {
+        let structure = model.structure();
+        let modes = real_modes(structure.mass(), structure.stiffness())?;
+        let damping = modes.project(structure.damping());
+        let size = modes.omega_squared.len();
+        let largest = damping.norm_max();
+        let coupled = (0..size).any(|j| {
+            (0..size).any(|i| i != j && damping[(i, j)].abs() > 1e-14 * size as f64 * largest)
+        });
+        let rows = &model.ports().rows * &modes.shapes;
+        let contacts =
+            (0..rows.nrows()).flat_map(|i| (0..size).map(move |j| (i, j))).map(|at| rows[at]);
+        let loads = model.ports().loads.iter().map(|load| {
+            let modal = (0..size)
+                .map(|j| (0..size).map(|i| load.amplitude[i] * modes.shapes[(i, j)]).sum())
+                .collect();
+            (load.harmonic, modal)
+        });
+        let stuck = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
+        let total = model.contact_stiffness();
+        Ok(Self {
+            contacts: contacts.collect(),
+            loads: loads.filter(|(_, load): &(_, Vec<c64>)| !is_zero(load)).collect(),
+            rate: stuck + damping.norm_l2(),
+            damping: if coupled {
+                Damping::Full(damping)
+            } else {
+                Damping::Diagonal((0..size).map(|j| damping[(j, j)]).collect())
+            },
+            to_modes: modes.shapes.transpose() * structure.mass(),
+            limits: model.laws().iter().flat_map(|law| law.limits()).collect(),
+            stiffness: (0..total.nrows()).map(|i| total[(i, i)]).collect(),
+            omega_squared: modes.omega_squared,
+            shapes: modes.shapes,
+        })
+    }
+
+    /// Number of modes N.
+    #[must_use]
+    pub fn modes(&self) -> usize {
+        self.omega_squared.len()
+    }
+
+    /// Number of contact points.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.limits.len()
+    }
+
+    /// Fastest rate in a motion excited at `omega` [1/s].
+    pub(super) fn rate(&self, omega: f64) -> f64 {
+        let highest = self.loads.iter().map(|(order, _)| *order).max().unwrap_or(1).max(1);
+        self.rate.max(omega * highest as f64)
+    }
+
+    /// Displacement of DOF `dof` per modal coordinate.
+    pub fn shape(&self, dof: usize) -> impl Iterator<Item = f64> + '_ {
+        (0..self.modes()).map(move |j| self.shapes[(dof, j)])
+    }
+
+    /// Relative displacement of a contact point per modal coordinate.
+    #[must_use]
+    pub fn contact_shape(&self, point: usize) -> &[f64] {
+        &self.contacts[point * self.modes()..(point + 1) * self.modes()]
+    }
+
+    /// `x = Φ η`.
+    #[must_use]
+    pub fn to_dofs(&self, modal: &[f64]) -> Vec<f64> {
+        multiply(&self.shapes, modal)
+    }
+
+    /// `η = Φᵀ M x`.
+    #[must_use]
+    pub fn to_modes(&self, dofs: &[f64]) -> Vec<f64> {
+        multiply(&self.to_modes, dofs)
+    }
+
+    /// Relative displacements `u = B Φ η`.
+    #[must_use]
+    pub fn contact_displacement(&self, modal: &[f64]) -> Vec<f64> {
+        (0..self.points()).map(|point| dot(self.contact_shape(point), modal)).collect()
+    }
+
+    /// Modal load at the phase `omega t`, times `factor`, added to `out`.
+    pub(crate) fn add_load(&self, phase: f64, factor: f64, out: &mut [f64]) {
+        for (order, load) in &self.loads {
+            let (sin, cos) = (*order as f64 * phase).sin_cos();
+            for (out, p) in out.iter_mut().zip(load) {
+                *out += factor * (p.re * cos - p.im * sin);
+            }
+        }
+    }
+
+    /// `Φᵀ C Φ η'`, times `factor`, added to `out`.
+    pub(crate) fn add_damping(&self, velocity: &[f64], factor: f64, out: &mut [f64]) {
+        match &self.damping {
+            Damping::Diagonal(damping) => {
+                for ((out, c), v) in out.iter_mut().zip(damping).zip(velocity) {
+                    *out += factor * c * v;
+                }
+            }
+            Damping::Full(damping) => {
+                for (j, v) in velocity.iter().enumerate() {
+                    for (i, out) in out.iter_mut().enumerate() {
+                        *out += factor * damping[(i, j)] * v;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Squared natural frequencies of the free structure [rad²/s²].
+    #[must_use]
+    pub fn omega_squared(&self) -> &[f64] {
+        &self.omega_squared
+    }
+
+    /// Slip limits of all contact points [N].
+    #[must_use]
+    pub fn limits(&self) -> &[f64] {
+        &self.limits
+    }
+
+    /// Stiffness of each contact point on its own [N/m].
+    #[must_use]
+    pub fn contact_stiffness(&self) -> &[f64] {
+        &self.stiffness
+    }
+}
+
+/// `∂f/∂u` and slip per displacement of all contacts in given states.
+#[derive(Debug, Clone)]
+pub struct Regime {
+    /// State of each contact point.
+    pub points: Vec<PointState>,
+    /// `∂f/∂u`, points × points [N/m].
+    pub tangent: Mat<f64>,
+    /// `∂s'/∂u'`, points × points.
+    pub slip_rate: Mat<f64>,
+}
+
+impl Regime {
+    pub(crate) fn new(model: &Model, points: &[PointState]) -> Self {
+        let total = points.len();
+        let mut regime = Self {
+            points: points.to_vec(),
+            tangent: Mat::zeros(total, total),
+            slip_rate: Mat::zeros(total, total),
+        };
+        for (law, range) in model.laws().iter().zip(model.points()) {
+            let (start, size) = (range.start, range.len());
+            let own = &points[range.clone()];
+            regime
+                .tangent
+                .get_mut(start..start + size, start..start + size)
+                .copy_from(law.tangent(own));
+            regime
+                .slip_rate
+                .get_mut(start..start + size, start..start + size)
+                .copy_from(law.slip_rate(own));
+        }
+        regime
+    }
+}
+
+fn is_zero(load: &[c64]) -> bool {
+    load.iter().all(|p| p.re == 0.0 && p.im == 0.0)
+}
+
+fn multiply(matrix: &Mat<f64>, vector: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; matrix.nrows()];
+    for (j, v) in vector.iter().enumerate() {
+        for (i, out) in out.iter_mut().enumerate() {
+            *out += matrix[(i, j)] * v;
+        }
+    }
+    out
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

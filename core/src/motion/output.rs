@@ -1,0 +1,217 @@
+//! What a time integration hands out: samples, ranges and events, period after period.
+
+use super::flow::{Event, Flow, Halt, Passage};
+use super::modal_system::{dot, ModalSystem};
+use super::polynomial::{sign_changes, value};
+use super::runge_kutta::RungeKutta;
+use super::state::State;
+use super::transient::{History, Trace, TransientSettings};
+use std::f64::consts::TAU;
+
+/// Share of a sampling interval by which rounding may miss an instant.
+const ROUNDING: f64 = 1e-9;
+/// Periods that are dropped at once at least: moving the rest costs.
+const BLOCK: usize = 16;
+
+/// The output that the settings of a time integration ask for.
+pub(super) struct Output<'a> {
+    system: &'a ModalSystem,
+    settings: &'a TransientSettings,
+    shapes: Vec<Vec<f64>>,
+}
+
+impl<'a> Output<'a> {
+    pub(super) fn new(
+        system: &'a ModalSystem,
+        settings: &'a TransientSettings,
+        observe: &[usize],
+    ) -> Self {
+        let shapes = observe.iter().map(|&dof| system.shape(dof).collect()).collect();
+        Self { system, settings, shapes }
+    }
+
+    /// Adds an output instant.
+    pub(super) fn push(&self, time: f64, x: &[f64], v: &[f64], force: &[f64], trace: &mut Trace) {
+        trace.time.push(time);
+        for shape in &self.shapes {
+            trace.displacement.push(dot(shape, x));
+            trace.velocity.push(dot(shape, v));
+        }
+        trace.contact_displacement.extend(self.system.contact_displacement(x));
+        trace.force.extend(force);
+    }
+
+    /// Time of an output instant within the period [s].
+    fn instant(&self, sample: usize) -> f64 {
+        TAU / self.settings.omega * sample as f64 / self.settings.samples as f64
+    }
+
+    /// Follows the exact flow over one period that begins at `begin` [s].
+    pub(super) fn follow(
+        &self,
+        flow: &mut Flow<'_>,
+        state: &mut State,
+        begin: f64,
+        history: &mut History,
+    ) -> Result<(), Halt> {
+        let until = TAU / self.settings.omega;
+        let slack = ROUNDING * self.instant(1);
+        let mut sample = 1;
+        let mut range = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.shapes.len()];
+        let (modes, points) = (self.system.modes(), self.system.points());
+        let (mut x, mut v, mut f) = (vec![0.0; modes], vec![0.0; modes], vec![0.0; points]);
+        let mut extremes = Extremes::default();
+        let (trace, events) = (&mut history.trace, &mut history.events);
+        let run = flow.run(state, until, &mut |passage| match passage {
+            Passage::Arc(arc) => {
+                let end = arc.start + arc.duration();
+                while sample <= self.settings.samples && self.instant(sample) <= end + slack {
+                    let tau = (self.instant(sample) - arc.start) * arc.series.rate();
+                    arc.series.motion_at(tau, &mut x, &mut v);
+                    for (point, f) in f.iter_mut().enumerate() {
+                        let limit = self.system.limits()[point];
+                        *f = arc.series.force_at(point, tau).clamp(-limit, limit);
+                    }
+                    self.push(begin + self.instant(sample), &x, &v, &f, trace);
+                    sample += 1;
+                }
+                for (shape, range) in self.shapes.iter().zip(&mut range) {
+                    let shape = shape.iter().copied();
+                    arc.series.project(shape, arc.length, &mut extremes.series);
+                    extremes.widen(range);
+                }
+            }
+            Passage::Event { event, .. } => {
+                events.push(Event { time: begin + event.time, ..event });
+            }
+        });
+        history.range.extend(range);
+        run
+    }
+
+    /// Takes the Runge-Kutta steps of one period that begins at `begin` [s]. Between steps, motions
+    /// are cubic, from displacements and velocities at both ends.
+    pub(super) fn step_through(
+        &self,
+        scheme: &mut RungeKutta<'_>,
+        state: &mut State,
+        begin: f64,
+        history: &mut History,
+    ) -> Result<(), Halt> {
+        let steps = scheme.steps();
+        let h = scheme.step();
+        let mut sample = 1;
+        let mut range = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.shapes.len()];
+        let mut ends = vec![[0.0; 4]; self.shapes.len()];
+        for (ends, shape) in ends.iter_mut().zip(&self.shapes) {
+            ends[2..].copy_from_slice(&[
+                dot(shape, &state.displacement),
+                h * dot(shape, &state.velocity),
+            ]);
+        }
+        let mut before = state.clone();
+        for index in 0..steps {
+            before.clone_from(state);
+            scheme.advance(state, index);
+            if !state.is_bounded() {
+                history.range.extend(range);
+                return Err(Halt::Unbounded);
+            }
+            for ((ends, shape), range) in ends.iter_mut().zip(&self.shapes).zip(&mut range) {
+                *ends = [
+                    ends[2],
+                    ends[3],
+                    dot(shape, &state.displacement),
+                    h * dot(shape, &state.velocity),
+                ];
+                widen_by_cubic(ends, range);
+            }
+            let reached = (index + 1) * self.settings.samples;
+            while sample <= self.settings.samples && sample * steps <= reached {
+                let share = (sample * steps) as f64 / self.settings.samples as f64 - index as f64;
+                let between = scheme.between(&before, state, share);
+                let time = begin + self.instant(sample);
+                let trace = &mut history.trace;
+                self.push(time, &between.displacement, &between.velocity, &between.force, trace);
+                sample += 1;
+            }
+        }
+        history.range.extend(range);
+        Ok(())
+    }
+
+    /// Drops the histories of the periods that are not to be kept, once they are `blocks` of what
+    /// is to be kept.
+    pub(super) fn forget(&self, history: &mut History, blocks: usize) {
+        let Some(keep) = self.settings.keep else { return };
+        let samples = self.settings.samples;
+        let trace = &mut history.trace;
+        let periods = (trace.time.len() - 1) / samples;
+        let spare = if blocks > 1 { BLOCK } else { 0 };
+        if periods < blocks * keep + spare || periods <= keep {
+            return;
+        }
+        let first = (periods - keep) * samples;
+        let (dofs, points) = (self.shapes.len(), self.system.points());
+        trace.time.drain(..first);
+        trace.displacement.drain(..first * dofs);
+        trace.velocity.drain(..first * dofs);
+        trace.contact_displacement.drain(..first * points);
+        trace.force.drain(..first * points);
+        let from = trace.time[0];
+        history.events.retain(|event| event.time >= from);
+    }
+}
+
+/// Extremes of a polynomial on the unit interval.
+#[derive(Debug, Default)]
+pub(crate) struct Extremes {
+    /// Coefficients of the polynomial.
+    pub(crate) series: Vec<f64>,
+    slope: Vec<f64>,
+    zeros: Vec<f64>,
+}
+
+impl Extremes {
+    /// Widens a range by the values of the polynomial.
+    pub(crate) fn widen(&mut self, range: &mut [f64; 2]) {
+        let series = &self.series;
+        let mut include = |value: f64| {
+            range[0] = range[0].min(value);
+            range[1] = range[1].max(value);
+        };
+        include(series[0]);
+        include(value(series, 1.0));
+        let reach: f64 = series[1..].iter().map(|a| a.abs()).sum();
+        if series[0] + reach <= range[1] && series[0] - reach >= range[0] {
+            return;
+        }
+        self.slope.clear();
+        self.slope.extend(series[1..].iter().enumerate().map(|(n, a)| (n + 1) as f64 * a));
+        sign_changes(&self.slope, &mut self.zeros);
+        for &x in &self.zeros {
+            let value = value(series, x);
+            range[0] = range[0].min(value);
+            range[1] = range[1].max(value);
+        }
+    }
+}
+
+/// Widens a range by the cubic with values and slopes `[x_0, x_0', x_1, x_1']` at the ends of the
+/// unit interval.
+fn widen_by_cubic([x_0, v_0, x_1, v_1]: &[f64; 4], range: &mut [f64; 2]) {
+    let mut include = |value: f64| {
+        range[0] = range[0].min(value);
+        range[1] = range[1].max(value);
+    };
+    include(*x_0);
+    include(*x_1);
+    if (*v_0 > 0.0) != (*v_1 > 0.0) {
+        let rise = x_1 - x_0;
+        let cubic = [*x_0, *v_0, 3.0 * rise - 2.0 * v_0 - v_1, v_0 + v_1 - 2.0 * rise];
+        let slope = [cubic[1], 2.0 * cubic[2], 3.0 * cubic[3]];
+        let mut zeros = Vec::new();
+        sign_changes(&slope, &mut zeros);
+        zeros.iter().for_each(|&x| include(value(&cubic, x)));
+    }
+}

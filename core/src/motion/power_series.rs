@@ -1,0 +1,222 @@
+//! The motion between two events as a power series in time, exact to rounding.
+//!
+//! Between events the equations are linear, and each coefficient of the series follows from the
+//! ones before. The series needs no decomposition per set of sticking contacts, has no defective
+//! cases, and hands displacements and forces over as polynomials whose zeros are the events.
+
+use super::modal_system::{dot, Damping, ModalSystem, Regime};
+use super::polynomial;
+use super::state::State;
+
+/// Highest power kept.
+pub(super) const DEGREE: usize = 32;
+/// Longest step in units of the fastest rate: beyond it rounding errors of fast modes would grow.
+const LONGEST: f64 = 12.0;
+/// Truncation error of a step relative to the motion in it.
+const TRUNCATION: f64 = 1e-17;
+
+/// Power series of modes, contact displacements and contact forces about the start of a step, in
+/// the time `τ = ρ (t − t_start)`.
+#[derive(Debug, Clone)]
+pub struct PowerSeries {
+    modes: usize,
+    /// ρ [1/s].
+    rate: f64,
+    /// η, power after power.
+    modal: Vec<f64>,
+    /// u and f, contact point after contact point.
+    contact: Vec<f64>,
+    force: Vec<f64>,
+    /// Ω²/ρ² and, if diagonal, damping over ρ.
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+}
+
+impl PowerSeries {
+    pub(super) fn new(system: &ModalSystem, omega: f64) -> Self {
+        let rate = system.rate(omega);
+        let (modes, points) = (system.modes(), system.points());
+        Self {
+            modes,
+            rate,
+            modal: vec![0.0; modes * (DEGREE + 1)],
+            contact: vec![0.0; points * (DEGREE + 1)],
+            force: vec![0.0; points * (DEGREE + 1)],
+            stiffness: system.omega_squared.iter().map(|w| w / (rate * rate)).collect(),
+            damping: match &system.damping {
+                Damping::Diagonal(damping) => damping.iter().map(|c| c / rate).collect(),
+                Damping::Full(_) => Vec::new(),
+            },
+        }
+    }
+
+    /// Units of τ per second.
+    pub(crate) fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Expands the motion about a state.
+    pub(super) fn expand(
+        &mut self,
+        system: &ModalSystem,
+        regime: &Regime,
+        omega: f64,
+        state: &State,
+    ) {
+        let (n, rate) = (self.modes, self.rate);
+        self.modal[..n].copy_from_slice(&state.displacement);
+        for (c, v) in self.modal[n..2 * n].iter_mut().zip(&state.velocity) {
+            *c = v / rate;
+        }
+        for (point, f) in state.force.iter().enumerate() {
+            self.force[point * (DEGREE + 1)] = *f;
+        }
+        // exp(ikω t) in powers of τ: (ikω/ρ)^m / m! times its value at the start.
+        let mut loads: Vec<(f64, [f64; 2])> = system
+            .loads
+            .iter()
+            .map(|(order, _)| {
+                let (sin, cos) = (*order as f64 * omega * state.time).sin_cos();
+                (*order as f64 * omega / rate, [cos, sin])
+            })
+            .collect();
+        for power in 0..=DEGREE {
+            self.expand_contacts(system, regime, power);
+            if power + 2 > DEGREE {
+                continue;
+            }
+            let (known, rest) = self.modal.split_at_mut((power + 2) * n);
+            let next = &mut rest[..n];
+            let (here, ahead) = (&known[power * n..(power + 1) * n], &known[(power + 1) * n..]);
+            next.fill(0.0);
+            for ((_, load), (_, [re, im])) in system.loads.iter().zip(&loads) {
+                for (next, p) in next.iter_mut().zip(load) {
+                    *next += p.re * re - p.im * im;
+                }
+            }
+            for point in 0..system.points() {
+                let f = self.force[point * (DEGREE + 1) + power];
+                if f != 0.0 {
+                    for (next, b) in next.iter_mut().zip(system.contact_shape(point)) {
+                        *next -= b * f;
+                    }
+                }
+            }
+            let order = (power + 1) as f64;
+            let share = 1.0 / (order * (order + 1.0));
+            if let Damping::Full(damping) = &system.damping {
+                for (j, v) in ahead.iter().enumerate() {
+                    for (i, next) in next.iter_mut().enumerate() {
+                        *next -= rate * order * damping[(i, j)] * v;
+                    }
+                }
+                for ((next, x), w) in next.iter_mut().zip(here).zip(&self.stiffness) {
+                    *next = share * (*next / (rate * rate) - w * x);
+                }
+            } else {
+                for j in 0..n {
+                    next[j] = share
+                        * (next[j] / (rate * rate)
+                            - self.stiffness[j] * here[j]
+                            - order * self.damping[j] * ahead[j]);
+                }
+            }
+            for (frequency, [re, im]) in &mut loads {
+                let step = *frequency / (power + 1) as f64;
+                (*re, *im) = (-step * *im, step * *re);
+            }
+        }
+    }
+
+    /// Coefficients of u and f at one power.
+    fn expand_contacts(&mut self, system: &ModalSystem, regime: &Regime, power: usize) {
+        let modal = &self.modal[power * self.modes..(power + 1) * self.modes];
+        let points = system.points();
+        for point in 0..points {
+            self.contact[point * (DEGREE + 1) + power] = dot(system.contact_shape(point), modal);
+        }
+        if power == 0 {
+            return;
+        }
+        for i in 0..points {
+            let mut f = 0.0;
+            for j in 0..points {
+                let tangent = regime.tangent[(i, j)];
+                if tangent != 0.0 {
+                    f += tangent * self.contact[j * (DEGREE + 1) + power];
+                }
+            }
+            self.force[i * (DEGREE + 1) + power] = f;
+        }
+    }
+
+    /// Length in τ over which the truncated series is exact to rounding.
+    pub(super) fn reach(&self) -> f64 {
+        let size = |power: usize| {
+            let c = &self.modal[power * self.modes..(power + 1) * self.modes];
+            dot(c, c).sqrt()
+        };
+        let mut reach = LONGEST;
+        // The last two powers: in undamped motion every other one may vanish.
+        for last in [DEGREE - 1, DEGREE] {
+            let tail = size(last);
+            if tail == 0.0 {
+                continue;
+            }
+            let longest = (1..=4)
+                .map(|power| (power, size(power)))
+                .filter(|(_, size)| *size > 0.0)
+                .map(|(power, size)| (TRUNCATION * size / tail).powf(1.0 / (last - power) as f64))
+                .fold(0.0, f64::max);
+            reach = reach.min(longest);
+        }
+        reach
+    }
+
+    /// Modal displacements and velocities [1/s] at τ.
+    pub(crate) fn motion_at(&self, tau: f64, displacement: &mut [f64], velocity: &mut [f64]) {
+        let n = self.modes;
+        displacement.fill(0.0);
+        velocity.fill(0.0);
+        for power in (0..=DEGREE).rev() {
+            let c = &self.modal[power * n..(power + 1) * n];
+            for ((x, v), c) in displacement.iter_mut().zip(velocity.iter_mut()).zip(c) {
+                *v = v.mul_add(tau, *x);
+                *x = x.mul_add(tau, *c);
+            }
+        }
+        velocity.iter_mut().for_each(|v| *v *= self.rate);
+    }
+
+    /// Coefficients of the force of a contact point.
+    pub(crate) fn force(&self, point: usize) -> &[f64] {
+        &self.force[point * (DEGREE + 1)..(point + 1) * (DEGREE + 1)]
+    }
+
+    /// Coefficients of the relative displacement of a contact point.
+    pub(crate) fn contact(&self, point: usize) -> &[f64] {
+        &self.contact[point * (DEGREE + 1)..(point + 1) * (DEGREE + 1)]
+    }
+
+    /// Force of a contact point at τ [N].
+    pub(crate) fn force_at(&self, point: usize, tau: f64) -> f64 {
+        polynomial::value(self.force(point), tau)
+    }
+
+    /// Writes the coefficients of `Σ_j shape_j η_j` over the window `[0, length]` of τ, scaled to
+    /// the unit interval.
+    pub(crate) fn project(
+        &self,
+        shape: impl Iterator<Item = f64> + Clone,
+        length: f64,
+        out: &mut Vec<f64>,
+    ) {
+        out.clear();
+        let mut scale = 1.0;
+        for coefficients in self.modal.chunks_exact(self.modes) {
+            let sum: f64 = shape.clone().zip(coefficients).map(|(s, c)| s * c).sum();
+            out.push(scale * sum);
+            scale *= length;
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! A motion from a start state, period after period.
+
+use super::flow::{Event, Flow, Halt};
+use super::modal_system::ModalSystem;
+use super::output::Output;
+use super::runge_kutta::RungeKutta;
+use super::state::State;
+use super::transition::Transition;
+use crate::balance::{check_frequency, Progress};
+use crate::model::Model;
+use crate::solve::norm;
+use crate::Error;
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+
+/// How time is integrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scheme {
+    /// The exact flow between events.
+    Exact,
+    /// Classical fourth-order Runge-Kutta with this number of steps per period.
+    RungeKutta(usize),
+}
+
+/// Settings of a time integration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TransientSettings {
+    /// Frequency of the excitation, which defines the period [rad/s].
+    pub omega: f64,
+    /// How time is integrated.
+    pub scheme: Scheme,
+    /// Number of periods, or the most of them if there is a tolerance.
+    pub periods: usize,
+    /// Change of the state over a period, relative to the motion, at which it counts as settled.
+    pub tolerance: Option<f64>,
+    /// Output instants per period.
+    pub samples: usize,
+    /// Number of periods at the end whose history is kept; all if `None`.
+    pub keep: Option<usize>,
+}
+
+impl TransientSettings {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn check(&self) -> Result<(), Error> {
+        check_frequency("omega", self.omega)?;
+        let steps = match self.scheme {
+            Scheme::Exact => 1,
+            Scheme::RungeKutta(steps) => steps,
+        };
+        for (entry, count) in [
+            ("periods", self.periods),
+            ("samples", self.samples),
+            ("steps", steps),
+            ("keep", self.keep.unwrap_or(1)),
+        ] {
+            if count == 0 {
+                return Err(Error::value(entry, 0.0, "must be at least 1"));
+            }
+        }
+        match self.tolerance {
+            Some(tolerance) if !(tolerance > 0.0 && tolerance < 1.0) => {
+                Err(Error::value("tolerance", tolerance, "must lie between 0 and 1"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Motion of the observed DOFs and the contacts, instant after instant.
+#[derive(Debug, Clone, Default)]
+pub struct Trace {
+    /// Instants [s].
+    pub time: Vec<f64>,
+    /// Displacements of the observed DOFs [m].
+    pub displacement: Vec<f64>,
+    /// Their velocities [m/s].
+    pub velocity: Vec<f64>,
+    /// Relative displacements at the contacts [m].
+    pub contact_displacement: Vec<f64>,
+    /// Contact forces [N].
+    pub force: Vec<f64>,
+}
+
+/// A motion from a start state.
+#[derive(Debug, Clone, Default)]
+pub struct History {
+    /// Time histories of the periods kept.
+    pub trace: Trace,
+    /// State at the start and after each period: displacements and velocities of all DOFs,
+    /// contact forces.
+    pub poincare: Vec<Vec<f64>>,
+    /// Lowest and highest displacement of each observed DOF, period after period [m].
+    pub range: Vec<[f64; 2]>,
+    /// Change of the state over each period, relative to the largest state at its ends, in the
+    /// norm of energy.
+    pub change: Vec<f64>,
+    /// Events of the periods kept, timed from the start; none from Runge-Kutta.
+    pub events: Vec<Event>,
+    /// Whether the change has fallen below the tolerance.
+    pub settled: bool,
+    /// Why the motion was cut short, if it was.
+    pub halt: Option<Halt>,
+    /// Whether the caller has ended it.
+    pub interrupted: bool,
+    /// Steps taken.
+    pub steps: usize,
+    /// Events met.
+    pub events_met: usize,
+    /// Time taken.
+    pub total: Duration,
+}
+
+/// Follows a motion from `start`, or from rest, over periods of the excitation.
+///
+/// # Errors
+/// Settings outside their range, a DOF that does not exist, a start state that does not fit.
+pub fn transient(
+    model: &Model,
+    settings: &TransientSettings,
+    start: Option<&[f64]>,
+    observe: &[usize],
+    progress: &Progress<'_>,
+) -> Result<History, Error> {
+    let began = Instant::now();
+    settings.check()?;
+    let system = ModalSystem::new(model)?;
+    if let Some(&dof) = observe.iter().find(|&&dof| dof >= system.modes()) {
+        let remedy = format!("the structure has {} DOFs", system.modes());
+        return Err(Error::value("observe", dof as f64, &remedy));
+    }
+    let mut state = match start {
+        Some(values) => State::from_dofs(&system, values)?,
+        None => State::rest(&system),
+    };
+    let output = Output::new(&system, settings, observe);
+    let mut integrator = match settings.scheme {
+        Scheme::Exact => Integrator::Exact(Flow::new(model, &system, settings.omega)),
+        Scheme::RungeKutta(steps) => {
+            Integrator::RungeKutta(RungeKutta::new(model, &system, settings.omega, steps))
+        }
+    };
+    let coordinates = Transition::new(&system, settings.omega);
+    let mut history = History::default();
+    history.poincare.push(state.to_dofs(&system));
+    output.push(0.0, &state.displacement, &state.velocity, &state.force, &mut history.trace);
+    let mut before = coordinates.coordinates(&state);
+    for number in 0..settings.periods {
+        if !progress(number as f64 / settings.periods as f64) {
+            history.interrupted = true;
+            break;
+        }
+        let begin = number as f64 * TAU / settings.omega;
+        state.time = 0.0;
+        let passed = match &mut integrator {
+            Integrator::Exact(flow) => output.follow(flow, &mut state, begin, &mut history),
+            Integrator::RungeKutta(scheme) => {
+                output.step_through(scheme, &mut state, begin, &mut history)
+            }
+        };
+        if let Err(halt) = passed {
+            history.halt = Some(halt);
+            break;
+        }
+        let after = coordinates.coordinates(&state);
+        let size = norm(&before).max(norm(&after));
+        let difference: Vec<f64> = before.iter().zip(&after).map(|(a, b)| b - a).collect();
+        let change = if size > 0.0 { norm(&difference) / size } else { 0.0 };
+        history.change.push(change);
+        history.poincare.push(state.to_dofs(&system));
+        before = after;
+        history.settled = settings.tolerance.is_some_and(|tolerance| change <= tolerance);
+        if history.settled {
+            break;
+        }
+        output.forget(&mut history, 2);
+    }
+    output.forget(&mut history, 1);
+    (history.steps, history.events_met) = match &integrator {
+        Integrator::Exact(flow) => (flow.steps, flow.events),
+        Integrator::RungeKutta(scheme) => (scheme.taken, 0),
+    };
+    history.total = began.elapsed();
+    Ok(history)
+}
+
+enum Integrator<'a> {
+    Exact(Flow<'a>),
+    RungeKutta(RungeKutta<'a>),
+}

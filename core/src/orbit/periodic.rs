@@ -1,0 +1,349 @@
+//! The exact periodic orbit at one frequency.
+
+use super::quadrature::Quadrature;
+use super::residual::shifted;
+use super::settings::OrbitSettings;
+use super::shooting::Shooting;
+use super::survey::Survey;
+use crate::balance::{ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Settings};
+use crate::contact::Motion;
+use crate::fourier::{Harmonics, SampleTable};
+use crate::model::Model;
+use crate::motion::{Event, ModalSystem, State};
+use crate::solve::{newton, NewtonSettings, Outcome, System as _};
+use crate::timing::Profile;
+use crate::Error;
+use faer::c64;
+use std::sync::Arc;
+
+/// Harmonics of the balance that a cold start comes from.
+const START_HARMONICS: usize = 9;
+/// Rounds of following the motion itself, and spans in the first: each round doubles them.
+const ROUNDS: usize = 9;
+const FIRST_SPANS: usize = 4;
+
+/// Closing error, relative to the motion, of an orbit.
+const CLOSED: f64 = 1e-10;
+
+/// An exact periodic orbit.
+#[derive(Debug, Clone)]
+pub struct Orbit {
+    /// Harmonics, status, slip and friction work, as of a harmonic balance.
+    pub response: Point,
+    /// Lowest and highest displacement of each observed DOF [m].
+    pub range: Vec<[f64; 2]>,
+    /// State at the start of the period: displacements and velocities of all DOFs, contact forces.
+    pub state: Vec<f64>,
+    /// Floquet multipliers over the full period, exact ones of contacts that never slip first,
+    /// then by falling modulus.
+    pub multipliers: Vec<c64>,
+    /// Number of contacts that never slip: each keeps its mean force, a multiplier of exactly 1.
+    pub neutral: usize,
+    /// Work of the external forces per period [J].
+    pub work: f64,
+    /// Work lost to viscous damping per period [J].
+    pub viscous: f64,
+    /// Events of the period, in order of time.
+    pub events: Vec<Event>,
+    start: Option<State>,
+}
+
+/// Exact orbits of a model, from frequency to frequency.
+pub struct PeriodicOrbits<'a> {
+    model: &'a Model,
+    system: Arc<ModalSystem>,
+    settings: OrbitSettings,
+    observe: &'a [usize],
+    everywhere: Vec<usize>,
+    half_wave: bool,
+    quadrature: Quadrature,
+    progress: &'a Progress<'a>,
+    share: f64,
+    /// Steps of the flow, transition matrices and time.
+    pub(super) profile: Profile,
+}
+
+impl<'a> PeriodicOrbits<'a> {
+    /// Prepares orbits; displacements are surveyed at the DOFs `observe`.
+    ///
+    /// # Errors
+    /// Settings outside their range, a DOF that does not exist, a failing eigenvalue iteration.
+    pub fn new(
+        model: &'a Model,
+        settings: OrbitSettings,
+        observe: &'a [usize],
+    ) -> Result<Self, Error> {
+        settings.check()?;
+        let system = Arc::new(ModalSystem::new(model)?);
+        if let Some(&dof) = observe.iter().find(|&&dof| dof >= system.modes()) {
+            let remedy = format!("the structure has {} DOFs", system.modes());
+            return Err(Error::value("observe", dof as f64, &remedy));
+        }
+        Ok(Self {
+            model,
+            everywhere: (0..system.modes()).collect(),
+            system,
+            settings,
+            observe,
+            half_wave: model.is_symmetric() && settings.residual.is_symmetric(),
+            quadrature: Quadrature::default(),
+            progress: &|_| true,
+            share: 0.0,
+            profile: Profile::default(),
+        })
+    }
+
+    /// Has `progress` called during the analysis.
+    #[must_use]
+    pub fn watched(mut self, progress: &'a Progress<'a>) -> Self {
+        self.progress = progress;
+        self
+    }
+
+    /// Reports the share of the work done; `false` if the analysis is to end.
+    pub(super) fn report(&mut self, share: f64) -> bool {
+        self.share = share;
+        (self.progress)(share)
+    }
+
+    /// Whether orbits are half-wave symmetric.
+    #[must_use]
+    pub fn half_wave(&self) -> bool {
+        self.half_wave
+    }
+
+    /// A point that has not been computed.
+    pub(super) fn empty(&self, omega: f64, status: PointStatus) -> Orbit {
+        let (observed, points) = (self.observe.len(), self.system.points());
+        let size = 2 * self.system.modes() + points;
+        Orbit {
+            response: Point::empty(omega, status, observed, points),
+            range: vec![[f64::NAN; 2]; observed],
+            state: vec![f64::NAN; size],
+            multipliers: vec![c64::new(f64::NAN, f64::NAN); size],
+            neutral: 0,
+            work: f64::NAN,
+            viscous: f64::NAN,
+            events: Vec::new(),
+            start: None,
+        }
+    }
+
+    /// The orbit at one frequency [rad/s], from the state of a neighbour or from harmonic balance.
+    ///
+    /// # Errors
+    /// The eigenvalues of a transition matrix cannot be found.
+    pub fn solve(&mut self, omega: f64, neighbour: Option<&State>) -> Result<Orbit, Error> {
+        let (progress, share) = (self.progress, self.share);
+        let interrupted = || !progress(share);
+        let system = Arc::clone(&self.system);
+        let mut shooting =
+            Shooting::new(self.model, &system, omega, self.half_wave, Some(&interrupted));
+        let solved = self.shoot(&mut shooting, omega, neighbour);
+        self.profile.evaluations += shooting.flow.steps;
+        let Some((mut y, iterations)) = solved else {
+            return Ok(self.empty(omega, PointStatus::NotComputed));
+        };
+        let mut residual = vec![0.0; y.len()];
+        shooting.residual(&y, &mut residual);
+        let size = crate::solve::norm(&y).max(f64::MIN_POSITIVE);
+        let closing = crate::solve::norm(&residual) / size;
+        if closing.is_nan() || closing > CLOSED {
+            let mut orbit = self.empty(omega, PointStatus::Stalled);
+            orbit.response.residual = closing;
+            orbit.response.iterations = iterations;
+            return Ok(orbit);
+        }
+        let mut left = vec![0.0; y.len()];
+        if !shooting.solve(&residual, &mut left) {
+            return Ok(self.empty(omega, PointStatus::Singular));
+        }
+        let (multipliers, neutral) = shooting
+            .multipliers()
+            .ok_or_else(|| Error::Eigenvalues("transition matrix of the orbit".to_owned()))?;
+        self.profile.factorisations += shooting.matrices;
+        let mut orbit = self.survey(&mut shooting, &system, omega, &mut y);
+        orbit.response.residual = closing;
+        orbit.response.iterations = iterations;
+        orbit.response.error_estimate = self.left_error(&shooting, &system, &left);
+        (orbit.multipliers, orbit.neutral) = (multipliers, neutral);
+        Ok(orbit)
+    }
+
+    /// Newton's method from the neighbour, from harmonic balance, and at last from where the
+    /// motion itself leads. `None` if the caller has ended the analysis.
+    fn shoot(
+        &mut self,
+        shooting: &mut Shooting<'_>,
+        omega: f64,
+        neighbour: Option<&State>,
+    ) -> Option<(Vec<f64>, usize)> {
+        let settings =
+            NewtonSettings { tolerance: 1e-13, max_iterations: self.settings.max_iterations };
+        let mut iterations = 0;
+        let mut y = match neighbour {
+            Some(state) => shooting.coordinates.coordinates(state),
+            None => shooting.coordinates.coordinates(&self.harmonic_start(omega)),
+        };
+        for attempt in 0..2 + ROUNDS {
+            match attempt {
+                0 => {}
+                1 if neighbour.is_some() => {
+                    y = shooting.coordinates.coordinates(&self.harmonic_start(omega));
+                }
+                1 => continue,
+                round => {
+                    self.profile.homotopies += usize::from(round == 2);
+                    if !shooting.settle(&mut y, FIRST_SPANS << (round - 2)) {
+                        if shooting.interrupted() {
+                            return None;
+                        }
+                        y = shooting.coordinates.coordinates(&State::rest(&self.system));
+                    }
+                }
+            }
+            let mut trial = y.clone();
+            let report = newton(shooting, &mut trial, settings);
+            iterations += report.iterations;
+            match report.outcome {
+                Outcome::Converged => return Some((trial, iterations)),
+                Outcome::Interrupted => return None,
+                Outcome::Stalled | Outcome::Singular => {}
+            }
+        }
+        Some((y, iterations))
+    }
+
+    /// The state of a harmonic balance of low order at the start of the period; rest where it
+    /// has none.
+    fn harmonic_start(&self, omega: f64) -> State {
+        let rest = State::rest(&self.system);
+        let forced = self.model.compliance().forced_harmonics();
+        let highest = forced.last().copied().unwrap_or(1).max(START_HARMONICS);
+        let settings = Settings {
+            harmonics: HarmonicChoice::Fixed(highest),
+            max_harmonics: highest,
+            residual: self.settings.residual,
+            ..Settings::default()
+        };
+        let Ok(mut balance) = ForcedBalance::new(self.model, settings, &self.everywhere) else {
+            return rest;
+        };
+        match balance.solve(omega, None) {
+            Ok(point) if point.status == PointStatus::Converged => {
+                self.state_of(&point, balance.half_wave())
+            }
+            _ => rest,
+        }
+    }
+
+    /// State at the start of the period of a harmonic balance of all DOFs.
+    fn state_of(&self, point: &Point, half_wave: bool) -> State {
+        let orders = point.harmonics + 1;
+        let at_start = |factor: &dyn Fn(usize) -> c64| -> Vec<f64> {
+            point
+                .displacement
+                .chunks_exact(orders)
+                .map(|series| series.iter().enumerate().map(|(k, x)| (factor(k) * x).re).sum())
+                .collect()
+        };
+        let mut state = State::rest(&self.system);
+        state.displacement = self.system.to_modes(&at_start(&|_| c64::new(1.0, 0.0)));
+        state.velocity =
+            self.system.to_modes(&at_start(&|k| c64::new(0.0, k as f64 * point.omega)));
+        let table = SampleTable::new(Harmonics::new(point.harmonics, half_wave));
+        for (law, points) in self.model.laws().iter().zip(self.model.points()) {
+            let slots = table.harmonics().slots();
+            let mut series = vec![0.0; slots * points.len()];
+            for (own, out) in points.clone().zip(series.chunks_exact_mut(slots)) {
+                let amplitudes = &point.contact_displacement[own * orders..(own + 1) * orders];
+                table.harmonics().write_series(amplitudes, out);
+            }
+            let motion =
+                Motion { table: &table, displacement: &series, residual: self.settings.residual };
+            state.force[points.clone()].copy_from_slice(&law.force_history(motion, 1));
+        }
+        state.settle_points(&self.system);
+        state
+    }
+
+    /// Passes along the closed orbit and reads everything off it.
+    fn survey(
+        &mut self,
+        shooting: &mut Shooting<'_>,
+        system: &ModalSystem,
+        omega: f64,
+        y: &mut [f64],
+    ) -> Orbit {
+        let start = std::time::Instant::now();
+        let highest = self.settings.harmonics;
+        let (mut state, _) = shooting.coordinates.state(y);
+        let mut orbit = self.empty(omega, PointStatus::Converged);
+        for pass in 0..2 {
+            orbit.state = state.to_dofs(system);
+            orbit.start = Some(state.clone());
+            let mut survey = Survey::new(
+                system,
+                omega,
+                self.half_wave,
+                highest,
+                self.observe,
+                &mut self.quadrature,
+            );
+            let first = state.clone();
+            // The orbit has closed with this flow, so that it runs to the end.
+            let _ = shooting.flow.run(&mut state, shooting.span(), &mut |passage| {
+                survey.include(&passage);
+            });
+            survey.finish();
+            let observed = self.observe.len();
+            let neutral: Vec<usize> = (0..system.points())
+                .filter(|&i| survey.contacts[i].slip_fraction == 0.0 && system.limits()[i] > 0.0)
+                .collect();
+            let range = &survey.range[observed..];
+            let middle: Vec<f64> = range.iter().map(|r| 0.5 * (r[0] + r[1])).collect();
+            let half: Vec<f64> = range.iter().map(|r| 0.5 * (r[1] - r[0])).collect();
+            let residual = self.settings.residual;
+            let moved = (pass == 0 && !self.half_wave)
+                .then(|| shifted(system, residual, &neutral, &middle, &half, &first))
+                .flatten();
+            if let Some(moved) = moved {
+                state = moved;
+                continue;
+            }
+            let displacement = survey.displacement();
+            let orders = highest + 1;
+            orbit.response.harmonics = highest;
+            orbit.response.displacement = displacement[..observed * orders].to_vec();
+            orbit.response.contact_displacement = displacement[observed * orders..].to_vec();
+            orbit.response.contact_force = survey.force();
+            orbit.response.contacts = survey.contacts.clone();
+            orbit.range = survey.range[..observed].to_vec();
+            (orbit.work, orbit.viscous) = (survey.work, survey.viscous);
+            orbit.events = std::mem::take(&mut survey.events);
+            break;
+        }
+        self.profile.recovery += start.elapsed();
+        orbit
+    }
+
+    /// Displacement error of the observed DOFs that the closing error leaves [m].
+    fn left_error(&self, shooting: &Shooting<'_>, system: &ModalSystem, left: &[f64]) -> Vec<f64> {
+        let (error, _) = shooting.coordinates.state(left);
+        self.observe
+            .iter()
+            .map(|&dof| {
+                let parts = system.shape(dof).zip(&error.displacement);
+                parts.map(|(shape, x)| (shape * x).abs()).sum()
+            })
+            .collect()
+    }
+}
+
+impl Orbit {
+    /// State at the start of the period, for a neighbouring frequency to start from.
+    #[must_use]
+    pub fn start(&self) -> Option<&State> {
+        self.start.as_ref()
+    }
+}

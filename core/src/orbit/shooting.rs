@@ -1,0 +1,186 @@
+//! Shooting: the start state that the flow brings back after a period, or to its mirror image
+//! after half a period.
+
+use crate::contact::PointState;
+use crate::model::Model;
+use crate::motion::{Flow, Leg, ModalSystem, Passage, Regime, Transition};
+use crate::solve::System;
+use faer::linalg::solvers::Solve as _;
+use faer::{c64, Mat};
+
+/// The closing condition of a periodic orbit at one frequency, in the coordinates of
+/// [`Transition`].
+pub(super) struct Shooting<'a> {
+    pub(super) flow: Flow<'a>,
+    pub(super) coordinates: Transition<'a>,
+    stuck: Regime,
+    limits: &'a [f64],
+    half_wave: bool,
+    span: f64,
+    interrupted: Option<&'a dyn Fn() -> bool>,
+    /// Of the last evaluation: legs, forces that were free to vary at the start, points that
+    /// have slipped.
+    legs: Vec<Leg>,
+    free: Vec<bool>,
+    slipped: Vec<bool>,
+    /// Transition matrices assembled so far.
+    pub(super) matrices: usize,
+}
+
+impl<'a> Shooting<'a> {
+    pub(super) fn new(
+        model: &'a Model,
+        system: &'a ModalSystem,
+        omega: f64,
+        half_wave: bool,
+        interrupted: Option<&'a dyn Fn() -> bool>,
+    ) -> Self {
+        let period = std::f64::consts::TAU / omega;
+        Self {
+            flow: Flow::new(model, system, omega),
+            coordinates: Transition::new(system, omega),
+            stuck: Regime::new(model, &vec![PointState::Stuck; system.points()]),
+            limits: system.limits(),
+            half_wave,
+            span: if half_wave { 0.5 * period } else { period },
+            interrupted,
+            legs: Vec::new(),
+            free: Vec::new(),
+            slipped: Vec::new(),
+            matrices: 0,
+        }
+    }
+
+    /// Time that the flow covers, a period or half of it [s].
+    pub(super) fn span(&self) -> f64 {
+        self.span
+    }
+
+    /// Coordinates after the span, mirrored under half-wave symmetry.
+    fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
+        let (mut state, free) = self.coordinates.state(y);
+        self.free =
+            free.iter().zip(self.limits).map(|(free, limit)| *free && *limit > 0.0).collect();
+        self.slipped = state.points.iter().map(|point| *point != PointState::Stuck).collect();
+        self.legs.clear();
+        let (legs, slipped) = (&mut self.legs, &mut self.slipped);
+        let run = self.flow.run(&mut state, self.span, &mut |passage| {
+            if let Passage::Event { event, .. } = &passage {
+                slipped[event.point] = true;
+            }
+            Leg::record(legs, &passage);
+        });
+        run.ok()?;
+        let mut y = self.coordinates.coordinates(&state);
+        if self.half_wave {
+            y.iter_mut().for_each(|y| *y = -*y);
+        }
+        Some(y)
+    }
+
+    /// Follows the motion itself over some spans: passive systems settle by themselves.
+    pub(super) fn settle(&mut self, y: &mut Vec<f64>, spans: usize) -> bool {
+        for _ in 0..spans {
+            if self.interrupted() {
+                return false;
+            }
+            match self.image(y) {
+                Some(image) => *y = image,
+                None => return false,
+            }
+        }
+        true
+    }
+
+    /// Points that carry a force, have a limit and have not slipped: each keeps its slip load for
+    /// ever.
+    fn neutral(&self) -> Vec<usize> {
+        (0..self.limits.len()).filter(|&i| self.limits[i] > 0.0 && !self.slipped[i]).collect()
+    }
+
+    /// Derivative of the image.
+    fn derivative(&mut self) -> Mat<f64> {
+        self.matrices += 1;
+        let along = self.coordinates.along(&self.legs, &self.free);
+        if self.half_wave {
+            faer::Scale(-1.0) * along
+        } else {
+            along
+        }
+    }
+
+    /// Floquet multipliers over the full period by falling modulus, the exact ones of contacts
+    /// that never slip first, and the number of these.
+    pub(super) fn multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
+        let neutral = self.neutral();
+        let mut matrix = self.derivative();
+        let size = matrix.nrows();
+        let first = size - self.limits.len();
+        let mut change = Mat::<f64>::identity(size, size);
+        for &point in &neutral {
+            let row = self.coordinates.slip_load_row(point, &self.stuck);
+            for (j, value) in row.iter().enumerate() {
+                change[(first + point, j)] = *value;
+            }
+        }
+        // From forces to slip loads and back is the same change; slip loads of contacts that
+        // never slip stay what they are and leave the eigenvalue problem.
+        matrix = &change * matrix * &change;
+        let kept: Vec<usize> =
+            (0..size).filter(|i| *i < first || !neutral.contains(&(i - first))).collect();
+        let rest = Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[i], kept[j])]);
+        let mut multipliers: Vec<c64> = rest.eigenvalues().ok()?;
+        if self.half_wave {
+            multipliers.iter_mut().for_each(|m| *m *= *m);
+        }
+        multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        let ones = std::iter::repeat_n(c64::new(1.0, 0.0), neutral.len());
+        Some((ones.chain(multipliers).collect(), neutral.len()))
+    }
+}
+
+impl System for Shooting<'_> {
+    fn size(&self) -> usize {
+        self.coordinates.size()
+    }
+
+    fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+        match self.image(x) {
+            Some(image) => {
+                for ((out, image), x) in out.iter_mut().zip(image).zip(x) {
+                    *out = image - x;
+                }
+            }
+            None => out.fill(f64::NAN),
+        }
+    }
+
+    fn interrupted(&self) -> bool {
+        self.interrupted.is_some_and(|ask| ask())
+    }
+
+    fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
+        let mut matrix = self.derivative();
+        let size = matrix.nrows();
+        for i in 0..size {
+            matrix[(i, i)] -= 1.0;
+        }
+        let mut right = Mat::from_fn(size, 1, |i, _| rhs[i]);
+        if !self.half_wave {
+            // The slip load of a contact that never slips is free: it stays as it is.
+            for point in self.neutral() {
+                let target = size - self.limits.len() + point;
+                let row = self.coordinates.slip_load_row(point, &self.stuck);
+                for (j, value) in row.iter().enumerate() {
+                    matrix[(target, j)] = *value;
+                }
+                right[(target, 0)] = 0.0;
+            }
+        }
+        matrix.partial_piv_lu().solve_in_place(&mut right);
+        for (i, step) in step.iter_mut().enumerate() {
+            *step = right[(i, 0)];
+        }
+        step.iter().all(|s| s.is_finite())
+    }
+}

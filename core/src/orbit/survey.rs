@@ -1,0 +1,198 @@
+//! What is read off a closed orbit: harmonics, extremes, energies, slip and events.
+
+use super::quadrature::Quadrature;
+use crate::contact::{PointState, PointSummary};
+use crate::motion::{value, Arc, Event, Extremes, ModalSystem, Passage};
+use faer::c64;
+use std::f64::consts::TAU;
+
+/// Quadrature nodes per arc beyond those that the highest harmonic needs: power series of an arc
+/// have few significant terms.
+const NODES: usize = 20;
+
+/// Sums over one pass along an orbit.
+pub(super) struct Survey<'a> {
+    system: &'a ModalSystem,
+    omega: f64,
+    half_wave: bool,
+    orders: usize,
+    quadrature: &'a mut Quadrature,
+    /// Harmonics of the modes and, behind them, of the contact forces, order after order.
+    series: Vec<c64>,
+    /// Rows that give the observed DOFs, and after them the contact displacements.
+    shapes: Vec<Vec<f64>>,
+    extremes: Extremes,
+    /// Lowest and highest value of each shape.
+    pub(super) range: Vec<[f64; 2]>,
+    pub(super) contacts: Vec<PointSummary>,
+    pub(super) events: Vec<Event>,
+    pub(super) work: f64,
+    pub(super) viscous: f64,
+}
+
+impl<'a> Survey<'a> {
+    pub(super) fn new(
+        system: &'a ModalSystem,
+        omega: f64,
+        half_wave: bool,
+        highest: usize,
+        observe: &[usize],
+        quadrature: &'a mut Quadrature,
+    ) -> Self {
+        let shapes: Vec<Vec<f64>> = observe
+            .iter()
+            .map(|&dof| system.shape(dof).collect())
+            .chain((0..system.points()).map(|point| system.contact_shape(point).to_vec()))
+            .collect();
+        Self {
+            system,
+            omega,
+            half_wave,
+            orders: highest + 1,
+            quadrature,
+            series: vec![c64::new(0.0, 0.0); (highest + 1) * (system.modes() + system.points())],
+            range: vec![[f64::INFINITY, f64::NEG_INFINITY]; shapes.len()],
+            shapes,
+            extremes: Extremes::default(),
+            contacts: vec![PointSummary::default(); system.points()],
+            events: Vec::new(),
+            work: 0.0,
+            viscous: 0.0,
+        }
+    }
+
+    /// Takes a passage of the flow into account.
+    pub(super) fn include(&mut self, passage: &Passage<'_>) {
+        match passage {
+            Passage::Arc(arc) => {
+                self.integrate(arc);
+                self.widen(arc);
+                self.follow_slip(arc);
+            }
+            Passage::Event { event, .. } => self.events.push(*event),
+        }
+    }
+
+    fn integrate(&mut self, arc: &Arc<'_>) {
+        let (modes, points) = (self.system.modes(), self.system.points());
+        let angle = self.omega * arc.duration();
+        let count = NODES + (0.5 * angle * self.orders as f64).ceil() as usize;
+        let mut motion = vec![0.0; modes + points];
+        let (mut velocity, mut damping, mut load) =
+            (vec![0.0; modes], vec![0.0; modes], vec![0.0; modes]);
+        let step = if self.half_wave { 2 } else { 1 };
+        for &(x, weight) in self.quadrature.rule(count) {
+            let tau = x * arc.length;
+            arc.series.motion_at(tau, &mut motion[..modes], &mut velocity);
+            for point in 0..points {
+                motion[modes + point] = arc.series.force_at(point, tau);
+            }
+            let phase = self.omega * arc.start + x * angle;
+            damping.fill(0.0);
+            self.system.add_damping(&velocity, 1.0, &mut damping);
+            load.fill(0.0);
+            self.system.add_load(phase, 1.0, &mut load);
+            let time = weight * arc.duration();
+            for j in 0..modes {
+                self.viscous += time * damping[j] * velocity[j];
+                self.work += time * load[j] * velocity[j];
+            }
+            // Half a period of an odd motion counts twice.
+            let share = weight * angle / TAU * if self.half_wave { 2.0 } else { 1.0 };
+            let turn = c64::new(phase.cos(), -phase.sin());
+            let (mut rotation, stride) =
+                if self.half_wave { (turn, turn * turn) } else { (c64::new(1.0, 0.0), turn) };
+            for order in (usize::from(self.half_wave)..self.orders).step_by(step) {
+                let weight = rotation * if order == 0 { share } else { 2.0 * share };
+                let row = &mut self.series[order * motion.len()..(order + 1) * motion.len()];
+                for (sum, value) in row.iter_mut().zip(&motion) {
+                    *sum += weight * *value;
+                }
+                rotation *= stride;
+            }
+        }
+    }
+
+    /// Widens the ranges by the extremes on an arc.
+    fn widen(&mut self, arc: &Arc<'_>) {
+        for (shape, range) in self.shapes.iter().zip(&mut self.range) {
+            let shape = shape.iter().copied();
+            arc.series.project(shape, arc.length, &mut self.extremes.series);
+            self.extremes.widen(range);
+        }
+    }
+
+    fn follow_slip(&mut self, arc: &Arc<'_>) {
+        let share = self.omega * arc.duration() / TAU;
+        for (point, summary) in self.contacts.iter_mut().enumerate() {
+            let limit = self.system.limits()[point];
+            if limit == 0.0 {
+                summary.slip_fraction += share;
+            }
+            let state = arc.regime.points[point];
+            if state == PointState::Stuck {
+                continue;
+            }
+            let travel: f64 = (0..arc.regime.points.len())
+                .map(|other| {
+                    let u = arc.series.contact(other);
+                    arc.regime.slip_rate[(point, other)] * (value(u, arc.length) - u[0])
+                })
+                .sum();
+            summary.slip_fraction += share;
+            summary.dissipation += limit * state.sign() * travel;
+        }
+    }
+
+    /// Completes half a period by its mirror image.
+    pub(super) fn finish(&mut self) {
+        if !self.half_wave {
+            return;
+        }
+        for range in &mut self.range {
+            let largest = range[1].max(-range[0]);
+            *range = [-largest, largest];
+        }
+        for summary in &mut self.contacts {
+            summary.slip_fraction *= 2.0;
+            summary.dissipation *= 2.0;
+        }
+        (self.work, self.viscous) = (2.0 * self.work, 2.0 * self.viscous);
+        let half = 0.5 * TAU / self.omega;
+        let mirrored: Vec<Event> = self
+            .events
+            .iter()
+            .map(|event| Event {
+                time: event.time + half,
+                state: match event.state {
+                    PointState::Stuck => PointState::Stuck,
+                    PointState::Forward => PointState::Backward,
+                    PointState::Backward => PointState::Forward,
+                },
+                ..*event
+            })
+            .collect();
+        self.events.extend(mirrored);
+    }
+
+    /// Harmonics X_0, X_1, … of the observed DOFs and the contact displacements, row after row.
+    pub(super) fn displacement(&self) -> Vec<c64> {
+        let columns = self.system.modes() + self.system.points();
+        let mut out = Vec::with_capacity(self.shapes.len() * self.orders);
+        for shape in &self.shapes {
+            for row in self.series.chunks_exact(columns) {
+                out.push(shape.iter().zip(row).map(|(s, c)| *c * *s).sum());
+            }
+        }
+        out
+    }
+
+    /// Harmonics of the contact forces, point after point.
+    pub(super) fn force(&self) -> Vec<c64> {
+        let modes = self.system.modes();
+        let columns = modes + self.system.points();
+        (0..self.system.points())
+            .flat_map(|point| self.series.chunks_exact(columns).map(move |row| row[modes + point]))
+            .collect()
+    }
+}

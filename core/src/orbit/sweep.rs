@@ -1,0 +1,124 @@
+//! Exact orbits over frequency, and their true maximum.
+
+use super::periodic::{Orbit, PeriodicOrbits};
+use super::settings::OrbitSettings;
+use crate::balance::{brent, check_frequency, PointStatus, Progress};
+use crate::fourier::Measure;
+use crate::model::Model;
+use crate::motion::State;
+use crate::timing::Profile;
+use crate::Error;
+use std::time::Instant;
+
+/// Relative distance in frequency up to which a neighbour is the better start.
+const NEIGHBOUR: f64 = 0.05;
+
+/// Exact orbits over frequency.
+#[derive(Debug, Clone)]
+pub struct Orbits {
+    /// In the order of the sweep.
+    pub points: Vec<Orbit>,
+    /// Whether the orbits are half-wave symmetric.
+    pub half_wave: bool,
+    /// Whether the analysis was ended before its last point.
+    pub interrupted: bool,
+    /// Where the time went; `evaluations` are steps of the flow, `factorisations` transition
+    /// matrices, `homotopies` points at which the motion itself had to be followed.
+    pub profile: Profile,
+}
+
+/// Finds the orbits at the frequencies `omega` [rad/s], in their order.
+///
+/// # Errors
+/// A frequency that is not positive, or as [`PeriodicOrbits::solve`].
+pub fn orbit_sweep(mut orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, Error> {
+    let start = Instant::now();
+    for (index, &frequency) in omega.iter().enumerate() {
+        check_frequency(&format!("omega[{index}]"), frequency)?;
+    }
+    let mut points: Vec<Orbit> = Vec::with_capacity(omega.len());
+    let mut interrupted = false;
+    for &frequency in omega {
+        let share = points.len() as f64 / omega.len() as f64;
+        interrupted = interrupted || !orbits.report(share);
+        if interrupted {
+            points.push(orbits.empty(frequency, PointStatus::NotComputed));
+            continue;
+        }
+        let guess = predict(&points, frequency);
+        let orbit = orbits.solve(frequency, guess.as_ref())?;
+        interrupted = orbit.response.status == PointStatus::NotComputed;
+        points.push(orbit);
+    }
+    Ok(Orbits {
+        points,
+        half_wave: orbits.half_wave(),
+        interrupted,
+        profile: Profile { total: start.elapsed(), ..orbits.profile },
+    })
+}
+
+/// Linear extrapolation from the last two orbits, or the last one; nothing if it is far away.
+fn predict(points: &[Orbit], omega: f64) -> Option<State> {
+    let last = points.last()?;
+    let start = last.start()?;
+    if (omega - last.response.omega).abs() > NEIGHBOUR * omega {
+        return None;
+    }
+    let mut predicted = start.clone();
+    let before = points.len().checked_sub(2).map(|i| &points[i]);
+    let Some((before, earlier)) = before.and_then(|orbit| Some((orbit, orbit.start()?))) else {
+        return Some(predicted);
+    };
+    let ratio = (omega - last.response.omega) / (last.response.omega - before.response.omega);
+    if !ratio.is_finite() || ratio.abs() > 3.0 {
+        return Some(predicted);
+    }
+    for (values, earlier) in [
+        (&mut predicted.displacement, &earlier.displacement),
+        (&mut predicted.velocity, &earlier.velocity),
+        (&mut predicted.force, &earlier.force),
+    ] {
+        for (value, earlier) in values.iter_mut().zip(earlier) {
+            *value += ratio * (*value - earlier);
+        }
+    }
+    Some(predicted)
+}
+
+/// Maximises the exact amplitude of one DOF over `[low, high]` [rad/s] from `guess`. Returns the
+/// frequency and the amplitude, minus infinity if no orbit is found in the bracket.
+///
+/// # Errors
+/// As [`orbit_sweep`]; a bracket that is not ordered.
+pub fn orbit_peak(
+    model: &Model,
+    settings: OrbitSettings,
+    dof: usize,
+    measure: Measure,
+    [low, guess, high]: [f64; 3],
+    progress: &Progress<'_>,
+) -> Result<(f64, f64), Error> {
+    check_frequency("peak: lower bound", low)?;
+    check_frequency("peak: upper bound", high)?;
+    if !(low <= guess && guess <= high) {
+        return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
+    }
+    let observe = [dof];
+    let settings = OrbitSettings { harmonics: 1, ..settings };
+    let mut orbits = PeriodicOrbits::new(model, settings, &observe)?.watched(progress);
+    let mut start: Option<(f64, State)> = None;
+    let mut height = |omega: f64| -> Result<f64, Error> {
+        let near = start.as_ref().filter(|(at, _)| (omega - at).abs() <= NEIGHBOUR * omega);
+        let orbit = orbits.solve(omega, near.map(|(_, state)| state))?;
+        let Some(state) = orbit.start() else { return Ok(f64::NEG_INFINITY) };
+        start = Some((omega, state.clone()));
+        let [lowest, highest] = orbit.range[0];
+        Ok(match measure {
+            Measure::HalfRange => 0.5 * (highest - lowest),
+            Measure::Max => highest.max(-lowest),
+            Measure::Fundamental => orbit.response.displacement[1].norm(),
+        })
+    };
+    brent(low, guess, high, &mut height)
+}
