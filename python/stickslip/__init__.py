@@ -11,16 +11,23 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from stickslip import plot, reference, study
     from stickslip._core import __version__
+    from stickslip.analyses.certify import certify
+    from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.transient import transient
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
+    from stickslip.model.state import State
     from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
     from stickslip.results import ForcedResponse
+    from stickslip.results.exact_response import ExactResponse
     from stickslip.results.status import Status
     from stickslip.results.store import load
+    from stickslip.results.transient import Transient
 
 __all__ = [
+    "ExactResponse",
     "Force",
     "ForcedResponse",
     "Interrupted",
@@ -29,9 +36,13 @@ __all__ = [
     "Model",
     "ModelError",
     "Rayleigh",
+    "State",
     "Status",
     "Structure",
+    "Transient",
     "__version__",
+    "certify",
+    "exact_response",
     "forced_response",
     "join",
     "load",
@@ -40,9 +51,11 @@ __all__ = [
     "read_matrix",
     "reference",
     "study",
+    "transient",
 ]
 
 _HOMES = {
+    "ExactResponse": "results.exact_response",
     "Force": "model",
     "ForcedResponse": "results",
     "Interrupted": "errors",
@@ -51,14 +64,19 @@ _HOMES = {
     "Model": "model",
     "ModelError": "errors",
     "Rayleigh": "model",
+    "State": "model.state",
     "Status": "results",
     "Structure": "model",
+    "Transient": "results.transient",
     "__version__": "_core",
+    "certify": "analyses.certify",
+    "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",
     "load": "results.store",
     "natural_frequencies": "model",
     "read_matrix": "io",
+    "transient": "analyses.transient",
 }
 _MODULES = ("plot", "reference", "study")
 

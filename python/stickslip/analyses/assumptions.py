@@ -1,8 +1,10 @@
-"""What a forced response took for granted, in words."""
+"""What an analysis took for granted, in words."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,9 +15,11 @@ from stickslip.results.arrays import Arrays, amplitude_of
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
+    from stickslip.analyses.exact_response import ExactSettings
     from stickslip.analyses.forced_response import Settings
+    from stickslip.analyses.transient import TransientSettings
 
-__all__ = ["assumptions_of"]
+__all__ = ["assumptions_of", "orbit_assumptions", "transient_assumptions"]
 
 LARGE_ERROR = 0.05
 """Share of the amplitude above which the discarded harmonics are worth a warning."""
@@ -88,6 +92,121 @@ def assumptions_of(
             _failures(arrays),
         )
     return tuple(text for text in texts if text)
+
+
+def orbit_assumptions(
+    model: Model,
+    settings: ExactSettings,
+    dofs: tuple[str, ...],
+    arrays: Arrays,
+    *,
+    half_wave: bool,
+    missing: int = 0,
+) -> tuple[str, ...]:
+    """Say what exact orbits took for granted, one text per assumption.
+
+    Parameters
+    ----------
+    model, settings, dofs, arrays, half_wave, missing
+        As of `assumptions_of`; `half_wave` says that orbits were sought on half a period.
+
+    Returns
+    -------
+    tuple of str
+        One sentence or two each; those that do not apply are left out.
+    """
+    half = (
+        "Orbits were sought on half a period: the forces and the friction laws are half-wave "
+        "symmetric, and so is the steady motion."
+        if half_wave
+        else "Only motions of the period of the forces were sought."
+    )
+    chosen = ""
+    if settings.span is not None:
+        low, high = sorted(settings.span)
+        chosen = (
+            f"The frequencies between {low:g} and {high:g} rad/s are those that an adaptive "
+            f"harmonic balance chose to a tolerance of {settings.tolerance:g}."
+        )
+    without_span = replace(settings, span=None)
+    with np.errstate(all="ignore"):
+        texts = (
+            half,
+            f"Harmonics are reported up to {settings.harmonics}; the orbits have no truncation.",
+            _residual(model, settings, arrays),
+            chosen,
+            _frequencies(without_span, arrays, missing, interrupted=missing > 0),
+            _observed(model, dofs),
+            _damping(model.structure.damping),
+            _failures(arrays),
+        )
+    return tuple(text for text in texts if text)
+
+
+def transient_assumptions(
+    model: Model,
+    settings: TransientSettings,
+    dofs: tuple[str, ...],
+    start: object,
+    *,
+    settled: bool,
+    unbounded: bool,
+) -> tuple[str, ...]:
+    """Say what a transient took for granted, one text per assumption.
+
+    Parameters
+    ----------
+    model : Model
+        What was computed.
+    settings : TransientSettings
+        How.
+    dofs : tuple of str
+        The observed degrees of freedom.
+    start : object
+        What the run was started from, as it was given.
+    settled, unbounded : bool
+        How it ended.
+
+    Returns
+    -------
+    tuple of str
+        One sentence or two each; those that do not apply are left out.
+    """
+    begun = "rest" if start is None else "a given state"
+    if isinstance(start, Mapping):
+        begun = "given displacements, without velocities and contact forces"
+    history = (
+        "; a contact that never slips keeps for ever the mean force of its start, so that means "
+        "depend on it while half ranges do not"
+        if model.contacts
+        else ""
+    )
+    stepped = (
+        f"The motion was advanced in {settings.steps} Runge-Kutta steps per period; between them "
+        "the output is interpolated."
+        if settings.scheme == "rk4"
+        else "The motion was followed exactly between the instants of stick and slip."
+    )
+    open_end = "" if settled or unbounded or settings.tolerance is not None else _UNASKED
+    with np.errstate(all="ignore"):
+        texts = (
+            f"The run starts from {begun}{history}.",
+            stepped,
+            open_end,
+            _kept(settings),
+            _observed(model, dofs),
+            _damping(model.structure.damping),
+        )
+    return tuple(text for text in texts if text)
+
+
+_UNASKED = "No tolerance was given, so that the last period need not be a steady one; see change."
+
+
+def _kept(settings: TransientSettings) -> str:
+    if settings.keep is None or settings.keep >= settings.periods:
+        return ""
+    return f"Time histories and events are kept of the last {settings.keep} periods only."
 
 
 def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> str:

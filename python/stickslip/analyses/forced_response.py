@@ -4,14 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.analyses.arguments import (
+    RESIDUALS,
+    Residual,
+    Span,
+    grid_of,
+    observed_dofs,
+    require_held,
+    require_model,
+    require_progress,
+    residual_of,
+    span_of,
+    tolerance_of,
+)
 from stickslip.analyses.assumptions import assumptions_of
 from stickslip.analyses.memory import require_memory
-from stickslip.checks import brief, choice, real_number, text, unknown, whole_number
+from stickslip.checks import choice, whole_number
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
@@ -21,19 +34,13 @@ from stickslip.results.status import Status
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["METHODS", "RESIDUALS", "Settings", "forced_response"]
+__all__ = ["METHODS", "RESIDUALS", "Residual", "Settings", "forced_response"]
 
 METHODS = ("newton",)
 """Solvers of the balance equations."""
 
-RESIDUALS = ("centred", "from_rest")
-"""Named assumptions on the mean force of a contact that never slips."""
-
 MAX_HARMONICS = 255
 MAX_ITERATIONS = 50
-
-Residual: TypeAlias = Literal["centred", "from_rest"] | float
-Span: TypeAlias = tuple[float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +72,8 @@ class Settings:
         If a value is of the wrong type or outside its range.
     """
 
+    methods: ClassVar[tuple[str, ...]] = METHODS
+
     harmonics: int | Literal["auto"] = "auto"
     tolerance: float = 1e-3
     residual: Residual = "centred"
@@ -78,12 +87,12 @@ class Settings:
         iterations = whole_number(self.max_iterations, "max_iterations", smallest=1)
         checked: dict[str, object] = {
             "harmonics": _harmonics(self.harmonics, limit),
-            "tolerance": _tolerance(self.tolerance),
-            "residual": _residual(self.residual),
-            "method": choice(self.method, "method", METHODS),
+            "tolerance": tolerance_of(self.tolerance),
+            "residual": residual_of(self.residual),
+            "method": choice(self.method, "method", self.methods),
             "max_harmonics": limit,
             "max_iterations": iterations,
-            "span": None if self.span is None else _span(self.span),
+            "span": None if self.span is None else span_of(self.span),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -157,9 +166,8 @@ def forced_response(
     frequency and time. The receptance form in contact displacements, its closed-form tangent and
     the error estimate are this package's.
     """
-    if not isinstance(model, Model):
-        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
-    grid = _grid(omega)
+    require_model(model)
+    grid = grid_of(omega)
     settings = Settings(
         harmonics=harmonics,
         tolerance=tolerance,
@@ -169,18 +177,15 @@ def forced_response(
         max_iterations=max_iterations,
         span=grid if isinstance(grid, tuple) else None,
     )
-    dofs = _observed(observe, model)
-    if progress is not None and not callable(progress):
-        raise ModelError(
-            f"progress: {brief(progress)} cannot be called; give a function of a fraction"
-        )
+    dofs = observed_dofs(observe, model)
+    require_progress(progress)
     if not isinstance(grid, tuple):
         kept = settings.fixed_harmonics or max(
             (force.harmonic for force in model.forces), default=1
         )
         points = sum(contact.points for contact in model.contacts)
         require_memory(grid.size, max(kept, 1), len(dofs), points)
-    _require_held(model, settings.residual)
+    require_held(model, settings.residual)
     solution = _solve(model, grid, dofs, settings, progress)
     result = _result(model, settings, dofs, solution)
     if result.interrupted:
@@ -249,43 +254,6 @@ def _result(
     )
 
 
-def _grid(omega: ArrayLike | Span) -> NDArray[np.float64] | Span:
-    """Tell a range from a grid, and return either checked."""
-    if isinstance(omega, tuple) and len(omega) == 2:
-        return _span(omega)
-    try:
-        values = np.asarray(omega)
-    except ValueError:
-        raise ModelError("omega: a ragged list; give one list of frequencies in rad/s") from None
-    if values.dtype.kind not in "fiu":
-        shown = repr(omega) if values.size < 5 else f"an array of {values.dtype}"
-        raise ModelError(f"omega: {shown} holds no real numbers; give frequencies in rad/s")
-    if values.ndim != 1:
-        remedy = f"write [{values:g}]" if values.ndim == 0 else "give one list of frequencies"
-        raise ModelError(f"omega: shape {values.shape} instead of (n,); {remedy}")
-    if not values.size:
-        raise ModelError("omega: empty; give at least one frequency in rad/s")
-    grid = np.array(values, dtype=np.float64)
-    bad = np.flatnonzero(~(np.isfinite(grid) & (grid > 0.0)))
-    if bad.size:
-        raise ModelError(
-            f"omega[{bad[0]}] is {grid[bad[0]]:g}; give finite frequencies above 0 rad/s"
-        )
-    return grid
-
-
-def _span(span: tuple[object, ...]) -> Span:
-    if len(span) != 2:
-        raise ModelError(f"omega: a range has two ends, not {len(span)}; write (start, end)")
-    start, end = (real_number(value, "omega: end of the range") for value in span)
-    if not (start > 0.0 and end > 0.0 and start != end):
-        raise ModelError(
-            f"omega: the range ({start:g}, {end:g}) must have two different ends above 0 rad/s; "
-            "write a list for single frequencies"
-        )
-    return start, end
-
-
 def _harmonics(harmonics: object, limit: int) -> int | Literal["auto"]:
     if isinstance(harmonics, str):
         if harmonics != "auto":
@@ -298,74 +266,3 @@ def _harmonics(harmonics: object, limit: int) -> int | Literal["auto"]:
             "max_harmonics"
         )
     return count
-
-
-def _tolerance(tolerance: object) -> float:
-    value = real_number(tolerance, "tolerance")
-    if not 1e-8 <= value <= 0.5:
-        raise ModelError(f"tolerance: {value:g}; give a fraction from 1e-8 to 0.5")
-    return value
-
-
-def _residual(residual: object) -> Residual:
-    if isinstance(residual, str):
-        if residual not in RESIDUALS:
-            raise ModelError(f"{unknown('residual', residual, RESIDUALS)}, or a force in N")
-        return "centred" if residual == "centred" else "from_rest"
-    return real_number(residual, "residual")
-
-
-def _observed(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:
-    known = model.structure.dofs
-    if observe is None:
-        return known
-    if not isinstance(observe, Iterable):
-        raise ModelError(f"observe: {brief(observe)} is not a list of names; write [{known[0]!r}]")
-    names = (observe,) if isinstance(observe, str) else tuple(observe)
-    if not names:
-        raise ModelError("observe: no dof; name at least one, or leave it out for all")
-    for position, name in enumerate(names):
-        text(name, f"observe[{position}]")
-        if name not in known:
-            raise ModelError(f"observe: {unknown('dof', name, known)}")
-        if name in names[:position]:
-            raise ModelError(f"observe: {name!r} is given more than once; name each dof once")
-    return tuple(map(str, names))
-
-
-def _require_held(model: Model, residual: Residual) -> None:
-    """Refuse a static load that nothing, or only contacts of prescribed mean force, would hold."""
-    static = [
-        (n, one)
-        for n, one in enumerate(model.forces, start=1)
-        if not one.harmonic and one.amplitude
-    ]
-    if not static:
-        return
-    position, force = static[0]
-    entry = f"force {position} at {force.dof!r}: a static load of {force.amplitude:g} N"
-    if model.problem.static_singular:
-        raise ModelError(
-            f"{entry} on a structure that moves freely even with all contacts stuck; ground the "
-            "structure or leave the static load out"
-        )
-    load = np.zeros(len(model.structure))
-    for _, force in static:
-        load[model.structure.index(force.dof)] += force.amplitude
-    prescribed = bool(model.contacts) and residual != "from_rest" and bool(load.any())
-    if prescribed and not _holds(model.structure.stiffness, load):
-        raise ModelError(
-            f"{entry} rests on contacts alone, whose mean force residual={residual!r} prescribes; "
-            'use residual="from_rest" or ground the structure'
-        )
-
-
-def _holds(stiffness: NDArray[np.float64], load: NDArray[np.float64]) -> bool:
-    """Whether a stiffness matrix has an equilibrium under a load."""
-    try:
-        displacement = np.linalg.solve(stiffness, load)
-    except np.linalg.LinAlgError:
-        return False
-    # A singular matrix that rounding made regular answers with a displacement of no digits.
-    rounding = np.finfo(np.float64).eps * np.linalg.norm(stiffness) * np.linalg.norm(displacement)
-    return bool(rounding < 1e-3 * np.linalg.norm(load))

@@ -6,13 +6,15 @@ import os
 
 from stickslip.errors import ModelError
 
-__all__ = ["require_memory"]
+__all__ = ["require_memory", "require_numbers"]
 
 SHARE = 0.75
 """Share of the physical memory that a result may take."""
 
 
-def require_memory(points: int, harmonics: int, observed: int, contact_points: int) -> None:
+def require_memory(
+    points: int, harmonics: int, observed: int, contact_points: int, *, extra: int = 0
+) -> None:
     """Refuse a result that would not fit into the memory.
 
     Parameters
@@ -25,19 +27,43 @@ def require_memory(points: int, harmonics: int, observed: int, contact_points: i
         Number of observed degrees of freedom.
     contact_points : int
         Number of contact points, of each of which displacement and force are kept.
+    extra : int, optional
+        How many real numbers more the result holds.
 
     Raises
     ------
     ModelError
         If the result takes more than `SHARE` of the physical memory.
     """
-    needed = points * (harmonics + 1) * (observed + 2 * contact_points) * 16
+    require_numbers(
+        2 * points * (harmonics + 1) * (observed + 2 * contact_points) + extra,
+        f"the result of {points} points, {observed} dofs and harmonics up to {harmonics}",
+        "name fewer dofs with observe=[...], or give fewer points",
+    )
+
+
+def require_numbers(numbers: int, what: str, remedy: str) -> None:
+    """Refuse a result of so many real numbers that it would not fit into the memory.
+
+    Parameters
+    ----------
+    numbers : int
+        Real numbers of eight bytes.
+    what : str
+        What they are.
+    remedy : str
+        How to need fewer.
+
+    Raises
+    ------
+    ModelError
+        If they take more than `SHARE` of the physical memory.
+    """
+    needed = 8 * numbers
     there = physical_memory()
     if there is not None and needed > SHARE * there:
         raise ModelError(
-            f"the result of {points} points, {observed} dofs and harmonics up to {harmonics} needs "
-            f"{needed / 1e9:.3g} GB of the {there / 1e9:.3g} GB of memory; name fewer dofs with "
-            "observe=[...], or give fewer points"
+            f"{what} needs {needed / 1e9:.3g} GB of the {there / 1e9:.3g} GB of memory; {remedy}"
         )
 
 

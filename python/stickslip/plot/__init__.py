@@ -9,5 +9,35 @@ from stickslip.plot.charts import (
     slip,
     waveform,
 )
+from stickslip.plot.orbits import MultiplierOptions, events, multipliers
+from stickslip.plot.transients import (
+    HistoryOptions,
+    PoincareOptions,
+    SpectrumOptions,
+    contact_history,
+    history,
+    phase,
+    poincare,
+    spectrum,
+)
 
-__all__ = ["CurveOptions", "Frame", "LoopOptions", "curves", "hysteresis", "slip", "waveform"]
+__all__ = [
+    "CurveOptions",
+    "Frame",
+    "HistoryOptions",
+    "LoopOptions",
+    "MultiplierOptions",
+    "PoincareOptions",
+    "SpectrumOptions",
+    "contact_history",
+    "curves",
+    "events",
+    "history",
+    "hysteresis",
+    "multipliers",
+    "phase",
+    "poincare",
+    "slip",
+    "spectrum",
+    "waveform",
+]

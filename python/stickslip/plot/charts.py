@@ -139,6 +139,7 @@ def curves(
         view.draw(result, colour, name)
         if error_band or (error_band is None and single):
             view.shade_error(result, colour)
+        view.mark_certificate(result, colour)
         if peaks:
             view.mark_peak(result, colour, named=single)
     view.label_axes()

@@ -124,6 +124,30 @@ class CurveView:
             label="estimated truncation error",
         )
 
+    def mark_certificate(self, result: ForcedResponse, colour: Colour) -> None:
+        """Mark the amplitudes of exact orbits, each with a bar to the curve: the true error."""
+        certificate = result.certificate
+        if certificate is None or self.dof not in certificate.dofs or self.measure != "half_range":
+            return
+        column = certificate.column(self.dof)
+        x, factor = self.omega.factor * certificate.omega, self._factor(result.model)
+        exact = factor * certificate.amplitude[:, column]
+        curve = exact + factor * certificate.error[:, column]
+        self.ax.vlines(x, exact, curve, color="crimson", lw=1.4, zorder=2.6)
+        largest = np.abs(certificate.relative[:, column])
+        worst = f", largest error {np.nanmax(largest):.2g}" if np.isfinite(largest).any() else ""
+        self.ax.plot(
+            x,
+            exact,
+            ls="",
+            marker="D",
+            ms=4,
+            mfc="white",
+            mec="crimson",
+            zorder=2.7,
+            label=f"exact orbits{worst}",
+        )
+
     def mark_peak(self, result: ForcedResponse, colour: Colour, *, named: bool) -> None:
         """Mark the refined peak, unless the true one may lie outside or in a gap."""
         if not result.arrays.solved.any():

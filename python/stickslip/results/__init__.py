@@ -1,6 +1,7 @@
 """What analyses return: immutable results, their tables, data sets and files."""
 
+from stickslip.results.certificate import Certificate
 from stickslip.results.forced_response import ForcedResponse, Measure, Peak, Summary
 from stickslip.results.status import Status
 
-__all__ = ["ForcedResponse", "Measure", "Peak", "Status", "Summary"]
+__all__ = ["Certificate", "ForcedResponse", "Measure", "Peak", "Status", "Summary"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Literal, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,9 +74,9 @@ class Arrays:
             array.flags.writeable = False
             object.__setattr__(self, entry.name, array)
 
-    def __reduce__(self) -> tuple[type[Arrays], tuple[object, ...]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        return Arrays, tuple(getattr(self, entry.name) for entry in fields(self))
+        return type(self), tuple(getattr(self, entry.name) for entry in fields(self))
 
     @classmethod
     def of(cls, solution: _core.Solution) -> Arrays:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
-
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
@@ -14,8 +11,6 @@ from stickslip.results.arrays import Complex, Float, constant, mean_forces
 from stickslip.results.sweep import Sweep
 
 __all__ = ["ContactMotion"]
-
-Kind = TypeVar("Kind", bound=np.generic)
 
 
 class ContactMotion(Sweep):
@@ -175,41 +170,6 @@ class ContactMotion(Sweep):
         values = np.stack(bounds, axis=1)
         values[~self.arrays.solved] = np.nan
         return constant(values if series.ndim == 3 else np.ascontiguousarray(values[:, 0]))
-
-    def locate(self, contact: PointRef) -> tuple[int, int | None]:
-        """Return the position of a contact, and of its point if one is meant.
-
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
-
-        Returns
-        -------
-        contact : int
-            Position of the contact.
-        point : int or None
-            Position of the point in it; None for the whole contact.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
-        """
-        if isinstance(contact, tuple | list):
-            return self.model.point(contact)
-        return self.model.contact_index(contact), None
-
-    def _columns(self, contact: int, point: int | None) -> slice:
-        start = sum(one.points for one in self.model.contacts[:contact])
-        if point is None:
-            return slice(start, start + self.model.contacts[contact].points)
-        return slice(start + point, start + point + 1)
-
-    def _select(self, values: NDArray[Kind], contact: PointRef) -> NDArray[Kind]:
-        number, point = self.locate(contact)
-        columns = values[..., self._columns(number, point)]
-        return columns if point is None else columns[..., 0]
 
     def _period(self, series: Complex, index: int, samples: int) -> Float:
         position = self.position(index)

@@ -1,16 +1,25 @@
-"""Results as xarray datasets: named dimensions, and units on every variable."""
+"""Response curves as xarray datasets: named dimensions, and units on every variable."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Hashable, Mapping
-from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.results.arrays import Arrays
+from stickslip.results.certificate import Certificate
 from stickslip.results.status import Status
+from stickslip.results.variables import (
+    Variable,
+    attributes,
+    dof_coordinate,
+    parts,
+    point_coordinates,
+    read,
+    settings_of,
+    written,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,51 +27,59 @@ if TYPE_CHECKING:
     from stickslip.model import Model
     from stickslip.results import ForcedResponse
 
-__all__ = ["arrays_from", "to_dataset"]
+__all__ = [
+    "CURVE_VARIABLES",
+    "curve_dataset",
+    "curve_parts",
+    "curve_settings",
+    "from_dataset",
+    "to_dataset",
+]
 
-# Variable: name in Arrays, dimensions, unit, long name.
-_VARIABLES: Mapping[str, tuple[str, tuple[str, ...], str, str]] = {
-    "displacement": (
+CURVE_VARIABLES: dict[str, Variable] = {
+    "displacement": Variable(
         "displacement",
         ("omega", "harmonic", "dof"),
         "m",
         "harmonics of the displacement, x(t) = Re sum_k X_k exp(i k omega t)",
     ),
-    "contact_displacement": (
+    "contact_displacement": Variable(
         "contact_displacement",
         ("omega", "harmonic", "point"),
         "m",
         "harmonics of the relative displacement at the contacts",
     ),
-    "contact_force": (
+    "contact_force": Variable(
         "contact_force",
         ("omega", "harmonic", "point"),
         "N",
         "harmonics of the contact force against the relative displacement",
     ),
-    "error_estimate": (
+    "error_estimate": Variable(
         "error_estimate",
         ("omega", "dof"),
         "m",
         "what the discarded harmonics could still change",
     ),
-    "slip_fraction": (
+    "slip_fraction": Variable(
         "slip_fraction",
         ("omega", "point"),
         "1",
         "share of the period that the contact point slips",
     ),
-    "dissipation": (
+    "dissipation": Variable(
         "dissipation",
         ("omega", "point"),
         "J",
         "work lost to friction per cycle",
     ),
-    "residual": ("residual", ("omega",), "1", "relative residual of the balance equations"),
-    "iterations": ("iterations", ("omega",), "1", "iterations of the solver"),
-    "harmonics_kept": ("harmonics", ("omega",), "1", "highest harmonic kept"),
-    "status": ("status", ("omega",), "1", "how the point ended"),
+    "residual": Variable("residual", ("omega",), "1", "relative residual of the balance equations"),
+    "iterations": Variable("iterations", ("omega",), "1", "iterations of the solver"),
+    "harmonics_kept": Variable("harmonics", ("omega",), "1", "highest harmonic kept"),
+    "status": Variable("status", ("omega",), "1", "how the point ended"),
 }
+"""Those of every curve over frequency."""
+_TITLE = "Forced response of a structure with dry friction, by harmonic balance"
 
 
 def to_dataset(result: ForcedResponse, *, derived: bool = True) -> xr.Dataset:
@@ -82,28 +99,53 @@ def to_dataset(result: ForcedResponse, *, derived: bool = True) -> xr.Dataset:
         `assumptions`, `timings` and `counters` are JSON texts. All
         numbers are copies.
     """
+    dataset = curve_dataset(result, _TITLE, CURVE_VARIABLES, derived=derived)
+    if result.certificate is not None:
+        dataset = dataset.assign(result.certificate.variables())
+    return dataset
+
+
+def from_dataset(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
+    """Return the arguments of the `ForcedResponse` that a dataset holds.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        As `to_dataset` makes it.
+    model : Model
+        What was computed.
+
+    Returns
+    -------
+    dict
+        Arguments by name.
+
+    Raises
+    ------
+    KeyError
+        If a variable is missing.
+    ValueError
+        If a variable has other dimensions, or belongs to another model.
+    """
+    from stickslip.analyses.forced_response import Settings
+
+    arrays = read(CURVE_VARIABLES, dataset) | {"omega": dataset["omega"].values}
+    return curve_parts(dataset, model, Arrays(**arrays)) | {
+        "settings": Settings(**curve_settings(dataset)),
+        "certificate": Certificate.of_dataset(dataset),
+    }
+
+
+def curve_dataset(
+    result: ForcedResponse, title: str, table: Mapping[str, Variable], *, derived: bool
+) -> xr.Dataset:
+    """Return a curve over frequency as a dataset of the variables in a table."""
     import xarray as xr
 
-    from stickslip._core import __version__
-
-    arrays = result.arrays
     dataset = xr.Dataset(
-        {
-            name: (dims, getattr(arrays, source).copy(), {"units": unit, "long_name": meaning})
-            for name, (source, dims, unit, meaning) in _VARIABLES.items()
-        },
+        written(table, result.arrays),
         coords=_coordinates(result),
-        attrs={
-            "title": "Forced response of a structure with dry friction, by harmonic balance",
-            "Conventions": "CF-1.11",
-            "stickslip_version": __version__,
-            "settings": json.dumps(asdict(result.settings)),
-            "assumptions": json.dumps(result.assumptions, ensure_ascii=False),
-            "timings": json.dumps(dict(result.timings)),
-            "counters": json.dumps(dict(result.counters)),
-            "half_wave": int(result.half_wave),
-            "interrupted": int(result.interrupted),
-        },
+        attrs=attributes(result, result.settings, title) | {"half_wave": int(result.half_wave)},
     )
     if derived:
         dataset["amplitude"] = (
@@ -118,37 +160,30 @@ def to_dataset(result: ForcedResponse, *, derived: bool = True) -> xr.Dataset:
     return dataset
 
 
-def arrays_from(dataset: xr.Dataset) -> dict[str, NDArray[np.generic]]:
-    """Return the arrays of a dataset by their names in `Arrays`.
+def curve_parts(dataset: xr.Dataset, model: Model, arrays: Arrays) -> dict[str, Any]:
+    """Return the arguments that all curves over frequency have, if the arrays fit the model."""
+    points = sum(contact.points for contact in model.contacts)
+    if arrays.contact_force.shape[2] != points:
+        raise ValueError(
+            f"{arrays.contact_force.shape[2]} contact points in the arrays, {points} in the model"
+        )
+    if arrays.status.max(initial=0) >= len(Status):
+        raise ValueError(f"status {arrays.status.max()} is unknown")
+    return parts(dataset, model) | {
+        "arrays": arrays,
+        "half_wave": bool(dataset.attrs["half_wave"]),
+    }
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        As `to_dataset` makes it.
 
-    Returns
-    -------
-    dict of ndarray
-        Arguments of `Arrays`.
-
-    Raises
-    ------
-    KeyError
-        If a variable is missing.
-    ValueError
-        If a variable has other dimensions.
-    """
-    arrays: dict[str, NDArray[np.generic]] = {"omega": dataset["omega"].values}
-    for name, (target, dims, _, _) in _VARIABLES.items():
-        if dataset[name].dims != dims:
-            raise ValueError(f"{name} has dimensions {dataset[name].dims} instead of {dims}")
-        arrays[target] = dataset[name].values
-    return arrays
+def curve_settings(dataset: xr.Dataset) -> dict[str, Any]:
+    """Return the settings of a curve over frequency."""
+    settings = settings_of(dataset)
+    if settings["span"] is not None:
+        settings["span"] = tuple(settings["span"])
+    return settings
 
 
 def _coordinates(result: ForcedResponse) -> dict[Hashable, object]:
-    harmonics = np.arange(result.arrays.displacement.shape[1])
-    contacts, points = _points(result.model)
     return {
         "omega": (
             "omega",
@@ -157,24 +192,9 @@ def _coordinates(result: ForcedResponse) -> dict[Hashable, object]:
         ),
         "harmonic": (
             "harmonic",
-            harmonics,
+            np.arange(result.arrays.displacement.shape[1]),
             {"units": "1", "long_name": "multiple of the excitation frequency"},
         ),
-        "dof": (
-            "dof",
-            np.array(result.dofs, dtype=np.str_),
-            {"units": "1", "long_name": "observed degree of freedom"},
-        ),
-        "point": ("point", points, {"units": "1", "long_name": "contact point"}),
-        "contact": ("point", contacts, {"units": "1", "long_name": "contact of the point"}),
+        "dof": dof_coordinate(result),
+        **point_coordinates(result.model),
     }
-
-
-def _points(model: Model) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
-    """Return for every contact point the name of its contact and its own."""
-    contacts, points = [], []
-    for name, contact in zip(model.contact_names, model.contacts, strict=True):
-        for point in range(contact.points):
-            contacts.append(name)
-            points.append(name if contact.points == 1 else f"{name}[{point}]")
-    return np.array(contacts, dtype=np.str_), np.array(points, dtype=np.str_)

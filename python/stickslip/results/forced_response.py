@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
-from functools import partial
-from os import PathLike
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, get_args
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, Literal, Self, get_args
 
 import numpy as np
 
-from stickslip.checks import choice, text, unknown
-from stickslip.errors import ModelError
-from stickslip.model import PointRef
+from stickslip.checks import choice, text
+from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
 from stickslip.results.contact_motion import ContactMotion
-from stickslip.results.peaks import Peak, Summary, highest, rows
+from stickslip.results.energy import Energy, energy_of
+from stickslip.results.peaks import Peak, Summary, highest, refined, rows
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -25,8 +23,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip.plot import CurveOptions, Frame, LoopOptions
+    from stickslip.results.certificate import Certificate
 
-__all__ = ["ForcedResponse", "Measure", "Peak", "Summary"]
+__all__ = ["ForcedResponse", "Measure", "Peak", "Summary", "key_of"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -58,33 +57,23 @@ class ForcedResponse(ContactMotion):
         Evaluations by kind.
     assumptions : tuple of str
         What was taken for granted, and what to look at before the numbers are used.
+    certificate : Certificate or None
+        The comparison with exact orbits that `stickslip.certify` made.
     """
 
-    dofs: tuple[str, ...]
+    kind: ClassVar[str] = "forced_response"
+
     half_wave: bool
-    interrupted: bool
-    timings: Mapping[str, float]
-    counters: Mapping[str, int]
-    assumptions: tuple[str, ...]
+    certificate: Certificate | None = None
     _amplitudes: dict[tuple[str, Measure], Float] = field(default_factory=dict, init=False)
     _peaks: dict[tuple[str, Measure], Peak] = field(default_factory=dict, init=False)
-
-    def __post_init__(self) -> None:
-        for name in ("timings", "counters"):
-            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
-
-    def __reduce__(self) -> tuple[Callable[[], ForcedResponse], tuple[()]]:
-        # What is only kept to save time stays behind, and a mapping proxy cannot be pickled.
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.init}
-        values |= {"timings": dict(self.timings), "counters": dict(self.counters)}
-        return partial(ForcedResponse, **values), ()
 
     def __repr__(self) -> str:
         omega = self.omega
         solved = "all solved" if self.arrays.solved.all() else f"{self.arrays.solved.sum()} solved"
         return (
-            f"ForcedResponse({omega.size} points from {omega.min():g} to {omega.max():g} rad/s "
-            f"({solved}), {len(self.dofs)} dofs, harmonics={self.settings.harmonics!r})"
+            f"{type(self).__name__}({omega.size} points from {omega.min():g} to {omega.max():g} "
+            f"rad/s ({solved}), {len(self.dofs)} dofs, harmonics={self.settings.harmonics!r})"
         )
 
     def coefficients(self, dof: str) -> Complex:
@@ -127,7 +116,7 @@ class ForcedResponse(ContactMotion):
         ModelError
             If there is no such degree of freedom or measure, or the former was not observed.
         """
-        key = _key(dof, measure)
+        key = key_of(dof, measure)
         if key not in self._amplitudes:
             values = amplitude_of(np.ascontiguousarray(self.coefficients(dof)), measure)
             self._amplitudes[key] = constant(np.where(self.arrays.solved, values, np.nan))
@@ -208,9 +197,9 @@ class ForcedResponse(ContactMotion):
         UserWarning
             If a point beside the maximum is not solved.
         """
-        key = _key(dof, measure)
+        key = key_of(dof, measure)
         if key not in self._peaks:
-            self._peaks[key] = highest(self, dof, measure)
+            self._peaks[key] = highest(self, dof, measure, refined)
         return self._peaks[key]
 
     def error_estimate(self, dof: str) -> Float:
@@ -253,8 +242,24 @@ class ForcedResponse(ContactMotion):
         """
         return rows(self, self.dofs if dofs is None else dofs)
 
-    def to_dataset(self) -> xr.Dataset:
+    @cached_property
+    def energy(self) -> Energy:
+        """Work of the forces and energy lost, per period.
+
+        Raises
+        ------
+        ModelError
+            If a degree of freedom was not observed: all of them take part.
+        """
+        return energy_of(self)
+
+    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.
+
+        Parameters
+        ----------
+        derived : bool, optional
+            Whether to add the amplitude, which follows from the displacement.
 
         Returns
         -------
@@ -263,24 +268,14 @@ class ForcedResponse(ContactMotion):
         """
         from stickslip.results.dataset import to_dataset
 
-        return to_dataset(self)
+        return to_dataset(self, derived=derived)
 
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the result with its model to a NetCDF file, whole or not at all.
+    @classmethod
+    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+        """Return the forced response that a dataset holds; see `Result.from_dataset`."""
+        from stickslip.results.dataset import from_dataset
 
-        Parameters
-        ----------
-        path : path-like
-            The file; an existing one is replaced. Read it with `stickslip.load`.
-
-        Raises
-        ------
-        ModelError
-            If the file cannot be written.
-        """
-        from stickslip.results.store import save
-
-        save(self, path)
+        return cls(**from_dataset(dataset, model))
 
     def plot(self, dof: str, **options: Unpack[CurveOptions]) -> Axes:
         """Draw the response curve between its stuck and free limits.
@@ -379,14 +374,8 @@ class ForcedResponse(ContactMotion):
 
         return plot.slip(self, contact, ax=ax, omega_unit=omega_unit)
 
-    def _column(self, dof: str) -> int:
-        if text(dof, "dof") in self.dofs:
-            return self.dofs.index(dof)
-        if dof in self.model.structure.dofs:
-            raise ModelError(f"dof {dof!r}: it was not observed; add it to observe and run again")
-        raise ModelError(unknown("dof", dof, self.dofs))
 
-
-def _key(dof: str, measure: Measure) -> tuple[str, Measure]:
+def key_of(dof: str, measure: Measure) -> tuple[str, Measure]:
+    """Return a degree of freedom and a measure by which amplitudes are kept, or refuse them."""
     choice(measure, "measure", get_args(Measure))
     return text(dof, "dof"), measure

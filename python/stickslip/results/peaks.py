@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -15,10 +15,15 @@ from stickslip.results.arrays import Bool, Float, Int, Measure
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
 
-__all__ = ["Peak", "Summary", "highest", "rows"]
+__all__ = ["Peak", "Summary", "highest", "refined", "rows"]
 
 RIVAL = 0.9
 """Local maxima from this share of the largest may be the true peak once they are refined."""
+
+Bracket: TypeAlias = tuple[float, float, float]
+"""Lowest and highest frequency, and a guess between them [rad/s]."""
+Refine: TypeAlias = "Callable[[ForcedResponse, str, Measure, Bracket], tuple[float, float]]"
+"""Returns the frequency and the amplitude of the maximum inside a bracket."""
 
 
 class Peak(NamedTuple):
@@ -53,7 +58,7 @@ class Summary(NamedTuple):
     """Whether a point beside the peak is not solved."""
 
 
-def highest(result: ForcedResponse, dof: str, measure: Measure) -> Peak:
+def highest(result: ForcedResponse, dof: str, measure: Measure, refine: Refine) -> Peak:
     """Refine every local maximum that may be the highest, and return the highest.
 
     Parameters
@@ -65,6 +70,8 @@ def highest(result: ForcedResponse, dof: str, measure: Measure) -> Peak:
         An observed degree of freedom.
     measure : {"half_range", "max", "fundamental"}
         Measure of the amplitude.
+    refine : callable
+        Returns the frequency and the amplitude of the maximum inside a bracket.
 
     Returns
     -------
@@ -88,8 +95,8 @@ def highest(result: ForcedResponse, dof: str, measure: Measure) -> Peak:
         beside_gap = beside_gap or bool(gap[top])
         low, high = omega[max(top - 1, 0)], omega[min(top + 1, omega.size - 1)]
         if low < high and amplitude[top] > 0.0:
-            refined = _refined(result, dof, measure, (low, high, omega[top]))
-            peak = max(peak, refined, key=lambda point: point[1])
+            found = refine(result, dof, measure, (float(low), float(high), float(omega[top])))
+            peak = max(peak, found, key=lambda point: point[1])
     # The maximisation resolves frequencies to 1e-8.
     at_edge = bool(np.isclose(peak[0], omega[[0, -1]], rtol=1e-7, atol=0.0).any())
     if beside_gap:
@@ -167,10 +174,16 @@ def _rivals(amplitude: Float) -> Int:
     return np.flatnonzero(top)
 
 
-def _refined(
-    result: ForcedResponse, dof: str, measure: Measure, bracket: tuple[float, float, float]
+def refined(
+    result: ForcedResponse, dof: str, measure: Measure, bracket: Bracket
 ) -> tuple[float, float]:
-    """Return the maximum inside a bracket (low, high, guess)."""
+    """Return frequency and amplitude of the maximum inside a bracket, by harmonic balance.
+
+    Raises
+    ------
+    ModelError
+        If the core refuses.
+    """
     from stickslip import _core
 
     settings = result.settings
@@ -178,9 +191,9 @@ def _refined(
     try:
         return _core.peak(
             result.model.problem,
-            float(low),
-            float(high),
-            float(guess),
+            low,
+            high,
+            guess,
             result.model.structure.index(dof),
             measure,
             settings.fixed_harmonics,

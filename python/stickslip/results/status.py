@@ -20,6 +20,7 @@ class Status(StrEnum):
     SINGULAR = "singular"
     NOT_COMPUTED = "not computed"
     HARMONICS_LIMIT = "harmonics limit"
+    ORBIT_STALLED = "orbit stalled"
 
     @classmethod
     def from_code(cls, code: int) -> Status:
@@ -28,7 +29,8 @@ class Status(StrEnum):
         Parameters
         ----------
         code : int
-            0 converged, 1 stalled, 2 singular, 3 not computed, 4 harmonics limit.
+            0 converged, 1 stalled, 2 singular, 3 not computed, 4 harmonics limit,
+            5 orbit stalled.
 
         Raises
         ------
@@ -80,5 +82,9 @@ _ADVICE = {
     Status.HARMONICS_LIMIT: (
         "max_harmonics was reached before the discarded harmonics met the tolerance. "
         "Read error_estimate, and raise max_harmonics or tolerance."
+    ),
+    Status.ORBIT_STALLED: (
+        "Shooting stopped before the orbit closed. "
+        "Raise max_iterations, approach this omega in smaller steps, or let transient settle there."
     ),
 }

@@ -7,29 +7,33 @@ import os
 import secrets
 from collections.abc import Hashable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from stickslip.analyses.forced_response import Settings
-from stickslip.checks import file_path
+from stickslip.checks import file_path, listed
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.contact import contact_from_spec
 from stickslip.model.force import force_from_spec
 from stickslip.model.structure import Structure
-from stickslip.results import ForcedResponse
-from stickslip.results.arrays import Arrays
-from stickslip.results.dataset import arrays_from, to_dataset
-from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["load", "save"]
+    from stickslip.results.result import Result
 
-KIND = "forced_response"
+__all__ = ["KINDS", "load", "save"]
+
+KINDS: Mapping[str, tuple[str, str]] = {
+    "forced_response": ("stickslip.results.forced_response", "ForcedResponse"),
+    "exact_response": ("stickslip.results.exact_response", "ExactResponse"),
+    "transient": ("stickslip.results.transient", "Transient"),
+}
+"""Module and class of every kind of result; a class is loaded when a file of it is read."""
+
 FORMAT = 1
 """Version of the layout of the file; it rises when an older reader could not read it."""
 
@@ -40,17 +44,17 @@ _MATRICES = {
 }
 
 
-def save(result: ForcedResponse, path: str | os.PathLike[str]) -> None:
+def save(result: Result, path: str | os.PathLike[str]) -> None:
     """Write a result with its model to a NetCDF 4 file, whole or not at all.
 
     Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
-    reader opens the file; the amplitude, which follows from the displacement, is left out. Contacts
-    and forces are JSON texts, one per variable entry.
+    reader opens the file; what follows from other variables is left out. Contacts and forces are
+    JSON texts, one per variable entry.
 
     Parameters
     ----------
-    result : ForcedResponse
-        The result, also a partial one.
+    result : Result
+        The result, of any kind in `KINDS`, also a partial one.
     path : path-like
         The file; an existing one is replaced.
 
@@ -64,8 +68,8 @@ def save(result: ForcedResponse, path: str | os.PathLike[str]) -> None:
         raise ModelError(f"{target}: is a folder; give the name of a file in it")
     if not target.parent.is_dir():
         raise ModelError(f"{target}: there is no folder {target.parent}; create it first")
-    dataset = _split(to_dataset(result, derived=False).assign(_model_variables(result.model)))
-    dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": KIND}
+    dataset = _split(result.to_dataset(derived=False).assign(_model_variables(result.model)))
+    dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": result.kind}
     try:
         with _whole(target) as temporary:
             dataset.to_netcdf(temporary, engine="h5netcdf", encoding=_encoding(dataset))
@@ -75,8 +79,8 @@ def save(result: ForcedResponse, path: str | os.PathLike[str]) -> None:
         ) from error
 
 
-def load(path: str | os.PathLike[str]) -> ForcedResponse:
-    """Read a result that `ForcedResponse.save` wrote.
+def load(path: str | os.PathLike[str]) -> Any:
+    """Read a result that its method `save` wrote.
 
     Parameters
     ----------
@@ -85,8 +89,9 @@ def load(path: str | os.PathLike[str]) -> ForcedResponse:
 
     Returns
     -------
-    ForcedResponse
-        Equal to the saved one, bit by bit, with its model: peaks can still be refined.
+    ForcedResponse, ExactResponse or Transient
+        Of the kind that was saved and equal to it, bit by bit, with its model: peaks can still be
+        refined, and runs continued.
 
     Raises
     ------
@@ -97,9 +102,9 @@ def load(path: str | os.PathLike[str]) -> ForcedResponse:
     if not source.is_file():
         raise ModelError(f"{source}: {'is a folder' if source.is_dir() else 'no such file'}")
     dataset = _read(source)
-    _require_format(dataset, source)
+    kind = _required_kind(dataset, source)
     try:
-        return _result(_joined(dataset))
+        return kind.from_dataset(_joined(dataset), _model(dataset))
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise ModelError(
             f"{source}: not a complete stickslip result ({_line(error)}); compute and save it again"
@@ -120,13 +125,14 @@ def _read(source: Path) -> xr.Dataset:
         ) from error
 
 
-def _require_format(dataset: xr.Dataset, source: Path) -> None:
+def _required_kind(dataset: xr.Dataset, source: Path) -> type[Result]:
+    """Return the class of the result in a file, or refuse a file of which this version has none."""
     kind, version = (dataset.attrs.get(f"stickslip_{key}") for key in ("kind", "format"))
     if kind is None or version is None:
         raise ModelError(f"{source}: a NetCDF file, but not a stickslip result")
-    if kind != KIND:
+    if kind not in KINDS:
         raise ModelError(
-            f"{source}: holds {kind!r}, this version reads {KIND!r} only; upgrade stickslip"
+            f"{source}: holds {kind!r}, this version reads {listed(list(KINDS))}; upgrade stickslip"
         )
     if not isinstance(version, int | np.integer) or not 1 <= version <= FORMAT:
         writer = dataset.attrs.get("stickslip_version", "another version")
@@ -134,39 +140,8 @@ def _require_format(dataset: xr.Dataset, source: Path) -> None:
             f"{source}: written by stickslip {writer} in format {version}, this version reads "
             f"format 1 to {FORMAT}; upgrade stickslip"
         )
-
-
-def _result(dataset: xr.Dataset) -> ForcedResponse:
-    settings = json.loads(dataset.attrs["settings"])
-    if settings["span"] is not None:
-        settings["span"] = tuple(settings["span"])
-    model, dofs = _model(dataset), tuple(map(str, dataset["dof"].values))
-    arrays = Arrays(**arrays_from(dataset))  # type: ignore[arg-type]
-    _require_fit(model, dofs, arrays)
-    return ForcedResponse(
-        model=model,
-        settings=Settings(**settings),
-        dofs=dofs,
-        arrays=arrays,
-        half_wave=bool(dataset.attrs["half_wave"]),
-        interrupted=bool(dataset.attrs["interrupted"]),
-        timings=json.loads(dataset.attrs["timings"]),
-        counters=json.loads(dataset.attrs["counters"]),
-        assumptions=tuple(json.loads(dataset.attrs["assumptions"])),
-    )
-
-
-def _require_fit(model: Model, dofs: tuple[str, ...], arrays: Arrays) -> None:
-    """Refuse arrays that belong to another model."""
-    for dof in dofs:
-        model.structure.index(dof)
-    points = sum(contact.points for contact in model.contacts)
-    if arrays.contact_force.shape[2] != points:
-        raise ValueError(
-            f"{arrays.contact_force.shape[2]} contact points in the arrays, {points} in the model"
-        )
-    if arrays.status.max(initial=0) >= len(Status):
-        raise ValueError(f"status {arrays.status.max()} is unknown")
+    module, name = KINDS[kind]
+    return cast("type[Result]", getattr(import_module(module), name))
 
 
 def _model_variables(model: Model) -> Mapping[Hashable, object]:

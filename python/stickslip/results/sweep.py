@@ -11,8 +11,8 @@ import numpy as np
 
 from stickslip.checks import real_number
 from stickslip.errors import ModelError
-from stickslip.model import Model
 from stickslip.results.arrays import Arrays, Bool, Float, Int, constant
+from stickslip.results.result import Result
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
@@ -22,20 +22,17 @@ __all__ = ["Sweep"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Sweep:
+class Sweep(Result):
     """The points of a result.
 
     Attributes
     ----------
-    model : Model
-        What was computed.
     settings : Settings
         How.
     arrays : Arrays
         Every number by its name.
     """
 
-    model: Model
     settings: Settings
     arrays: Arrays
 

@@ -1,0 +1,161 @@
+"""Doors that the arguments of analyses pass: frequencies, degrees of freedom, preload."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.checks import brief, real_number, text, unknown
+from stickslip.errors import ModelError
+from stickslip.model import Model
+
+__all__ = [
+    "RESIDUALS",
+    "Progress",
+    "Residual",
+    "Span",
+    "grid_of",
+    "observed_dofs",
+    "require_held",
+    "require_model",
+    "require_progress",
+    "residual_of",
+    "span_of",
+    "tolerance_of",
+]
+
+RESIDUALS = ("centred", "from_rest")
+"""Named assumptions on the mean force of a contact that never slips."""
+
+Residual: TypeAlias = Literal["centred", "from_rest"] | float
+Span: TypeAlias = tuple[float, float]
+Progress: TypeAlias = Callable[[float], None] | None
+
+
+def require_model(model: object) -> None:
+    """Refuse what is no `Model`."""
+    if not isinstance(model, Model):
+        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+
+
+def require_progress(progress: object) -> None:
+    """Refuse what cannot be told how far a run is."""
+    if progress is not None and not callable(progress):
+        raise ModelError(
+            f"progress: {brief(progress)} cannot be called; give a function of a fraction"
+        )
+
+
+def grid_of(omega: ArrayLike | Span) -> NDArray[np.float64] | Span:
+    """Tell a range from a grid, and return either checked."""
+    if isinstance(omega, tuple) and len(omega) == 2:
+        return span_of(omega)
+    try:
+        values = np.asarray(omega)
+    except ValueError:
+        raise ModelError("omega: a ragged list; give one list of frequencies in rad/s") from None
+    if values.dtype.kind not in "fiu":
+        shown = repr(omega) if values.size < 5 else f"an array of {values.dtype}"
+        raise ModelError(f"omega: {shown} holds no real numbers; give frequencies in rad/s")
+    if values.ndim != 1:
+        remedy = f"write [{values:g}]" if values.ndim == 0 else "give one list of frequencies"
+        raise ModelError(f"omega: shape {values.shape} instead of (n,); {remedy}")
+    if not values.size:
+        raise ModelError("omega: empty; give at least one frequency in rad/s")
+    grid = np.array(values, dtype=np.float64)
+    bad = np.flatnonzero(~(np.isfinite(grid) & (grid > 0.0)))
+    if bad.size:
+        raise ModelError(
+            f"omega[{bad[0]}] is {grid[bad[0]]:g}; give finite frequencies above 0 rad/s"
+        )
+    return grid
+
+
+def span_of(span: tuple[object, ...]) -> Span:
+    """Return the two ends of a range of frequencies, checked."""
+    if len(span) != 2:
+        raise ModelError(f"omega: a range has two ends, not {len(span)}; write (start, end)")
+    start, end = (real_number(value, "omega: end of the range") for value in span)
+    if not (start > 0.0 and end > 0.0 and start != end):
+        raise ModelError(
+            f"omega: the range ({start:g}, {end:g}) must have two different ends above 0 rad/s; "
+            "write a list for single frequencies"
+        )
+    return start, end
+
+
+def tolerance_of(tolerance: object) -> float:
+    """Return a relative tolerance between 1e-8 and 0.5."""
+    value = real_number(tolerance, "tolerance")
+    if not 1e-8 <= value <= 0.5:
+        raise ModelError(f"tolerance: {value:g}; give a fraction from 1e-8 to 0.5")
+    return value
+
+
+def residual_of(residual: object) -> Residual:
+    """Return an assumption on the mean force of a contact that never slips."""
+    if isinstance(residual, str):
+        if residual not in RESIDUALS:
+            raise ModelError(f"{unknown('residual', residual, RESIDUALS)}, or a force in N")
+        return "centred" if residual == "centred" else "from_rest"
+    return real_number(residual, "residual")
+
+
+def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:
+    """Return the degrees of freedom to observe, each known and named once."""
+    known = model.structure.dofs
+    if observe is None:
+        return known
+    if not isinstance(observe, Iterable):
+        raise ModelError(f"observe: {brief(observe)} is not a list of names; write [{known[0]!r}]")
+    names = (observe,) if isinstance(observe, str) else tuple(observe)
+    if not names:
+        raise ModelError("observe: no dof; name at least one, or leave it out for all")
+    for position, name in enumerate(names):
+        text(name, f"observe[{position}]")
+        if name not in known:
+            raise ModelError(f"observe: {unknown('dof', name, known)}")
+        if name in names[:position]:
+            raise ModelError(f"observe: {name!r} is given more than once; name each dof once")
+    return tuple(map(str, names))
+
+
+def require_held(model: Model, residual: Residual) -> None:
+    """Refuse a static load that nothing, or only contacts of prescribed mean force, would hold."""
+    static = [
+        (n, one)
+        for n, one in enumerate(model.forces, start=1)
+        if not one.harmonic and one.amplitude
+    ]
+    if not static:
+        return
+    position, force = static[0]
+    entry = f"force {position} at {force.dof!r}: a static load of {force.amplitude:g} N"
+    if model.problem.static_singular:
+        raise ModelError(
+            f"{entry} on a structure that moves freely even with all contacts stuck; ground the "
+            "structure or leave the static load out"
+        )
+    load = np.zeros(len(model.structure))
+    for _, force in static:
+        load[model.structure.index(force.dof)] += force.amplitude
+    prescribed = bool(model.contacts) and residual != "from_rest" and bool(load.any())
+    if prescribed and not _holds(model.structure.stiffness, load):
+        raise ModelError(
+            f"{entry} rests on contacts alone, whose mean force residual={residual!r} prescribes; "
+            'use residual="from_rest" or ground the structure'
+        )
+
+
+def _holds(stiffness: NDArray[np.float64], load: NDArray[np.float64]) -> bool:
+    """Whether a stiffness matrix has an equilibrium under a load."""
+    try:
+        displacement = np.linalg.solve(stiffness, load)
+    except np.linalg.LinAlgError:
+        return False
+    # A singular matrix that rounding made regular answers with a displacement of no digits.
+    rounding = np.finfo(np.float64).eps * np.linalg.norm(stiffness) * np.linalg.norm(displacement)
+    return bool(rounding < 1e-3 * np.linalg.norm(load))

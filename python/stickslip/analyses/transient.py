@@ -1,0 +1,267 @@
+"""Motion from a start state, by the exact flow between events or by Runge-Kutta steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from stickslip.analyses.arguments import (
+    Progress,
+    observed_dofs,
+    require_model,
+    require_progress,
+)
+from stickslip.analyses.assumptions import transient_assumptions
+from stickslip.analyses.memory import require_numbers
+from stickslip.checks import brief, choice, real_number, whole_number
+from stickslip.errors import Interrupted, ModelError
+from stickslip.model import Model
+from stickslip.model.state import State
+from stickslip.results.transient import Transient
+from stickslip.results.transient_arrays import TransientArrays
+
+if TYPE_CHECKING:
+    from stickslip import _core
+
+__all__ = ["SCHEMES", "TransientSettings", "transient"]
+
+SCHEMES = ("exact", "rk4")
+"""The exact flow between events, and the classical Runge-Kutta method of fourth order."""
+
+PERIODS, STEPS, SAMPLES = 200, 1000, 128
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransientSettings:
+    """How a transient is computed.
+
+    Parameters
+    ----------
+    omega : float
+        Angular frequency of the forces [rad/s].
+    scheme : {"exact", "rk4"}, optional
+        The exact flow between events, or Runge-Kutta steps.
+    periods : int, optional
+        Number of periods; with a tolerance their limit.
+    tolerance : float, optional
+        Change over a period, relative to the motion, at which the run ends. Default: none.
+    steps : int, optional
+        Steps per period, for "rk4".
+    samples : int, optional
+        Instants per period in the time histories.
+    keep : int, optional
+        How many of the last periods the time histories hold. Default: all.
+
+    Raises
+    ------
+    ModelError
+        If a value is of the wrong type or outside its range.
+    """
+
+    omega: float
+    scheme: str = "exact"
+    periods: int = PERIODS
+    tolerance: float | None = None
+    steps: int = STEPS
+    samples: int = SAMPLES
+    keep: int | None = None
+
+    def __post_init__(self) -> None:
+        periods = whole_number(self.periods, "periods", smallest=1)
+        checked: dict[str, object] = {
+            "omega": _omega(self.omega),
+            "scheme": choice(self.scheme, "scheme", SCHEMES),
+            "periods": periods,
+            "tolerance": None if self.tolerance is None else _tolerance(self.tolerance),
+            "steps": whole_number(self.steps, "steps", smallest=4),
+            "samples": whole_number(self.samples, "samples", smallest=2),
+            "keep": None if self.keep is None else whole_number(self.keep, "keep", smallest=1),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+
+
+def transient(
+    model: Model,
+    omega: float,
+    periods: int = PERIODS,
+    scheme: Literal["exact", "rk4"] = "exact",
+    *,
+    tolerance: float | None = None,
+    start: State | Mapping[str, float] | None = None,
+    steps: int = STEPS,
+    samples: int = SAMPLES,
+    observe: Iterable[str] | str | None = None,
+    keep: int | None = None,
+    progress: Progress = None,
+) -> Transient:
+    """Motion from a start state under the forces at one frequency, period after period.
+
+    Parameters
+    ----------
+    model : Model
+        Structure, contacts and forces.
+    omega : float
+        Angular frequency of the forces [rad/s].
+    periods : int, optional
+        Number of periods; with a tolerance their limit.
+    scheme : {"exact", "rk4"}, optional
+        "exact": modes in closed form between the instants of stick and slip, which are located.
+        "rk4": the classical Runge-Kutta method of fourth order with the return map of the contacts
+        in every step; its error falls with the square of the step where contacts slip.
+    tolerance : float, optional
+        End the run once the state changes over a period by less than this, relative to the motion
+        in it, in the norm of energy. Default: compute all periods.
+    start : State or mapping of str to float, optional
+        State at t = 0, or displacements of some degrees of freedom [m], the others and everything
+        else zero. ``other.final`` continues another run. Default: rest.
+    steps : int, optional
+        Steps per period, for "rk4".
+    samples : int, optional
+        Instants per period in the time histories, evenly spaced.
+    observe : iterable of str, optional
+        Degrees of freedom whose motion is kept. Default: all.
+    keep : int, optional
+        How many of the last periods the time histories and events hold; Poincare samples,
+        amplitudes and changes are kept of all. Default: all.
+    progress : callable, optional
+        Called about ten times per second with the fraction of the work that is done.
+
+    Returns
+    -------
+    Transient
+        Time histories, and what follows from them. `status` says how the run ended.
+
+    Raises
+    ------
+    ModelError
+        If an argument is of the wrong type or outside its range, or the result would not fit into
+        the memory.
+    Interrupted
+        On Ctrl-C; its `result` holds the periods that had been computed.
+
+    References
+    ----------
+    Guillen (1999), section 4.2 (Runge-Kutta integration with the corrected contact law of Table
+    3.1). The exact flow is this package's.
+    """
+    require_model(model)
+    settings = TransientSettings(
+        omega=omega,
+        scheme=scheme,
+        periods=periods,
+        tolerance=tolerance,
+        steps=steps,
+        samples=samples,
+        keep=keep,
+    )
+    dofs = observed_dofs(observe, model)
+    require_progress(progress)
+    first = _start(model, start)
+    _require_room(model, settings, dofs)
+    history = _solve(model, settings, dofs, first, progress)
+    result = _result(model, settings, dofs, start, history)
+    if result.interrupted:
+        raise Interrupted(
+            f"transient interrupted after {result.periods} of {settings.periods} periods, which "
+            "the result of this exception holds",
+            result,
+        )
+    if progress is not None:
+        progress(1.0)
+    return result
+
+
+def _start(model: Model, start: object) -> State | None:
+    if start is None:
+        return None
+    if isinstance(start, Mapping):
+        return State(model, displacement=start)
+    if not isinstance(start, State):
+        raise ModelError(
+            f"start: {brief(start)} is no state; give ss.State(model, ...), the final state of "
+            "another run, or {dof: displacement}"
+        )
+    start.require_fit(model, "start")
+    return start
+
+
+def _require_room(model: Model, settings: TransientSettings, dofs: tuple[str, ...]) -> None:
+    points = sum(contact.points for contact in model.contacts)
+    kept = min(settings.keep or settings.periods, settings.periods)
+    rows = kept * settings.samples + 1
+    each = 2 * len(model.structure) + points + 2 * len(dofs) + 1
+    require_numbers(
+        rows * (1 + 2 * len(dofs) + 2 * points) + (settings.periods + 1) * each,
+        f"the result of {rows} instants, {len(dofs)} dofs and {settings.periods} periods",
+        "name fewer dofs with observe=[...], or keep fewer periods with keep=...",
+    )
+
+
+def _solve(
+    model: Model,
+    settings: TransientSettings,
+    dofs: tuple[str, ...],
+    start: State | None,
+    progress: Progress,
+) -> _core.History:
+    from stickslip import _core
+
+    try:
+        return _core.transient(
+            model.problem,
+            settings.omega,
+            settings.scheme,
+            settings.periods,
+            settings.tolerance,
+            settings.steps,
+            None if start is None else start.vector,
+            np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
+            settings.samples,
+            settings.keep,
+            progress,
+        )
+    except ModelError:
+        raise
+    except ValueError as error:
+        raise ModelError(str(error)) from error
+
+
+def _result(
+    model: Model,
+    settings: TransientSettings,
+    dofs: tuple[str, ...],
+    start: object,
+    history: _core.History,
+) -> Transient:
+    return Transient(
+        model=model,
+        settings=settings,
+        dofs=dofs,
+        arrays=TransientArrays.of(history),
+        settled=history.settled,
+        unbounded=history.unbounded,
+        interrupted=history.interrupted,
+        timings=dict(history.timings),
+        counters=dict(history.counters),
+        assumptions=transient_assumptions(
+            model, settings, dofs, start, settled=history.settled, unbounded=history.unbounded
+        ),
+    )
+
+
+def _omega(omega: object) -> float:
+    value = real_number(omega, "omega")
+    if value <= 0.0:
+        raise ModelError(f"omega: {value:g}; give one frequency above 0 rad/s")
+    return value
+
+
+def _tolerance(tolerance: object) -> float:
+    value = real_number(tolerance, "tolerance")
+    if not 1e-12 <= value <= 0.5:
+        raise ModelError(f"tolerance: {value:g}; give a fraction from 1e-12 to 0.5")
+    return value

@@ -1,0 +1,77 @@
+"""The energy balance of a steady motion: what the forces do, and where it goes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from stickslip.errors import ModelError
+from stickslip.results.arrays import Float, constant
+
+if TYPE_CHECKING:
+    from stickslip.results.forced_response import ForcedResponse
+
+__all__ = ["Energy", "energy_of"]
+
+
+class Energy(NamedTuple):
+    """Energy per period, one entry per point of the curve; not-a-number where it is not solved."""
+
+    work: Float
+    """(n,) Work of the external forces [J]."""
+    viscous: Float
+    """(n,) Energy lost to the damping matrix [J]."""
+    friction: Float
+    """(n,) Energy lost at all contacts together [J]."""
+
+    @property
+    def imbalance(self) -> Float:
+        """What is missing in work = viscous + friction, relative to the largest, shape (n,)."""
+        terms = np.abs(np.stack(self))
+        scale = np.maximum(terms.max(axis=0), np.finfo(np.float64).tiny)
+        return constant((self.work - self.viscous - self.friction) / scale)
+
+
+def energy_of(result: ForcedResponse) -> Energy:
+    """Return the energy balance of a harmonic series.
+
+    Over one period the force P_k does the work pi k Im(P_k^T conj(X_k)), and the damping matrix
+    takes pi omega k^2 X_k^H C X_k.
+
+    Parameters
+    ----------
+    result : ForcedResponse
+        All of its degrees of freedom must be observed.
+
+    Returns
+    -------
+    Energy
+        Per point.
+
+    Raises
+    ------
+    ModelError
+        If a degree of freedom was not observed.
+    """
+    structure, arrays = result.model.structure, result.arrays
+    missing = [dof for dof in structure.dofs if dof not in result.dofs]
+    if missing:
+        raise ModelError(
+            f"energy: dof {missing[0]!r} was not observed, and all dofs take part; leave observe "
+            "out and run again"
+        )
+    series = arrays.displacement[:, :, [result.dofs.index(dof) for dof in structure.dofs]]
+    order = np.arange(series.shape[1])
+    work = np.zeros(arrays.omega.size)
+    for force in result.model.forces:
+        if force.harmonic < order.size:
+            motion = series[:, force.harmonic, structure.index(force.dof)]
+            work += np.pi * force.harmonic * (force.coefficient * motion.conj()).imag
+    # Skew terms do no work.
+    taken = np.einsum("nki,ij,nkj->nk", series.conj(), structure.damping, series).real
+    viscous = np.pi * arrays.omega * (taken * order**2).sum(axis=1)
+    # A model without contacts has no columns to sum, but unsolved points all the same.
+    friction = arrays.dissipation.sum(axis=1)
+    parts = [np.where(arrays.solved, part, np.nan) for part in (work, viscous, friction)]
+    return Energy(*(constant(part) for part in parts))

@@ -1,0 +1,380 @@
+"""Exact periodic orbits over frequency: a forced response with events and multipliers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import numpy as np
+
+from stickslip.checks import whole_number
+from stickslip.errors import ModelError
+from stickslip.model import Model, PointRef
+from stickslip.model.state import State
+from stickslip.results.arrays import Bool, Complex, Float, Int, Measure, constant
+from stickslip.results.dataset import CURVE_VARIABLES, curve_dataset, curve_parts, curve_settings
+from stickslip.results.energy import Energy
+from stickslip.results.events import Events
+from stickslip.results.forced_response import ForcedResponse, key_of
+from stickslip.results.orbit_arrays import OrbitArrays
+from stickslip.results.peaks import Bracket, Peak, highest
+from stickslip.results.variables import Variable, names, read, state_names
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+    from stickslip.analyses.exact_response import ExactSettings
+    from stickslip.plot import MultiplierOptions
+
+__all__ = ["ExactResponse"]
+
+_VARIABLES: Mapping[str, Variable] = CURVE_VARIABLES | {
+    "error_estimate": Variable(
+        "error_estimate", ("omega", "dof"), "m", "what the gap of the orbit could still change"
+    ),
+    "residual": Variable(
+        "residual", ("omega",), "1", "gap of the orbit after a period, relative to the motion"
+    ),
+    "iterations": Variable("iterations", ("omega",), "1", "iterations of shooting"),
+    "harmonics_kept": Variable("harmonics", ("omega",), "1", "highest harmonic reported"),
+    "range": Variable(
+        "range", ("omega", "dof", "side"), "m", "lowest and highest displacement over the period"
+    ),
+    "state": Variable(
+        "state", ("omega", "state_entry"), "1", "state at t = 0 (x in m, v in m/s, f in N)"
+    ),
+    "multipliers": Variable(
+        "multipliers", ("omega", "multiplier"), "1", "Floquet multipliers over the period"
+    ),
+    "neutral": Variable(
+        "neutral", ("omega",), "1", "how many multipliers belong to contacts that never slip"
+    ),
+    "work": Variable("work", ("omega",), "J", "work of the external forces per period"),
+    "viscous": Variable("viscous", ("omega",), "J", "energy lost to damping per period"),
+    "event_offset": Variable("event_offset", ("boundary",), "1", "first event of each point"),
+    "event_time": Variable("event_time", ("event",), "s", "time of the event in the period"),
+    "event_point": Variable("event_point", ("event",), "1", "contact point, over all contacts"),
+    "event_kind": Variable(
+        "event_kind", ("event",), "1", "0 sticks, 1 slips forward, 2 slips backward"
+    ),
+}
+_TITLE = "Forced response of a structure with dry friction, by exact periodic orbits"
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class ExactResponse(ForcedResponse):
+    """Exact periodic orbits over the excitation frequency.
+
+    A `ForcedResponse` without truncation: amplitudes are the exact extrema of the orbits, waveforms
+    and contact forces follow them from event to event, and peaks are refined on orbits. Only
+    `coefficients`, `phase` and the fundamental amplitude are those of a series. Beside that the
+    orbits have events and Floquet multipliers.
+
+    Attributes
+    ----------
+    settings : ExactSettings
+        How it was computed; `harmonics` is the highest one reported.
+    arrays : OrbitArrays
+        Every number by its name.
+    """
+
+    kind: ClassVar[str] = "exact_response"
+
+    settings: ExactSettings
+    arrays: OrbitArrays
+
+    @property
+    def multipliers(self) -> Complex:
+        """Floquet multipliers over the period, shape (n, 2 N + n_p).
+
+        First the neutral ones, then by falling modulus: what a small disturbance is multiplied by
+        in a period. A contact that slips forgets its force, which gives a multiplier of zero.
+        """
+        return self.arrays.multipliers
+
+    @property
+    def neutral(self) -> Int:
+        """How many multipliers are the exact 1 of a contact that never slips, shape (n,).
+
+        Such a contact keeps any small change of its mean force for ever, and the motion around it
+        is the same.
+        """
+        return self.arrays.neutral
+
+    @cached_property
+    def stable(self) -> Bool:
+        """Whether all multipliers but the neutral ones lie inside the unit circle, shape (n,)."""
+        size = np.abs(self.multipliers)
+        counted = np.arange(size.shape[1]) >= self.neutral[:, None]
+        return constant(self.arrays.solved & ~(counted & ~(size < 1.0)).any(axis=1))
+
+    @cached_property
+    def energy(self) -> Energy:
+        """Work of the forces and energy lost, per period, integrated along the orbits."""
+        arrays = self.arrays
+        friction = np.where(arrays.solved, arrays.dissipation.sum(axis=1), np.nan)
+        return Energy(arrays.work, arrays.viscous, constant(friction))
+
+    def events(self, index: int) -> Events:
+        """Return when contact points begin to stick and to slip, over one period.
+
+        Parameters
+        ----------
+        index : int
+            Position of the point; negative ones count from the end.
+
+        Returns
+        -------
+        Events
+            In the order of time, from 0 to the period; empty where nothing slips, and at points
+            that are not solved.
+
+        Raises
+        ------
+        ModelError
+            If there is no such point.
+        """
+        position = self.position(index)
+        arrays = self.arrays
+        of = slice(*(int(place) for place in arrays.event_offset[position : position + 2]))
+        return Events(
+            self.model, arrays.event_time[of], arrays.event_point[of], arrays.event_kind[of]
+        )
+
+    def state(self, index: int) -> State:
+        """Return the state at t = 0, from which `stickslip.transient` continues the orbit.
+
+        Parameters
+        ----------
+        index : int
+            Position of a solved point; negative ones count from the end.
+
+        Returns
+        -------
+        State
+            Displacements, velocities and contact forces.
+
+        Raises
+        ------
+        ModelError
+            If there is no such point, or it is not solved.
+        """
+        position = self.position(index)
+        status = self.status[position]
+        if not status.solved:
+            raise ModelError(f"index: {index} has no state ({status}). {status.advice}")
+        return State.of_vector(self.model, self.arrays.state[position])
+
+    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitude of a displacement over frequency, from its exact extrema.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+        measure : {"half_range", "max", "fundamental"}, optional
+            Half the peak-to-peak range over a period, the largest |x|, or |X_1|.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+            [m].
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom or measure, or the former was not observed.
+        """
+        key = key_of(dof, measure)
+        if key not in self._amplitudes:
+            low, high = self.arrays.range[:, self._column(dof)].T
+            if measure == "half_range":
+                values = 0.5 * (high - low)
+            elif measure == "max":
+                values = np.maximum(np.abs(low), np.abs(high))
+            else:
+                values = np.abs(self.coefficients(dof)[:, 1])
+            self._amplitudes[key] = constant(values)
+        return self._amplitudes[key]
+
+    def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
+        """Return one period of a displacement, along the orbit.
+
+        Parameters and errors are those of `ForcedResponse.waveform`.
+        """
+        return self._orbit(0, self._column(dof), index, samples)
+
+    def velocity_waveform(self, dof: str, index: int, samples: int = 256) -> Float:
+        """Return one period of a velocity, along the orbit.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+        index : int
+            Position of the point; negative ones count from the end.
+        samples : int, optional
+            Number of instants t = j T / samples, j = 0, 1, ...
+
+        Returns
+        -------
+        ndarray of float64, shape (samples,)
+            [m/s].
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom or point, or the former was not observed.
+        """
+        return self._orbit(1, self._column(dof), index, samples)
+
+    def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:
+        """Return one period of the relative displacement at the contacts, along the orbit.
+
+        Parameters and errors are those of `ForcedResponse.contact_waveform`.
+        """
+        return self._orbit(2, self._places(contact), index, samples)
+
+    def contact_force(self, contact: PointRef, index: int, samples: int = 512) -> Float:
+        """Return one period of the contact forces, along the orbit.
+
+        Parameters and errors are those of `ForcedResponse.contact_force`.
+        """
+        return self._orbit(3, self._places(contact), index, samples)
+
+    def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
+        """Return the highest point of the response curve, refined on exact orbits.
+
+        Parameters, errors and warnings are those of `ForcedResponse.peak`.
+        """
+        key = key_of(dof, measure)
+        if key not in self._peaks:
+            self._peaks[key] = highest(self, dof, measure, _refined)
+        return self._peaks[key]
+
+    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+        """Return everything as an xarray dataset with units on every variable.
+
+        Parameters
+        ----------
+        derived : bool, optional
+            Whether to add the amplitude, which follows from the range.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions omega, harmonic, dof, point (of contact), side, state_entry, multiplier,
+            event and boundary (of the events of two points).
+        """
+        dataset = curve_dataset(self, _TITLE, _VARIABLES, derived=derived)
+        return dataset.assign_coords(
+            side=names("side", ["lowest", "highest"], "end of the range"),
+            state_entry=names("state_entry", state_names(self.model), "entry of the state"),
+        )
+
+    @classmethod
+    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+        """Return the exact response that a dataset holds; see `Result.from_dataset`."""
+        from stickslip.analyses.exact_response import ExactSettings
+
+        arrays = read(_VARIABLES, dataset) | {"omega": dataset["omega"].values}
+        orbits = OrbitArrays(**arrays)
+        given = curve_parts(dataset, model, orbits)
+        if orbits.state.shape[1] != len(state_names(model)):
+            raise ValueError(
+                f"{orbits.state.shape[1]} entries per state, {len(state_names(model))} in the model"
+            )
+        return cls(settings=ExactSettings(**curve_settings(dataset)), **given)
+
+    def plot_multipliers(self, **options: Unpack[MultiplierOptions]) -> Axes:
+        """Draw the multipliers in the complex plane, with the unit circle.
+
+        Parameters
+        ----------
+        **options
+            See `stickslip.plot.multipliers`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from stickslip import plot
+
+        return plot.multipliers(self, **options)
+
+    def plot_events(self, index: int, *, ax: Axes | None = None) -> Axes:
+        """Draw when the contact points stick and slip, over one period.
+
+        Parameters
+        ----------
+        index : int
+            Position of the point; negative ones count from the end.
+        ax : matplotlib.axes.Axes, optional
+            Where to draw. Default: a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from stickslip import plot
+
+        return plot.events(self, index, ax=ax)
+
+    def _places(self, contact: PointRef) -> slice | int:
+        number, point = self.locate(contact)
+        columns = self._columns(number, point)
+        return columns if point is None else columns.start
+
+    def _orbit(self, part: int, places: slice | int, index: int, samples: int) -> Float:
+        """Return displacement, velocity, contact displacement or force (0 to 3) of an orbit."""
+        from stickslip import _core
+
+        position = self.position(index)
+        count = whole_number(samples, "samples", smallest=1)
+        model, arrays = self.model, self.arrays
+        columns = len(self.dofs) if part < 2 else arrays.contact_force.shape[2]
+        if not arrays.solved[position]:
+            motion = np.full((count, columns), np.nan)
+        else:
+            observed = [model.structure.index(dof) for dof in self.dofs]
+            try:
+                motion = _core.orbit_history(
+                    model.problem,
+                    float(arrays.omega[position]),
+                    arrays.state[position],
+                    np.array(observed, dtype=np.int64),
+                    count,
+                )[part]
+            except ValueError as error:
+                raise ModelError(str(error)) from error
+        return constant(np.ascontiguousarray(motion[:, places]))
+
+
+def _refined(
+    result: ForcedResponse, dof: str, measure: Measure, bracket: Bracket
+) -> tuple[float, float]:
+    """Return frequency and amplitude of the maximum inside a bracket, by exact orbits."""
+    from stickslip import _core
+
+    settings = result.settings
+    low, high, guess = bracket
+    try:
+        return _core.exact_peak(
+            result.model.problem,
+            low,
+            high,
+            guess,
+            result.model.structure.index(dof),
+            measure,
+            settings.residual,
+            settings.max_iterations,
+        )
+    except ValueError as error:
+        raise ModelError(f"peak of {dof!r}: {error}") from error

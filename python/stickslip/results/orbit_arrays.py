@@ -1,0 +1,106 @@
+"""The numbers of exact periodic orbits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.results.arrays import Arrays, Complex, Float, Int
+from stickslip.results.status import Status
+
+if TYPE_CHECKING:
+    from stickslip import _core
+
+__all__ = ["OrbitArrays"]
+
+
+@dataclass(frozen=True, eq=False)
+class OrbitArrays(Arrays):
+    """The numbers of exact orbits: those of a forced response, and what only orbits have.
+
+    A state is (x, v, f) of all N degrees of freedom and n_p contact points, s = 2 N + n_p numbers.
+    At points without an orbit everything but `omega`, `status`, `residual` and `iterations` is
+    not-a-number, and there are no events.
+    """
+
+    range: Float
+    """(n, n_o, 2) Lowest and highest displacement over the period [m]."""
+    state: Float
+    """(n, s) State at t = 0 [m, m/s, N]."""
+    multipliers: Complex
+    """(n, s) Floquet multipliers over the period: the neutral ones, then by falling modulus."""
+    neutral: Int
+    """(n,) How many multipliers are the exact 1 of a contact that never slips."""
+    work: Float
+    """(n,) Work of the external forces per period [J]."""
+    viscous: Float
+    """(n,) Energy lost to the damping matrix per period [J]."""
+    event_offset: Int
+    """(n+1,) Events of point i are those from event_offset[i] to event_offset[i+1]."""
+    event_time: Float
+    """(E,) Time of each event, from 0 to the period [s]."""
+    event_point: Int
+    """(E,) Contact point of each event, counted over all contacts."""
+    event_kind: NDArray[np.uint8]
+    """(E,) What happens: 0 sticks, 1 slips forward, 2 slips backward."""
+
+    @classmethod
+    def of_orbits(cls, solution: _core.Orbits) -> Self:
+        """Take over what the core returns; of an interrupted run only what was computed.
+
+        Parameters
+        ----------
+        solution : _core.Orbits
+            What the core returns.
+
+        Returns
+        -------
+        OrbitArrays
+            Copies.
+        """
+        computed = solution.status != Status.NOT_COMPUTED.code
+        kept = computed if computed.any() else np.ones_like(computed)
+        per_point = [entry.name for entry in fields(cls) if not entry.name.startswith("event")]
+        values: dict[str, Any] = {
+            name: np.array(getattr(solution, name)[kept]) for name in per_point
+        }
+        status = values["status"]
+        status[status == Status.STALLED.code] = Status.ORBIT_STALLED.code
+        solved = status == Status.CONVERGED.code
+        for name in (
+            "displacement",
+            "contact_displacement",
+            "contact_force",
+            "error_estimate",
+            "slip_fraction",
+            "dissipation",
+            "range",
+            "state",
+            "multipliers",
+            "work",
+            "viscous",
+        ):
+            blank = complex(np.nan, np.nan) if values[name].dtype.kind == "c" else np.nan
+            values[name][~solved] = blank
+        values["neutral"][~solved] = 0
+        return cls(**values, **_events(solution, kept, solved))
+
+
+def _events(
+    solution: _core.Orbits, kept: NDArray[np.bool_], solved: NDArray[np.bool_]
+) -> dict[str, NDArray[Any]]:
+    """Return the events of the points that are kept and solved."""
+    offsets, time, point, kind = solution.events
+    wanted = kept.copy()
+    wanted[kept] = solved
+    counts = np.where(wanted, np.diff(offsets), 0)
+    chosen = np.repeat(wanted, np.diff(offsets))
+    return {
+        "event_offset": np.concatenate(([0], np.cumsum(counts[kept]))).astype(np.int64),
+        "event_time": time[chosen],
+        "event_point": point[chosen],
+        "event_kind": kind[chosen],
+    }
