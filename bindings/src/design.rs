@@ -7,7 +7,7 @@ use crate::watch::Watch;
 use numpy::{
     Complex64, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods as _,
 };
-use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_core::balance::{Cause, Linearised, PointStatus, Settings, Unknowns};
@@ -153,24 +153,14 @@ impl Design {
     }
 }
 
-/// Runs an analysis off the interpreter lock. Ctrl-C keeps what was solved; anything else that a
-/// progress callback raises is its own.
+/// Runs an analysis that Ctrl-C may end early.
 fn watched<T: Send>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, stickslip_core::Error> + Send,
 ) -> PyResult<T> {
-    let (result, raised) = py.detach(|| {
-        let watch = Watch::new(progress);
-        let look = |share: f64| watch.look(share);
-        let result = work(&look);
-        (result, watch.raised.into_inner())
-    });
-    if let Some(error) = raised {
-        if !error.is_instance_of::<PyKeyboardInterrupt>(py) {
-            return Err(error);
-        }
-    }
+    let (result, raised) = Watch::during(py, progress, work);
+    raised.raise_unless_interrupt(py)?;
     result.map_err(refused)
 }
 
