@@ -82,10 +82,7 @@ impl Model {
         }
         let mut ports = self.ports.clone();
         for (law, range) in laws.iter().zip(&self.points) {
-            ports
-                .stiffness
-                .get_mut(range.clone(), range.clone())
-                .copy_from(&law.stiffness());
+            ports.stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
         }
         let (compliance, modal_base) = if ports.stiffness == self.ports.stiffness {
             (Arc::clone(&self.compliance), self.modal_base)

@@ -33,8 +33,6 @@ fn dense_peak(model: &Model, settings: Settings, dof: usize, points: usize) -> (
     let omega: Vec<f64> = (0..points).map(|i| SPAN.0 + i as f64 * step).collect();
     let solution = sweep(ForcedBalance::new(model, settings, &observe).unwrap(), &omega).unwrap();
     let size = |i: usize| {
-        let w = omega[i].clamp(SPAN.0 + 1e-9, SPAN.1);
-        let _ = w;
         let point = &solution.points[i];
         let table = stickslip_core::fourier::SampleTable::new(
             stickslip_core::fourier::Harmonics::new(point.harmonics, solution.half_wave),
@@ -61,8 +59,7 @@ fn compare(system: &System, dof: usize, values: &[f64], highest: usize) {
     let target = Target { dof, measure: Measure::HalfRange, span: SPAN };
     let contacts: Vec<usize> = (0..system.dampers.len()).collect();
     let variation = slip_force(&contacts, Common::Value);
-    let curve =
-        peak_curve(&model, fixed(highest), &variation, values, &target, &|_| true).unwrap();
+    let curve = peak_curve(&model, fixed(highest), &variation, values, &target, &|_| true).unwrap();
     for peak in &curve.peaks {
         assert_eq!(peak.status, PointStatus::Converged);
         let mut member = system.clone();
@@ -162,4 +159,64 @@ fn optima_of_the_beam() {
             assert!((two.amplitude / ratio - 1.0).abs() < 5e-3);
         }
     }
+}
+
+/// At a hundredth of the damping resonances are 0.08 rad/s wide, and slip cuts off their tops.
+#[test]
+fn narrow_resonances_are_found_from_afar() {
+    let mut system = snecma_beam(20.313);
+    system.damping = faer::Scale(0.01) * &system.damping;
+    let model = system.model();
+    let target = Target { dof: 1, measure: Measure::HalfRange, span: SPAN };
+    let values = [300.0, 3e3, 1e4, 1e6];
+    let variation = slip_force(&[0], Common::Value);
+    let curve = peak_curve(&model, fixed(9), &variation, &values, &target, &|_| true).unwrap();
+    assert!(curve.points < 40 * values.len(), "{}", curve.points);
+    for peak in &curve.peaks {
+        let mut member = system.clone();
+        member.dampers[0].3 = peak.value;
+        let bracket = [peak.omega - 0.05, peak.omega, peak.omega + 0.05];
+        let (_, best) =
+            refine_peak(&member.model(), fixed(9), 1, Measure::HalfRange, bracket, &|_| true)
+                .unwrap();
+        assert!((peak.amplitude / best - 1.0).abs() < 1e-9, "{peak:?} {best}");
+        let (_, dense) = dense_peak(&member.model(), fixed(9), 1, 4000);
+        assert!(peak.amplitude > dense * (1.0 - 1e-9), "{peak:?} {dense}");
+    }
+}
+
+#[test]
+fn an_optimum_is_that_of_a_fine_grid() {
+    for (system, dof) in [(snecma_beam(20.313), 0), (beam_pair(20.313), 1)] {
+        let model = system.model();
+        let target = Target { dof, measure: Measure::HalfRange, span: SPAN };
+        let contacts: Vec<usize> = (0..system.dampers.len()).collect();
+        let variation = slip_force(&contacts, Common::Factor);
+        let found =
+            optimum(&model, fixed(7), &variation, (0.05, 10.0), &target, &|_| true).unwrap();
+        let grid = geometric(0.05, 10.0, 400);
+        let curve = peak_curve(&model, fixed(7), &variation, &grid, &target, &|_| true).unwrap();
+        let least = curve.peaks.iter().min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
+        let best = found.minima[0];
+        assert!(best.amplitude <= least.amplitude * (1.0 + 1e-9));
+        assert!((best.value / least.value).ln().abs() < (200.0_f64).ln() / 399.0);
+    }
+}
+
+#[test]
+fn an_ended_analysis_keeps_what_it_has() {
+    let model = snecma_beam(20.313).model();
+    let target = Target { dof: 1, measure: Measure::HalfRange, span: SPAN };
+    let calls = std::cell::Cell::new(0);
+    let progress = |_: f64| {
+        calls.set(calls.get() + 1);
+        calls.get() < 200
+    };
+    let values = geometric(1.0, 1e4, 60);
+    let variation = slip_force(&[0], Common::Value);
+    let curve = peak_curve(&model, fixed(7), &variation, &values, &target, &progress).unwrap();
+    let done = curve.peaks.iter().filter(|p| p.status == PointStatus::Converged).count();
+    assert!(curve.interrupted && done > 0 && done < values.len(), "{done}");
+    assert_eq!(curve.peaks.len(), values.len());
+    assert!(curve.peaks[done..].iter().all(|p| p.status == PointStatus::NotComputed));
 }

@@ -219,7 +219,7 @@ impl<'a> Follower<'a> {
             target: self.target,
             balance: &mut balance,
             samples: Vec::new(),
-            errors: Vec::new(),
+            gaps: Vec::new(),
             failure: None,
         };
         let found = search.run(&self.seeds)?;

@@ -6,7 +6,7 @@
 
 use super::curve::{Curve, Follower, Peak, Target};
 use super::variation::Variation;
-use crate::balance::{PointStatus, Progress, Settings};
+use crate::balance::{HarmonicChoice, PointStatus, Progress, Settings};
 use crate::model::Model;
 use crate::Error;
 use std::time::Instant;
@@ -40,7 +40,8 @@ struct Trial {
 }
 
 /// Finds every local minimum of the peak over `bounds` that a curve of logarithmically spaced
-/// values shows, refined to a relative gain of 1e-8.
+/// values shows, refined to a relative gain of 1e-8. With automatic harmonics minima count as one
+/// if the rise between them is below the tolerance.
 ///
 /// # Errors
 /// Bounds that are not positive and ordered, or as for the curve.
@@ -88,6 +89,12 @@ pub fn optimum(
         minima.push(refine(&mut follower, *bracket, &mut trials, share)?);
     }
     minima.sort_by(|a, b| a.height.total_cmp(&b.height));
+    // With automatic harmonics the curve is known to the tolerance only, and so are its dents.
+    let depth = match settings.harmonics {
+        HarmonicChoice::Auto => settings.tolerance,
+        HarmonicChoice::Fixed(_) => 0.0,
+    };
+    let minima = prominent(minima, &trials, depth);
     let peaks = trials.iter().map(|trial| trial.peak).collect();
     let minima = minima.into_iter().map(|trial| trial.peak).collect();
     Ok(Optimum { minima, curve: follower.finish(peaks, start) })
@@ -116,6 +123,24 @@ fn turns_unseen(a: Trial, b: Trial) -> bool {
     let falls_in = a.slope < 0.0 && b.slope <= 0.0 && b.height > a.height;
     let rises_out = b.slope > 0.0 && a.slope >= 0.0 && a.height > b.height;
     falls_in || rises_out
+}
+
+/// Drops every minimum that a rise of less than the share `depth` parts from a lower one.
+fn prominent(minima: Vec<Trial>, trials: &[Trial], depth: f64) -> Vec<Trial> {
+    let mut kept: Vec<Trial> = Vec::new();
+    for minimum in minima {
+        let parted = |lower: &Trial| {
+            let (one, two) = (lower.peak.value, minimum.peak.value);
+            let between = one.min(two)..=one.max(two);
+            let inside = trials.iter().filter(|trial| between.contains(&trial.peak.value));
+            let top = inside.map(|trial| trial.height).fold(0.0, f64::max);
+            top > (1.0 + depth) * minimum.height
+        };
+        if kept.iter().all(parted) {
+            kept.push(minimum);
+        }
+    }
+    kept
 }
 
 /// Closes in on the minimum between a falling and a rising end. Cubics find a smooth minimum and

@@ -12,14 +12,16 @@ use crate::model::Model;
 use crate::Error;
 
 /// Points of the first look at the range.
-const LOOKS: usize = 13;
+const LOOKS: usize = 9;
 /// Share by which an interpolant of that look may err: it may hide a maximum this much higher.
-const UNSEEN: f64 = 0.3;
+const UNSEEN: f64 = 0.5;
 /// The error of an interpolant falls with the fourth power of its width; this times as much is
 /// allowed for.
 const CAUTION: f64 = 4.0;
 /// Gain in height, relative, that is not worth another point.
 const GAIN: f64 = 1e-11;
+/// Splits in a row that may leave more than half of an interval.
+const IDLE: u32 = 1;
 /// Shortest interval that is split, relative to the frequency.
 const SHORTEST: f64 = 1e-9;
 /// Points after which a search ends in any case.
@@ -36,6 +38,32 @@ pub(super) struct Sample {
     pub(super) unknowns: Unknowns,
     /// Derivative of the unknowns in frequency.
     rate: Vec<f64>,
+}
+
+/// What is known of an interval between two samples.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gap {
+    /// Error allowed for in its interpolant.
+    error: f64,
+    /// Splits in a row that have left more than half of it.
+    idle: u32,
+    /// Whether its inside could not be solved.
+    closed: bool,
+}
+
+impl Gap {
+    /// The share at which it is split: where asked for, or, when that keeps creeping along from an
+    /// end, between that and the whole. A resonance that slip has cut off misleads its flanks.
+    fn stride(self, share: f64) -> f64 {
+        if self.idle <= IDLE {
+            return share;
+        }
+        if share <= 0.5 {
+            share.sqrt().min(0.5)
+        } else {
+            1.0 - (1.0 - share).sqrt().min(0.5)
+        }
+    }
 }
 
 /// How a search ended.
@@ -55,8 +83,8 @@ pub(super) struct Search<'a, 'b> {
     pub(super) target: &'a Target,
     pub(super) balance: &'b mut ForcedBalance<'a>,
     pub(super) samples: Vec<Sample>,
-    /// Error allowed for in each interval between samples.
-    pub(super) errors: Vec<f64>,
+    /// What is known of the intervals between them.
+    pub(super) gaps: Vec<Gap>,
     pub(super) failure: Option<PointStatus>,
 }
 
@@ -75,7 +103,8 @@ impl Search<'_, '_> {
                 return Ok(None);
             }
         }
-        self.errors = vec![UNSEEN; self.samples.len().saturating_sub(1)];
+        let fresh = Gap { error: UNSEEN, idle: 0, closed: false };
+        self.gaps = vec![fresh; self.samples.len().saturating_sub(1)];
         while self.samples.len() < MOST_POINTS {
             let Some((interval, share)) = self.most_promising() else { break };
             if !self.split(interval, share)? {
@@ -100,10 +129,11 @@ impl Search<'_, '_> {
         let mut best = (None, reference * (1.0 + GAIN));
         for (i, pair) in self.samples.windows(2).enumerate() {
             let (left, right) = (pair[0].knot, pair[1].knot);
-            if right.at - left.at <= SHORTEST * right.at {
+            if self.gaps[i].closed || right.at - left.at <= SHORTEST * right.at {
                 continue;
             }
-            let (share, promise) = Interpolant::new(left, right, reference).promise(self.errors[i]);
+            let (share, promise) =
+                Interpolant::new(left, right, reference).promise(self.gaps[i].error);
             if promise > best.1 {
                 best = (Some((i, share)), promise);
             }
@@ -115,15 +145,11 @@ impl Search<'_, '_> {
     fn split(&mut self, interval: usize, share: f64) -> Result<bool, Error> {
         let (left, right) = (self.samples[interval].knot, self.samples[interval + 1].knot);
         let width = right.at - left.at;
-        let omega = left.at + share * width;
+        let gap = self.gaps[interval];
+        let omega = left.at + gap.stride(share) * width;
         let Some(sample) = self.solve(omega, None)? else {
             // Nothing more is asked of an interval whose inside cannot be solved.
-            self.errors[interval] = 0.0;
-            let stuck = Interpolant::new(left, right, left.height.max(right.height)).top();
-            if stuck.is_some() {
-                self.samples[interval + 1].knot.slope = 0.0;
-                self.samples[interval].knot.slope = 0.0;
-            }
+            self.gaps[interval].closed = true;
             return Ok(self.failure != Some(PointStatus::NotComputed));
         };
         let reference = left.height.max(right.height).max(sample.knot.height);
@@ -132,13 +158,13 @@ impl Search<'_, '_> {
         let bump = 16.0 * (share * (1.0 - share)).powi(2);
         let error = (expected / sample.knot.height - 1.0).abs().min(1.0) / bump;
         let inside = (0.1..0.9).contains(&share);
-        let allowed = |part: f64| {
-            let error = CAUTION * error * part.powi(4);
+        let part = |part: f64| {
+            let allowed = CAUTION * error * part.powi(4);
             // Close to an end the error is small wherever the middle may be.
-            if inside { error.min(1.0) } else { error.min(self.errors[interval]) }
+            let error = if inside { allowed.min(1.0) } else { allowed.min(gap.error) };
+            Gap { error, idle: if part > 0.5 { gap.idle + 1 } else { 0 }, closed: false }
         };
-        let parts = [allowed(share), allowed(1.0 - share)];
-        self.errors.splice(interval..=interval, parts);
+        self.gaps.splice(interval..=interval, [part(share), part(1.0 - share)]);
         self.samples.insert(interval + 1, sample);
         Ok(true)
     }
