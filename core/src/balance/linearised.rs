@@ -75,20 +75,19 @@ impl<'a> Linearised<'a> {
 
     /// Derivative of the contact displacements; `None` if the Jacobian is singular.
     pub fn contact_rate(&mut self, cause: Cause) -> Option<Vec<f64>> {
-        let mut rhs = match cause {
-            Cause::Frequency => return self.solve(&self.equations.frequency_rate()),
-            Cause::Load => return self.solve(&self.equations.stuck_response().to_vec()),
-            Cause::Law { .. } => vec![0.0; self.x.len()],
+        let rhs = match cause {
+            Cause::Frequency => self.equations.frequency_rate(),
+            Cause::Load => self.equations.stuck_response().to_vec(),
+            Cause::Law { .. } => {
+                let mut rhs = vec![0.0; self.x.len()];
+                let mut force = self.explicit(cause);
+                force.iter_mut().for_each(|f| *f = -*f);
+                self.equations.add_response(&force, &mut rhs);
+                rhs
+            }
         };
-        let mut force = self.explicit(cause);
-        force.iter_mut().for_each(|f| *f = -*f);
-        self.equations.add_response(&force, &mut rhs);
-        self.solve(&rhs)
-    }
-
-    fn solve(&mut self, rhs: &[f64]) -> Option<Vec<f64>> {
         let mut rate = vec![0.0; rhs.len()];
-        self.equations.solve(rhs, &mut rate).then_some(rate)
+        self.equations.solve(&rhs, &mut rate).then_some(rate)
     }
 
     /// `∂F/∂p` at fixed contact displacements.

@@ -74,9 +74,9 @@ def _rigid(rigid: float | None) -> str:
     if rigid is None:
         return ""
     return (
-        f"The infinite stiffness is the limit of {rigid:.4g} and {2.0 * rigid:.4g} N/m (1000 and "
-        "2000 times the stiffness of the structure at the contact), taken as linear in 1/k_d; its "
-        "error estimate holds the whole last change."
+        f"The infinite stiffness is the limit of {rigid:.4g} and {2.0 * rigid:.4g} N/m, some "
+        "hundred times the stiffness of the structure at the contact, taken as linear in 1/k_d; "
+        "its error estimate holds the whole last change."
     )
 
 

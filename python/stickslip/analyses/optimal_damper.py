@@ -198,8 +198,7 @@ def _default_bounds(
 
 
 def _stuck_force(model: Model, variation: Variation, settings: DamperSettings) -> float:
-    """Return the largest force that a stuck contact bears [N], over its own slip force if that
-    counts."""
+    """Return the largest force of a stuck contact [N], over its own slip force if that counts."""
     varied = variation.contacts or chosen_contacts(None, "slip_force", model)
     stuck = Variation(parameter="slip_force", contacts=varied).apply(model, np.inf)
     highest = max((force.harmonic for force in model.forces), default=1)

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from stickslip.analyses.arguments import Span
-from stickslip.checks import brief, choice, listed, text, unknown, whole_number
+from stickslip.checks import brief, choice, listed, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, Model, natural_frequencies
 from stickslip.model.contact import Contact

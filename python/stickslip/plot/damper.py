@@ -26,7 +26,7 @@ from stickslip.plot.style import (
     new_axes,
     omega_scale,
 )
-from stickslip.results.arrays import Float
+from stickslip.results.arrays import Float, Int
 from stickslip.results.damper_curve import DamperCurve
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ class _View(NamedTuple):
 
     x: Float
     y: Float
-    shown: Float
+    shown: Int
     """Positions of the drawn values."""
     label: str
     factor: Float
@@ -170,10 +170,10 @@ def _view(curve: DamperCurve, length: Scale, *, per_force: bool) -> _View:
     values = curve.values
     # A logarithmic axis has no place for zero and infinity.
     drawn = curve.arrays.solved & np.isfinite(values) & (values > 0.0)
-    shown = np.flatnonzero(drawn)
+    shown: Int = np.flatnonzero(drawn)
     if not shown.size:
         raise ModelError("results: a curve has no peak at a finite value above 0 to draw")
-    order = shown[np.argsort(values[shown], kind="stable")]
+    order: Int = shown[np.argsort(values[shown], kind="stable")]
     x, level = values[order], force_level(curve.model)
     stretch = x if curve.parameter == "level" else np.ones(x.size)
     factor = np.full(x.size, length.factor)

@@ -34,7 +34,8 @@ class Sensitivities(ContactMotion):
 
     if TYPE_CHECKING:
 
-        def peak(self, dof: str, measure: Measure = "half_range") -> Peak: ...
+        def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
+            """See `ForcedResponse.peak`."""
 
     @overload
     def sensitivity(

@@ -29,6 +29,7 @@ from stickslip.analyses.forced_response import (
 from stickslip.checks import unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.study.damper_curve_table import DamperCurveTable
 from stickslip.study.entries import (
     HERE,
     Count,
@@ -188,8 +189,8 @@ class ForcedResponseTable(Table):
 
 
 AnalysisTable = Annotated[
-    ForcedResponseTable,
-    Tag("<forced-response>"),
-    chosen_by("kind", "forced-response", default="forced-response"),
+    Annotated[ForcedResponseTable, Tag("<forced-response>")]
+    | Annotated[DamperCurveTable, Tag("<damper-curve>")],
+    chosen_by("kind", "forced-response", "damper-curve", default="forced-response"),
 ]
 """Each further analysis joins this union with a table of its own."""
