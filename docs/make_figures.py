@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -73,6 +74,115 @@ def error_estimates(folder: Path = ASSETS) -> Path:
     return file
 
 
+def harmonics_errors(folder: Path = ASSETS) -> tuple[Path, Path]:
+    """Draw and tabulate the error of the refined tip peak over the harmonics kept.
+
+    The truth is the peak of exact orbits.
+    """
+    omega = np.linspace(140.0, 240.0, 201)
+    kept = np.arange(1, 42, 2)
+    loads = ss.reference.SNECMA_LOADS[1:]
+    signed = {load: _peak_errors(ss.reference.snecma_beam(load), omega, kept) for load in loads}
+    figure = Figure(figsize=(11.0, 4.4), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for load, colour in zip(loads[::2], ("#440154", "#31688e", "#35b779", "#d8863b"), strict=True):
+        errors, full = signed[load]
+        left.semilogy(kept, np.abs(errors), marker="o", ms=3, color=colour, label=f"{load:g} N")
+        left.axvline(full, color=colour, lw=0.9, ls=":")
+    left.set_xlabel("harmonics kept H")
+    left.set_ylabel("relative error of the peak of the tip")
+    left.legend(frameon=False, title="dotted: H ω passes 3274 rad/s", fontsize="small")
+    left.grid(color="0.9", lw=0.7)
+    _draw_truncated(right)
+    shown = (1, 3, 7, 15, 21, 31)
+    lines = [
+        f"| load [N] | {' | '.join(f'H = {one}' for one in shown)} | H = 3274/ω |",
+        "|---|" + "---|" * (len(shown) + 1),
+    ]
+    for load, (errors, full) in signed.items():
+        cells = " | ".join(f"{100 * errors[(one - 1) // 2]:+.2g} %" for one in shown)
+        lines.append(f"| {load:g} | {cells} | {full:.0f} |")
+    table = folder / "harmonics-errors.md"
+    table.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return _save(figure, folder / "harmonics-errors.png"), table
+
+
+def _peak_errors(
+    model: ss.Model, omega: NDArray[np.float64], kept: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], float]:
+    """Return relative errors of the tip peak, and the harmonic at the highest stuck frequency."""
+    exact = ss.exact_response(model, omega, observe="tip").peak("tip")
+    peaks = [
+        ss.forced_response(model, omega, int(one), observe="tip").peak("tip").amplitude
+        for one in kept
+    ]
+    full = ss.natural_frequencies(model)[-1] / exact.omega
+    return np.array(peaks) / exact.amplitude - 1.0, float(full)
+
+
+def _draw_truncated(ax: Axes) -> None:
+    """Draw the tip at 25 N with few harmonics, and exact orbits."""
+    model = ss.reference.snecma_beam(25.0)
+    omega = np.linspace(150.0, 220.0, 281)
+    looks = {1: ("#31688e", "--"), 3: ("#d8863b", "-"), 15: ("#35b779", "-")}
+    for harmonics, (colour, style) in looks.items():
+        curve = ss.forced_response(model, omega, harmonics, observe="tip")
+        ax.plot(
+            omega, 1e3 * curve.amplitude("tip"), color=colour, ls=style, label=f"H = {harmonics}"
+        )
+    exact = ss.exact_response(model, omega[::8], observe="tip")
+    ax.plot(
+        exact.omega,
+        1e3 * exact.amplitude("tip"),
+        ls="",
+        marker="D",
+        ms=3.5,
+        mfc="white",
+        mec="black",
+        label="exact orbits",
+    )
+    ax.set_xlabel("angular frequency ω [rad/s]")
+    ax.set_ylabel("half peak-to-peak of tip [mm]")
+    ax.set_title("25 N", fontsize="medium")
+    ax.legend(frameon=False, fontsize="small")
+    ax.grid(color="0.9", lw=0.7)
+
+
+def exact_orbits(folder: Path = ASSETS) -> Path:
+    """Draw the loop, the events and the multipliers of exact orbits at 25 N."""
+    exact = ss.exact_response(ss.reference.snecma_beam(25.0), np.linspace(120.0, 260.0, 281))
+    index = exact.index(200.0)
+    figure = Figure(figsize=(13.0, 4.0), layout="constrained")
+    loop, strip, plane = figure.subplots(1, 3, width_ratios=(1.0, 1.2, 1.1))
+    plot.hysteresis(exact, "jenkins", index, length_unit="um", ax=loop)
+    loop.set_title("damper at ω = 200 rad/s", fontsize="medium")
+    plot.events(exact, index, ax=strip)
+    plot.multipliers(exact, ax=plane)
+    return _save(figure, folder / "exact-orbits.png")
+
+
+def transient(folder: Path = ASSETS) -> Path:
+    """Draw a run from rest: history, phase plane and spectrum."""
+    run = ss.transient(ss.reference.snecma_beam(25.0), 200.0, periods=40, samples=256)
+    figure = Figure(figsize=(13.0, 4.0), layout="constrained")
+    history, phase, spectrum = figure.subplots(1, 3, width_ratios=(1.2, 1.0, 1.1))
+    plot.history(run, "tip", length_unit="mm", ax=history)
+    plot.phase(run, "damper", length_unit="um", last=5, ax=phase)
+    plot.spectrum(run, "damper", last=10, ax=spectrum)
+    return _save(figure, folder / "transient.png")
+
+
+def certificate(folder: Path = ASSETS) -> Path:
+    """Draw a coarse curve with its error band and exact orbits."""
+    curve = ss.forced_response(ss.reference.snecma_beam(25.0), np.linspace(140, 230, 181), 3)
+    figure = Figure(figsize=(7.5, 4.4), layout="constrained")
+    ax = figure.add_subplot()
+    plot.curves(
+        ss.certify(curve, range(0, 181, 8)), "tip", length_unit="mm", log=False, peaks=False, ax=ax
+    )
+    return _save(figure, folder / "certificate.png")
+
+
 def _errors(
     model: ss.Model, exact: ss.ForcedResponse, harmonics: int | Literal["auto"]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -101,3 +211,7 @@ def _save(figure: Figure, file: Path) -> Path:
 if __name__ == "__main__":
     print(snecma_beam())
     print(error_estimates())
+    print(*harmonics_errors())
+    print(exact_orbits())
+    print(transient())
+    print(certificate())

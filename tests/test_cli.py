@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import stickslip as ss
-from stickslip.cli import app, console
+from stickslip.cli import app, console, curves
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "snecma-beam"
 COMMAND = [sys.executable, "-c", "from stickslip.cli import app; app()"]
@@ -385,13 +385,13 @@ def test_a_terminal_gets_a_framed_table(results, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("COLUMNS", "80")
     result = ss.load(results / "beam-20.313.nc")
-    console.peaks([("a", result)], "level", ["tip"], "mm")
+    curves.peaks([("a", result)], "level", ["tip"], "mm")
     assert "─" in sys.stdout.getvalue()
     assert "…" not in sys.stdout.getvalue()
     assert "peak [mm]" in sys.stdout.getvalue()
     monkeypatch.setattr(sys, "stdout", Screen())
     monkeypatch.setenv("COLUMNS", "50")
-    console.peaks([("a", result)], "level", ["tip"], "mm")
+    curves.peaks([("a", result)], "level", ["tip"], "mm")
     heading, line = sys.stdout.getvalue().splitlines()
     assert heading.split() == [
         "level",
@@ -410,7 +410,7 @@ def test_a_terminal_gets_a_framed_table(results, monkeypatch):
 
 def test_only_the_peaks_that_are_shown_are_refined(results, monkeypatch):
     result = ss.load(results / "beam-20.313.nc")
-    console.peaks([("", result)], "", ["tip", "none"], "m")
+    curves.peaks([("", result)], "", ["tip", "none"], "m")
     assert {dof for dof, _ in result._peaks} == {"tip"}
 
 

@@ -514,13 +514,13 @@ def test_assumptions_on_truncation_and_observation():
 
 
 def test_status():
-    assert [status.code for status in ss.Status] == [0, 1, 2, 3, 4]
+    assert [status.code for status in ss.Status] == [0, 1, 2, 3, 4, 5]
     assert all(ss.Status.from_code(status.code) is status for status in ss.Status)
     assert ss.Status.STALLED == "stalled"
-    assert [status.solved for status in ss.Status] == [True, False, False, False, True]
+    assert [status.solved for status in ss.Status] == [True, False, False, False, True, False]
     for status in ss.Status:
         assert status.advice.count(". ") == 1
-    for code in (5, -1):
+    for code in (6, -1):
         with pytest.raises(ss.ModelError, match=f"status {code} is unknown"):
             ss.Status.from_code(code)
 

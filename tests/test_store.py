@@ -84,13 +84,14 @@ def test_dataset(frf):
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs
-    assert flags["flag_values"].tolist() == [0, 1, 2, 3, 4]
+    assert flags["flag_values"].tolist() == [0, 1, 2, 3, 4, 5]
     assert flags["flag_meanings"].split() == [
         "converged",
         "stalled",
         "singular",
         "not_computed",
         "harmonics_limit",
+        "orbit_stalled",
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5

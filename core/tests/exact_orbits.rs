@@ -1,17 +1,28 @@
 //! Exact periodic orbits against the converged table, Runge-Kutta and finite differences.
+
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
+use common::passive::{passive_system, unsymmetric_system};
 use common::{beam_pair, runge_kutta, single_dof, snecma_beam, System};
-use stickslip_core::contact::PointState;
+use faer::c64;
+use proptest::prelude::*;
+use stickslip_core::balance::PointStatus;
+use stickslip_core::contact::{PointState, Residual};
+use stickslip_core::model::Model;
+use stickslip_core::motion::{transient, Scheme, TransientSettings};
 use stickslip_core::orbit::{orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits};
 
-fn orbit(system: &System, omega: f64) -> Orbit {
-    let model = system.model();
-    let observe: Vec<usize> = (0..system.dofs()).collect();
-    let mut orbits = PeriodicOrbits::new(&model, OrbitSettings::default(), &observe).unwrap();
+fn orbit_of(model: &Model, omega: f64, residual: Residual) -> Orbit {
+    let observe: Vec<usize> = (0..model.structure().dofs()).collect();
+    let settings = OrbitSettings { residual, ..OrbitSettings::default() };
+    let mut orbits = PeriodicOrbits::new(model, settings, &observe).unwrap();
     orbits.solve(omega, None).unwrap()
+}
+
+fn orbit(system: &System, omega: f64) -> Orbit {
+    orbit_of(&system.model(), omega, Residual::Centred)
 }
 
 fn half_range(orbit: &Orbit, dof: usize) -> f64 {
@@ -36,36 +47,192 @@ fn the_two_time_histories_of_the_beam_are_met() {
 }
 
 #[test]
-fn debug_print() {
-    let system = snecma_beam(25.0);
-    let model = system.model();
-    let observe = [0, 1, 2];
-    let omega: Vec<f64> = (0..400).map(|i| 20.0 + 330.0 * f64::from(i) / 399.0).collect();
-    for _ in 0..2 {
-        let start = std::time::Instant::now();
-        let orbits = PeriodicOrbits::new(&model, OrbitSettings::default(), &observe).unwrap();
-        let s = orbit_sweep(orbits, &omega).unwrap();
-        println!("{:?} {:?}", start.elapsed(), s.profile);
-        let bad =
-            s.points.iter().filter(|p| p.response.residual.is_nan() || p.response.residual > 1e-12);
-        for p in bad {
-            println!(
-                "bad {} {:?} {} {}",
-                p.response.omega, p.response.status, p.response.residual, p.response.iterations
-            );
+fn independent_time_integration_settles_on_the_orbit() {
+    for (system, omega, periods) in [
+        (snecma_beam(20.313), 170.0, 150),
+        (snecma_beam(25.0), 200.0, 100),
+        (single_dof(2.0), 66.0, 60),
+        (beam_pair(40.0), 190.0, 200),
+    ] {
+        let orbit = orbit(&system, omega);
+        let expected = runge_kutta(&system, omega, periods, 8000);
+        for (dof, expected) in expected.iter().enumerate() {
+            let error = half_range(&orbit, dof) / expected - 1.0;
+            let tolerance = if dof % 3 == 2 { OF_MODE } else { 1e-6 };
+            assert!(error.abs() < tolerance, "dof {dof}: {error:e}");
         }
-        let balance = s
-            .points
-            .iter()
-            .map(|p| {
-                let friction: f64 = p.response.contacts.iter().map(|c| c.dissipation).sum();
-                ((p.work - p.viscous - friction) / p.work).abs()
-            })
-            .fold(0.0, f64::max);
-        println!("energy {balance:e}");
-        let it: usize = s.points.iter().map(|p| p.response.iterations).sum();
-        println!("iterations {it}");
-        println!("{:?}", s.points[200].multipliers);
     }
-    let _ = (beam_pair(1.0), single_dof(1.0), runge_kutta);
+}
+
+/// Runge-Kutta's own error at the kinks of the force, seen in the fast third mode alone, is larger
+/// than what the displacements of the beam show.
+const OF_MODE: f64 = 2e-6;
+
+/// Largest difference between the multipliers and those of a transition matrix of differences.
+fn multiplier_error(system: &System, omega: f64) -> f64 {
+    let model = system.model();
+    let orbit = orbit(system, omega);
+    let size = orbit.state.len();
+    let observe = [0];
+    let settings = TransientSettings {
+        omega,
+        scheme: Scheme::Exact,
+        periods: 1,
+        tolerance: None,
+        samples: 1,
+        keep: None,
+    };
+    let after = |state: &[f64]| -> Vec<f64> {
+        let run = transient(&model, &settings, Some(state), &observe, &|_| true).unwrap();
+        run.poincare.last().unwrap().clone()
+    };
+    let n = system.dofs();
+    let scale = |i: usize| {
+        let part = if i < n {
+            0..n
+        } else if i < 2 * n {
+            n..2 * n
+        } else {
+            2 * n..size
+        };
+        orbit.state[part].iter().map(|v| v.abs()).fold(0.0, f64::max)
+    };
+    let limits: Vec<f64> = system.dampers.iter().map(|d| d.3).collect();
+    let mut matrix = faer::Mat::<f64>::zeros(size, size);
+    for j in 0..size {
+        let h = 1e-6 * scale(j);
+        let shifted = |sign: f64| {
+            let mut state = orbit.state.clone();
+            state[j] += sign * h;
+            if j >= 2 * n {
+                let limit = limits[j - 2 * n];
+                state[j] = state[j].clamp(-limit, limit);
+            }
+            after(&state)
+        };
+        // At its limit a force can only be lowered; there the difference is one-sided and zero.
+        let (ahead, behind) = (shifted(1.0), shifted(-1.0));
+        for i in 0..size {
+            // Balanced: eigenvalues of a matrix in mixed units lose digits.
+            matrix[(i, j)] = (ahead[i] - behind[i]) / (2.0 * h) * scale(j) / scale(i);
+        }
+    }
+    let mut expected: Vec<c64> = matrix.eigenvalues().unwrap();
+    let mut worst = 0.0_f64;
+    for multiplier in &orbit.multipliers {
+        let near = (0..expected.len())
+            .min_by(|&a, &b| {
+                (expected[a] - multiplier).norm().total_cmp(&(expected[b] - multiplier).norm())
+            })
+            .unwrap();
+        worst = worst.max((expected.swap_remove(near) - multiplier).norm());
+    }
+    worst
+}
+
+#[test]
+fn multipliers_match_differences_of_the_flow() {
+    for (system, omega) in [
+        (snecma_beam(20.313), 170.0),
+        (snecma_beam(25.0), 200.0),
+        (snecma_beam(25.0), 40.0),
+        (beam_pair(40.0), 190.0),
+        (single_dof(2.0), 66.0),
+    ] {
+        let error = multiplier_error(&system, omega);
+        assert!(error < 1e-6, "{omega}: {error:e}");
+    }
+}
+
+#[test]
+fn every_orbit_of_the_beam_closes_and_is_stable() {
+    for force in [0.938, 2.188, 6.563, 16.563, 20.313, 25.0, 31.475, 38.438] {
+        let model = snecma_beam(force).model();
+        let omega: Vec<f64> = (0..200).map(|i| 20.0 + 330.0 * f64::from(i) / 199.0).collect();
+        let observe = [0, 1];
+        let orbits = PeriodicOrbits::new(&model, OrbitSettings::default(), &observe).unwrap();
+        let sweep = orbit_sweep(orbits, &omega).unwrap();
+        for orbit in &sweep.points {
+            assert_eq!(orbit.response.status, PointStatus::Converged);
+            assert!(orbit.response.residual < 1e-11);
+            assert!(orbit.multipliers[orbit.neutral..].iter().all(|m| m.norm() < 1.0));
+            let slips = orbit.response.contacts[0].slip_fraction > 0.0;
+            assert_eq!(orbit.neutral, usize::from(!slips));
+        }
+    }
+}
+
+/// The mean force of a contact that never slips is what is assumed, and changes nothing else.
+#[test]
+fn stuck_contacts_hold_the_assumed_residual() {
+    let mut system = snecma_beam(0.5);
+    system.forces.push((0, 0, 40.0, 0.0));
+    let model = system.model();
+    let centre = |orbit: &Orbit| orbit.response.contact_force[0].re;
+    let displacement = |orbit: &Orbit| orbit.response.contact_displacement[0].re;
+    let centred = orbit_of(&model, 100.0, Residual::Centred);
+    let given = orbit_of(&model, 100.0, Residual::Value(30.0));
+    let from_rest = orbit_of(&model, 100.0, Residual::FromRest);
+    assert!(centre(&centred).abs() < 1e-9);
+    assert!((centre(&given) - 30.0).abs() < 1e-9);
+    let expected = common::STIFFNESS * displacement(&from_rest);
+    assert!((centre(&from_rest) / expected - 1.0).abs() < 1e-9);
+    for orbit in [&centred, &given, &from_rest] {
+        assert_eq!(orbit.neutral, 1);
+        assert!((half_range(orbit, 1) / half_range(&centred, 1) - 1.0).abs() < 1e-10);
+    }
+}
+
+#[test]
+fn hard_cases_close() {
+    let mass_on_friction = |force: f64| System {
+        mass: faer::mat![[1.0]],
+        damping: faer::mat![[0.0]],
+        stiffness: faer::mat![[0.0]],
+        dampers: vec![(0, None, 100.0, 1.0)],
+        forces: vec![(0, 1, force, 0.0)],
+    };
+    let mut rigid = snecma_beam(20.313);
+    rigid.dampers[0].2 = 2.4e12;
+    let mut light = snecma_beam(2.0);
+    light.damping = faer::Scale(1e-2) * &light.damping;
+    // A floating mass held by friction alone, a nearly rigid damper, little viscous damping.
+    for (system, frequencies) in [
+        (mass_on_friction(0.9), [3.0, 9.9, 11.0, 25.0]),
+        (mass_on_friction(1.5), [3.0, 9.9, 11.0, 25.0]),
+        (rigid, [150.0, 190.0, 225.0, 240.0]),
+        (light, [159.0, 200.0, 225.5, 226.0]),
+    ] {
+        for omega in frequencies {
+            let orbit = orbit(&system, omega);
+            assert_eq!(orbit.response.status, PointStatus::Converged, "{omega}");
+            assert!(orbit.response.residual < 1e-11);
+        }
+    }
+}
+
+fn assert_balanced(system: &System, omega: f64) -> Result<(), TestCaseError> {
+    let orbit = orbit(system, omega);
+    prop_assert_eq!(orbit.response.status, PointStatus::Converged);
+    let friction: f64 = orbit.response.contacts.iter().map(|c| c.dissipation).sum();
+    prop_assert!(friction >= 0.0 && orbit.viscous >= 0.0);
+    let error = (orbit.work - orbit.viscous - friction).abs();
+    prop_assert!(error <= 1e-8 * (orbit.viscous + friction), "{} {}", orbit.work, error);
+    let largest = orbit.multipliers[orbit.neutral..].iter().map(|m| m.norm()).fold(0.0, f64::max);
+    prop_assert!(largest < 1.0 + 1e-9, "{}", largest);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn random_orbits_close_in_energy_balance(system in passive_system(), omega in 0.5_f64..36.0) {
+        assert_balanced(&system, omega)?;
+    }
+
+    #[test]
+    fn so_do_unsymmetric_ones(system in unsymmetric_system(), omega in 0.5_f64..36.0) {
+        assert_balanced(&system, omega)?;
+    }
 }

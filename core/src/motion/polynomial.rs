@@ -12,15 +12,22 @@ const ROUNDING: f64 = 1e-15;
 #[inline]
 #[must_use]
 pub fn value(a: &[f64], x: f64) -> f64 {
-    a.iter().rev().fold(0.0, |sum, a| sum.mul_add(x, *a))
+    // Even and odd powers apart: two short chains of dependent operations instead of a long one.
+    let square = x * x;
+    let (mut even, mut odd) = (0.0, 0.0);
+    for pair in a.chunks(2).rev() {
+        even = even * square + pair[0];
+        odd = odd * square + pair.get(1).copied().unwrap_or(0.0);
+    }
+    even + x * odd
 }
 
 /// Value and derivative.
 fn jet(a: &[f64], x: f64) -> [f64; 2] {
     let (mut value, mut slope) = (0.0_f64, 0.0_f64);
     for a in a.iter().rev() {
-        slope = slope.mul_add(x, value);
-        value = value.mul_add(x, *a);
+        slope = slope * x + value;
+        value = value * x + a;
     }
     [value, slope]
 }

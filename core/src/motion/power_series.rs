@@ -181,8 +181,8 @@ impl PowerSeries {
         for power in (0..=DEGREE).rev() {
             let c = &self.modal[power * n..(power + 1) * n];
             for ((x, v), c) in displacement.iter_mut().zip(velocity.iter_mut()).zip(c) {
-                *v = v.mul_add(tau, *x);
-                *x = x.mul_add(tau, *c);
+                *v = *v * tau + *x;
+                *x = *x * tau + c;
             }
         }
         velocity.iter_mut().for_each(|v| *v *= self.rate);

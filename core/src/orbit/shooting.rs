@@ -23,6 +23,7 @@ pub(super) struct Shooting<'a> {
     legs: Vec<Leg>,
     free: Vec<bool>,
     slipped: Vec<bool>,
+    derivative: Option<Mat<f64>>,
     /// Transition matrices assembled so far.
     pub(super) matrices: usize,
 }
@@ -47,6 +48,7 @@ impl<'a> Shooting<'a> {
             legs: Vec::new(),
             free: Vec::new(),
             slipped: Vec::new(),
+            derivative: None,
             matrices: 0,
         }
     }
@@ -63,6 +65,7 @@ impl<'a> Shooting<'a> {
             free.iter().zip(self.limits).map(|(free, limit)| *free && *limit > 0.0).collect();
         self.slipped = state.points.iter().map(|point| *point != PointState::Stuck).collect();
         self.legs.clear();
+        self.derivative = None;
         let (legs, slipped) = (&mut self.legs, &mut self.slipped);
         let run = self.flow.run(&mut state, self.span, &mut |passage| {
             if let Passage::Event { event, .. } = &passage {
@@ -98,15 +101,16 @@ impl<'a> Shooting<'a> {
         (0..self.limits.len()).filter(|&i| self.limits[i] > 0.0 && !self.slipped[i]).collect()
     }
 
-    /// Derivative of the image.
+    /// Derivative of the image at the last evaluation.
     fn derivative(&mut self) -> Mat<f64> {
+        if let Some(derivative) = &self.derivative {
+            return derivative.clone();
+        }
         self.matrices += 1;
         let along = self.coordinates.along(&self.legs, &self.free);
-        if self.half_wave {
-            faer::Scale(-1.0) * along
-        } else {
-            along
-        }
+        let derivative = if self.half_wave { faer::Scale(-1.0) * along } else { along };
+        self.derivative = Some(derivative.clone());
+        derivative
     }
 
     /// Floquet multipliers over the full period by falling modulus, the exact ones of contacts

@@ -1,6 +1,8 @@
 //! Reference systems and an independent time integration, shared by all tests.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub mod passive;
+
 use faer::{c64, mat, Mat};
 use stickslip_core::contact::Jenkins;
 use stickslip_core::model::{Contact, Model};
@@ -147,8 +149,10 @@ pub fn runge_kutta(system: &System, omega: f64, periods: usize, steps: usize) ->
     let mut at = vec![0.0; size];
     let h = std::f64::consts::TAU / omega / steps as f64;
     let (mut low, mut high) = (vec![f64::MAX; n], vec![f64::MIN; n]);
+    let mut before = y.clone();
     for step in 0..periods * steps {
         let t = step as f64 * h;
+        before.clone_from(&y);
         rate(t, &y, &mut stages[0]);
         for (stage, share) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
             for i in 0..size {
@@ -165,10 +169,26 @@ pub fn runge_kutta(system: &System, omega: f64, periods: usize, steps: usize) ->
         }
         if step >= (periods - 1) * steps {
             for i in 0..n {
-                low[i] = low[i].min(y[i]);
-                high[i] = high[i].max(y[i]);
+                let turn = turning_value(before[i], h * before[n + i], y[i], h * y[n + i]);
+                low[i] = low[i].min(turn);
+                high[i] = high[i].max(turn);
             }
         }
     }
     low.iter().zip(&high).map(|(l, h)| 0.5 * (h - l)).collect()
+}
+
+/// Extreme of the cubic with these values and slopes at the ends of a step, or its last value.
+fn turning_value(x_0: f64, v_0: f64, x_1: f64, v_1: f64) -> f64 {
+    if v_0 * v_1 >= 0.0 {
+        return x_1;
+    }
+    let rise = x_1 - x_0;
+    let (square, cube) = (3.0 * rise - 2.0 * v_0 - v_1, v_0 + v_1 - 2.0 * rise);
+    let mut s = v_0 / (v_0 - v_1);
+    for _ in 0..3 {
+        let slope = v_0 + s * (2.0 * square + 3.0 * s * cube);
+        s -= slope / (2.0 * square + 6.0 * s * cube);
+    }
+    x_0 + s * (v_0 + s * (square + s * cube))
 }

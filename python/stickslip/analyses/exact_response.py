@@ -88,9 +88,10 @@ def exact_response(
 ) -> ExactResponse:
     """Steady response over excitation frequency, by exact periodic orbits.
 
-    Between two changes of stick and slip the structure is linear: its modes are propagated in
-    closed form, the instants of change located, and the state that returns after a period found by
-    shooting with the analytic monodromy matrix. There is no truncation and nothing to choose.
+    Between two changes of stick and slip the structure is linear: the motion is a power series
+    exact to rounding, and the instants of change are zeros of polynomials. The state that returns
+    after a period is found by shooting with the analytic derivative of the flow. There is no
+    truncation and nothing to choose.
 
     Parameters
     ----------

@@ -109,7 +109,8 @@ def transient(
     periods : int, optional
         Number of periods; with a tolerance their limit.
     scheme : {"exact", "rk4"}, optional
-        "exact": modes in closed form between the instants of stick and slip, which are located.
+        "exact": power series, exact to rounding, between the instants of stick and slip, which
+        are located.
         "rk4": the classical Runge-Kutta method of fourth order with the return map of the contacts
         in every step; its error falls with the square of the step where contacts slip.
     tolerance : float, optional

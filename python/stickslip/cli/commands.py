@@ -1,4 +1,4 @@
-"""The command line: ``stickslip run STUDY.toml``, ``show`` and ``plot`` of results, ``schema``.
+"""The command line: ``stickslip run STUDY.toml``, ``show``, ``plot``, ``certify``, ``schema``.
 
 Exit codes: 0 all is well, 1 some points did not converge, 2 the input is refused, 70 a defect of
 the program, 130 interrupted by Ctrl-C.
@@ -11,10 +11,9 @@ import json
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
-from functools import partial
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, cast
 
 import typer
 
@@ -22,8 +21,8 @@ from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded
 from stickslip.errors import Interrupted, ModelError
 
 if TYPE_CHECKING:
-    from stickslip.cli.picture import Panel
     from stickslip.results import ForcedResponse
+    from stickslip.results.result import Result
     from stickslip.study import Case, Study
 
 __all__ = ["app"]
@@ -81,10 +80,10 @@ def main(
 
 
 class Curve(NamedTuple):
-    """A computed curve and where it was saved."""
+    """A computed result and where it was saved."""
 
     case: Case
-    result: ForcedResponse
+    result: Result
     file: Path
 
 
@@ -120,8 +119,9 @@ def run(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print problems only.")] = False,
     no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no picture.")] = False,
 ) -> None:
-    """Compute a study: one curve per level, saved as NetCDF, with a table and a picture."""
+    """Compute a study: one result per level, saved as NetCDF, with a table and a picture."""
     from stickslip.cli import console
+    from stickslip.cli.kinds import view_of
     from stickslip.study import Study
 
     clock = Clock()
@@ -130,8 +130,8 @@ def run(
         out.mkdir(parents=True, exist_ok=True)
     curves = _compute(loaded, out, clock, quiet=quiet)
     if not quiet:
-        with clock("refining peaks"):
-            console.peaks(
+        with clock("refining peaks, printing"):
+            view_of([curve.result for curve in curves]).tables(
                 [(_level(curve.case), curve.result) for curve in curves],
                 "" if loaded.tables.analysis.levels is None else "level",
                 loaded.dofs,
@@ -165,12 +165,16 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curv
             complain("interrupted", "saving what was computed")
             # under another name, so that a complete curve of an earlier run is not lost
             file = out / f"{cases[len(curves)].name}-partial.nc"
-            cast("ForcedResponse", stop.result).save(file)
+            cast("Result", stop.result).save(file)
             raise KeyboardInterrupt(
-                f"{len(curves)} of {len(cases)} curves complete in {out}, "
+                f"{len(curves)} of {len(cases)} {_nouns(study)} complete in {out}, "
                 f"the next one as far as it went in {file}"
             ) from None
     return curves
+
+
+def _nouns(study: Study) -> str:
+    return "runs" if study.tables.analysis.kind == "transient" else "curves"
 
 
 def _level(case: Case) -> str:
@@ -191,14 +195,15 @@ def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> 
     tell(f"details: stickslip show {first}")
 
 
-def _warn(results: Sequence[tuple[str, ForcedResponse]]) -> None:
+def _warn(results: Sequence[tuple[str, Result]]) -> None:
     """Name what did not converge, and end with the exit code that says so."""
-    from stickslip.cli.console import cautions, complain, failures
+    from stickslip.cli.console import complain
+    from stickslip.cli.kinds import view_of
 
     for name, result in results:
-        for line in cautions(name, result):
+        for line in view_of([result]).cautions(name, result):
             complain("warning", line)
-    lines = [line for name, result in results for line in failures(name, result)]
+    lines = [line for name, result in results for line in view_of([result]).failures(name, result)]
     for line in lines:
         complain("warning", line)
     if lines:
@@ -206,21 +211,11 @@ def _warn(results: Sequence[tuple[str, ForcedResponse]]) -> None:
 
 
 def _draw_study(study: Study, curves: Sequence[Curve], picture: Path) -> None:
-    from stickslip import plot
+    from stickslip.cli.kinds import view_of
     from stickslip.cli.picture import draw
 
-    output, results = study.tables.output, [curve.result for curve in curves]
-    panels = [
-        partial(
-            plot.curves,
-            results,
-            dof,
-            omega_unit=output.omega_unit,
-            length_unit=output.length_unit,
-        )
-        for dof in study.dofs
-    ]
-    draw(panels, picture)
+    results = [curve.result for curve in curves]
+    draw(view_of(results).panels(results, study.dofs, study.tables.output), picture)
 
 
 # ---------------------------------------------------------------------------- show, plot, schema
@@ -229,9 +224,10 @@ def _draw_study(study: Study, curves: Sequence[Curve], picture: Path) -> None:
 @app.command(cls=Command, epilog=_epilog("stickslip show results/snecma-beam-20.313.nc"))
 @guarded
 def show(results: Files) -> None:
-    """Print what results hold: the model, the peaks, what was assumed, what did not converge."""
+    """Print what results hold: the model, the numbers, what was assumed, what did not converge."""
     from stickslip import load
     from stickslip.cli import console
+    from stickslip.cli.kinds import view_of
     from stickslip.study import notable_dofs
 
     for number, file in enumerate(results):
@@ -239,10 +235,11 @@ def show(results: Files) -> None:
         if number > 0:
             console.tell("")
         console.tell(str(file))
-        console.facts(result)
+        view = view_of([result])
+        view.facts(result)
         console.tell("")
-        console.peaks([("", result)], "", notable_dofs(result.model, result.dofs), "m")
-        for line in console.failures(file.name, result):
+        view.tables([("", result)], "", notable_dofs(result.model, result.dofs), "m")
+        for line in view.failures(file.name, result):
             console.complain("warning", line)
 
 
@@ -284,66 +281,91 @@ def plot(
     contact: Annotated[
         str, typer.Option(help="Contact of the loop: position, from 0, or name.")
     ] = "0",
+    events: Annotated[
+        str | None,
+        typer.Option(help="Draw stick and slip over the period, of orbits.", metavar="OMEGA"),
+    ] = None,
+    multipliers: Annotated[
+        bool, typer.Option("--multipliers", help="Draw the Floquet multipliers of orbits.")
+    ] = False,
 ) -> None:
-    """Draw response curves, or one period of the motion, or a hysteresis loop."""
-    from stickslip import load, plot
+    """Draw results, or of curves one period of the motion, a loop, events or multipliers."""
+    from stickslip import load
     from stickslip.cli import console
-    from stickslip.cli.picture import draw, titled
-    from stickslip.study import notable_dofs
+    from stickslip.cli.drawing import Wanted, picture_of
+    from stickslip.cli.picture import draw
 
-    if waveform is not None and loop is not None:
-        raise ModelError("--waveform and --loop exclude each other; give one")
-    loaded = [load(file) for file in results]
-    dofs = dof or notable_dofs(loaded[0].model, loaded[0].dofs)
-    panels: list[Panel]
-    if waveform is not None:
-        panels = [
-            partial(plot.waveform, result, name, _index(result, waveform, "--waveform"))
-            for result in loaded
-            for name in dofs
-        ]
-    elif loop is not None:
-        place = int(contact) if contact.isdecimal() else contact
-        panels = [
-            partial(plot.hysteresis, result, place, _index(result, loop, "--loop"))
-            for result in loaded
-        ]
-    else:
-        panels = [
-            partial(
-                plot.curves,
-                loaded,
-                name,
-                omega_unit="Hz" if hertz else "rad/s",
-                log=log,
-                normalise="force" if per_force else None,
-            )
-            for name in dofs
-        ]
-    kind = "waveform" if waveform is not None else "loop" if loop is not None else "curve"
-    picture = out or results[0].with_name(f"{results[0].stem}-{kind}.png")
-    if kind != "curve" and len(results) > 1:
-        names = [file.stem for file in results for _ in range(len(panels) // len(results))]
-        panels = [titled(*pair) for pair in zip(panels, names, strict=True)]
+    wanted = Wanted(
+        dofs=dof,
+        hertz=hertz,
+        log=log,
+        per_force=per_force,
+        waveform=waveform,
+        loop=loop,
+        contact=contact,
+        events=events,
+        multipliers=multipliers,
+    )
+    name, panels = picture_of(
+        [load(file) for file in results], [file.stem for file in results], wanted
+    )
+    picture = out or results[0].with_name(f"{results[0].stem}-{name}.png")
     draw(panels, picture)
     console.tell(f"picture: {picture}")
 
 
-def _index(result: ForcedResponse, text: str, option: str) -> int:
-    """Return the computed point nearest to a frequency, which must lie among them."""
-    from stickslip.units import quantity
+@app.command(
+    cls=Command,
+    epilog=_epilog(
+        "stickslip certify results/snecma-beam-20.313.nc",
+        "stickslip certify results/snecma-beam-20.313.nc --points 50 --seed 1",
+        "stickslip certify results/snecma-beam-20.313.nc --points all --out certified.nc",
+    )
+    + "\n\nExit code 0: every point was compared; 1: some were not; 2: the input is refused.",
+)
+@guarded
+def certify(
+    result: Annotated[
+        Path, typer.Argument(help="Result file of a forced response.", metavar="RESULT.nc")
+    ],
+    points: Annotated[
+        str, typer.Option(help="How many points, chosen at random, or 'all'.", metavar="NUMBER")
+    ] = "20",
+    seed: Annotated[int, typer.Option(help="Of the random choice.")] = 0,
+    dof: Annotated[
+        list[str] | None, typer.Option(help="DOF to compare, repeatable; default: all.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="File to write; default: the same.", metavar="FILE")
+    ] = None,
+) -> None:
+    """Compare a curve with exact orbits, and put its true error into the file."""
+    from stickslip import certify, load
+    from stickslip.cli import console
+    from stickslip.cli.curves import certificates
 
-    value: float | str = text
-    with suppress(ValueError):
-        value = float(text)
-    omega = quantity(value, "rad/s", option)
-    low, high = float(result.omega.min()), float(result.omega.max())
-    if not low * (1 - 1e-6) <= omega <= high * (1 + 1e-6):
-        raise ModelError(
-            f"{option} = {text!r} is {omega:.6g} rad/s, outside the computed {low:.6g} to "
-            f"{high:.6g} rad/s; choose a frequency in between"
-        )
-    return result.index(omega)
+    wanted = _points(points)
+    target = out or result
+    try:
+        with console.progress(result.name, wanted=True) as advance:
+            certified = certify(load(result), wanted, seed=seed, dofs=dof, progress=advance)
+    except Interrupted as stop:
+        console.complain("interrupted", "saving what was compared")
+        cast("ForcedResponse", stop.result).save(target)
+        raise KeyboardInterrupt(f"{stop}, now in {target}") from None
+    certified.save(target)
+    certificates([("", certified)], "", "m")
+    console.tell("")
+    console.tell(f"certified: {target}")
+    _warn([(result.stem, certified)])
+
+
+def _points(text: str) -> int | Literal["all"]:
+    if text == "all":
+        return "all"
+    if not text.isdecimal():
+        raise ModelError(f"--points = {text!r}: give a number, or all")
+    return int(text)
 
 
 @app.command(cls=Command, epilog=_epilog("stickslip schema --out stickslip.schema.json"))

@@ -9,7 +9,6 @@ import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from math import pi
 from typing import TYPE_CHECKING
 
 from rich.box import SIMPLE_HEAD
@@ -17,12 +16,22 @@ from rich.console import Console
 from rich.table import Table
 
 from stickslip.errors import ModelError
-from stickslip.units import quantity
 
 if TYPE_CHECKING:
-    from stickslip.results import ForcedResponse, Summary
+    from stickslip.model import Model
+    from stickslip.results.result import Result
 
-__all__ = ["cautions", "complain", "facts", "failures", "peaks", "progress", "stages", "tell"]
+__all__ = [
+    "complain",
+    "grid",
+    "listed",
+    "model_rows",
+    "new_table",
+    "progress",
+    "show",
+    "stages",
+    "tell",
+]
 
 _STAGES = {
     "compliance": "compliance",
@@ -101,135 +110,36 @@ def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | 
         bar.stop()
 
 
-def peaks(
-    results: Sequence[tuple[str, ForcedResponse]], label: str, dofs: Iterable[str], length_unit: str
-) -> None:
-    """Print the peak of every curve and DOF.
-
-    Parameters
-    ----------
-    results : sequence of (str, ForcedResponse)
-        Curves, each with what tells it from the others.
-    label : str
-        What that is: heading of the first column, which is left out if this is empty.
-    dofs : iterable of str
-        The DOFs to tabulate, as far as a curve has them.
-    length_unit : str
-        Unit of the amplitudes.
-    """
-    table = _table()
-    if label:
-        table.add_column(label, overflow="fold")
-    table.add_column("dof", overflow="fold")
-    # short headings: eight columns have to fit on a terminal of 80
-    lengths = (f"peak [{length_unit}]", f"error [{length_unit}]")
-    for heading in ("rad/s", "Hz", *lengths, "H", "converged"):
-        table.add_column(heading, justify="right", overflow="fold")
-    shown = list(dofs)
-    length = quantity(f"1 {length_unit}", "m", "unit of length")
-    at_edge = beside_gap = False
-    for name, result in results:
-        for row in result.summary([dof for dof in shown if dof in result.dofs]):
-            cells = (*_peak(row, length), _converged(result))
-            table.add_row(*([name] if label else []), *cells)
-            at_edge = at_edge or row.at_edge
-            beside_gap = beside_gap or row.beside_gap
-    _print(table)
-    if at_edge:
-        tell("* at an end of the computed frequencies: the true peak may lie outside")
-    if beside_gap:
-        tell("? beside points that are not solved: the true peak may be there, and higher")
-
-
-def _peak(row: Summary, length: float) -> tuple[str, ...]:
-    mark = "*" * row.at_edge + "?" * row.beside_gap
-    return (
-        row.dof,
-        f"{row.omega:#.6g}{mark}",
-        f"{row.omega / (2 * pi):#.6g}",
-        f"{row.amplitude / length:.4e}",
-        f"{row.error_estimate / length:.0e}",
-        f"{row.harmonics}",
-    )
-
-
-def _harmonics(result: ForcedResponse) -> str:
-    if result.settings.harmonics != "auto":
-        return f"{result.settings.harmonics}"
-    kept = result.harmonics[result.arrays.solved]
-    return f"auto, {kept.min()} to {kept.max()}" if kept.size else "auto"
-
-
-def _converged(result: ForcedResponse) -> str:
-    return f"{int(result.converged.sum())} of {result.omega.size}"
-
-
-def failures(name: str, result: ForcedResponse) -> list[str]:
-    """Word what did not converge, one line per cause: how many points, where, and what to do.
-
-    Parameters
-    ----------
-    name : str
-        What the result is called.
-    result : ForcedResponse
-        The curve.
-
-    Returns
-    -------
-    list of str
-        Empty if every point converged.
-    """
-    places = defaultdict(list)
-    for omega, status in zip(result.omega, result.status, strict=True):
-        if status != "converged":
-            places[status].append(float(omega))
-    return [
-        f"{name}: {len(where)} of {result.omega.size} points {status}, "
-        f"{_where(where)} rad/s. {status.advice}"
-        for status, where in places.items()
-    ]
-
-
-def cautions(name: str, result: ForcedResponse) -> list[str]:
-    """Return the assumptions that put the numbers in doubt, one line each."""
-    doubtful = ("The discarded harmonics could", "The damping leaves", "The damping is negative")
-    return [f"{name}: {line}" for line in result.assumptions if line.startswith(doubtful)]
-
-
-def _where(omega: list[float]) -> str:
-    low, high = min(omega), max(omega)
-    return f"at {low:.6g}" if low == high else f"between {low:.6g} and {high:.6g}"
-
-
-def facts(result: ForcedResponse) -> None:
-    """Print what a result is of, how it was computed and what it took for granted."""
-    model, omega = result.model, result.omega
-    table = Table.grid(padding=(0, 2))
-    table.add_row("dofs", f"{len(model.structure)}: {_listed(model.structure.dofs)}")
+def model_rows(model: Model) -> list[tuple[str, str]]:
+    """Return what a result is of, as rows of its facts."""
+    rows = [("dofs", f"{len(model.structure)}: {listed(model.structure.dofs)}")]
     for contact in model.contacts:
         values = ", ".join(f"{name} {value:g}" for name, value in contact.parameters().items())
         place = " - ".join(contact.dofs)
-        table.add_row("contact", f"{contact.name}: {contact.law} at {place}, {values}")
+        rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {values}"))
     for force in model.forces:
         values = f"amplitude {force.amplitude:g} N, phase {force.phase:g} rad"
-        table.add_row("force", f"{force.dof}: harmonic {force.harmonic}, {values}")
-    span = f"from {omega.min():.6g} to {omega.max():.6g} rad/s"
-    table.add_row("points", f"{omega.size} {span}, {_converged(result)} converged")
-    table.add_row("harmonics", _harmonics(result))
-    for text in result.assumptions:
-        table.add_row("assumed", text)
-    _print(table)
+        rows.append(("force", f"{force.dof}: harmonic {force.harmonic}, {values}"))
+    return rows
 
 
-def stages(results: Iterable[ForcedResponse], clock: dict[str, float]) -> None:
+def grid(rows: Iterable[tuple[str, str]]) -> None:
+    """Print rows of two columns without headings."""
+    table = Table.grid(padding=(0, 2))
+    for row in rows:
+        table.add_row(*row)
+    show(table)
+
+
+def stages(results: Iterable[Result], clock: dict[str, float]) -> None:
     """Print where the time went.
 
     Parameters
     ----------
-    results : iterable of ForcedResponse
-        The curves; their stages and counters are added up.
+    results : iterable of Result
+        The results; their stages and counters are added up.
     clock : dict of float
-        Seconds by what was done beside computing the curves.
+        Seconds by what was done beside computing them.
     """
     seconds: defaultdict[str, float] = defaultdict(float)
     counts: defaultdict[str, int] = defaultdict(int)
@@ -238,25 +148,27 @@ def stages(results: Iterable[ForcedResponse], clock: dict[str, float]) -> None:
             seconds[stage] += value
         for kind, count in result.counters.items():
             counts[kind] += count
-    rows = {label: seconds[key] for key, label in _STAGES.items()}
+    rows = {label: seconds[key] for key, label in _STAGES.items() if key in seconds}
     rows["other in the solver"] = max(0.0, seconds["total"] - sum(rows.values()))
     rows |= clock
     whole = sum(rows.values()) or 1.0
-    table = _table()
+    table = new_table()
     table.add_column("stage")
     table.add_column("ms", justify="right")
     table.add_column("share", justify="right")
     for label, value in (*rows.items(), ("total", sum(rows.values()))):
         table.add_row(label, f"{1e3 * value:.1f}", f"{value / whole:.0%}")
-    _print(table)
+    show(table)
     tell(", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counts.items()))
 
 
-def _listed(names: Sequence[str], most: int = 8) -> str:
+def listed(names: Sequence[str], most: int = 8) -> str:
+    """Return the first names, and dots if that is not all."""
     return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
 
 
-def _table() -> Table:
+def new_table() -> Table:
+    """Return an empty table, framed where someone is watching."""
     if _framed():
         return Table(box=SIMPLE_HEAD, show_edge=False)
     return Table(box=None, padding=(0, 2, 0, 0))
@@ -266,7 +178,8 @@ def _framed() -> bool:
     return sys.stdout.isatty() and Console().width >= _NARROW
 
 
-def _print(table: Table) -> None:
+def show(table: Table) -> None:
+    """Print a table."""
     if _framed():
         Console(highlight=False, markup=False).print(table)
         return

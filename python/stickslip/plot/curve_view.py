@@ -15,6 +15,7 @@ from stickslip.plot.limits import force_level, limit_curve
 from stickslip.plot.style import FREE, GREY, LIMIT, RESPONSE, STUCK, Scale
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Measure
+from stickslip.results.exact_response import ExactResponse
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -135,7 +136,7 @@ class CurveView:
         curve = exact + factor * certificate.error[:, column]
         self.ax.vlines(x, exact, curve, color="crimson", lw=1.4, zorder=2.6)
         largest = np.abs(certificate.relative[:, column])
-        worst = f", largest error {np.nanmax(largest):.2g}" if np.isfinite(largest).any() else ""
+        worst = f" (error ≤ {np.nanmax(largest):.2g})" if np.isfinite(largest).any() else ""
         self.ax.plot(
             x,
             exact,
@@ -145,7 +146,7 @@ class CurveView:
             mfc="white",
             mec="crimson",
             zorder=2.7,
-            label=f"exact orbits{worst}",
+            label=f"exact{worst}",
         )
 
     def mark_peak(self, result: ForcedResponse, colour: Colour, *, named: bool) -> None:
@@ -223,7 +224,8 @@ def _traits(result: ForcedResponse) -> dict[str, str]:
         for key, symbol, unit in (("slip_force", "F_d", "N"), ("stiffness", "k_d", "N/m")):
             if key in parameters:
                 traits[f"{symbol}{of}"] = f"${symbol}$ = {parameters[key]:.4g} {unit}{of}"
-    traits["H"] = f"H = {result.settings.harmonics}"
+    exact = isinstance(result, ExactResponse)
+    traits["H"] = "exact" if exact else f"H = {result.settings.harmonics}"
     return traits
 
 

@@ -40,6 +40,9 @@ __all__ = [
     "spectrum",
 ]
 
+# More lines than this would hide what they are to explain.
+_MARKED = 30
+
 
 class HistoryOptions(Frame, total=False):
     """Keywords of `history` and `phase`."""
@@ -291,7 +294,7 @@ def spectrum(
     Returns
     -------
     matplotlib.axes.Axes
-        The axes; thin lines stand at the multiples of the excitation frequency.
+        The axes; thin lines stand at the multiples of the excitation frequency if they are few.
 
     Raises
     ------
@@ -307,7 +310,8 @@ def spectrum(
     seen = axis[1:][np.nan_to_num(density[1:]) > 1e-14 * top]
     end = seen[-1] if seen.size else axis[-1]
     fundamental = omega.factor * result.omega
-    for order in range(1, min(int(end / fundamental) + 2, 200)):
+    orders = int(end / fundamental) + 1
+    for order in range(1, orders + 1 if orders <= _MARKED else 0):
         ax.axvline(order * fundamental, color="0.88", lw=0.7, zorder=0.5)
     ax.plot(axis, density, color=colours(1)[0], lw=1.1)
     ax.set_xlim(0.0, end + fundamental)

@@ -177,6 +177,7 @@ class ContactMotion(Sweep):
         if not self.arrays.solved[position]:
             return constant(np.full((count, *series.shape[2:]), np.nan))
         # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
-        turns = np.outer(np.arange(count), np.arange(series.shape[1])) % count
+        kept = int(self.arrays.harmonics[position]) + 1
+        turns = np.outer(np.arange(count), np.arange(kept)) % count
         turn = np.exp(2j * np.pi / count * turns)
-        return constant(np.ascontiguousarray((turn @ series[position]).real))
+        return constant(np.ascontiguousarray((turn @ series[position, :kept]).real))

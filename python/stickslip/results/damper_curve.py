@@ -282,7 +282,7 @@ class DamperCurve(Result):
         settings = DamperSettings(**values)
         for name in settings.variation.contacts:
             model.contact_index(name)
-        arrays = DamperArrays(value=dataset["value"].values, **read(_VARIABLES, dataset))  # type: ignore[arg-type]
+        arrays = DamperArrays(value=dataset["value"].values, **read(_VARIABLES, dataset))
         if arrays.status.max(initial=0) >= len(Status):
             raise ValueError(f"status {arrays.status.max()} is unknown")
         return cls(**parts(dataset, model), settings=settings, arrays=arrays)

@@ -13,6 +13,7 @@ from stickslip.results.status import Status
 from stickslip.results.variables import (
     Variable,
     attributes,
+    coordinate,
     dof_coordinate,
     parts,
     point_coordinates,
@@ -129,7 +130,7 @@ def from_dataset(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
     """
     from stickslip.analyses.forced_response import Settings
 
-    arrays = read(CURVE_VARIABLES, dataset) | {"omega": dataset["omega"].values}
+    arrays = read(CURVE_VARIABLES, dataset) | {"omega": coordinate(dataset, "omega")}
     return curve_parts(dataset, model, Arrays(**arrays)) | {
         "settings": Settings(**curve_settings(dataset)),
         "certificate": Certificate.of_dataset(dataset),

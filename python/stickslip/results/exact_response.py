@@ -20,7 +20,7 @@ from stickslip.results.events import Events
 from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.results.peaks import Bracket, Peak, highest
-from stickslip.results.variables import Variable, names, read, state_names
+from stickslip.results.variables import Variable, coordinate, names, read, state_names
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -108,7 +108,11 @@ class ExactResponse(ForcedResponse):
 
     @cached_property
     def stable(self) -> Bool:
-        """Whether all multipliers but the neutral ones lie inside the unit circle, shape (n,)."""
+        """Whether all multipliers but the neutral ones lie inside the unit circle, shape (n,).
+
+        A structure that nothing holds while its contacts slip stays where it is pushed to: that is
+        one more multiplier of 1, and not stable.
+        """
         size = np.abs(self.multipliers)
         counted = np.arange(size.shape[1]) >= self.neutral[:, None]
         return constant(self.arrays.solved & ~(counted & ~(size < 1.0)).any(axis=1))
@@ -282,7 +286,7 @@ class ExactResponse(ForcedResponse):
         """Return the exact response that a dataset holds; see `Result.from_dataset`."""
         from stickslip.analyses.exact_response import ExactSettings
 
-        arrays = read(_VARIABLES, dataset) | {"omega": dataset["omega"].values}
+        arrays = read(_VARIABLES, dataset) | {"omega": coordinate(dataset, "omega")}
         orbits = OrbitArrays(**arrays)
         given = curve_parts(dataset, model, orbits)
         if orbits.state.shape[1] != len(state_names(model)):

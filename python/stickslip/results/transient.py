@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, Self, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, Self, get_args
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from stickslip.results.events import Events
 from stickslip.results.result import Result
 from stickslip.results.spectrum import Spectrum, spectrum_of
 from stickslip.results.transient_arrays import TransientArrays
-from stickslip.results.transient_status import TransientStatus
+from stickslip.results.transient_status import Settled, TransientStatus
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -28,18 +28,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.transient import TransientSettings
     from stickslip.plot import HistoryOptions, PoincareOptions, SpectrumOptions
 
-__all__ = ["Settled", "Transient", "TransientStatus"]
-
-
-class Settled(NamedTuple):
-    """One row of `Transient.summary`."""
-
-    dof: str
-    """Degree of freedom."""
-    amplitude: float
-    """Half peak-to-peak in the last period [m]."""
-    change: float
-    """Its change from the period before, relative; not-a-number after one period."""
+__all__ = ["Transient"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -111,6 +100,8 @@ class Transient(Result):
             return TransientStatus.INTERRUPTED
         if self.settled:
             return TransientStatus.SETTLED
+        if self.periods < self.settings.periods:
+            return TransientStatus.HALTED
         asked = self.settings.tolerance is not None
         return TransientStatus.NOT_SETTLED if asked else TransientStatus.COMPLETED
 
@@ -157,23 +148,7 @@ class Transient(Result):
         return self.arrays.displacement[:, self._column(dof)]
 
     def velocity(self, dof: str) -> Float:
-        """Return a velocity over `time`.
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m/s].
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
-        """
+        """Return a velocity over `time`, shape (n,) [m/s]; see `displacement`."""
         return self.arrays.velocity[:, self._column(dof)]
 
     def contact_force(self, contact: PointRef) -> Float:
@@ -197,23 +172,7 @@ class Transient(Result):
         return self._select(self.arrays.contact_force, contact)
 
     def contact_displacement(self, contact: PointRef) -> Float:
-        """Return the relative displacement at the contacts over `time`.
-
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
-
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            [m].
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
-        """
+        """Return the relative displacement at the contacts over `time` [m]; see `contact_force`."""
         return self._select(self.arrays.contact_displacement, contact)
 
     def poincare(self, dof: str) -> tuple[Float, Float]:
@@ -366,13 +325,11 @@ class Transient(Result):
             Empty if not one period was completed.
         """
         rows = []
-        for dof in self.dofs:
-            before, *last = self.amplitudes(dof)[-2:] if self.periods else (0.0,)
-            if not self.periods:
-                return []
-            now = float(last[0] if last else before)
-            change = abs(now - before) / now if last and now else np.nan
-            rows.append(Settled(dof, now, float(change)))
+        for dof in self.dofs if self.periods else ():
+            before, now = self.amplitudes(dof)[[-2, -1] if self.periods > 1 else [-1, -1]]
+            known = self.periods > 1 and now > 0.0
+            change = abs(now - before) / now if known else np.nan
+            rows.append(Settled(dof, float(now), float(change)))
         return rows
 
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:

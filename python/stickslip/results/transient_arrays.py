@@ -72,6 +72,8 @@ class TransientArrays:
             The same arrays, read-only.
         """
         time, point, kind = history.events
+        # A period that was cut has no change, and its range means nothing.
+        complete = history.change.size
         return cls(
             time=history.time,
             displacement=history.displacement,
@@ -79,7 +81,7 @@ class TransientArrays:
             contact_force=history.force,
             contact_displacement=history.contact_displacement,
             poincare=history.poincare,
-            range=history.range,
+            range=history.range[:complete],
             change=history.change,
             event_time=time,
             event_point=point,

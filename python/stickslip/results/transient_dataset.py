@@ -11,6 +11,7 @@ from stickslip.results.transient_arrays import TransientArrays
 from stickslip.results.variables import (
     Variable,
     attributes,
+    coordinate,
     dof_coordinate,
     names,
     parts,
@@ -100,7 +101,7 @@ def from_dataset(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
     """
     from stickslip.analyses.transient import TransientSettings
 
-    values = read(_VARIABLES, dataset) | {"time": dataset["time"].values}
+    values = read(_VARIABLES, dataset) | {"time": coordinate(dataset, "time")}
     arrays = TransientArrays(**values)
     entries = len(state_names(model))
     if arrays.poincare.shape[1] != entries:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import NamedTuple
 
-__all__ = ["TransientStatus"]
+__all__ = ["Settled", "TransientStatus"]
 
 
 class TransientStatus(StrEnum):
@@ -15,6 +16,7 @@ class TransientStatus(StrEnum):
     COMPLETED = "completed"
     UNBOUNDED = "unbounded"
     INTERRUPTED = "interrupted"
+    HALTED = "halted"
 
     @property
     def advice(self) -> str:
@@ -41,4 +43,19 @@ _ADVICE = {
     TransientStatus.INTERRUPTED: (
         "The run was stopped before its end. Continue with start=result.final."
     ),
+    TransientStatus.HALTED: (
+        "Contacts changed between stick and slip without end at one instant. "
+        "Change the start slightly, or take rk4."
+    ),
 }
+
+
+class Settled(NamedTuple):
+    """One row of `Transient.summary`."""
+
+    dof: str
+    """Degree of freedom."""
+    amplitude: float
+    """Half peak-to-peak in the last period [m]."""
+    change: float
+    """Its change from the period before, relative; not-a-number after one period."""

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Variable",
     "attributes",
+    "coordinate",
     "dof_coordinate",
     "names",
     "parts",
@@ -59,7 +60,7 @@ def written(table: Mapping[str, Variable], arrays: object) -> dict[Hashable, obj
     }
 
 
-def read(table: Mapping[str, Variable], dataset: xr.Dataset) -> dict[str, NDArray[np.generic]]:
+def read(table: Mapping[str, Variable], dataset: xr.Dataset) -> dict[str, NDArray[Any]]:
     """Return the arrays of a result that a dataset holds, by their names in the result.
 
     Raises
@@ -69,13 +70,27 @@ def read(table: Mapping[str, Variable], dataset: xr.Dataset) -> dict[str, NDArra
     ValueError
         If a variable has other dimensions.
     """
-    arrays = {}
+    arrays: dict[str, NDArray[Any]] = {}
     for name, entry in table.items():
         variable = dataset[name]
         if variable.dims != entry.dims:
             raise ValueError(f"{name} has dimensions {variable.dims} instead of {entry.dims}")
         arrays[entry.source] = variable.values
     return arrays
+
+
+def coordinate(dataset: xr.Dataset, name: str) -> NDArray[Any]:
+    """Return the numbers along a dimension.
+
+    Raises
+    ------
+    KeyError
+        If they are missing: xarray would count the entries instead.
+    """
+    if name not in dataset.variables:
+        raise KeyError(name)
+    values: NDArray[Any] = dataset[name].values
+    return values
 
 
 def attributes(result: Result, settings: DataclassInstance, title: str) -> dict[str, object]:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, Strict, Tag, WithJsonSchema, model_validator
 
-from stickslip.analyses.arguments import RESIDUALS, Residual
 from stickslip.analyses.damper_curve import damper_curve
 from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS, Settings
-from stickslip.checks import unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import Float
+from stickslip.study.analysis_entries import ResidualEntry
 from stickslip.study.entries import (
     HERE,
     Count,
@@ -40,14 +39,6 @@ def _stiffness(value: float | str) -> float:
     if number < 0.0:
         raise ModelError(f"{HERE} = {value!r} must not be negative")
     return number
-
-
-def _residual(value: float | str) -> float | str:
-    if not isinstance(value, str) or value[:1] in "+-.0123456789":
-        return quantity(value, "N", HERE)
-    if value not in RESIDUALS:
-        raise ModelError(f"{HERE}: {unknown('choice', value, RESIDUALS)}; or give a force in N")
-    return value
 
 
 Stiffness = Annotated[
@@ -131,14 +122,18 @@ class DamperCurveTable(Table):
         | None
     ) = Field(default=None, description="Factors on every force: a list or a range.")
     contacts: Annotated[tuple[Text, ...], Strict(False), Field(min_length=1)] | None = Field(
-        default=None, description="Names of the contacts that take the value; left out: all."
+        default=None,
+        title="slip_force",
+        description="Names of the contacts that take the value; left out: all.",
     )
     common: Literal["value", "factor"] = Field(
         default="value",
         description="Whether contacts take the value, or multiply their own by it.",
     )
     omega: OmegaSpan | None = Field(
-        default=None, description="Range of the peak; left out: around the resonance of 'mode'."
+        default=None,
+        title="stiffness",
+        description="Range of the peak; left out: around the resonance of 'mode'.",
     )
     mode: Annotated[int, Field(ge=0)] = Field(default=0, description="Mode, counted from 0.")
     measure: Literal["half_range", "max", "fundamental"] = Field(
@@ -153,11 +148,7 @@ class DamperCurveTable(Table):
     tolerance: Tolerance = Field(
         default=1e-3, description="Relative accuracy of what is automatic."
     )
-    residual: Annotated[
-        Residual,
-        BeforeValidator(_residual),
-        WithJsonSchema({"anyOf": [{"enum": list(RESIDUALS)}, {"type": ["number", "string"]}]}),
-    ] = Field(default="centred", description="Mean force assumed in a contact that never slips.")
+    residual: ResidualEntry = "centred"
     max_harmonics: Count = Field(
         default=MAX_HARMONICS, description="Highest harmonic that may be kept."
     )
@@ -193,6 +184,11 @@ class DamperCurveTable(Table):
     def observe(self) -> tuple[str, ...]:
         """The DOF whose peak is followed."""
         return (self.dof,)
+
+    @property
+    def named_dofs(self) -> Mapping[str, Sequence[str]]:
+        """The DOFs that each key names."""
+        return {"dof": (self.dof,)}
 
     def run(self, model: Model, progress: Callable[[float], None] | None) -> DamperCurve:
         """Compute the curve."""

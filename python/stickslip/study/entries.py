@@ -26,6 +26,7 @@ __all__ = [
     "Count",
     "Dof",
     "Factor",
+    "Length",
     "Newtons",
     "Number",
     "Omega",
@@ -72,6 +73,7 @@ SlipForce = Annotated[
 StiffnessValue = Annotated[
     float, _quantity("N/m", "not be negative"), _quantity_schema("24 kN/mm", "1e6 N/m")
 ]
+Length = Annotated[float, _quantity("m"), _quantity_schema("1 mm", "1e-3 m")]
 Angle = Annotated[float, _quantity("rad"), _quantity_schema("90 deg", "1.57 rad")]
 Omega = Annotated[
     float, _quantity("rad/s", "be positive"), _quantity_schema("20 rad/s", "25 Hz", "1500 rpm")
@@ -125,7 +127,11 @@ def chosen_by(key: str, *choices: str, default: str | None = None) -> Discrimina
     )
 
 
-def number_or(other: str) -> Discriminator:
+def number_or(*others: str) -> Discriminator:
     """Tell a number from a text or a list by its type, so that each is complained of as itself."""
     kinds: dict[str, tuple[type, ...]] = {"<text>": (str,), "<list>": (list, tuple)}
-    return Discriminator(lambda value: other if isinstance(value, kinds[other]) else "<number>")
+
+    def form(value: object) -> Hashable:
+        return next((other for other in others if isinstance(value, kinds[other])), "<number>")
+
+    return Discriminator(form)

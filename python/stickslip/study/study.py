@@ -18,14 +18,14 @@ from stickslip.checks import brief, file_path
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure
-from stickslip.study.analysis_tables import level_name
+from stickslip.study.analysis_entries import level_name
 from stickslip.study.complaint import complaint
 from stickslip.study.tables import MatrixFile, ModalDampingTable, RayleighDamping, StudyTables
 
 if TYPE_CHECKING:
     from stickslip.checks import MatrixLike
     from stickslip.model.structure import DampingLaw
-    from stickslip.results import ForcedResponse
+    from stickslip.results.result import Result
     from stickslip.study.tables import ForceTable, JenkinsTable, Rows, StructureTable
 
 __all__ = ["Case", "Study", "json_schema", "notable_dofs"]
@@ -165,8 +165,8 @@ class Study:
         """Return the models, one per level."""
         return tuple(case.model for case in self.cases)
 
-    def run(self, progress: Callable[[float], None] | None = None) -> Iterator[ForcedResponse]:
-        """Compute the curves, one after the other.
+    def run(self, progress: Callable[[float], None] | None = None) -> Iterator[Result]:
+        """Compute the results, one after the other.
 
         Parameters
         ----------
@@ -175,8 +175,9 @@ class Study:
 
         Yields
         ------
-        ForcedResponse
-            One per level, in the order of `cases`.
+        Result
+            One per level, in the order of `cases`: a `ForcedResponse`, `ExactResponse` or
+            `Transient`, as `[analysis]` asks.
 
         Raises
         ------
@@ -307,7 +308,8 @@ def _neighbour(path: Path) -> str:
 
 def _check_dofs(tables: StudyTables, model: Model) -> None:
     observed = tables.analysis.observe or model.structure.dofs
-    _check_names("analysis: observe", tables.analysis.observe or (), model)
+    for key, names in tables.analysis.named_dofs.items():
+        _check_names(f"analysis: {key}", names, model)
     _check_names("output: dofs", tables.output.dofs or (), model)
     for number, dof in enumerate(tables.output.dofs or (), 1):
         if dof not in observed:

@@ -17,7 +17,7 @@ from pydantic import (
 from stickslip.checks import MAX_COUNT, brief, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Force, Jenkins
-from stickslip.study.analysis_tables import AnalysisTable
+from stickslip.study.analysis import AnalysisTable
 from stickslip.study.entries import (
     HERE,
     Angle,

@@ -1,0 +1,240 @@
+"""What the command line prints and draws of response curves."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from functools import partial
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.cli.console import grid, model_rows, new_table, show, tell
+from stickslip.results.exact_response import ExactResponse
+from stickslip.units import quantity
+
+if TYPE_CHECKING:
+    from stickslip.cli.picture import Panel
+    from stickslip.results import Certificate, ForcedResponse, Summary
+    from stickslip.study.tables import OutputTable
+
+__all__ = ["cautions", "certificates", "facts", "failures", "panels", "peaks", "tables"]
+
+
+def tables(
+    results: Sequence[tuple[str, ForcedResponse]], label: str, dofs: Iterable[str], length_unit: str
+) -> None:
+    """Print the peaks of curves, and their true errors where they have been compared."""
+    shown = list(dofs)
+    peaks(results, label, shown, length_unit)
+    certificates(results, label, length_unit)
+
+
+def peaks(
+    results: Sequence[tuple[str, ForcedResponse]], label: str, dofs: Iterable[str], length_unit: str
+) -> None:
+    """Print the peak of every curve and DOF.
+
+    Parameters
+    ----------
+    results : sequence of (str, ForcedResponse)
+        Curves, each with what tells it from the others.
+    label : str
+        What that is: heading of the first column, which is left out if this is empty.
+    dofs : iterable of str
+        The DOFs to tabulate, as far as a curve has them.
+    length_unit : str
+        Unit of the amplitudes.
+    """
+    table = new_table()
+    if label:
+        table.add_column(label, overflow="fold")
+    table.add_column("dof", overflow="fold")
+    # short headings: eight columns have to fit on a terminal of 80
+    lengths = (f"peak [{length_unit}]", f"error [{length_unit}]")
+    for heading in ("rad/s", "Hz", *lengths, "H", "converged"):
+        table.add_column(heading, justify="right", overflow="fold")
+    shown = list(dofs)
+    length = quantity(f"1 {length_unit}", "m", "unit of length")
+    at_edge = beside_gap = False
+    for name, result in results:
+        for row in result.summary([dof for dof in shown if dof in result.dofs]):
+            cells = (*_peak(result, row, length), _converged(result))
+            table.add_row(*([name] if label else []), *cells)
+            at_edge = at_edge or row.at_edge
+            beside_gap = beside_gap or row.beside_gap
+    show(table)
+    if at_edge:
+        tell("* at an end of the computed frequencies: the true peak may lie outside")
+    if beside_gap:
+        tell("? beside points that are not solved: the true peak may be there, and higher")
+
+
+def _peak(result: ForcedResponse, row: Summary, length: float) -> tuple[str, ...]:
+    mark = "*" * row.at_edge + "?" * row.beside_gap
+    return (
+        row.dof,
+        f"{row.omega:#.6g}{mark}",
+        f"{row.omega / (2 * pi):#.6g}",
+        f"{row.amplitude / length:.4e}",
+        f"{row.error_estimate / length:.0e}",
+        "exact" if isinstance(result, ExactResponse) else f"{row.harmonics}",
+    )
+
+
+def _harmonics(result: ForcedResponse) -> str:
+    if isinstance(result, ExactResponse):
+        return f"exact orbits, reported up to {result.settings.harmonics}"
+    if result.settings.harmonics != "auto":
+        return f"{result.settings.harmonics}"
+    kept = result.harmonics[result.arrays.solved]
+    return f"auto, {kept.min()} to {kept.max()}" if kept.size else "auto"
+
+
+def _converged(result: ForcedResponse) -> str:
+    return f"{int(result.converged.sum())} of {result.omega.size}"
+
+
+def failures(name: str, result: ForcedResponse) -> list[str]:
+    """Word what did not converge, one line per cause: how many points, where, and what to do.
+
+    Parameters
+    ----------
+    name : str
+        What the result is called.
+    result : ForcedResponse
+        The curve.
+
+    Returns
+    -------
+    list of str
+        Empty if every point converged.
+    """
+    places = defaultdict(list)
+    for omega, status in zip(result.omega, result.status, strict=True):
+        if status != "converged":
+            places[status].append(float(omega))
+    return [
+        f"{name}: {len(where)} of {result.omega.size} points {status}, "
+        f"{_where(where)} rad/s. {status.advice}"
+        for status, where in places.items()
+    ] + _without_orbit(name, result)
+
+
+def _without_orbit(name: str, result: ForcedResponse) -> list[str]:
+    certificate = result.certificate
+    if certificate is None:
+        return []
+    failed = [one for one in certificate.status if one != "converged"]
+    if not failed:
+        return []
+    return [
+        f"{name}: {len(failed)} of {len(certificate.status)} points could not be compared "
+        f"({failed[0]}). {failed[0].advice}"
+    ]
+
+
+def cautions(name: str, result: ForcedResponse) -> list[str]:
+    """Return the assumptions that put the numbers in doubt, one line each."""
+    doubtful = ("The discarded harmonics could", "The damping leaves", "The damping is negative")
+    return [f"{name}: {line}" for line in result.assumptions if line.startswith(doubtful)]
+
+
+def _where(omega: list[float]) -> str:
+    low, high = min(omega), max(omega)
+    return f"at {low:.6g}" if low == high else f"between {low:.6g} and {high:.6g}"
+
+
+def facts(result: ForcedResponse) -> None:
+    """Print what a result is of, how it was computed and what it took for granted."""
+    omega = result.omega
+    span = f"from {omega.min():.6g} to {omega.max():.6g} rad/s"
+    rows = [
+        *model_rows(result.model),
+        ("points", f"{omega.size} {span}, {_converged(result)} converged"),
+        ("harmonics", _harmonics(result)),
+    ]
+    if isinstance(result, ExactResponse):
+        rows += _orbit_rows(result)
+    grid(rows + [("assumed", text) for text in result.assumptions])
+
+
+def _orbit_rows(result: ExactResponse) -> list[tuple[str, str]]:
+    solved = result.arrays.solved
+    counts = np.diff(result.arrays.event_offset)[solved]
+    if not counts.size:
+        return []
+    moving = np.arange(result.multipliers.shape[1]) >= result.neutral[:, None]
+    size = np.where(moving, np.abs(result.multipliers), 0.0)[solved].max()
+    return [
+        ("events", f"{counts.min()} to {counts.max()} per period"),
+        (
+            "stability",
+            f"{int(result.stable.sum())} of {int(solved.sum())} orbits stable, largest multiplier "
+            f"{size:.4g}",
+        ),
+    ]
+
+
+def panels(
+    results: Sequence[ForcedResponse], dofs: Sequence[str], output: OutputTable
+) -> list[Panel]:
+    """Return the response curves, one panel per DOF."""
+    from stickslip import plot
+
+    return [
+        partial(
+            plot.curves,
+            results,
+            dof,
+            omega_unit=output.omega_unit,
+            length_unit=output.length_unit,
+        )
+        for dof in dofs
+    ]
+
+
+def certificates(
+    results: Sequence[tuple[str, ForcedResponse]], label: str, length_unit: str
+) -> None:
+    """Print the true errors of the curves that were compared with exact orbits."""
+    compared = [(name, one.certificate) for name, one in results if one.certificate is not None]
+    if not compared:
+        return
+    table = new_table()
+    if label:
+        table.add_column(label, overflow="fold")
+    table.add_column("dof", overflow="fold")
+    for heading in ("orbits", "rad/s", f"error [{length_unit}]", "relative", "estimate holds"):
+        table.add_column(heading, justify="right", overflow="fold")
+    promised = any(certificate.tolerance is not None for _, certificate in compared)
+    if promised:
+        table.add_column("tolerance holds", justify="right", overflow="fold")
+    length = quantity(f"1 {length_unit}", "m", "unit of length")
+    for name, certificate in compared:
+        for column, dof in enumerate(certificate.dofs):
+            cells = _certificate(certificate, column, length)
+            table.add_row(*([name] if label else []), dof, *cells[: 6 if promised else 5])
+    tell("")
+    tell("largest true error, against exact orbits")
+    show(table)
+
+
+def _certificate(certificate: Certificate, column: int, length: float) -> tuple[str, ...]:
+    relative = certificate.relative[:, column]
+    known = np.isfinite(relative)
+    count = int(known.sum())
+    orbits = f"{count} of {relative.size}"
+    if not count:
+        return orbits, "", "", "", "", ""
+    worst = int(np.nanargmax(np.abs(relative)))
+    within = certificate.within_tolerance
+    return (
+        orbits,
+        f"{certificate.omega[worst]:#.6g}",
+        f"{certificate.error[worst, column] / length:+.1e}",
+        f"{relative[worst]:+.2g}",
+        f"{int(certificate.within_estimate[known, column].sum())} of {count}",
+        "" if within is None else f"{int(within[known, column].sum())} of {count}",
+    )

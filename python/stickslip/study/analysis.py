@@ -1,0 +1,34 @@
+"""The table [analysis] of a study file: its key `kind` chooses the class."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Tag
+
+from stickslip.study.analysis_tables import ForcedResponseTable
+from stickslip.study.certify_table import CertifyTable
+from stickslip.study.damper_curve_table import DamperCurveTable
+from stickslip.study.entries import chosen_by
+from stickslip.study.exact_table import ExactTable
+from stickslip.study.transient_table import TransientTable
+
+__all__ = ["AnalysisTable"]
+
+AnalysisTable = Annotated[
+    Annotated[ForcedResponseTable, Tag("<forced-response>")]
+    | Annotated[ExactTable, Tag("<exact>")]
+    | Annotated[TransientTable, Tag("<transient>")]
+    | Annotated[CertifyTable, Tag("<certify>")]
+    | Annotated[DamperCurveTable, Tag("<damper-curve>")],
+    chosen_by(
+        "kind",
+        "forced-response",
+        "exact",
+        "transient",
+        "certify",
+        "damper-curve",
+        default="forced-response",
+    ),
+]
+"""Each further analysis joins this union with a table of its own."""

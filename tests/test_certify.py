@@ -1,0 +1,183 @@
+"""Certificates: the true error of a harmonic balance, at chosen and at random points."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.reference import snecma_beam
+from stickslip.results.certificate import Certificate
+
+
+@pytest.fixture(scope="module")
+def coarse():
+    """15 harmonics, which err by 5 % near 168 rad/s."""
+    return ss.forced_response(snecma_beam(31.475), np.linspace(150.0, 200.0, 51), 15)
+
+
+@pytest.fixture(scope="module")
+def certified(coarse):
+    return ss.certify(coarse, "all")
+
+
+def test_the_error_is_that_against_exact_orbits(coarse, certified):
+    certificate = certified.certificate
+    assert certificate.dofs == coarse.dofs
+    assert certificate.indices.tolist() == list(range(51))
+    exact = ss.exact_response(coarse.model, coarse.omega)
+    for column, dof in enumerate(coarse.dofs):
+        error = coarse.amplitude(dof) - exact.amplitude(dof)
+        np.testing.assert_allclose(certificate.error[:, column], error, rtol=1e-6, atol=1e-15)
+        np.testing.assert_array_equal(certificate.amplitude[:, column], exact.amplitude(dof))
+        np.testing.assert_array_equal(certificate.estimate[:, column], coarse.error_estimate(dof))
+    tip = certificate.relative[:, certificate.column("tip")]
+    # 15 harmonics: 4.97 % too high at the peak
+    assert tip[coarse.index(168.0)] == pytest.approx(0.055, abs=0.01)
+    assert (certificate.waveform_error >= np.abs(certificate.error) * (1 - 1e-3)).all()
+    assert set(certificate.status) == {ss.Status.CONVERGED}
+    assert certificate.tolerance is None
+    assert certificate.within_tolerance is None
+
+
+def test_the_worst_point_is_named(certified):
+    certificate = certified.certificate
+    worst = certificate.worst
+    assert abs(worst.relative) == np.abs(certificate.relative).max()
+    assert certified.omega[worst.position] == worst.omega
+    place = certificate.indices.tolist().index(worst.position)
+    column = certificate.column(worst.dof)
+    assert worst.error == certificate.error[place, column]
+    assert worst.estimate == certified.error_estimate(worst.dof)[worst.position]
+    assert repr(certificate).startswith("Certificate(51 points, largest error +")
+    held = np.abs(certificate.error) <= certificate.estimate
+    np.testing.assert_array_equal(certificate.within_estimate, held)
+
+
+@pytest.mark.parametrize("load", [2.188, 20.313, 31.475])
+def test_automatic_harmonics_keep_their_tolerance(load):
+    frf = ss.forced_response(snecma_beam(load), (150.0, 230.0), observe=["tip", "damper"])
+    certificate = ss.certify(frf, 40).certificate
+    assert certificate.tolerance == 1e-3
+    assert certificate.within_tolerance.all()
+
+
+def test_random_points_are_those_of_their_seed(coarse):
+    first, same, other = (ss.certify(coarse, 7, seed=seed).certificate for seed in (3, 3, 4))
+    assert first.indices.tolist() == same.indices.tolist() != other.indices.tolist()
+    assert len(set(first.indices.tolist())) == 7
+    assert (np.diff(first.indices) > 0).all()
+    np.testing.assert_array_equal(first.error, same.error)
+    assert ss.certify(coarse, 1000).certificate.indices.size == 51
+    assert ss.certify(coarse).certificate.indices.size == 20
+
+
+def test_chosen_points_and_dofs(coarse):
+    certificate = ss.certify(coarse, [5, -1, 5], dofs="tip").certificate
+    assert certificate.indices.tolist() == [5, 50]
+    assert certificate.dofs == ("tip",)
+    np.testing.assert_array_equal(certificate.omega, coarse.omega[[5, 50]])
+    with pytest.raises(ss.ModelError, match=r"unknown dof 'mode'.*; name it in certify"):
+        certificate.column("mode")
+
+
+def test_the_given_curve_is_left_alone(coarse, certified):
+    assert coarse.certificate is None
+    assert certified.arrays is coarse.arrays
+    assert certified.assumptions == coarse.assumptions
+    assert not certified.certificate.error.flags.writeable
+    with pytest.raises(AttributeError):
+        certified.certificate = None
+
+
+def test_it_is_kept_in_files_and_copies(certified, tmp_path):
+    certified.save(tmp_path / "curve.nc")
+    for again in (ss.load(tmp_path / "curve.nc"), pickle.loads(pickle.dumps(certified))):
+        mine, theirs = certified.certificate, again.certificate
+        assert theirs.dofs == mine.dofs
+        assert theirs.tolerance == mine.tolerance
+        for name in ("indices", "omega", "code", "amplitude", "error", "waveform_error"):
+            one, other = getattr(mine, name), getattr(theirs, name)
+            assert one.dtype == other.dtype
+            assert one.tobytes() == other.tobytes()
+            assert not other.flags.writeable
+    dataset = certified.to_dataset()
+    assert dataset["certified_error"].dims == ("certified", "certified_dof")
+    assert dataset["certified_error"].attrs["units"] == "m"
+    uncertified = ss.forced_response(snecma_beam(), [170.0], 3).to_dataset()
+    assert "certified_error" not in uncertified
+
+
+def test_points_without_solution_are_passed_over():
+    frf = ss.forced_response(snecma_beam(), np.linspace(150, 250, 60), 9, max_iterations=1)
+    solved = np.flatnonzero(frf.arrays.solved)
+    assert solved.size < 60
+    certificate = ss.certify(frf, "all").certificate
+    np.testing.assert_array_equal(certificate.indices, solved)
+    failed = int(np.flatnonzero(~frf.arrays.solved)[0])
+    with pytest.raises(ss.ModelError, match=rf"points: point {failed} is not solved \(stalled\)"):
+        ss.certify(frf, [failed])
+
+
+def test_a_certificate_without_orbits():
+    missing = np.full((1, 1), np.nan)
+    certificate = Certificate(
+        dofs=("tip",),
+        tolerance=1e-3,
+        indices=np.array([3]),
+        omega=np.array([170.0]),
+        code=np.array([5], dtype=np.uint8),
+        amplitude=missing,
+        error=missing,
+        waveform_error=missing,
+        estimate=np.ones((1, 1)),
+    )
+    assert certificate.worst is None
+    assert repr(certificate) == "Certificate(1 points, none with an orbit)"
+    assert certificate.status == ("orbit stalled",)
+    assert not certificate.within_tolerance.any()
+    assert not certificate.within_estimate.any()
+
+
+def test_an_interrupted_certification_keeps_what_was_compared():
+    frf = ss.forced_response(snecma_beam(), np.linspace(150.0, 250.0, 4000), 9, observe="tip")
+
+    def stop(_):
+        raise KeyboardInterrupt
+
+    message = r"certification interrupted after \d+ of 4000 points"
+    with pytest.raises(ss.Interrupted, match=message) as it:
+        ss.certify(frf, "all", progress=stop)
+    certificate = it.value.result.certificate
+    assert 0 < certificate.indices.size < 4000
+    np.testing.assert_array_equal(certificate.indices, np.arange(certificate.indices.size))
+
+
+@pytest.mark.parametrize(
+    ("points", "options", "message"),
+    [
+        ("some", {}, """points: 'some'; give "all", a number, or positions"""),
+        (0, {}, "points: 0 lies below 1"),
+        (1.5, {}, "points: 1.5 is not an integer"),
+        (True, {}, "points: True is not an integer"),
+        ([], {}, "points: empty; give at least one position"),
+        ([51], {}, "index: 51; there are 51 points, 0 to 50"),
+        ([1.0], {}, "index: 1.0 is not an integer"),
+        (3, {"seed": -1}, "seed: -1 lies below 0"),
+        (3, {"dofs": "tpi"}, r"unknown dof 'tpi'; did you mean 'tip'\?"),
+        (3, {"dofs": []}, "dofs: empty"),
+        (3, {"dofs": 3}, "dofs: 3 is not a list"),
+        (3, {"progress": 1}, "progress: 1 cannot be called"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(coarse, points, options, message):
+    with pytest.raises(ss.ModelError, match=message) as refused:
+        ss.certify(coarse, points, **options)
+    assert "\n" not in str(refused.value)
+
+
+def test_only_a_balance_is_certified(coarse):
+    with pytest.raises(ss.ModelError, match="result: 'x' is not a ForcedResponse"):
+        ss.certify("x")
+    with pytest.raises(ss.ModelError, match="result: is exact already"):
+        ss.certify(ss.exact_response(coarse.model, [170.0]))
