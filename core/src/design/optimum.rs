@@ -41,7 +41,7 @@ struct Trial {
 
 /// Finds every local minimum of the peak over `bounds` that a curve of logarithmically spaced
 /// values shows, refined to a relative gain of 1e-8. With automatic harmonics minima count as one
-/// if the rise between them is below the tolerance.
+/// if the rise between them is below twice the tolerance.
 ///
 /// # Errors
 /// Bounds that are not positive and ordered, or as for the curve.
@@ -89,9 +89,9 @@ pub fn optimum(
         minima.push(refine(&mut follower, *bracket, &mut trials, share)?);
     }
     minima.sort_by(|a, b| a.height.total_cmp(&b.height));
-    // With automatic harmonics the curve is known to the tolerance only, and so are its dents.
+    // With automatic harmonics both sides of a dent are known to the tolerance only.
     let depth = match settings.harmonics {
-        HarmonicChoice::Auto => settings.tolerance,
+        HarmonicChoice::Auto => 2.0 * settings.tolerance,
         HarmonicChoice::Fixed(_) => 0.0,
     };
     let minima = prominent(minima, &trials, depth);

@@ -33,7 +33,7 @@ STICKS = 1.0
 slips, and the peak does not change any more."""
 SLIDES = 1e-3
 """Lower bound, likewise: so little friction takes off a peak about as much as its damping does."""
-STIFFNESSES = (1e-2, 1e3)
+STIFFNESSES = (1e-2, 250.0)
 """Bounds of a stiffness, over that of the structure at the contact."""
 LEVELS = (1.0, 1e3)
 """Bounds of a level, over the one at which contacts begin to slip."""
@@ -61,7 +61,8 @@ def optimal_damper(
 
     A curve of 40 values shows the local minima; each is closed in on with the exact derivative of
     the peak. The peak is continuous in the parameter, with kinks where two maxima of the response
-    swap, and often least in a kink; such a minimum is found as the crossing of two tangents.
+    swap, and often least in a kink; such a minimum is found as the crossing of two tangents. With
+    automatic harmonics minima count as one if the rise between them is below twice the tolerance.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def optimal_damper(
     bounds : (float, float), optional
         Values to look between. Default, for slip forces: from 1/1000 to all of the largest force
         that the stuck contacts bear in the range of frequencies, beyond which nothing slips; for
-        levels likewise; for stiffnesses: 1/100 to 1000 times that of the structure.
+        levels likewise; for stiffnesses: 1/100 to 250 times that of the structure.
     contacts : iterable of int or str, optional
         The contacts that are varied. Default: all; of slip forces those that are finite, unless
         none is.

@@ -67,7 +67,7 @@ def facts(result: DamperCurve) -> None:
         *model_rows(result.model),
         (
             "varied",
-            f"{result.parameter} of {', '.join(settings.variation.contacts) or 'all forces'}",
+            f"{result.parameter} of {', '.join(varied) or 'all forces'}",
         ),
         ("values", f"{values.size} from {values.min():.6g} to {values.max():.6g}"),
         ("peak of", f"{settings.dof} ({settings.measure}), {low:.6g} to {high:.6g} rad/s"),

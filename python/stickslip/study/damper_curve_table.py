@@ -102,6 +102,7 @@ class DamperCurveTable(Table):
         | None
     ) = Field(
         default=None,
+        title="slip_force",
         description="Slip forces: a list or a range.",
         examples=[{"from": "1 N", "to": "10 kN", "points": 60}],
     )
@@ -112,7 +113,11 @@ class DamperCurveTable(Table):
             number_or("<list>"),
         ]
         | None
-    ) = Field(default=None, description="Contact stiffnesses: a list, inf for rigid, or a range.")
+    ) = Field(
+        default=None,
+        title="stiffness",
+        description="Contact stiffnesses: a list, inf for rigid, or a range.",
+    )
     level: (
         Annotated[
             Annotated[tuple[Factor, ...], Strict(False), Field(min_length=1), Tag("<list>")]
@@ -120,10 +125,13 @@ class DamperCurveTable(Table):
             number_or("<list>"),
         ]
         | None
-    ) = Field(default=None, description="Factors on every force: a list or a range.")
+    ) = Field(
+        default=None,
+        title="level",
+        description="Factors on every force: a list or a range.",
+    )
     contacts: Annotated[tuple[Text, ...], Strict(False), Field(min_length=1)] | None = Field(
         default=None,
-        title="slip_force",
         description="Names of the contacts that take the value; left out: all.",
     )
     common: Literal["value", "factor"] = Field(
@@ -132,7 +140,7 @@ class DamperCurveTable(Table):
     )
     omega: OmegaSpan | None = Field(
         default=None,
-        title="stiffness",
+        title="omega",
         description="Range of the peak; left out: around the resonance of 'mode'.",
     )
     mode: Annotated[int, Field(ge=0)] = Field(default=0, description="Mode, counted from 0.")
