@@ -79,20 +79,40 @@ impl Model {
         for law in &self.laws {
             laws.push(Box::new(Marched::new(law.softened(1.0), samples)?));
         }
-        Ok(Self {
-            structure: Arc::clone(&self.structure),
-            ports: Arc::clone(&self.ports),
-            laws,
-            points: self.points.clone(),
-            compliance: Arc::clone(&self.compliance),
-            modal_base: self.modal_base,
-        })
+        self.with_laws(laws)
     }
 
     /// Highest harmonic that the evaluation of every law resolves.
     #[must_use]
     pub fn resolves(&self) -> usize {
         self.laws.iter().map(|law| law.resolves()).min().unwrap_or(usize::MAX)
+    }
+
+    /// The same structure, contacts and loads under other laws. The decomposition is shared if the
+    /// stiffness of the contacts is the same.
+    ///
+    /// # Errors
+    /// Laws that do not fit the contacts, an eigenvalue iteration that fails.
+    pub fn with_laws(&self, laws: Vec<Box<dyn FrictionLaw>>) -> Result<Self, Error> {
+        let sizes = |laws: &[Box<dyn FrictionLaw>]| laws.iter().map(|l| l.points()).collect();
+        let (expected, got): (Vec<usize>, Vec<usize>) = (sizes(&self.laws), sizes(&laws));
+        if expected != got {
+            return Err(Error::shape("laws", format!("{expected:?} points"), format!("{got:?}")));
+        }
+        let mut stiffness = self.ports.stiffness.clone();
+        for (law, range) in laws.iter().zip(&self.points) {
+            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
+        }
+        let (structure, points) = (Arc::clone(&self.structure), self.points.clone());
+        if stiffness == self.ports.stiffness {
+            let (ports, compliance) = (Arc::clone(&self.ports), Arc::clone(&self.compliance));
+            let modal_base = self.modal_base;
+            return Ok(Self { structure, ports, laws, points, compliance, modal_base });
+        }
+        let ports = Ports { stiffness, ..Ports::clone(&self.ports) };
+        let (compliance, modal_base) = compliance(&structure, &ports)?;
+        let (ports, compliance) = (Arc::new(ports), Arc::from(compliance));
+        Ok(Self { structure, ports, laws, points, compliance, modal_base })
     }
 
     /// The structure without its contacts.
