@@ -384,7 +384,7 @@ def test_wrong_omega(omega, message):
         ({"residual": np.inf}, r"residual: inf"),
         ({"residual": None}, r"residual: None is not a number"),
         ({"method": "newtn"}, r"method: unknown choice 'newtn'; did you mean 'newton'\?"),
-        ({"method": "broyden"}, r"method: unknown choice 'broyden'; known: 'newton'"),
+        ({"method": "secant"}, r"method: unknown choice 'secant'; known: 'newton', 'broyden'"),
         ({"method": np.array(["newton", "x"])}, r"method: .* is not text"),
         ({"residual": np.array(["centred", "x"])}, r"residual: .* is not a number"),
         ({"residual": np.array([1.0, 2.0])}, r"residual: .* is not a number"),

@@ -2,7 +2,7 @@
 
 use crate::arrays::{refused, series, table, vector};
 use crate::problem::Problem;
-use crate::response::{settings, ResidualArgument};
+use crate::settings::{settings, ResidualArgument};
 use crate::watch::Watch;
 use numpy::{
     Complex64, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods as _,
@@ -10,7 +10,7 @@ use numpy::{
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stickslip_core::balance::{Cause, Linearised, PointStatus, Settings, Unknowns};
+use stickslip_core::balance::{Cause, Linearised, Method, PointStatus, Settings, Unknowns};
 use stickslip_core::design::{optimum, peak_curve, Common, Curve, Peak, Target, Variation};
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::Model;
@@ -146,6 +146,7 @@ impl Design {
             self.harmonics,
             self.tolerance,
             &self.residual,
+            Method::Newton,
             self.max_harmonics,
             self.max_iterations,
         )?;

@@ -5,6 +5,8 @@ mod design;
 mod orbits;
 mod problem;
 mod response;
+mod settings;
+mod single_harmonic;
 mod transient;
 mod watch;
 
@@ -24,6 +26,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(design::damper_curve, module)?)?;
     module.add_function(wrap_pyfunction!(design::optimal_damper, module)?)?;
     module.add_function(wrap_pyfunction!(design::sensitivity, module)?)?;
+    module.add_function(wrap_pyfunction!(settings::automatic_samples, module)?)?;
+    module.add_function(wrap_pyfunction!(single_harmonic::single_harmonic, module)?)?;
     module.add_class::<orbits::Orbits>()?;
     module.add_function(wrap_pyfunction!(orbits::exact_response, module)?)?;
     module.add_function(wrap_pyfunction!(orbits::exact_peak, module)?)?;

@@ -2,18 +2,19 @@
 
 use crate::arrays::{indices, is_half_wave, padded, refused, series, table, vector};
 use crate::problem::Problem;
+pub use crate::settings::ResidualArgument;
+use crate::settings::{evaluated, parse_method, settings};
 use crate::watch::Watch;
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_core::balance::{
-    refine_peak, sweep, sweep_range, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
+    self, refine_peak, sweep, sweep_range, ForcedBalance, Point, PointStatus, Progress,
     HIGHEST_ORDER,
 };
-use stickslip_core::contact::{Motion, Residual};
+use stickslip_core::contact::Motion;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
-use stickslip_core::solve::NewtonSettings;
 use stickslip_core::timing::Profile;
 
 /// Frequencies: a grid, or a range whose steps the core chooses.
@@ -23,40 +24,18 @@ pub enum Frequencies<'py> {
     Grid(PyReadonlyArray1<'py, f64>),
 }
 
-/// The assumed mean force of contacts that never slip: a name or a force in N.
-#[derive(FromPyObject)]
-pub enum ResidualArgument {
-    Force(f64),
-    Name(String),
-}
-
-impl ResidualArgument {
-    pub fn parse(&self) -> PyResult<Residual> {
-        match self {
-            Self::Force(force) => Ok(Residual::Value(*force)),
-            Self::Name(name) if name == "centred" => Ok(Residual::Centred),
-            Self::Name(name) if name == "from_rest" => Ok(Residual::FromRest),
-            Self::Name(name) => Err(PyValueError::new_err(format!(
-                "residual = \"{name}\": must be \"centred\", \"from_rest\" or a force in N"
-            ))),
-        }
-    }
-}
-
-pub(crate) fn settings(
-    harmonics: Option<usize>,
-    tolerance: f64,
-    residual: &ResidualArgument,
-    max_harmonics: usize,
-    max_iterations: usize,
-) -> PyResult<Settings> {
-    Ok(Settings {
-        harmonics: harmonics.map_or(HarmonicChoice::Auto, HarmonicChoice::Fixed),
-        tolerance,
-        residual: residual.parse()?,
-        max_harmonics,
-        newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
-    })
+/// Runs a sweep without the GIL. Ctrl-C keeps what was solved; anything else that a progress
+/// callback raises is its own.
+pub fn swept(
+    py: Python<'_>,
+    progress: Option<&Py<PyAny>>,
+    observed: usize,
+    contacts: usize,
+    work: impl FnOnce(&Progress<'_>) -> Result<balance::Solution, stickslip_core::Error> + Send,
+) -> PyResult<Solution> {
+    let (inner, watch) = Watch::during(py, progress, work);
+    watch.raise_unless_interrupt(py)?;
+    Ok(Solution { inner: inner.map_err(refused)?, observed, contacts })
 }
 
 /// A curve of periodic responses.
@@ -212,6 +191,8 @@ pub fn counters<'py>(
     counters.set_item("iterations", iterations)?;
     counters.set_item("evaluations", profile.evaluations)?;
     counters.set_item("factorisations", profile.factorisations)?;
+    counters.set_item("updates", profile.updates)?;
+    counters.set_item("restarts", profile.restarts)?;
     counters.set_item("homotopies", profile.homotopies)?;
     Ok(counters)
 }
@@ -228,14 +209,15 @@ pub fn forced_response(
     tolerance: f64,
     residual: ResidualArgument,
     method: &str,
+    jacobian: &str,
+    march: Option<usize>,
     max_harmonics: usize,
     max_iterations: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Solution> {
-    if method != "newton" {
-        return Err(PyValueError::new_err(format!("method = \"{method}\": must be \"newton\"")));
-    }
-    let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
+    let method = parse_method(method, jacobian)?;
+    let settings =
+        settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
     let observe = indices(&observe)?;
     let grid = match &omega {
         Frequencies::Grid(grid) => grid.as_array().to_vec(),
@@ -245,19 +227,14 @@ pub fn forced_response(
         Frequencies::Range(range) => Some(range),
         Frequencies::Grid(_) => None,
     };
-    let model = &problem.model;
-    let (inner, watch) = Watch::during(py, progress.as_ref(), |look| {
-        let balance = ForcedBalance::new(model, settings, &observe)?.watched(look);
+    let model = evaluated(problem, march)?;
+    let contacts = model.compliance().contacts();
+    swept(py, progress.as_ref(), observe.len(), contacts, |look| {
+        let balance = ForcedBalance::new(&model, settings, &observe)?.watched(look);
         match range {
             Some((from, to)) => sweep_range(balance, from, to),
             None => sweep(balance, &grid),
         }
-    });
-    watch.raise_unless_interrupt(py)?;
-    Ok(Solution {
-        inner: inner.map_err(refused)?,
-        observed: observe.len(),
-        contacts: model.compliance().contacts(),
     })
 }
 
@@ -275,15 +252,20 @@ pub fn peak(
     harmonics: Option<usize>,
     tolerance: f64,
     residual: ResidualArgument,
+    method: &str,
+    jacobian: &str,
+    march: Option<usize>,
     max_harmonics: usize,
     max_iterations: usize,
 ) -> PyResult<(f64, f64)> {
-    let settings = settings(harmonics, tolerance, &residual, max_harmonics, max_iterations)?;
+    let method = parse_method(method, jacobian)?;
+    let settings =
+        settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
+    let model = evaluated(problem, march)?;
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
-    let (found, watch) = Watch::during(py, None, |look| {
-        refine_peak(&problem.model, settings, dof, measure, bracket, look)
-    });
+    let (found, watch) =
+        Watch::during(py, None, |look| refine_peak(&model, settings, dof, measure, bracket, look));
     watch.raise()?;
     found.map_err(refused)
 }
@@ -323,9 +305,11 @@ pub fn contact_force<'py>(
     contact: usize,
     displacement: PyReadonlyArray2<'py, Complex64>,
     residual: ResidualArgument,
+    march: Option<usize>,
     samples: usize,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let Some(law) = problem.model.laws().get(contact) else {
+    let model = evaluated(problem, march)?;
+    let Some(law) = model.laws().get(contact) else {
         return Err(PyValueError::new_err(format!(
             "contact = {contact}: the model has {} contacts",
             problem.model.laws().len()

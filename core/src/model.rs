@@ -1,6 +1,6 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
-use crate::contact::FrictionLaw;
+use crate::contact::{FrictionLaw, Marched};
 use crate::structure::{
     compliance, natural_frequencies, Compliance, HarmonicLoad, Ports, Structure,
 };
@@ -21,7 +21,7 @@ pub struct Contact {
 /// Structure, contacts and loads, with the compliance of the stuck structure at hand.
 pub struct Model {
     structure: Arc<Structure>,
-    ports: Ports,
+    ports: Arc<Ports>,
     laws: Vec<Box<dyn FrictionLaw>>,
     points: Vec<Range<usize>>,
     compliance: Arc<dyn Compliance>,
@@ -65,8 +65,8 @@ impl Model {
         }
         let ports = Ports { rows, stiffness, loads };
         let (compliance, modal_base) = compliance(&structure, &ports)?;
-        let (structure, compliance) = (Arc::new(structure), Arc::from(compliance));
-        Ok(Self { structure, ports, laws, points, compliance, modal_base })
+        let (structure, ports) = (Arc::new(structure), Arc::new(ports));
+        Ok(Self { structure, ports, laws, points, compliance: compliance.into(), modal_base })
     }
 
     /// The same structure, contacts and loads under other laws. The decomposition is shared if the
@@ -80,7 +80,7 @@ impl Model {
         if expected != got {
             return Err(Error::shape("laws", format!("{expected:?} points"), format!("{got:?}")));
         }
-        let mut ports = self.ports.clone();
+        let mut ports = Ports::clone(&self.ports);
         for (law, range) in laws.iter().zip(&self.points) {
             ports.stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
         }
@@ -91,7 +91,34 @@ impl Model {
             (Arc::from(compliance), base)
         };
         let (structure, points) = (Arc::clone(&self.structure), self.points.clone());
+        let ports = Arc::new(ports);
         Ok(Self { structure, ports, laws, points, compliance, modal_base })
+    }
+
+    /// The same problem with every law evaluated by marching through `samples` instants per period
+    /// (see [`Marched`]), on the same decomposition.
+    ///
+    /// # Errors
+    /// An odd or too small number of samples.
+    pub fn marched(&self, samples: usize) -> Result<Self, Error> {
+        let mut laws: Vec<Box<dyn FrictionLaw>> = Vec::with_capacity(self.laws.len());
+        for law in &self.laws {
+            laws.push(Box::new(Marched::new(law.softened(1.0), samples)?));
+        }
+        Ok(Self {
+            structure: Arc::clone(&self.structure),
+            ports: Arc::clone(&self.ports),
+            laws,
+            points: self.points.clone(),
+            compliance: Arc::clone(&self.compliance),
+            modal_base: self.modal_base,
+        })
+    }
+
+    /// Highest harmonic that the evaluation of every law resolves.
+    #[must_use]
+    pub fn resolves(&self) -> usize {
+        self.laws.iter().map(|law| law.resolves()).min().unwrap_or(usize::MAX)
     }
 
     /// The structure without its contacts.

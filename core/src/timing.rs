@@ -17,9 +17,13 @@ pub struct Profile {
     pub total: Duration,
     /// Evaluations of all contact laws.
     pub evaluations: usize,
-    /// Factorisations of Newton matrices.
+    /// Factorisations of Jacobians.
     pub factorisations: usize,
-    /// Points that needed homotopy after Newton's method had failed.
+    /// Rank-one updates of factorised Jacobians, by Broyden's method.
+    pub updates: usize,
+    /// Points at which Broyden's method took a second Jacobian.
+    pub restarts: usize,
+    /// Points that needed homotopy after the chosen method had failed.
     pub homotopies: usize,
 }
 

@@ -211,6 +211,19 @@ fn hard_cases_close() {
     }
 }
 
+#[test]
+fn an_unbounded_resonance_is_no_orbit() {
+    let system = System {
+        mass: faer::mat![[2.0]],
+        damping: faer::mat![[0.0]],
+        stiffness: faer::mat![[8.0]],
+        dampers: vec![(0, None, 10.0, 1.0)],
+        forces: vec![(0, 1, 100.0, 0.0)],
+    };
+    assert_eq!(orbit(&system, 2.0).response.status, PointStatus::Stalled);
+    assert_eq!(orbit(&system, 2.1).response.status, PointStatus::Converged);
+}
+
 fn assert_balanced(system: &System, omega: f64) -> Result<(), TestCaseError> {
     let orbit = orbit(system, omega);
     prop_assert_eq!(orbit.response.status, PointStatus::Converged);

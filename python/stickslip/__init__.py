@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
     from stickslip.analyses.optimal_damper import optimal_damper
+    from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
@@ -58,6 +59,7 @@ __all__ = [
     "plot",
     "read_matrix",
     "reference",
+    "single_harmonic",
     "study",
     "transient",
 ]
@@ -88,6 +90,7 @@ _HOMES = {
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",
+    "single_harmonic": "analyses.single_harmonic",
     "transient": "analyses.transient",
 }
 _MODULES = ("plot", "reference", "study")

@@ -68,6 +68,8 @@ def forced_response(
     tolerance: float,
     residual: Residual,
     method: str,
+    jacobian: str,
+    march: int | None,
     max_harmonics: int,
     max_iterations: int,
     progress: Callable[[float], None] | None,
@@ -82,13 +84,30 @@ def peak(
     harmonics: int | None,
     tolerance: float,
     residual: Residual,
+    method: str,
+    jacobian: str,
+    march: int | None,
     max_harmonics: int,
     max_iterations: int,
 ) -> tuple[float, float]: ...
 def amplitude(coefficients: Complex, measure: str) -> Float: ...
 def contact_force(
-    problem: Problem, contact: int, displacement: Complex, residual: Residual, samples: int
+    problem: Problem,
+    contact: int,
+    displacement: Complex,
+    residual: Residual,
+    march: int | None,
+    samples: int,
 ) -> Float: ...
+def automatic_samples(highest: int) -> int: ...
+def single_harmonic(
+    problem: Problem,
+    omega: Float,
+    observe: NDArray[np.int64],
+    estimate: bool,
+    max_iterations: int,
+    progress: Callable[[float], None] | None,
+) -> Solution: ...
 
 class Orbits(Solution):
     @property

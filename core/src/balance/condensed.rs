@@ -206,6 +206,7 @@ impl<'a> Condensed<'a> {
         index: usize,
         share: f64,
         motion: Motion<'_>,
+        tangent: bool,
         load: &mut SlipLoad,
     ) {
         let slots = self.table.harmonics().slots();
@@ -216,7 +217,9 @@ impl<'a> Condensed<'a> {
                 let lost = share * self.model.contact_stiffness()[(row, column)];
                 for slot in 0..slots {
                     load.value[i * slots + slot] += lost * motion.displacement[j * slots + slot];
-                    load.tangent[(i * slots + slot) * size + j * slots + slot] += lost;
+                    if tangent {
+                        load.tangent[(i * slots + slot) * size + j * slots + slot] += lost;
+                    }
                 }
             }
         }

@@ -3,14 +3,14 @@
 use super::accuracy::{errors, extended_order};
 use super::condensed::{Condensed, Path};
 use super::scale::Scale;
-use super::settings::{HarmonicChoice, Settings};
+use super::settings::{HarmonicChoice, Method, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::{gather, Unknowns};
 use super::Progress;
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::solve::{homotopy, newton, Outcome, Report, System as _};
+use crate::solve::{broyden, homotopy, newton, Outcome, Report, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -30,7 +30,7 @@ const GENEROUS: f64 = 0.05;
 pub struct ForcedBalance<'a> {
     pub(super) model: &'a Model,
     pub(super) settings: Settings,
-    observe: &'a [usize],
+    pub(super) observe: &'a [usize],
     half_wave: bool,
     forced: Vec<usize>,
     tables: BTreeMap<usize, Arc<SampleTable>>,
@@ -60,6 +60,7 @@ impl<'a> ForcedBalance<'a> {
     pub fn new(model: &'a Model, settings: Settings, observe: &'a [usize]) -> Result<Self, Error> {
         let forced = model.compliance().forced_harmonics();
         settings.check(&forced)?;
+        settings.check_resolution(model.resolves())?;
         if let Some(&dof) = observe.iter().find(|&&dof| dof >= model.compliance().dofs()) {
             return Err(Error::value(
                 "observe",
@@ -211,7 +212,7 @@ impl<'a> ForcedBalance<'a> {
         self.profile.add(profile);
     }
 
-    /// Newton's method from the start, then homotopy, then a status that says so.
+    /// The chosen method from the start, then homotopy, then a status that says so.
     fn solve_equations(
         &mut self,
         equations: &mut Condensed<'_>,
@@ -230,7 +231,7 @@ impl<'a> ForcedBalance<'a> {
             || equations.stuck_response().to_vec(),
             |unknowns| unknowns.recast(harmonics),
         );
-        let mut report = newton(equations, &mut x, self.settings.newton);
+        let mut report = self.iterate(equations, &mut x);
         if !matches!(report.outcome, Outcome::Converged | Outcome::Interrupted) {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
@@ -253,7 +254,19 @@ impl<'a> ForcedBalance<'a> {
         Ok(point)
     }
 
-    /// Homotopy after Newton's method has failed: first in the contact stiffness, whose path is
+    /// The chosen method from `x`.
+    fn iterate(&mut self, equations: &mut Condensed<'_>, x: &mut [f64]) -> Report {
+        let Method::Broyden(first) = self.settings.method else {
+            return newton(equations, x, self.settings.newton);
+        };
+        let (report, effort) = broyden(equations, x, self.settings.newton, first);
+        equations.profile.factorisations += effort.jacobians;
+        self.profile.updates += effort.updates;
+        self.profile.restarts += usize::from(effort.jacobians > 1);
+        report
+    }
+
+    /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact stiffness, whose path is
     /// smooth even for nearly rigid contacts, then in the load.
     fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
         for path in [Path::Stiffness, Path::Load] {
@@ -320,19 +333,30 @@ impl<'a> ForcedBalance<'a> {
         }
         point.contacts = summaries;
         // Without an observed DOF there is nothing whose error could be estimated.
-        if status != PointStatus::Converged || self.observe.is_empty() {
-            return Ok(point);
+        if status == PointStatus::Converged && !self.observe.is_empty() {
+            self.estimate(harmonics, x, &mut point)?;
         }
+        Ok(point)
+    }
+
+    /// Writes the error estimate of a solution `x`.
+    pub(super) fn estimate(
+        &mut self,
+        harmonics: &Harmonics,
+        x: &[f64],
+        point: &mut Point,
+    ) -> Result<(), Error> {
         point.error_estimate = vec![0.0; self.observe.len()];
-        if point.contacts.iter().all(|contact| contact.slip_fraction == 0.0) {
-            return Ok(point);
-        }
         let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
-        let table = self.table(extended_order(harmonics, omega, self.model, slipping));
+        if slipping == 0 {
+            return Ok(());
+        }
+        let order = extended_order(harmonics, point.omega, self.model, slipping);
+        let table = self.table(order);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
         point.error_estimate =
-            errors(self.model, &table, residual, &solution, self.observe, &point)?;
-        Ok(point)
+            errors(self.model, &table, residual, &solution, self.observe, point)?;
+        Ok(())
     }
 }

@@ -5,6 +5,7 @@
 
 use super::condensed::{Condensed, Path};
 use crate::contact::SlipLoad;
+use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
 use crate::timing::Profile;
 use faer::linalg::solvers::Solve as _;
@@ -14,24 +15,56 @@ use faer::Mat;
 const CARRIES_NOTHING: f64 = 1e-3;
 
 impl Condensed<'_> {
+    /// Residual, with the tangents of the laws or without.
+    fn evaluate(&mut self, x: &[f64], tangent: bool, out: &mut [f64]) {
+        let mut loads = std::mem::take(&mut self.loads);
+        let mut law_time = std::time::Duration::ZERO;
+        Profile::time(&mut law_time, || {
+            for (index, load) in loads.iter_mut().enumerate() {
+                let motion = self.motion(index, x);
+                match &self.softened {
+                    None => self.model.laws()[index].slip_load(motion, tangent, load),
+                    Some((share, laws)) => {
+                        laws[index].slip_load(motion, tangent, load);
+                        self.add_lost_stiffness(index, 1.0 - share, motion, tangent, load);
+                    }
+                }
+            }
+        });
+        self.profile.law += law_time;
+        self.profile.evaluations += 1;
+        self.loads = loads;
+        self.factor = None;
+        out.fill(0.0);
+        self.add_response(&self.slip_load(), out);
+        for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
+            *r = x - self.load_scale * stuck - *r;
+        }
+    }
+
+    /// Assembles `I − G ∂Q` of the points in `active`.
+    fn assemble(&self) -> Mat<f64> {
+        let size = self.active.len() * self.table.harmonics().slots();
+        let mut matrix = Mat::<f64>::identity(size, size);
+        for (load, points) in self.loads.iter().zip(self.model.points()) {
+            // The points of a contact stand together in `active`, or not at all.
+            let first = self.active.iter().position(|point| points.contains(point));
+            if let (true, Some(first)) = (load.active, first) {
+                self.subtract_contact(load, points.clone(), first, &mut matrix);
+            }
+        }
+        matrix
+    }
+
     /// Assembles and factors `I − G_AA ∂Q_A` of the active points.
     fn factorise(&mut self) {
-        let slots = self.table.harmonics().slots();
         self.active.clear();
         for (load, points) in self.loads.iter().zip(self.model.points()) {
             if load.active {
                 self.active.extend(points.clone());
             }
         }
-        let mut matrix = Mat::<f64>::identity(self.active.len() * slots, self.active.len() * slots);
-        let mut first = 0;
-        for (load, points) in self.loads.iter().zip(self.model.points()) {
-            if load.active {
-                self.subtract_contact(load, points.clone(), first, &mut matrix);
-                first += points.len();
-            }
-        }
-        self.factor = Some(matrix.partial_piv_lu());
+        self.factor = Some(self.assemble().partial_piv_lu());
     }
 
     /// Subtracts `G ∂Q` of one contact, whose first active column block is `first`.
@@ -71,59 +104,57 @@ impl Condensed<'_> {
     }
 }
 
+/// Size of a step contact by contact: a stiff contact moves little, and its force is its stiffness
+/// times that little. A contact that carries next to nothing is measured against the largest force.
+pub(super) fn contactwise(
+    model: &Model,
+    slots: usize,
+    slip_load: &[f64],
+    step: &[f64],
+    x: &[f64],
+) -> f64 {
+    let stiffness = |i: usize| model.contact_stiffness()[(i, i)];
+    let force = |i: usize, u: &[f64], q: &[f64]| {
+        u.iter().zip(q).map(|(u, q)| (stiffness(i) * u - q).powi(2)).sum::<f64>().sqrt()
+    };
+    let points = || {
+        let parts = x.chunks_exact(slots).zip(slip_load.chunks_exact(slots));
+        parts.zip(step.chunks_exact(slots)).enumerate()
+    };
+    let largest = points().map(|(i, ((u, q), _))| force(i, u, q)).fold(0.0, f64::max);
+    let size = norm(x);
+    points()
+        .map(|(i, ((u, _), step))| {
+            let least = CARRIES_NOTHING * largest / stiffness(i).max(f64::MIN_POSITIVE);
+            norm(step) / norm(u).max(least.min(size)).max(f64::MIN_POSITIVE)
+        })
+        .fold(0.0, f64::max)
+}
+
 impl System for Condensed<'_> {
     fn size(&self) -> usize {
         self.stuck.len()
     }
 
     fn residual(&mut self, x: &[f64], out: &mut [f64]) {
-        let mut loads = std::mem::take(&mut self.loads);
-        let mut law_time = std::time::Duration::ZERO;
-        Profile::time(&mut law_time, || {
-            for (index, load) in loads.iter_mut().enumerate() {
-                let motion = self.motion(index, x);
-                match &self.softened {
-                    None => self.model.laws()[index].slip_load(motion, true, load),
-                    Some((share, laws)) => {
-                        laws[index].slip_load(motion, true, load);
-                        self.add_lost_stiffness(index, 1.0 - share, motion, load);
-                    }
-                }
-            }
-        });
-        self.profile.law += law_time;
-        self.profile.evaluations += 1;
-        self.loads = loads;
-        self.factor = None;
-        out.fill(0.0);
-        self.add_response(&self.slip_load(), out);
-        for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
-            *r = x - self.load_scale * stuck - *r;
-        }
+        self.evaluate(x, true, out);
     }
 
-    /// Contact by contact: a stiff contact moves little, and its force is its stiffness times that
-    /// little. A contact that carries next to nothing is measured against the largest force.
+    fn value(&mut self, x: &[f64], out: &mut [f64]) {
+        self.evaluate(x, false, out);
+    }
+
+    fn jacobian(&mut self, x: &[f64], residual: &mut [f64], out: &mut Mat<f64>) {
+        self.evaluate(x, true, residual);
+        let start = std::time::Instant::now();
+        self.active = (0..self.model.compliance().contacts()).collect();
+        *out = self.assemble();
+        self.profile.linear_solve += start.elapsed();
+    }
+
     fn relative_size(&self, step: &[f64], x: &[f64]) -> f64 {
         let slots = self.table.harmonics().slots();
-        let stiffness = |i: usize| self.model.contact_stiffness()[(i, i)];
-        let force = |i: usize, u: &[f64], q: &[f64]| {
-            let f: Vec<f64> = u.iter().zip(q).map(|(u, q)| stiffness(i) * u - q).collect();
-            norm(&f)
-        };
-        let slip_load = self.slip_load();
-        let points = || {
-            let parts = x.chunks_exact(slots).zip(slip_load.chunks_exact(slots));
-            parts.zip(step.chunks_exact(slots)).enumerate()
-        };
-        let largest = points().map(|(i, ((u, q), _))| force(i, u, q)).fold(0.0, f64::max);
-        points()
-            .map(|(i, ((u, _), step))| {
-                let least = CARRIES_NOTHING * largest / stiffness(i).max(f64::MIN_POSITIVE);
-                let reference = norm(u).max(least.min(norm(x))).max(f64::MIN_POSITIVE);
-                norm(step) / reference
-            })
-            .fold(0.0, f64::max)
+        contactwise(self.model, slots, &self.slip_load(), step, x)
     }
 
     fn interrupted(&self) -> bool {
@@ -136,6 +167,10 @@ impl System for Condensed<'_> {
         step.copy_from_slice(rhs);
         if self.is_linear() {
             return true;
+        }
+        // Nothing can be solved after an evaluation without tangents.
+        if self.loads.iter().any(|load| load.active && load.tangent.is_empty()) {
+            return false;
         }
         if self.factor.is_none() {
             self.factorise();
@@ -197,7 +232,6 @@ mod tests {
     use crate::contact::Residual;
     use crate::fourier::{Harmonics, SampleTable};
     use crate::model::Contact;
-    use crate::model::Model;
     use crate::structure::{HarmonicLoad, Structure};
     use faer::c64;
     use faer::mat;

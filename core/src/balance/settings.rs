@@ -1,7 +1,7 @@
 //! Settings of a forced response, each with its default.
 
 use crate::contact::Residual;
-use crate::solve::NewtonSettings;
+use crate::solve::{FirstJacobian, NewtonSettings};
 use crate::Error;
 
 /// How many harmonics a balance keeps.
@@ -11,6 +11,16 @@ pub enum HarmonicChoice {
     Fixed(usize),
     /// As many at each point as the tolerance demands.
     Auto,
+}
+
+/// What solves the equations at each point.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Newton's method: the exact Jacobian in every iteration.
+    #[default]
+    Newton,
+    /// Broyden's method: one Jacobian, updated by rank one.
+    Broyden(FirstJacobian),
 }
 
 /// Settings of a forced response.
@@ -24,14 +34,16 @@ pub struct Settings {
     pub residual: Residual,
     /// Highest order that automatic harmonics may reach; default 255.
     pub max_harmonics: usize,
-    /// Newton's method at each point.
+    /// Solver at each point; default [`Method::Newton`].
+    pub method: Method,
+    /// When the solver stops.
     pub newton: NewtonSettings,
 }
 
 /// Highest order that may be asked for: its tables grow with the square, and a period with more
 /// turning points is no vibration.
 pub const HIGHEST_ORDER: usize = 1000;
-/// Finest tolerance: Newton's method ends at 1e-10.
+/// Finest tolerance: the solvers end at 1e-11 of the contact displacements.
 const FINEST_TOLERANCE: f64 = 1e-8;
 
 impl Default for Settings {
@@ -41,6 +53,7 @@ impl Default for Settings {
             tolerance: 1e-3,
             residual: Residual::Centred,
             max_harmonics: 255,
+            method: Method::Newton,
             newton: NewtonSettings::default(),
         }
     }
@@ -81,6 +94,24 @@ impl Settings {
             if !force.is_finite() {
                 return Err(Error::value("residual", force, "must be a finite force in N"));
             }
+        }
+        Ok(())
+    }
+
+    /// Checks the settings against the highest harmonic that the evaluation of the laws resolves:
+    /// the error estimate looks as far beyond the kept harmonics as they reach.
+    ///
+    /// # Errors
+    /// Too few samples for the harmonics that may be kept.
+    pub fn check_resolution(&self, resolved: usize) -> Result<(), Error> {
+        let (entry, kept) = match self.harmonics {
+            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
+            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
+        };
+        let most = resolved.saturating_sub(1) / 2;
+        if kept > most {
+            let remedy = format!("needs at least {} samples; lower it to {most}", 4 * (kept + 1));
+            return Err(Error::value(entry, kept as f64, &remedy));
         }
         Ok(())
     }

@@ -12,7 +12,16 @@ use std::time::Instant;
 ///
 /// # Errors
 /// A frequency that is not positive, or one at which the loads excite an undamped resonance.
-pub fn sweep(mut balance: ForcedBalance<'_>, omega: &[f64]) -> Result<Solution, Error> {
+pub fn sweep(balance: ForcedBalance<'_>, omega: &[f64]) -> Result<Solution, Error> {
+    sweep_with(balance, omega, ForcedBalance::solve)
+}
+
+/// A sweep whose points `solve` finds, from a frequency and a start.
+pub(super) fn sweep_with<'a>(
+    mut balance: ForcedBalance<'a>,
+    omega: &[f64],
+    mut solve: impl FnMut(&mut ForcedBalance<'a>, f64, Option<&Unknowns>) -> Result<Point, Error>,
+) -> Result<Solution, Error> {
     let start = Instant::now();
     for (index, &frequency) in omega.iter().enumerate() {
         check_frequency(&format!("omega[{index}]"), frequency)?;
@@ -29,7 +38,7 @@ pub fn sweep(mut balance: ForcedBalance<'_>, omega: &[f64]) -> Result<Solution, 
             continue;
         }
         let guess = predict(&points, frequency);
-        let point = balance.solve(frequency, guess.as_ref())?;
+        let point = solve(&mut balance, frequency, guess.as_ref())?;
         interrupted = point.status == PointStatus::NotComputed;
         points.push(point);
     }

@@ -8,7 +8,8 @@
 
 use super::cycle::{Cycle, Slip, Stick};
 use super::{
-    scalar, FrictionLaw, Motion, Parameters, PointState, PointSummary, Residual, SlipLoad,
+    scalar, Describing, FrictionLaw, Motion, Parameters, PointState, PointSummary, Residual,
+    SlipLoad,
 };
 use crate::fourier::{Harmonics, IntervalSums};
 use crate::Error;
@@ -54,7 +55,7 @@ impl Jenkins {
     }
 
     /// Slip load of a stuck contact and its derivatives in the middle and in half the range of u.
-    fn stuck_load(&self, residual: Residual, middle: f64, half_range: f64) -> (f64, f64, f64) {
+    fn held_load(&self, residual: Residual, middle: f64, half_range: f64) -> (f64, f64, f64) {
         let k = self.stiffness;
         let (wanted, wanted_slope) = match residual {
             Residual::Centred => (0.0, 0.0),
@@ -109,7 +110,7 @@ impl FrictionLaw for Jenkins {
                 let middle = 0.5 * (crest.value + trough.value);
                 let half_range = 0.5 * (crest.value - trough.value);
                 let (load, by_middle, by_range) =
-                    self.stuck_load(motion.residual, middle, half_range);
+                    self.held_load(motion.residual, middle, half_range);
                 out.value[0] = load;
                 out.active = by_middle != 0.0 || by_range != 0.0;
                 if tangent && out.active {
@@ -140,6 +141,20 @@ impl FrictionLaw for Jenkins {
                 halve_mean_row(harmonics, size, out, tangent);
             }
         }
+    }
+
+    fn stuck_load(&self, residual: Residual, low: f64, high: f64) -> Option<[f64; 3]> {
+        let sticks = self.stiffness * (high - low) <= 2.0 * self.slip_force;
+        if !sticks || self.slip_force == 0.0 || self.stiffness == 0.0 {
+            return None;
+        }
+        let (load, by_middle, by_range) =
+            self.held_load(residual, 0.5 * (low + high), 0.5 * (high - low));
+        Some([load, 0.5 * (by_middle - by_range), 0.5 * (by_middle + by_range)])
+    }
+
+    fn describing(&self, amplitude: f64) -> Option<Describing> {
+        Some(Describing::of_jenkins(self.stiffness, self.slip_force, amplitude))
     }
 
     fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
@@ -195,7 +210,7 @@ impl FrictionLaw for Jenkins {
                     Cycle::Stuck { crest, trough } => {
                         let middle = 0.5 * (crest.value + trough.value);
                         let half_range = 0.5 * (crest.value - trough.value);
-                        k * u - self.stuck_load(motion.residual, middle, half_range).0
+                        k * u - self.held_load(motion.residual, middle, half_range).0
                     }
                     Cycle::Slipping { sticks, slips } => {
                         let span = harmonics.span();

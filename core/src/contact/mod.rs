@@ -6,10 +6,15 @@
 //! [`law`].
 
 mod cycle;
+mod describing;
 mod jenkins;
 mod jenkins_parameters;
+mod march_rate;
+mod marched;
 
+pub use describing::Describing;
 pub use jenkins::Jenkins;
+pub use marched::Marched;
 
 use crate::fourier::SampleTable;
 use crate::Error;
@@ -52,7 +57,7 @@ pub struct Motion<'a> {
 pub struct SlipLoad {
     /// q, laid out as the displacement [N].
     pub value: Vec<f64>,
-    /// ∂q/∂u, row by row, valid if it was asked for [N/m].
+    /// ∂q/∂u, row by row, empty unless it was asked for [N/m].
     pub tangent: Vec<f64>,
     /// Whether the tangent differs from zero: a contact that sticks for good is a linear spring
     /// and drops out of the Newton system.
@@ -63,8 +68,8 @@ impl SlipLoad {
     pub(crate) fn reset(&mut self, size: usize, tangent: bool) {
         self.value.clear();
         self.value.resize(size, 0.0);
+        self.tangent.clear();
         if tangent {
-            self.tangent.clear();
             self.tangent.resize(size * size, 0.0);
         }
         self.active = false;
@@ -131,6 +136,24 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// Slip load of a periodic motion and, if asked for, its tangent. Both belong to each other
     /// exactly: the tangent is the derivative of this value, history included.
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad);
+
+    /// Highest harmonic that the evaluation resolves; all of them where it is exact.
+    fn resolves(&self) -> usize {
+        usize::MAX
+    }
+
+    /// Slip load of a contact of one point whose displacement stays between `low` and `high` without
+    /// slip, with its derivatives in the two; `None` if it slips. Laws of several points have no
+    /// such rule: a march of them starts without slip.
+    fn stuck_load(&self, _residual: Residual, _low: f64, _high: f64) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// Describing function of a law of one point under a harmonic displacement of the given
+    /// amplitude, if it has one in closed form.
+    fn describing(&self, _amplitude: f64) -> Option<Describing> {
+        None
+    }
 
     /// Return map of one increment: takes the contact forces through a change `du` of the relative
     /// displacements. `gain`, if asked for, is the derivative of the new forces in the trial forces

@@ -8,6 +8,10 @@ use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
 
+/// Least pivot, relative to the largest, of a closing condition that determines the orbit: at a
+/// resonance that nothing bounds it does not.
+const SINGULAR: f64 = 1e-14;
+
 /// The closing condition of a periodic orbit at one frequency, in the coordinates of
 /// [`Transition`].
 pub(super) struct Shooting<'a> {
@@ -181,7 +185,13 @@ impl System for Shooting<'_> {
                 right[(target, 0)] = 0.0;
             }
         }
-        matrix.partial_piv_lu().solve_in_place(&mut right);
+        let lu = matrix.partial_piv_lu();
+        let pivots = (0..size).map(|i| lu.U()[(i, i)].abs());
+        let (least, largest) = pivots.fold((f64::MAX, 0.0_f64), |(l, m), p| (l.min(p), m.max(p)));
+        if least <= SINGULAR * largest {
+            return false;
+        }
+        lu.solve_in_place(&mut right);
         for (i, step) in step.iter_mut().enumerate() {
             *step = right[(i, 0)];
         }

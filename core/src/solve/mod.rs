@@ -1,10 +1,17 @@
 //! Solvers that know nothing of friction: a system has a residual and a Newton direction.
 
+mod broyden;
 mod homotopy;
+mod line_search;
 mod newton;
+mod qr;
 
+pub use broyden::{broyden, BroydenEffort, FirstJacobian};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
+pub use qr::Qr;
+
+use faer::Mat;
 
 /// A nonlinear system of equations.
 pub trait System {
@@ -13,6 +20,16 @@ pub trait System {
 
     /// Residual at `x`; keeps what [`System::solve`] needs.
     fn residual(&mut self, x: &[f64], out: &mut [f64]);
+
+    /// Residual at `x` alone, for methods that do without [`System::solve`].
+    fn value(&mut self, x: &[f64], out: &mut [f64]) {
+        self.residual(x, out);
+    }
+
+    /// Residual and whole Jacobian at `x`; by forward differences unless the system knows better.
+    fn jacobian(&mut self, x: &[f64], residual: &mut [f64], out: &mut Mat<f64>) {
+        broyden::differences(self, x, residual, out);
+    }
 
     /// Size of `step` relative to `x`: the largest over all groups of unknowns that must be
     /// accurate by themselves.

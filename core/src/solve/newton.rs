@@ -1,5 +1,6 @@
 //! Newton's method with a line search on the residual norm.
 
+use super::line_search::LineSearch;
 use super::{norm, System};
 
 /// When to stop.
@@ -13,7 +14,7 @@ pub struct NewtonSettings {
 
 impl Default for NewtonSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-10, max_iterations: 50 }
+        Self { tolerance: 1e-11, max_iterations: 50 }
     }
 }
 
@@ -42,13 +43,13 @@ pub struct Report {
 }
 
 /// Shortest step of the line search: below it the direction is no descent direction in practice.
-const SHORTEST_STEP: f64 = 1.0 / 256.0;
+pub(super) const SHORTEST_STEP: f64 = 1.0 / 256.0;
 
 /// Solves `system = 0` from `x`, which holds the best point found on return.
 pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings) -> Report {
     let size = system.size();
     let (mut residual, mut step) = (vec![0.0; size], vec![0.0; size]);
-    let (mut trial, mut trial_residual) = (vec![0.0; size], vec![0.0; size]);
+    let mut trial = LineSearch::new(size);
     system.residual(x, &mut residual);
     let mut size_of_residual = norm(&residual);
     for iteration in 0..settings.max_iterations {
@@ -69,31 +70,18 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         }
         let relative_step = system.relative_size(&step, x);
         let close = relative_step <= 1e-9;
-        let mut length = 1.0;
-        let size_of_trial = loop {
-            for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(&step) {
-                *t = x - length * s;
-            }
-            system.residual(&trial, &mut trial_residual);
-            let size_of_trial = norm(&trial_residual);
-            // At rounding level the residual need not fall any more.
-            if close || size_of_trial <= (1.0 - 1e-4 * length) * size_of_residual {
-                break size_of_trial;
-            }
-            length *= 0.5;
-            if length < SHORTEST_STEP {
-                system.residual(x, &mut residual);
-                return report(Outcome::Stalled, size_of_residual, x);
-            }
-        };
+        let evaluate = |x: &[f64], out: &mut [f64]| system.residual(x, out);
+        if !trial.along(evaluate, x, &step, size_of_residual, SHORTEST_STEP, close) {
+            system.residual(x, &mut residual);
+            return report(Outcome::Stalled, size_of_residual, x);
+        }
         // Where Newton's method converges, the error shrinks as the residual does: the error left
         // is the step times the contraction just seen.
-        let contraction = size_of_trial / size_of_residual.max(f64::MIN_POSITIVE);
-        let left = relative_step * contraction.min(1.0);
-        x.copy_from_slice(&trial);
-        std::mem::swap(&mut residual, &mut trial_residual);
-        size_of_residual = size_of_trial;
-        if close || (length == 1.0 && left <= settings.tolerance) {
+        let left = relative_step * trial.contraction(size_of_residual).min(1.0);
+        x.copy_from_slice(&trial.x);
+        std::mem::swap(&mut residual, &mut trial.residual);
+        size_of_residual = trial.size;
+        if close || (trial.length == 1.0 && left <= settings.tolerance) {
             return report(Outcome::Converged, size_of_residual, x);
         }
     }

@@ -84,6 +84,7 @@ def assumptions_of(
         texts = (
             _harmonics(settings, arrays, half_wave),
             _residual(model, settings, arrays),
+            _evaluation(model, settings),
             _BASES.get(base, f"The compliance is evaluated by {base}."),
             _frequencies(settings, arrays, missing, interrupted=interrupted),
             _observed(model, dofs),
@@ -239,6 +240,15 @@ def _residual(model: Model, settings: Settings, arrays: Arrays) -> str:
         f"A contact that never slips was taken to hold {held} (residual={settings.residual!r}, "
         f"of effect at {stuck.sum()} of {stuck.size} points); residual_bounds gives what it could "
         "hold."
+    )
+
+
+def _evaluation(model: Model, settings: Settings) -> str:
+    if settings.march is None or not model.contacts:
+        return ""
+    return (
+        f"The contact forces were marched through {settings.march} samples per period; the error "
+        "of the sampling, of second order in their distance, is not part of the error estimate."
     )
 
 

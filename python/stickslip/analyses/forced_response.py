@@ -34,10 +34,24 @@ from stickslip.results.status import Status
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["METHODS", "RESIDUALS", "Residual", "Settings", "forced_response"]
+__all__ = [
+    "EVALUATIONS",
+    "JACOBIANS",
+    "METHODS",
+    "RESIDUALS",
+    "Residual",
+    "Settings",
+    "forced_response",
+]
 
-METHODS = ("newton",)
+METHODS = ("newton", "broyden")
 """Solvers of the balance equations."""
+
+JACOBIANS = ("exact", "differences")
+"""Where Broyden's method takes its first Jacobian from."""
+
+EVALUATIONS = ("exact", "marched")
+"""How the friction laws are evaluated."""
 
 MAX_HARMONICS = 255
 MAX_ITERATIONS = 50
@@ -57,8 +71,14 @@ class Settings:
         Force that a contact holds at mid-range of its displacement if it never slips, where the
         steady state leaves it open: none, what it builds up from zero displacement, or this force
         [N].
-    method : {"newton"}, optional
+    method : {"newton", "broyden"}, optional
         Solver of the balance equations.
+    jacobian : {"exact", "differences"}, optional
+        First Jacobian of Broyden's method.
+    evaluation : {"exact", "marched"}, optional
+        Evaluation of the friction laws.
+    samples : int, optional
+        Samples per period of the marched evaluation. Default: `march` says how many.
     max_harmonics : int, optional
         Highest harmonic that may be kept.
     max_iterations : int, optional
@@ -78,6 +98,9 @@ class Settings:
     tolerance: float = 1e-3
     residual: Residual = "centred"
     method: str = "newton"
+    jacobian: str = "exact"
+    evaluation: str = "exact"
+    samples: int | None = None
     max_harmonics: int = MAX_HARMONICS
     max_iterations: int = MAX_ITERATIONS
     span: Span | None = None
@@ -85,11 +108,17 @@ class Settings:
     def __post_init__(self) -> None:
         limit = whole_number(self.max_harmonics, "max_harmonics", smallest=1)
         iterations = whole_number(self.max_iterations, "max_iterations", smallest=1)
+        harmonics = _harmonics(self.harmonics, limit)
         checked: dict[str, object] = {
-            "harmonics": _harmonics(self.harmonics, limit),
+            "harmonics": harmonics,
             "tolerance": tolerance_of(self.tolerance),
             "residual": residual_of(self.residual),
             "method": choice(self.method, "method", self.methods),
+            "jacobian": _jacobian(self.jacobian, self.method),
+            "evaluation": choice(self.evaluation, "evaluation", EVALUATIONS),
+            "samples": _samples(
+                self.samples, self.evaluation, limit if harmonics == "auto" else harmonics
+            ),
             "max_harmonics": limit,
             "max_iterations": iterations,
             "span": None if self.span is None else span_of(self.span),
@@ -102,6 +131,15 @@ class Settings:
         """The highest harmonic kept; None if it is chosen per point."""
         return None if self.harmonics == "auto" else self.harmonics
 
+    @property
+    def march(self) -> int | None:
+        """Samples per period of a marched evaluation; None if the evaluation is exact."""
+        if self.evaluation == "exact":
+            return None
+        from stickslip import _core
+
+        return self.samples or _core.automatic_samples(self.fixed_harmonics or self.max_harmonics)
+
 
 def forced_response(
     model: Model,
@@ -111,6 +149,9 @@ def forced_response(
     tolerance: float = 1e-3,
     residual: Residual = "centred",
     method: str = "newton",
+    jacobian: str = "exact",
+    evaluation: str = "exact",
+    samples: int | None = None,
     observe: Iterable[str] | str | None = None,
     progress: Callable[[float], None] | None = None,
     max_harmonics: int = MAX_HARMONICS,
@@ -136,8 +177,18 @@ def forced_response(
     residual : {"centred", "from_rest"} or float, optional
         Force [N] that a contact holds at mid-range of its displacement if it never slips; the
         steady state alone does not determine it. See `ForcedResponse.residual_bounds`.
-    method : {"newton"}, optional
-        Solver of the balance equations.
+    method : {"newton", "broyden"}, optional
+        Solver of the balance equations. Broyden's updates one Jacobian per point by rank one; on
+        failure both go over to the same homotopy.
+    jacobian : {"exact", "differences"}, optional
+        First Jacobian of Broyden's method: the exact one, or forward differences.
+    evaluation : {"exact", "marched"}, optional
+        Friction laws by exact Fourier integrals, or marched through equidistant samples: the
+        alternating frequency/time scheme, for comparisons and for laws without a closed form. Its
+        sampling error is not part of the error estimate.
+    samples : int, optional
+        Samples per period of the marched evaluation, even and at least 4 (H + 1). Default: 1024,
+        or 8 (H + 1), rounded up to a power of two, if that is more.
     observe : iterable of str, optional
         Degrees of freedom whose motion is kept. Default: all.
     progress : callable, optional
@@ -162,9 +213,9 @@ def forced_response(
 
     References
     ----------
-    Guillen (1999), chapter III: the multi-harmonic balance. Cameron and Griffin (1989): alternating
-    frequency and time. The receptance form in contact displacements, its closed-form tangent and
-    the error estimate are this package's.
+    Guillen (1999), chapter III: the multi-harmonic balance, section 3.4.2: Broyden's method.
+    Cameron and Griffin (1989): alternating frequency and time. The receptance form in contact
+    displacements, its closed-form tangent and the error estimate are this package's.
     """
     require_model(model)
     grid = grid_of(omega)
@@ -173,6 +224,9 @@ def forced_response(
         tolerance=tolerance,
         residual=residual,
         method=method,
+        jacobian=jacobian,
+        evaluation=evaluation,
+        samples=samples,
         max_harmonics=max_harmonics,
         max_iterations=max_iterations,
         span=grid if isinstance(grid, tuple) else None,
@@ -219,6 +273,8 @@ def _solve(
             settings.tolerance,
             settings.residual,
             settings.method,
+            settings.jacobian,
+            settings.march,
             settings.max_harmonics,
             settings.max_iterations,
             progress,
@@ -264,5 +320,32 @@ def _harmonics(harmonics: object, limit: int) -> int | Literal["auto"]:
         raise ModelError(
             f"harmonics: {count} lies above max_harmonics = {limit}; lower it, or raise "
             "max_harmonics"
+        )
+    return count
+
+
+def _jacobian(jacobian: object, method: str) -> str:
+    name = choice(jacobian, "jacobian", JACOBIANS)
+    if name != "exact" and method != "broyden":
+        raise ModelError(
+            f"jacobian: {name!r} is a first Jacobian of Broyden's method; give method='broyden' "
+            "with it, or leave it out"
+        )
+    return name
+
+
+def _samples(samples: object, evaluation: str, kept: int) -> int | None:
+    if samples is None:
+        return None
+    count = whole_number(samples, "samples", smallest=1)
+    if evaluation == "exact":
+        raise ModelError(
+            f"samples: {count} for the exact evaluation, which has none; give evaluation='marched' "
+            "with them, or leave them out"
+        )
+    least = 4 * (kept + 1)
+    if count < least or count % 2:
+        raise ModelError(
+            f"samples: {count} for harmonics up to {kept}; give an even number from {least}"
         )
     return count

@@ -7,7 +7,7 @@ import numpy as np
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
-from stickslip.results.arrays import Complex, Float, constant, mean_forces
+from stickslip.results.arrays import Complex, Float, amplitude_of, constant, mean_forces
 from stickslip.results.sweep import Sweep
 
 __all__ = ["ContactMotion"]
@@ -58,6 +58,7 @@ class ContactMotion(Sweep):
                     number,
                     np.ascontiguousarray(series),
                     self.settings.residual,
+                    self.settings.march,
                     count,
                 )
             except ValueError as error:
@@ -89,6 +90,72 @@ class ContactMotion(Sweep):
             If there is no such contact or point.
         """
         return self._period(self._select(self.arrays.contact_displacement, contact), index, samples)
+
+    def damper_displacement(self, contact: PointRef, index: int, samples: int = 512) -> Float:
+        """Return one period of the deflection of the contact springs, z = f / k_d.
+
+        The law's own answer to the harmonics of the displacement, with its corners: it follows the
+        motion while the contact sticks and rests at F_d / k_d while it slips. For a single harmonic
+        this is Guillen's improvement of Griffin's method.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+        index : int
+            Position of the point of the sweep; negative ones count from the end.
+        samples : int, optional
+            Number of instants t = j T / samples, j = 0, 1, ...
+
+        Returns
+        -------
+        ndarray of float64, shape (samples, points) or (samples,)
+            [m].
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point, or its law has no single stiffness above 0.
+
+        References
+        ----------
+        Guillen (1999), section 2.2.4, Table 2.1.
+        """
+        stiffness, _ = self._spring(contact)
+        return constant(self.contact_force(contact, index, samples) / stiffness)
+
+    def damper_amplitude(self, contact: PointRef) -> Float:
+        """Return half the range of the deflection of the contact springs over a period.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, points) or (n,)
+            [m]: that of the relative displacement where the contact never slips, else F_d / k_d.
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point, or its law has no single stiffness above 0.
+
+        References
+        ----------
+        Guillen (1999), section 2.2.5.
+        """
+        stiffness, slip_force = self._spring(contact)
+        series = self._select(self.arrays.contact_displacement, contact)
+        points = series.reshape(*series.shape[:2], -1)
+        half = [
+            amplitude_of(np.ascontiguousarray(points[:, :, point]), "half_range")
+            for point in range(points.shape[2])
+        ]
+        values = np.minimum(np.stack(half, axis=1), slip_force / stiffness)
+        values[~self.arrays.solved] = np.nan
+        return constant(values if series.ndim == 3 else np.ascontiguousarray(values[:, 0]))
 
     def slip_fraction(self, contact: PointRef) -> Float:
         """Return the share of the period that each contact point slips.
@@ -170,6 +237,17 @@ class ContactMotion(Sweep):
         values = np.stack(bounds, axis=1)
         values[~self.arrays.solved] = np.nan
         return constant(values if series.ndim == 3 else np.ascontiguousarray(values[:, 0]))
+
+    def _spring(self, contact: PointRef) -> tuple[float, float]:
+        """Return stiffness and slip force of a contact whose law has one of each."""
+        number, _ = self.locate(contact)
+        parameters = self.model.contacts[number].parameters()
+        if not {"stiffness", "slip_force"} <= set(parameters) or not parameters["stiffness"]:
+            raise ModelError(
+                f"contact {self.model.contact_names[number]!r}: the deflection of its spring needs "
+                "one stiffness above 0 and one slip force; see contact_force instead"
+            )
+        return parameters["stiffness"], parameters["slip_force"]
 
     def _period(self, series: Complex, index: int, samples: int) -> Float:
         position = self.position(index)

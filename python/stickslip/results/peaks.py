@@ -199,6 +199,9 @@ def refined(
             settings.fixed_harmonics,
             settings.tolerance,
             settings.residual,
+            settings.method,
+            settings.jacobian,
+            settings.march,
             settings.max_harmonics,
             settings.max_iterations,
         )

@@ -11,6 +11,7 @@ from stickslip.study.certify_table import CertifyTable
 from stickslip.study.damper_curve_table import DamperCurveTable
 from stickslip.study.entries import chosen_by
 from stickslip.study.exact_table import ExactTable
+from stickslip.study.single_harmonic_table import SingleHarmonicTable
 from stickslip.study.transient_table import TransientTable
 
 __all__ = ["AnalysisTable"]
@@ -20,7 +21,8 @@ AnalysisTable = Annotated[
     | Annotated[ExactTable, Tag("<exact>")]
     | Annotated[TransientTable, Tag("<transient>")]
     | Annotated[CertifyTable, Tag("<certify>")]
-    | Annotated[DamperCurveTable, Tag("<damper-curve>")],
+    | Annotated[DamperCurveTable, Tag("<damper-curve>")]
+    | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")],
     chosen_by(
         "kind",
         "forced-response",
@@ -28,6 +30,7 @@ AnalysisTable = Annotated[
         "transient",
         "certify",
         "damper-curve",
+        "single-harmonic",
         default="forced-response",
     ),
 ]

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 from pydantic import Field, Tag, WithJsonSchema, model_validator
 
 from stickslip.analyses.forced_response import (
+    EVALUATIONS,
+    JACOBIANS,
     MAX_HARMONICS,
     MAX_ITERATIONS,
     METHODS,
@@ -46,6 +48,15 @@ class BalanceTable(AnalysisEntries):
     method: Annotated[str, WithJsonSchema({"enum": list(METHODS)})] = Field(
         default="newton", description="Solver."
     )
+    jacobian: Annotated[str, WithJsonSchema({"enum": list(JACOBIANS)})] = Field(
+        default="exact", description="First Jacobian of Broyden's method."
+    )
+    evaluation: Annotated[str, WithJsonSchema({"enum": list(EVALUATIONS)})] = Field(
+        default="exact", description="Evaluation of the friction laws."
+    )
+    samples: Count | None = Field(
+        default=None, description="Samples per period of the marched evaluation."
+    )
     max_harmonics: Count = Field(
         default=MAX_HARMONICS, description="Highest harmonic that may be kept."
     )
@@ -61,6 +72,9 @@ class BalanceTable(AnalysisEntries):
             tolerance=self.tolerance,
             residual=self.residual,
             method=self.method,
+            jacobian=self.jacobian,
+            evaluation=self.evaluation,
+            samples=self.samples,
             max_harmonics=self.max_harmonics,
             max_iterations=self.max_iterations,
         )
@@ -75,6 +89,9 @@ class BalanceTable(AnalysisEntries):
             tolerance=self.tolerance,
             residual=self.residual,
             method=self.method,
+            jacobian=self.jacobian,
+            evaluation=self.evaluation,
+            samples=self.samples,
             observe=self.observe,
             progress=progress,
             max_harmonics=self.max_harmonics,

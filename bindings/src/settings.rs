@@ -1,0 +1,76 @@
+//! What Python gives as settings, as the core has them.
+
+use crate::arrays::refused;
+use crate::problem::Problem;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::Arc;
+use stickslip_core::balance::{HarmonicChoice, Method, Settings};
+use stickslip_core::contact::{Marched, Residual};
+use stickslip_core::model::Model;
+use stickslip_core::solve::{FirstJacobian, NewtonSettings};
+
+/// The assumed mean force of contacts that never slip: a name or a force in N.
+#[derive(FromPyObject)]
+pub enum ResidualArgument {
+    Force(f64),
+    Name(String),
+}
+
+impl ResidualArgument {
+    pub fn parse(&self) -> PyResult<Residual> {
+        match self {
+            Self::Force(force) => Ok(Residual::Value(*force)),
+            Self::Name(name) if name == "centred" => Ok(Residual::Centred),
+            Self::Name(name) if name == "from_rest" => Ok(Residual::FromRest),
+            Self::Name(name) => Err(PyValueError::new_err(format!(
+                "residual = \"{name}\": must be \"centred\", \"from_rest\" or a force in N"
+            ))),
+        }
+    }
+}
+
+/// Settings from what Python gives.
+pub fn settings(
+    harmonics: Option<usize>,
+    tolerance: f64,
+    residual: &ResidualArgument,
+    method: Method,
+    max_harmonics: usize,
+    max_iterations: usize,
+) -> PyResult<Settings> {
+    Ok(Settings {
+        harmonics: harmonics.map_or(HarmonicChoice::Auto, HarmonicChoice::Fixed),
+        tolerance,
+        residual: residual.parse()?,
+        max_harmonics,
+        method,
+        newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
+    })
+}
+
+/// A solver by its name, with the first Jacobian of Broyden's method.
+pub fn parse_method(method: &str, jacobian: &str) -> PyResult<Method> {
+    match (method, jacobian) {
+        ("newton", _) => Ok(Method::Newton),
+        ("broyden", "exact") => Ok(Method::Broyden(FirstJacobian::Exact)),
+        ("broyden", "differences") => Ok(Method::Broyden(FirstJacobian::Differences)),
+        _ => Err(PyValueError::new_err(format!(
+            "method = \"{method}\", jacobian = \"{jacobian}\": must be \"newton\" or \"broyden\", the latter with \"exact\" or \"differences\""
+        ))),
+    }
+}
+
+/// The model with its laws evaluated exactly, or marched through some samples per period.
+pub fn evaluated(problem: &Problem, march: Option<usize>) -> PyResult<Arc<Model>> {
+    march.map_or_else(
+        || Ok(Arc::clone(&problem.model)),
+        |samples| problem.model.marched(samples).map(Arc::new).map_err(refused),
+    )
+}
+
+/// Samples per period that serve a marched evaluation of harmonics up to `highest`.
+#[pyfunction]
+pub fn automatic_samples(highest: usize) -> usize {
+    Marched::automatic_samples(highest)
+}

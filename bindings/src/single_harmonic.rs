@@ -1,0 +1,33 @@
+//! The single-harmonic response: a grid in, curves out.
+
+use crate::arrays::indices;
+use crate::problem::Problem;
+use crate::response::{swept, Solution};
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use stickslip_core::balance::{self, ForcedBalance, HarmonicChoice, Settings};
+use stickslip_core::solve::NewtonSettings;
+
+/// Single-harmonic balance over a grid of frequencies.
+#[pyfunction]
+pub fn single_harmonic(
+    py: Python<'_>,
+    problem: &Problem,
+    omega: PyReadonlyArray1<'_, f64>,
+    observe: PyReadonlyArray1<'_, i64>,
+    estimate: bool,
+    max_iterations: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Solution> {
+    let settings = Settings {
+        harmonics: HarmonicChoice::Fixed(1),
+        newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
+        ..Settings::default()
+    };
+    let (grid, observe) = (omega.as_array().to_vec(), indices(&observe)?);
+    let model = &problem.model;
+    swept(py, progress.as_ref(), observe.len(), model.compliance().contacts(), |look| {
+        let balance = ForcedBalance::new(model, settings, &observe)?.watched(look);
+        balance::single_harmonic(balance, &grid, estimate)
+    })
+}

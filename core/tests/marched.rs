@@ -1,0 +1,419 @@
+//! The marched evaluation: exact tangents of the discrete march, second order towards the closed
+//! form, laws of several coupled points.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::snecma_beam;
+use faer::{mat, Mat};
+use stickslip_core::balance::{
+    refine_peak, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus, Settings, Solution,
+};
+use stickslip_core::contact::{
+    FrictionLaw, Jenkins, Marched, Motion, PointState, PointSummary, Residual, SlipLoad,
+};
+use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
+use stickslip_core::model::{Contact, Model};
+use stickslip_core::solve::FirstJacobian;
+use stickslip_core::structure::{HarmonicLoad, Structure};
+
+const STIFFNESS: f64 = 2.0;
+const SLIP_FORCE: f64 = 1.0;
+
+/// One harmonic of a series: order, cosine and sine coefficient.
+type Term = (usize, f64, f64);
+
+fn series(table: &SampleTable, terms: &[Term]) -> Vec<f64> {
+    let mut u = vec![0.0; table.harmonics().slots()];
+    for &(order, a, b) in terms {
+        if let Some(slot) = table.harmonics().slot(order) {
+            u[slot] = a;
+            if order > 0 {
+                u[slot + 1] = b;
+            }
+        }
+    }
+    u
+}
+
+fn load(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64], residual: Residual) -> SlipLoad {
+    let mut load = SlipLoad::default();
+    law.slip_load(Motion { table, displacement: u, residual }, true, &mut load);
+    load
+}
+
+/// Largest difference between tangent and central differences, relative to the stiffness.
+fn tangent_error(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64], residual: Residual) -> f64 {
+    let exact = load(law, table, u, residual);
+    let (size, step) = (u.len(), 1e-6);
+    let mut worst = 0.0_f64;
+    for column in 0..size {
+        let mut shifted = u.to_vec();
+        shifted[column] += step;
+        let ahead = load(law, table, &shifted, residual).value;
+        shifted[column] -= 2.0 * step;
+        let behind = load(law, table, &shifted, residual).value;
+        for row in 0..size {
+            let difference = (ahead[row] - behind[row]) / (2.0 * step);
+            worst = worst.max((exact.tangent[row * size + column] - difference).abs());
+        }
+    }
+    worst / STIFFNESS
+}
+
+fn jenkins() -> Box<dyn FrictionLaw> {
+    Box::new(Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap())
+}
+
+fn marched(samples: usize) -> Marched {
+    Marched::new(jenkins(), samples).unwrap()
+}
+
+/// Two elements in other coordinates, v = T u: a law of two points that couple.
+#[derive(Debug)]
+struct Coupled {
+    transform: Mat<f64>,
+    elements: [Jenkins; 2],
+}
+
+impl Coupled {
+    fn new() -> Self {
+        let element = |k, f| Jenkins::new(k, f).unwrap();
+        Self {
+            transform: mat![[1.0, -0.6], [0.3, 0.9]],
+            elements: [element(STIFFNESS, SLIP_FORCE), element(1.3, 0.7)],
+        }
+    }
+
+    fn inverse(&self) -> Mat<f64> {
+        use faer::linalg::solvers::DenseSolveCore as _;
+        self.transform.partial_piv_lu().inverse()
+    }
+}
+
+impl FrictionLaw for Coupled {
+    fn points(&self) -> usize {
+        2
+    }
+
+    fn is_odd(&self) -> bool {
+        true
+    }
+
+    fn stiffness(&self) -> Mat<f64> {
+        let own = mat![[STIFFNESS, 0.0], [0.0, 1.3]];
+        self.transform.transpose() * own * &self.transform
+    }
+
+    fn softened(&self, _: f64) -> Box<dyn FrictionLaw> {
+        Box::new(Self::new())
+    }
+
+    fn slip_load(&self, _: Motion<'_>, _: bool, _: &mut SlipLoad) {}
+
+    fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
+        let (t, inverse) = (&self.transform, self.inverse());
+        let mut own = [0.0; 2];
+        let mut sticks = [0.0; 2];
+        for i in 0..2 {
+            let dv = t[(i, 0)] * du[0] + t[(i, 1)] * du[1];
+            let mut g = [inverse[(0, i)] * force[0] + inverse[(1, i)] * force[1]];
+            self.elements[i].advance(&[dv], &mut g, Some(&mut sticks[i..=i]));
+            own[i] = g[0];
+        }
+        for i in 0..2 {
+            force[i] = t[(0, i)] * own[0] + t[(1, i)] * own[1];
+        }
+        if let Some(gain) = gain {
+            if sticks == [1.0; 2] {
+                // Rounding must not look like slip.
+                gain.copy_from_slice(&[1.0, 0.0, 0.0, 1.0]);
+                return;
+            }
+            for i in 0..2 {
+                for j in 0..2 {
+                    gain[2 * i + j] = (0..2).map(|l| t[(l, i)] * sticks[l] * inverse[(j, l)]).sum();
+                }
+            }
+        }
+    }
+
+    fn limits(&self) -> Vec<f64> {
+        vec![f64::INFINITY; 2]
+    }
+
+    fn tangent(&self, _: &[PointState]) -> Mat<f64> {
+        self.stiffness()
+    }
+
+    fn slip_rate(&self, _: &[PointState]) -> Mat<f64> {
+        Mat::zeros(2, 2)
+    }
+
+    fn summary(&self, _: Motion<'_>, _: &mut [PointSummary]) {}
+
+    fn force_history(&self, _: Motion<'_>, _: usize) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+#[test]
+fn tangents_in_every_contact_state() {
+    let odd = SampleTable::new(Harmonics::new(7, true));
+    let all = SampleTable::new(Harmonics::new(6, false));
+    let once = [(1, 0.9, 0.2), (3, 0.05, -0.04)];
+    let often = [(1, 0.8, 0.1), (3, 0.9, 0.5), (5, -0.3, 0.6), (7, 0.2, 0.1)];
+    let uneven = [(0, 0.7, 0.0), (1, 1.1, 0.2), (2, 0.8, -0.5), (4, 0.1, 0.3)];
+    let stuck = [(0, 0.2, 0.0), (1, 0.3, 0.05), (2, 0.06, 0.04)];
+    let past = [(0, 0.9, 0.0), (1, 0.3, 0.05), (2, 0.06, 0.04)];
+    let cases: [(&str, &SampleTable, &[Term], Residual); 10] = [
+        ("slip twice", &odd, &once, Residual::Centred),
+        ("slip in several windows", &odd, &often, Residual::Centred),
+        ("gross slip", &odd, &[(1, 300.0, 40.0), (3, 2.0, 1.0)], Residual::Centred),
+        ("slip without symmetry", &all, &uneven, Residual::Centred),
+        ("slip twice, all harmonics", &all, &once, Residual::FromRest),
+        ("stuck, odd", &odd, &[(1, 0.3, 0.1)], Residual::Centred),
+        ("stuck, centred", &all, &stuck, Residual::Centred),
+        ("stuck, from rest", &all, &stuck, Residual::FromRest),
+        ("stuck, from rest, past its limit", &all, &past, Residual::FromRest),
+        ("stuck, given residual past its limit", &all, &stuck, Residual::Value(-0.8)),
+    ];
+    for samples in [64, 258] {
+        let law = marched(samples);
+        for (name, table, terms, residual) in cases {
+            let u = series(table, terms);
+            let error = tangent_error(&law, table, &u, residual);
+            assert!(error < 1e-6, "{name}, {samples} samples: {error:.2e}");
+            let states = [load(&law, table, &u, residual), load(&*jenkins(), table, &u, residual)];
+            assert_eq!(states[0].active, states[1].active, "{name}");
+        }
+        let frictionless = Marched::new(Box::new(Jenkins::new(STIFFNESS, 0.0).unwrap()), samples);
+        let u = series(&odd, &once);
+        assert!(tangent_error(&frictionless.unwrap(), &odd, &u, Residual::Centred) < 1e-9);
+    }
+}
+
+#[test]
+fn coupled_points_keep_their_history_in_the_tangent() {
+    let law = Marched::new(Box::new(Coupled::new()), 128).unwrap();
+    for half_wave in [true, false] {
+        let table = SampleTable::new(Harmonics::new(5, half_wave));
+        for scale in [0.15, 0.6, 4.0] {
+            let one = series(&table, &[(0, 0.1, 0.0), (1, scale, 0.3 * scale), (3, 0.1, 0.05)]);
+            let two = series(&table, &[(1, -0.4 * scale, scale), (2, 0.2, 0.1), (5, 0.0, 0.07)]);
+            let u = [one.clone(), two.clone()].concat();
+            let got = load(&law, &table, &u, Residual::Centred);
+            assert_eq!(got.active, scale > 0.2);
+            let error = tangent_error(&law, &table, &u, Residual::Centred);
+            assert!(error < 1e-6, "{half_wave}, {scale}: {error:.2e}");
+            if !got.active {
+                continue;
+            }
+            // The same two elements one by one, each in its own coordinate. Without symmetry a
+            // coordinate that never slips holds another mean.
+            let t = mat![[1.0, -0.6], [0.3, 0.9]];
+            let element = |i: usize, k, f| {
+                let v: Vec<f64> =
+                    one.iter().zip(&two).map(|(a, b)| t[(i, 0)] * a + t[(i, 1)] * b).collect();
+                let law = Marched::new(Box::new(Jenkins::new(k, f).unwrap()), 128).unwrap();
+                load(&law, &table, &v, Residual::FromRest).value
+            };
+            let own = [element(0, STIFFNESS, SLIP_FORCE), element(1, 1.3, 0.7)];
+            let slots = one.len();
+            for (i, value) in got.value.chunks_exact(slots).enumerate() {
+                for (value, (a, b)) in value.iter().zip(own[0].iter().zip(&own[1])) {
+                    assert!((value - t[(0, i)] * a - t[(1, i)] * b).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}
+
+/// Root mean square over many phases of the distance to the closed form: the place of an event
+/// between two samples is as good as random.
+fn distance(samples: usize, half_wave: bool) -> f64 {
+    let (law, exact) = (marched(samples), jenkins());
+    let table = SampleTable::new(Harmonics::new(5, half_wave));
+    let mut sum = 0.0;
+    for n in 0..40 {
+        let phase = 0.1571 * f64::from(n);
+        let term =
+            |k: usize, a: f64| (k, a * (k as f64 * phase).cos(), a * (k as f64 * phase).sin());
+        let u = series(&table, &[(0, 0.3, 0.0), term(1, 1.4), term(2, 0.3), term(3, 0.5)]);
+        let [a, b] = [&law as &dyn FrictionLaw, &*exact]
+            .map(|law| load(law, &table, &u, Residual::Centred).value);
+        sum += a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    }
+    (sum / 40.0).sqrt()
+}
+
+#[test]
+fn the_march_converges_to_the_closed_form_at_second_order() {
+    for half_wave in [true, false] {
+        let (coarse, fine) = (distance(64, half_wave), distance(1024, half_wave));
+        let rate = (coarse / fine).log2() / 4.0;
+        assert!((rate - 2.0).abs() < 0.1, "{rate}");
+        assert!(fine < 1e-4 * SLIP_FORCE, "{fine:e}");
+    }
+}
+
+#[test]
+fn histories_and_summaries_converge_too() {
+    for half_wave in [true, false] {
+        let table = SampleTable::new(Harmonics::new(5, half_wave));
+        for u in [
+            series(&table, &[(0, 0.3, 0.0), (1, 1.4, 0.2), (2, 0.3, 0.1), (3, 0.2, 0.5)]),
+            series(&table, &[(0, 0.1, 0.0), (1, 0.2, 0.1), (2, 0.05, 0.0)]),
+        ] {
+            let motion = Motion { table: &table, displacement: &u, residual: Residual::FromRest };
+            let (law, exact) = (marched(4096), jenkins());
+            let (a, b) = (law.force_history(motion, 300), exact.force_history(motion, 300));
+            for (a, b) in a.iter().zip(&b) {
+                assert!((a - b).abs() < 2e-5 && a.abs() <= SLIP_FORCE, "{a} {b}");
+            }
+            let mut summaries = [[PointSummary::default()]; 2];
+            law.summary(motion, &mut summaries[0]);
+            exact.summary(motion, &mut summaries[1]);
+            let [[a], [b]] = summaries;
+            assert!((a.slip_fraction - b.slip_fraction).abs() < 1e-3, "{a:?} {b:?}");
+            assert!(a.dissipation >= 0.0);
+            assert!((a.dissipation - b.dissipation).abs() <= 1e-5 * b.dissipation, "{a:?} {b:?}");
+        }
+    }
+}
+
+/// The slip load passes from a stuck motion to a slipping one without a jump.
+#[test]
+fn the_onset_of_slip_is_continuous() {
+    let table = SampleTable::new(Harmonics::new(4, false));
+    let law = marched(96);
+    let shape = [(0, 0.4, 0.0), (1, 0.5, 0.1), (2, 0.12, -0.07)];
+    let at = |scale: f64| {
+        let terms =
+            shape.map(|(k, a, b)| if k == 0 { (k, a, b) } else { (k, scale * a, scale * b) });
+        load(&law, &table, &series(&table, &terms), Residual::Centred)
+    };
+    let (mut stuck, mut slipping) = (0.5, 2.0);
+    let mean_alone = |load: &SlipLoad| load.value[1..].iter().all(|q| *q == 0.0);
+    assert!(mean_alone(&at(stuck)) && !mean_alone(&at(slipping)));
+    for _ in 0..45 {
+        let middle = 0.5 * (stuck + slipping);
+        if mean_alone(&at(middle)) {
+            stuck = middle;
+        } else {
+            slipping = middle;
+        }
+    }
+    for (a, b) in at(stuck).value.iter().zip(&at(slipping).value) {
+        assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
+}
+
+fn solve(model: &Model, settings: Settings) -> Solution {
+    let omega: Vec<f64> = (0..80).map(|i| 150.0 + f64::from(i)).collect();
+    let curve = sweep(ForcedBalance::new(model, settings, &[0, 1]).unwrap(), &omega).unwrap();
+    assert!(curve.points.iter().all(|p| p.status == PointStatus::Converged));
+    curve
+}
+
+/// Root mean square distance of the harmonics of the tip, relative to their largest.
+fn apart(one: &Solution, other: &Solution) -> f64 {
+    let mut sum = 0.0;
+    for (p, q) in one.points.iter().zip(&other.points) {
+        let size = q.displacement.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        let change = p.displacement.iter().zip(&q.displacement).map(|(a, b)| (a - b).norm_sqr());
+        sum += change.sum::<f64>() / size.powi(2);
+    }
+    (sum / one.points.len() as f64).sqrt()
+}
+
+#[test]
+fn marched_sweeps_approach_the_exact_one() {
+    let exact = snecma_beam(20.313).model();
+    let fixed = Settings { harmonics: HarmonicChoice::Fixed(9), ..Settings::default() };
+    let curve = solve(&exact, fixed);
+    let errors = [64, 256, 1024].map(|samples| {
+        let model = exact.marched(samples).unwrap();
+        let marched = solve(&model, fixed);
+        assert_eq!(marched.profile.homotopies, 0);
+        if samples == 1024 {
+            // The estimate sees the same discarded harmonics.
+            for (p, q) in marched.points.iter().zip(&curve.points) {
+                let size = q.displacement[11].norm();
+                let (a, b) = (p.error_estimate[1], q.error_estimate[1]);
+                assert!((a - b).abs() < 0.2 * b + 1e-3 * size, "{} rad/s: {a} {b}", p.omega);
+            }
+            let broyden = Method::Broyden(FirstJacobian::Exact);
+            assert!(apart(&solve(&model, Settings { method: broyden, ..fixed }), &marched) < 1e-9);
+        }
+        apart(&marched, &curve)
+    });
+    let rate = (errors[0] / errors[2]).log2() / 4.0;
+    assert!((rate - 2.0).abs() < 0.3, "{errors:?}");
+    assert!(errors[2] < 3e-5, "{errors:?}");
+}
+
+#[test]
+fn a_peak_is_refined_with_the_same_evaluation() {
+    let exact = snecma_beam(20.313).model();
+    let fixed = Settings { harmonics: HarmonicChoice::Fixed(9), ..Settings::default() };
+    let peak = |model: &Model| {
+        refine_peak(model, fixed, 1, Measure::HalfRange, [185.0, 190.0, 200.0], &|_| true).unwrap()
+    };
+    let (coarse, fine) = (peak(&exact.marched(40).unwrap()), peak(&exact.marched(4096).unwrap()));
+    assert!((fine.1 / peak(&exact).1 - 1.0).abs() < 1e-5);
+    assert!((coarse.1 / peak(&exact).1 - 1.0).abs() > 1e-4);
+}
+
+/// A contact of two coupled points in a model, against the same two elements as two contacts.
+#[test]
+fn a_law_without_closed_form_runs_through_the_whole_balance() {
+    let build = |coupled: bool| {
+        let mass = mat![[2.0, 0.1], [0.1, 1.0]];
+        let stiffness = mat![[30.0, -10.0], [-10.0, 15.0]];
+        let damping = mat![[0.3, -0.1], [-0.1, 0.2]];
+        let structure =
+            Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+        let law = Coupled::new();
+        let contacts = if coupled {
+            vec![Contact { law: Box::new(law), rows: Mat::identity(2, 2) }]
+        } else {
+            let row = |i: usize| Mat::from_fn(1, 2, |_, j| law.transform[(i, j)]);
+            (0..2).map(|i| Contact { law: Box::new(law.elements[i]), rows: row(i) }).collect()
+        };
+        let amplitude = [faer::c64::new(6.0, 0.0), faer::c64::new(0.0, 3.0)].to_vec();
+        let loads = vec![HarmonicLoad { harmonic: 1, amplitude }];
+        Model::new(structure, contacts, loads).unwrap().marched(256).unwrap()
+    };
+    let fixed = Settings { harmonics: HarmonicChoice::Fixed(7), ..Settings::default() };
+    let omega: Vec<f64> = (0..40).map(|i| 1.0 + 0.15 * f64::from(i)).collect();
+    let run =
+        |model: &Model| sweep(ForcedBalance::new(model, fixed, &[0, 1]).unwrap(), &omega).unwrap();
+    let (one, two) = (run(&build(true)), run(&build(false)));
+    assert!(two.points.iter().any(|p| p.contacts.iter().all(|c| c.slip_fraction > 0.0)));
+    assert!(one.points.iter().all(|p| p.status == PointStatus::Converged));
+    assert!(apart(&one, &two) < 1e-9);
+    for (p, q) in one.points.iter().zip(&two.points) {
+        let work = |p: &stickslip_core::balance::Point| -> f64 {
+            p.contacts.iter().map(|contact| contact.dissipation).sum()
+        };
+        assert!((work(p) - work(q)).abs() <= 1e-8 * work(q).max(1e-3));
+    }
+}
+
+#[test]
+fn too_few_samples_are_named() {
+    let refused = |samples: usize| snecma_beam(1.0).model().marched(samples).err().unwrap();
+    assert!(refused(6).to_string().contains("samples = 6: must be an even number from 8"));
+    assert!(refused(33).to_string().contains("samples = 33"));
+    let model = snecma_beam(1.0).model().marched(60).unwrap();
+    let ask = |highest: usize| {
+        let harmonics = HarmonicChoice::Fixed(highest);
+        let settings = Settings { harmonics, ..Settings::default() };
+        ForcedBalance::new(&model, settings, &[0]).map(|_| ()).map_err(|e| e.to_string())
+    };
+    assert_eq!(ask(14), Ok(()));
+    let message = ask(15).unwrap_err();
+    assert!(message.contains("harmonics = 15: needs at least 64 samples; lower it to 14"));
+}

@@ -1,0 +1,166 @@
+"""Steady response to harmonic forces, by a single harmonic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip.analyses.arguments import (
+    Progress,
+    grid_of,
+    observed_dofs,
+    require_model,
+    require_progress,
+)
+from stickslip.analyses.assumptions import assumptions_of
+from stickslip.analyses.forced_response import MAX_ITERATIONS, Settings
+from stickslip.analyses.memory import require_memory
+from stickslip.checks import brief
+from stickslip.errors import Interrupted, ModelError
+from stickslip.model import Model
+from stickslip.results import ForcedResponse
+from stickslip.results.arrays import Arrays
+from stickslip.results.status import Status
+
+__all__ = ["single_harmonic"]
+
+_METHOD = (
+    "The motion was taken to be harmonic, and of every contact force its first harmonic: Griffin's "
+    "method with complex amplitudes."
+)
+_NO_ESTIMATE = (
+    "The error of leaving the higher harmonics out was not estimated; estimate=True does it."
+)
+
+
+def single_harmonic(
+    model: Model,
+    omega: ArrayLike,
+    *,
+    estimate: bool = True,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+    max_iterations: int = MAX_ITERATIONS,
+) -> ForcedResponse:
+    """Steady response over excitation frequency, by a single harmonic.
+
+    Every contact is replaced by its describing function, the complex stiffness that its amplitude
+    gives it, and the complex amplitudes are solved for by Newton's method with its closed-form
+    Jacobian. The equations are those of `forced_response` with `harmonics=1`, at a fraction of its
+    time. `ForcedResponse.damper_displacement` follows the friction law through a period and gives
+    the corners that one harmonic lacks.
+
+    Parameters
+    ----------
+    model : Model
+        Structure, contacts to ground or between degrees of freedom, any number of them, and forces
+        of harmonic 1.
+    omega : array_like, shape (n,)
+        Angular frequencies [rad/s], swept in the order given.
+    estimate : bool, optional
+        Estimate the error of leaving the higher harmonics out, which takes most of the time.
+        Without it `ForcedResponse.error_estimate` is not-a-number.
+    observe : iterable of str, optional
+        Degrees of freedom whose motion is kept. Default: all.
+    progress : callable, optional
+        Called about ten times per second with the fraction of the work that is done.
+    max_iterations : int, optional
+        Iterations per point before it is reported as stalled.
+
+    Returns
+    -------
+    ForcedResponse
+        One entry per frequency, with one harmonic. Its settings are those of the balance of one
+        harmonic, which refines its peaks.
+
+    Raises
+    ------
+    ModelError
+        If an argument is of the wrong type or outside its range, a force has another harmonic than
+        the first, or the result would not fit into the memory.
+    Interrupted
+        On Ctrl-C; its `result` holds the points that had been computed.
+
+    References
+    ----------
+    Griffin (1980); Guillen (1999), chapter II, with the sign of eq. (2.13) corrected and the phases
+    between several dampers kept, which eqs. (2.40)-(2.43) drop.
+    """
+    require_model(model)
+    grid = grid_of(omega)
+    if isinstance(grid, tuple):
+        raise ModelError(
+            f"omega: {brief(omega)} is a range, which a single harmonic cannot choose steps in; "
+            "give a grid, as np.linspace(start, end, 400)"
+        )
+    if not isinstance(estimate, bool):
+        raise ModelError(f"estimate: {brief(estimate)} is neither True nor False")
+    settings = Settings(harmonics=1, max_iterations=max_iterations)
+    dofs = observed_dofs(observe, model)
+    require_progress(progress)
+    for position, force in enumerate(model.forces, start=1):
+        if force.harmonic != 1 and force.amplitude:
+            raise ModelError(
+                f"force {position} at {force.dof!r}: harmonic {force.harmonic}; a single harmonic "
+                "takes forces of harmonic 1 alone, use forced_response"
+            )
+    require_memory(grid.size, 1, len(dofs), sum(contact.points for contact in model.contacts))
+    result = _solve(model, grid, dofs, settings, estimate, progress)
+    if result.interrupted:
+        done = sum(status is not Status.NOT_COMPUTED for status in result.status)
+        raise Interrupted(
+            f"single-harmonic response interrupted after {done} of {grid.size} points, which the "
+            "result of this exception holds",
+            result,
+        )
+    if progress is not None:
+        progress(1.0)
+    return result
+
+
+def _solve(
+    model: Model,
+    grid: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+    dofs: tuple[str, ...],
+    settings: Settings,
+    estimate: bool,
+    progress: Progress,
+) -> ForcedResponse:
+    from stickslip import _core
+
+    try:
+        solution = _core.single_harmonic(
+            model.problem,
+            grid,
+            np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
+            estimate,
+            settings.max_iterations,
+            progress,
+        )
+    except ModelError:
+        raise
+    except ValueError as error:
+        raise ModelError(str(error)) from error
+    arrays = Arrays.of(solution)
+    texts = assumptions_of(
+        model,
+        settings,
+        dofs,
+        arrays,
+        half_wave=solution.half_wave,
+        missing=solution.omega.size - arrays.omega.size,
+        interrupted=solution.interrupted,
+    )
+    return ForcedResponse(
+        model=model,
+        settings=settings,
+        dofs=dofs,
+        arrays=arrays,
+        half_wave=solution.half_wave,
+        interrupted=solution.interrupted,
+        timings=dict(solution.timings),
+        counters=dict(solution.counters),
+        assumptions=(_METHOD, *texts, *(() if estimate else (_NO_ESTIMATE,))),
+    )

@@ -1,0 +1,157 @@
+"""The dissertation's solvers: Broyden's method and the marched evaluation."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.analyses.forced_response import Settings
+from stickslip.reference import SNECMA_LOADS, beam_pair, snecma_beam
+from stickslip.study import Study
+
+GRID = np.linspace(20.0, 350.0, 400)
+BAND = np.linspace(150.0, 250.0, 60)
+
+
+def beam(**settings):
+    return ss.forced_response(snecma_beam(), BAND, harmonics=9, **settings)
+
+
+@pytest.fixture(scope="module")
+def frf():
+    return beam()
+
+
+# ---------------------------------------------------------------------------------- Broyden
+
+
+@pytest.mark.parametrize("load", SNECMA_LOADS)
+@pytest.mark.parametrize("harmonics", [1, 3, 9, 15, 21])
+def test_broyden_agrees_with_newton_at_every_point_of_every_load(load, harmonics):
+    newton = ss.forced_response(snecma_beam(load), GRID, harmonics)
+    broyden = ss.forced_response(snecma_beam(load), GRID, harmonics, method="broyden")
+    assert newton.converged.all()
+    assert broyden.converged.all()
+    for dof in newton.dofs:
+        np.testing.assert_allclose(broyden.amplitude(dof), newton.amplitude(dof), rtol=1e-9)
+        scale = newton.amplitude(dof)
+        difference = broyden.error_estimate(dof) - newton.error_estimate(dof)
+        assert np.abs(difference / scale).max() < 1e-7
+    assert broyden.counters["homotopies"] == 0
+    assert broyden.counters["restarts"] <= 40
+
+
+def test_counters_tell_the_work_of_either_method(frf):
+    assert frf.counters["updates"] == frf.counters["restarts"] == 0
+    broyden = beam(method="broyden")
+    assert broyden.counters["updates"] > 60
+    assert 60 <= broyden.counters["factorisations"] <= 60 + 2 * broyden.counters["restarts"]
+    differences = beam(method="broyden", jacobian="differences")
+    # Ten unknowns: one evaluation each, for every Jacobian.
+    more = differences.counters["evaluations"] - broyden.counters["evaluations"]
+    assert more >= 10 * broyden.counters["factorisations"]
+    for result in (broyden, differences):
+        np.testing.assert_allclose(result.amplitude("tip"), frf.amplitude("tip"), rtol=1e-9)
+
+
+def test_broyden_with_several_contacts_a_range_and_automatic_harmonics():
+    model = beam_pair(60.0)
+    newton = ss.forced_response(model, (150.0, 200.0))
+    broyden = ss.forced_response(model, (150.0, 200.0), method="broyden")
+    np.testing.assert_array_equal(broyden.harmonics, newton.harmonics)
+    np.testing.assert_allclose(broyden.omega, newton.omega, rtol=1e-7)
+    np.testing.assert_allclose(broyden.amplitude("1.tip"), newton.amplitude("1.tip"), rtol=1e-6)
+    assert broyden.peak("2.tip") == pytest.approx(newton.peak("2.tip"), rel=1e-7)
+
+
+# ---------------------------------------------------------------------------------- marched
+
+
+def test_the_march_approaches_the_exact_evaluation(frf):
+    errors = [
+        np.abs(beam(evaluation="marched", samples=n).amplitude("tip") / frf.amplitude("tip") - 1)
+        for n in (64, 1024)
+    ]
+    rate = np.log2(np.linalg.norm(errors[0]) / np.linalg.norm(errors[1])) / 4
+    assert rate == pytest.approx(2.0, abs=0.3)
+    assert errors[1].max() < 1e-4
+    text = "marched through 1024 samples per period"
+    assert any(text in one for one in beam(evaluation="marched").assumptions)
+    assert not any("marched" in one for one in frf.assumptions)
+
+
+def test_everything_of_a_marched_result_is_marched(frf, tmp_path):
+    coarse = beam(evaluation="marched", samples=40)
+    index = coarse.index(195.0)
+    force = coarse.contact_force((0, 0), index, 40)
+    harmonics = 2 * np.fft.rfft(force)[:10] / 40
+    kept = coarse.arrays.contact_force[index, :, 0]
+    np.testing.assert_allclose(harmonics[1::2], kept[1::2], atol=1e-9 * 246.048)
+    peak = coarse.peak("tip")
+    assert not peak.at_edge
+    again = ss.forced_response(
+        snecma_beam(), [peak.omega], 9, evaluation="marched", samples=40, method="broyden"
+    )
+    assert again.amplitude("tip")[0] == pytest.approx(peak.amplitude, rel=1e-8)
+    assert peak.amplitude != pytest.approx(frf.peak("tip").amplitude, rel=1e-4)
+    coarse.save(tmp_path / "coarse.nc")
+    loaded = ss.load(tmp_path / "coarse.nc")
+    assert loaded.settings == coarse.settings
+    np.testing.assert_array_equal(loaded.contact_force((0, 0), index, 40), force)
+
+
+@pytest.mark.parametrize(
+    ("harmonics", "limit", "march"), [(9, 255, 1024), (200, 255, 2048), ("auto", 63, 1024)]
+)
+def test_automatic_samples(harmonics, limit, march):
+    settings = Settings(harmonics=harmonics, evaluation="marched", max_harmonics=limit)
+    assert settings.march == march
+    assert Settings(harmonics=9).march is None
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"method": "broiden"}, r"method: unknown choice 'broiden'; did you mean 'broyden'\?"),
+        ({"jacobian": "differences"}, "jacobian: .* give method='broyden' with it"),
+        ({"jacobian": "numeric", "method": "broyden"}, "jacobian: unknown choice 'numeric'"),
+        ({"evaluation": "sampled"}, "evaluation: unknown choice 'sampled'"),
+        ({"samples": 512}, "samples: 512 for the exact evaluation.*evaluation='marched'"),
+        ({"evaluation": "marched", "samples": 38}, "samples: 38 .* up to 9; .* number from 40"),
+        ({"evaluation": "marched", "samples": 513}, "samples: 513 .* an even number from 40"),
+        ({"evaluation": "marched", "samples": 51.2}, "samples: 51.2 is not an integer"),
+        ({"evaluation": "marched", "samples": 512, "harmonics": "auto"}, "up to 255; .* 1024"),
+    ],
+)
+def test_settings_that_do_not_fit_are_refused(settings, message):
+    with pytest.raises(ss.ModelError, match=message):
+        ss.forced_response(snecma_beam(), BAND, **{"harmonics": 9} | settings)
+
+
+def test_a_study_file_chooses_solver_and_evaluation():
+    text = """
+    [structure]
+    mass = [[1.0]]
+    stiffness = [[100.0]]
+    [[contact]]
+    law = "jenkins"
+    dof = 0
+    stiffness = 20.0
+    slip_force = 1.0
+    [[force]]
+    dof = 0
+    amplitude = 2.0
+    [analysis]
+    omega = [8.0, 9.0]
+    harmonics = 5
+    method = "broyden"
+    jacobian = "differences"
+    evaluation = "marched"
+    samples = 64
+    """
+    (result,) = Study.parse(text).run()
+    settings = result.settings
+    assert (settings.method, settings.jacobian) == ("broyden", "differences")
+    assert settings.march == 64
+    assert result.converged.all()
+    with pytest.raises(ss.ModelError, match="samples: 64 for harmonics up to 31"):
+        Study.parse(text.replace("harmonics = 5", "harmonics = 31"))
