@@ -111,6 +111,10 @@ impl FrictionLaw for Coupled {
         Box::new(Self::new())
     }
 
+    fn magnified(&self, _: f64) -> Box<dyn FrictionLaw> {
+        Box::new(Self::new())
+    }
+
     fn slip_load(&self, _: Motion<'_>, _: bool, _: &mut SlipLoad) {}
 
     fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
