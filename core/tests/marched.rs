@@ -17,7 +17,6 @@ use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::model::{Contact, Model};
 use stickslip_core::solve::FirstJacobian;
 use stickslip_core::structure::{HarmonicLoad, Structure};
-use stickslip_core::Error;
 
 const STIFFNESS: f64 = 2.0;
 const SLIP_FORCE: f64 = 1.0;
@@ -161,20 +160,6 @@ impl FrictionLaw for Coupled {
     fn force_history(&self, _: Motion<'_>, _: usize) -> Vec<f64> {
         Vec::new()
     }
-
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
-        Vec::new()
-    }
-
-    fn with_parameter(&self, _: usize, _: f64) -> Result<Box<dyn FrictionLaw>, Error> {
-        Ok(Box::new(Self::new()))
-    }
-
-    fn magnified(&self, _: f64) -> Box<dyn FrictionLaw> {
-        Box::new(Self::new())
-    }
-
-    fn parameter_slope(&self, _: Motion<'_>, _: usize, _: &mut [f64]) {}
 }
 
 #[test]

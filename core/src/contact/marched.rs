@@ -254,23 +254,6 @@ impl FrictionLaw for Marched {
         Box::new(Self { law: self.law.softened(share), samples: self.samples })
     }
 
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
-        self.law.parameters()
-    }
-
-    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn FrictionLaw>, Error> {
-        Ok(Box::new(Self { law: self.law.with_parameter(index, value)?, samples: self.samples }))
-    }
-
-    fn magnified(&self, factor: f64) -> Box<dyn FrictionLaw> {
-        Box::new(Self { law: self.law.magnified(factor), samples: self.samples })
-    }
-
-    /// That of the law itself: it differs from the derivative of the march by the sampling error.
-    fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
-        self.law.parameter_slope(motion, index, out);
-    }
-
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         let harmonics = motion.table.harmonics();
         let (slots, points) = (harmonics.slots(), self.points());

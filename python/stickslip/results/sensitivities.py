@@ -199,11 +199,6 @@ class Sensitivities(ContactMotion):
                 f"sensitivity: a {type(self).__name__} has none; they are those of the balance "
                 "that forced_response solves"
             )
-        if self.settings.evaluation != "exact":
-            raise ModelError(
-                f"sensitivity: evaluation={self.settings.evaluation!r} has none; compute the "
-                'response with evaluation="exact"'
-            )
         position = self.model.structure.index(text(dof, "dof"))
         choice(measure, "measure", get_args(Measure))
         arrays = self.arrays
