@@ -12,8 +12,10 @@ if TYPE_CHECKING:
     from stickslip import plot, reference, study
     from stickslip._core import __version__
     from stickslip.analyses.certify import certify
+    from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.optimal_damper import optimal_damper
     from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
     from stickslip.errors import Interrupted, ModelError
@@ -22,12 +24,15 @@ if TYPE_CHECKING:
     from stickslip.model.state import State
     from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
     from stickslip.results import ForcedResponse
+    from stickslip.results.damper_curve import DamperCurve
     from stickslip.results.exact_response import ExactResponse
+    from stickslip.results.optimal_damper import OptimalDamper
     from stickslip.results.status import Status
     from stickslip.results.store import load
     from stickslip.results.transient import Transient
 
 __all__ = [
+    "DamperCurve",
     "ExactResponse",
     "Force",
     "ForcedResponse",
@@ -36,6 +41,7 @@ __all__ = [
     "ModalDamping",
     "Model",
     "ModelError",
+    "OptimalDamper",
     "Rayleigh",
     "State",
     "Status",
@@ -43,11 +49,13 @@ __all__ = [
     "Transient",
     "__version__",
     "certify",
+    "damper_curve",
     "exact_response",
     "forced_response",
     "join",
     "load",
     "natural_frequencies",
+    "optimal_damper",
     "plot",
     "read_matrix",
     "reference",
@@ -57,6 +65,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "DamperCurve": "results.damper_curve",
     "ExactResponse": "results.exact_response",
     "Force": "model",
     "ForcedResponse": "results",
@@ -65,6 +74,7 @@ _HOMES = {
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",
+    "OptimalDamper": "results.optimal_damper",
     "Rayleigh": "model",
     "State": "model.state",
     "Status": "results",
@@ -72,11 +82,13 @@ _HOMES = {
     "Transient": "results.transient",
     "__version__": "_core",
     "certify": "analyses.certify",
+    "damper_curve": "analyses.damper_curve",
     "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",
     "load": "results.store",
     "natural_frequencies": "model",
+    "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",
     "single_harmonic": "analyses.single_harmonic",
     "transient": "analyses.transient",

@@ -9,6 +9,7 @@ from stickslip.plot.charts import (
     slip,
     waveform,
 )
+from stickslip.plot.damper import DamperOptions, damper
 from stickslip.plot.orbits import MultiplierOptions, events, multipliers
 from stickslip.plot.transients import (
     HistoryOptions,
@@ -23,6 +24,7 @@ from stickslip.plot.transients import (
 
 __all__ = [
     "CurveOptions",
+    "DamperOptions",
     "Frame",
     "HistoryOptions",
     "LoopOptions",
@@ -31,6 +33,7 @@ __all__ = [
     "SpectrumOptions",
     "contact_history",
     "curves",
+    "damper",
     "events",
     "history",
     "hysteresis",
