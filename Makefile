@@ -10,7 +10,7 @@ BIN    := $(VENV)/bin
 help:
 	@echo "make demo   build, run the SNECMA beam study, say where its table, picture and files are"
 	@echo "make test   build, then all Rust and Python tests, linters and the documentation"
-	@echo "make bench  criterion benchmarks of the core and the speed table of the package"
+	@echo "make bench  criterion benchmarks of the core and the speed tables of the package"
 	@echo "make peers  the same study with pyHarm-os, in an environment of its own"
 
 # Says what is missing instead of failing half-way.
@@ -61,8 +61,9 @@ docs: $(VENV)/.developed
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 bench: $(VENV)/.developed
-	cargo bench -p stickslip-core --bench forced_response
+	cargo bench -p stickslip-core
 	$(BIN)/python benchmarks/speed.py
+	$(BIN)/python benchmarks/table_4_1.py
 
 peers: $(VENV)/.developed
 	$(BIN)/python benchmarks/speed.py --peers

@@ -53,7 +53,7 @@ def integration(model: ss.Model, scheme: str) -> tuple[float, float, float]:
             tolerance=SETTLED,
             scheme=scheme,
             steps=STEPS,
-            samples=1,
+            samples=2,
             keep=1,
             observe=["tip"],
         )

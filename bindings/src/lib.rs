@@ -1,6 +1,7 @@
 //! Python skin of `stickslip-core`: arrays in, arrays out. No mathematics here.
 
 mod arrays;
+mod design;
 mod orbits;
 mod problem;
 mod response;
@@ -23,6 +24,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(response::contact_force, module)?)?;
     module.add_function(wrap_pyfunction!(settings::automatic_samples, module)?)?;
     module.add_function(wrap_pyfunction!(single_harmonic::single_harmonic, module)?)?;
+    module.add_class::<design::Peaks>()?;
+    module.add_function(wrap_pyfunction!(design::damper_curve, module)?)?;
+    module.add_function(wrap_pyfunction!(design::optimal_damper, module)?)?;
+    module.add_function(wrap_pyfunction!(design::sensitivity, module)?)?;
     module.add_class::<orbits::Orbits>()?;
     module.add_function(wrap_pyfunction!(orbits::exact_response, module)?)?;
     module.add_function(wrap_pyfunction!(orbits::exact_peak, module)?)?;

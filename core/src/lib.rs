@@ -8,6 +8,7 @@
 //! | [`structure`] | M, C, K, modes and the compliance of the stuck structure |
 //! | [`contact`] | friction laws behind one trait: series of u in, series of slip load and tangent out |
 //! | [`balance`] | the harmonic balance equations and their sweeps over frequency |
+//! | [`design`] | peaks followed along a parameter, and the parameter that makes them least |
 //! | [`solve`] | Newton's and Broyden's method and homotopy, which know nothing of friction |
 //! | [`motion`] | motion in time: the exact flow between events, Runge-Kutta |
 //! | [`orbit`] | exact periodic orbits by shooting, Floquet multipliers |
@@ -17,6 +18,7 @@
 
 pub mod balance;
 pub mod contact;
+pub mod design;
 pub mod error;
 pub mod fourier;
 pub mod model;

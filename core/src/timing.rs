@@ -28,6 +28,15 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// Adds the stages of a part of the analysis.
+    pub fn add(&mut self, part: &Self) {
+        self.compliance += part.compliance;
+        self.law += part.law;
+        self.linear_solve += part.linear_solve;
+        self.evaluations += part.evaluations;
+        self.factorisations += part.factorisations;
+    }
+
     /// Runs `work` and adds its duration to `stage`.
     pub fn time<T>(stage: &mut Duration, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();

@@ -110,6 +110,10 @@ impl FrictionLaw for Coupled {
         Box::new(Self::new())
     }
 
+    fn magnified(&self, _: f64) -> Box<dyn FrictionLaw> {
+        Box::new(Self::new())
+    }
+
     fn slip_load(&self, _: Motion<'_>, _: bool, _: &mut SlipLoad) {}
 
     fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
@@ -155,6 +159,22 @@ impl FrictionLaw for Coupled {
 
     fn force_history(&self, _: Motion<'_>, _: usize) -> Vec<f64> {
         Vec::new()
+    }
+}
+
+#[test]
+fn parameter_slopes_approach_those_of_the_closed_form() {
+    let table = SampleTable::new(Harmonics::new(7, true));
+    let series = [0.9, 0.2, 0.05, -0.04, 0.02, 0.01, 0.0, 0.0];
+    let motion = Motion { table: &table, displacement: &series, residual: Residual::Centred };
+    let mut slopes = [[0.0; 8]; 2];
+    for parameter in 0..2 {
+        jenkins().parameter_slope(motion, parameter, &mut slopes[0]);
+        marched(4096).parameter_slope(motion, parameter, &mut slopes[1]);
+        let size = slopes[0].iter().map(|s| s.abs()).fold(0.0, f64::max);
+        let pairs = slopes[0].iter().zip(&slopes[1]);
+        let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(size > 0.0 && error < 1e-3 * size, "{parameter}: {error:e} of {size:e}");
     }
 }
 

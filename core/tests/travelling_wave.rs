@@ -160,6 +160,64 @@ fn a_ring_of_sectors_is_the_whole_disk() {
     }
 }
 
+/// Laws of another stiffness reach the couplings between neighbours, and sensitivities the ring.
+#[test]
+fn other_laws_and_slopes_of_rings_are_those_of_the_whole_disk() {
+    let between = Some((2e5, 8.0));
+    let factors: Vec<f64> = (0..7).map(|i| 1.0 + 0.05 * (3.0 * f64::from(i)).sin()).collect();
+    let stiffer = |model: &Model| {
+        let laws = model.laws().iter().map(|law| law.with_parameter(0, 3e5).unwrap()).collect();
+        model.with_laws(laws).unwrap()
+    };
+    let ring = stiffer(&sectors(&factors, 2, between));
+    let whole = {
+        let assembled = |model: &Model| {
+            let contacts = (0..model.laws().len()).map(|i| stickslip_core::model::Contact {
+                law: model.laws()[i].softened(1.0),
+                rows: model.ports().rows.get(i..i + 1, ..).to_owned(),
+            });
+            let loads = model.ports().loads.clone();
+            Model::new(model.structure().clone(), contacts.collect(), loads).unwrap()
+        };
+        stiffer(&assembled(&sectors(&factors, 2, between)))
+    };
+    let observe = [0, 4, 10];
+    let contacts = ring.compliance().contacts();
+    let slip: Vec<c64> = (0..contacts).map(|i| c64::new(i as f64, 1.0)).collect();
+    let zero = c64::new(0.0, 0.0);
+    let mut receptance = Receptance::default();
+    ring.compliance().receptance(3, 190.0, &mut receptance).unwrap();
+    let contact: Vec<c64> = (0..contacts)
+        .map(|i| (0..contacts).map(|j| receptance.contact[j * contacts + i] * slip[j]).sum())
+        .collect();
+    let values = |model: &Model| {
+        let compliance = model.compliance();
+        let mut out = [[zero; 3]; 3];
+        compliance.displacement(3, 190.0, &contact, &slip, &observe, &mut out[0]).unwrap();
+        compliance.slip_displacement(3, 190.0, &contact, &slip, &observe, &mut out[1]).unwrap();
+        compliance.displacement_slope(3, 190.0, &contact, &slip, &observe, &mut out[2]).unwrap();
+        out
+    };
+    for (ours, theirs) in values(&ring).iter().zip(&values(&whole)).take(2) {
+        for (a, b) in ours.iter().zip(theirs) {
+            assert!((a - b).norm() < 1e-9 * b.norm(), "{a} {b}");
+        }
+    }
+    // At fixed slip load the whole motion changes; differences say by how much.
+    let h = 1e-3;
+    let at = |omega: f64| {
+        let mut out = [zero; 3];
+        let compliance = ring.compliance();
+        compliance.displacement(3, omega, &contact, &slip, &observe, &mut out).unwrap();
+        out
+    };
+    let (ahead, behind) = (at(190.0 + h), at(190.0 - h));
+    for (i, slope) in values(&ring)[2].iter().enumerate() {
+        let difference = (ahead[i] - behind[i]) / (2.0 * h);
+        assert!((difference - slope).norm() < 1e-6 * slope.norm());
+    }
+}
+
 fn fixed(highest: usize) -> Settings {
     Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
 }

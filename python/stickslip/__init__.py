@@ -12,8 +12,10 @@ if TYPE_CHECKING:
     from stickslip import plot, reference, study
     from stickslip._core import __version__
     from stickslip.analyses.certify import certify
+    from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.optimal_damper import optimal_damper
     from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
     from stickslip.disk import (
@@ -30,7 +32,9 @@ if TYPE_CHECKING:
     from stickslip.model.state import State
     from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
     from stickslip.results import ForcedResponse
+    from stickslip.results.damper_curve import DamperCurve
     from stickslip.results.exact_response import ExactResponse
+    from stickslip.results.optimal_damper import OptimalDamper
     from stickslip.results.status import Status
     from stickslip.results.store import load
     from stickslip.results.transient import Transient
@@ -38,6 +42,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BladedDisk",
     "Coupling",
+    "DamperCurve",
     "ExactResponse",
     "Force",
     "ForcedResponse",
@@ -48,6 +53,7 @@ __all__ = [
     "ModalDamping",
     "Model",
     "ModelError",
+    "OptimalDamper",
     "Rayleigh",
     "State",
     "Status",
@@ -56,12 +62,14 @@ __all__ = [
     "__version__",
     "certify",
     "cyclic_sector",
+    "damper_curve",
     "exact_response",
     "forced_response",
     "join",
     "load",
     "mistuning_pattern",
     "natural_frequencies",
+    "optimal_damper",
     "plot",
     "read_matrix",
     "reference",
@@ -73,6 +81,7 @@ __all__ = [
 _HOMES = {
     "BladedDisk": "disk",
     "Coupling": "disk",
+    "DamperCurve": "results.damper_curve",
     "ExactResponse": "results.exact_response",
     "Force": "model",
     "ForcedResponse": "results",
@@ -83,6 +92,7 @@ _HOMES = {
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",
+    "OptimalDamper": "results.optimal_damper",
     "Rayleigh": "model",
     "State": "model.state",
     "Status": "results",
@@ -91,12 +101,14 @@ _HOMES = {
     "__version__": "_core",
     "certify": "analyses.certify",
     "cyclic_sector": "disk",
+    "damper_curve": "analyses.damper_curve",
     "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",
     "load": "results.store",
     "mistuning_pattern": "disk",
     "natural_frequencies": "model",
+    "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",
     "single_harmonic": "analyses.single_harmonic",
     "transient": "analyses.transient",

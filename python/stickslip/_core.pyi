@@ -1,6 +1,7 @@
 """The compiled mathematics: arrays in, arrays out."""
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -212,3 +213,65 @@ def transient(
     keep: int | None,
     progress: Callable[[float], None] | None,
 ) -> History: ...
+
+class Design(TypedDict):
+    parameter: str
+    contacts: list[int]
+    factor: bool
+    dof: int
+    measure: str
+    omega: tuple[float, float]
+    harmonics: int | None
+    tolerance: float
+    residual: Residual
+    max_harmonics: int
+    max_iterations: int
+
+class Peaks:
+    @property
+    def value(self) -> Float: ...
+    @property
+    def omega(self) -> Float: ...
+    @property
+    def amplitude(self) -> Float: ...
+    @property
+    def sensitivity(self) -> Float: ...
+    @property
+    def error_estimate(self) -> Float: ...
+    @property
+    def harmonics(self) -> NDArray[np.int64]: ...
+    @property
+    def at_edge(self) -> NDArray[np.bool_]: ...
+    @property
+    def status(self) -> NDArray[np.uint8]: ...
+    @property
+    def interrupted(self) -> bool: ...
+    @property
+    def timings(self) -> dict[str, float]: ...
+    @property
+    def counters(self) -> dict[str, int]: ...
+
+def damper_curve(
+    problem: Problem,
+    design: Design,
+    values: Float,
+    progress: Callable[[float], None] | None,
+) -> Peaks: ...
+def optimal_damper(
+    problem: Problem,
+    design: Design,
+    bounds: tuple[float, float],
+    progress: Callable[[float], None] | None,
+) -> tuple[Peaks, Peaks]: ...
+def sensitivity(
+    problem: Problem,
+    omega: Float,
+    harmonics: NDArray[np.int64],
+    contact_displacement: Complex,
+    half_wave: bool,
+    residual: Residual,
+    dof: int,
+    measure: str,
+    causes: Sequence[str | tuple[int, str]],
+    march: int | None,
+) -> Float: ...

@@ -41,6 +41,16 @@ pub struct ForcedBalance<'a> {
     pub(super) profile: Profile,
 }
 
+/// What passes from one balance to the next: sample tables, the order that automatic harmonics
+/// start from, and the account of the work.
+#[derive(Default)]
+pub(crate) struct Memory {
+    tables: BTreeMap<usize, Arc<SampleTable>>,
+    rung: usize,
+    half_wave: bool,
+    pub(crate) profile: Profile,
+}
+
 impl<'a> ForcedBalance<'a> {
     /// Prepares the balance; displacements are recovered at the DOFs `observe`.
     ///
@@ -86,9 +96,26 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// Reports the share of the work done; `false` if the analysis is to end.
-    pub(super) fn report(&mut self, share: f64) -> bool {
+    pub(crate) fn report(&mut self, share: f64) -> bool {
         self.share = share;
         (self.progress)(share)
+    }
+
+    /// Takes over what another balance of the same contacts has learnt.
+    #[must_use]
+    pub(crate) fn remembering(mut self, memory: Memory) -> Self {
+        let Memory { tables, rung, half_wave, profile } = memory;
+        if half_wave == self.half_wave {
+            (self.tables, self.rung) = (tables, rung);
+        }
+        self.profile = profile;
+        self
+    }
+
+    /// What a balance of the same contacts can use again.
+    pub(crate) fn into_memory(self) -> Memory {
+        let Self { tables, rung, half_wave, profile, .. } = self;
+        Memory { tables, rung, half_wave, profile }
     }
 
     /// Whether only odd harmonics are solved for.
@@ -101,7 +128,7 @@ impl<'a> ForcedBalance<'a> {
         self.observe.len()
     }
 
-    pub(super) fn table(&mut self, highest: usize) -> Arc<SampleTable> {
+    pub(crate) fn table(&mut self, highest: usize) -> Arc<SampleTable> {
         let half_wave = self.half_wave;
         let table = self
             .tables
@@ -181,12 +208,8 @@ impl<'a> ForcedBalance<'a> {
         Ok(solved)
     }
 
-    pub(super) fn add_profile(&mut self, profile: &Profile) {
-        self.profile.compliance += profile.compliance;
-        self.profile.law += profile.law;
-        self.profile.linear_solve += profile.linear_solve;
-        self.profile.evaluations += profile.evaluations;
-        self.profile.factorisations += profile.factorisations;
+    pub(crate) fn add_profile(&mut self, profile: &Profile) {
+        self.profile.add(profile);
     }
 
     /// The chosen method from the start, then homotopy, then a status that says so.
@@ -309,7 +332,8 @@ impl<'a> ForcedBalance<'a> {
             law.summary(equations.motion(index, x), &mut summaries[range]);
         }
         point.contacts = summaries;
-        if status == PointStatus::Converged {
+        // Without an observed DOF there is nothing whose error could be estimated.
+        if status == PointStatus::Converged && !self.observe.is_empty() {
             self.estimate(harmonics, x, &mut point)?;
         }
         Ok(point)

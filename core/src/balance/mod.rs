@@ -6,6 +6,7 @@ mod adaptive;
 mod condensed;
 mod forced;
 mod jacobian;
+mod linearised;
 mod peak;
 mod scale;
 mod settings;
@@ -16,6 +17,8 @@ mod unknowns;
 
 pub use adaptive::sweep_range;
 pub use forced::ForcedBalance;
+pub(crate) use forced::Memory;
+pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;
 pub use settings::{HarmonicChoice, Method, Settings, HIGHEST_ORDER};
@@ -23,6 +26,7 @@ pub use single_harmonic::single_harmonic;
 pub use solution::{Point, PointStatus, Solution};
 pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
+pub use unknowns::Unknowns;
 
 /// Called between points and between Newton iterations with the share of the work done; `false`
 /// ends the analysis and keeps what is solved.

@@ -47,6 +47,18 @@ pub struct Point {
 }
 
 impl Point {
+    /// Contact displacements in the layout of the balance, if there are any.
+    #[must_use]
+    pub fn unknowns(&self) -> Option<&Unknowns> {
+        self.unknowns.as_ref()
+    }
+
+    /// Whether the balance equations hold.
+    #[must_use]
+    pub fn is_solved(&self) -> bool {
+        matches!(self.status, PointStatus::Converged | PointStatus::HarmonicsLimit)
+    }
+
     pub(crate) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {
         Self {
             omega,

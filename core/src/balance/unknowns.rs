@@ -11,8 +11,26 @@ pub struct Unknowns {
 }
 
 impl Unknowns {
+    /// Real coefficients `values`, point after point, in a set of harmonics.
+    #[must_use]
+    pub fn new(harmonics: Harmonics, values: Vec<f64>) -> Self {
+        Self { harmonics, values }
+    }
+
+    /// The set of harmonics.
+    #[must_use]
+    pub fn harmonics(&self) -> &Harmonics {
+        &self.harmonics
+    }
+
+    /// The real coefficients.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The same series in another set of harmonics: common ones are kept, new ones are zero.
-    pub(super) fn recast(&self, harmonics: &Harmonics) -> Vec<f64> {
+    pub(crate) fn recast(&self, harmonics: &Harmonics) -> Vec<f64> {
         let (from, to) = (self.harmonics.slots(), harmonics.slots());
         if self.harmonics == *harmonics {
             return self.values.clone();

@@ -19,8 +19,8 @@ use std::f64::consts::PI;
 /// Elastic, perfectly plastic friction element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jenkins {
-    stiffness: f64,
-    slip_force: f64,
+    pub(super) stiffness: f64,
+    pub(super) slip_force: f64,
 }
 
 impl Jenkins {
@@ -225,6 +225,29 @@ impl FrictionLaw for Jenkins {
             })
             .collect()
     }
+
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        vec![("stiffness", self.stiffness), ("slip_force", self.slip_force)]
+    }
+
+    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn FrictionLaw>, Error> {
+        Ok(Box::new(match index {
+            0 => Self::new(value, self.slip_force)?,
+            _ => Self::new(self.stiffness, value)?,
+        }))
+    }
+
+    fn magnified(&self, factor: f64) -> Box<dyn FrictionLaw> {
+        Box::new(Self { slip_force: factor * self.slip_force, ..*self })
+    }
+
+    fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
+        out.fill(0.0);
+        match index {
+            0 => self.stiffness_slope(motion, out),
+            _ => self.slip_force_slope(motion, out),
+        }
+    }
 }
 
 impl Jenkins {
@@ -261,19 +284,19 @@ impl Jenkins {
 }
 
 /// Basis integrals over intervals, from the antiderivatives at their two ends.
-struct Bounds {
+pub(super) struct Bounds {
     start: Vec<f64>,
     end: Vec<f64>,
 }
 
 impl Bounds {
-    fn new(harmonics: &Harmonics) -> Self {
+    pub(super) fn new(harmonics: &Harmonics) -> Self {
         let size = harmonics.slots();
         Self { start: vec![0.0; size], end: vec![0.0; size] }
     }
 
     /// Adds `factor ∫ basis dθ` to `out`.
-    fn add_integral(
+    pub(super) fn add_integral(
         &mut self,
         harmonics: &Harmonics,
         start: f64,
@@ -308,7 +331,7 @@ fn add_anchors(harmonics: &Harmonics, sticks: &[Stick], weight: f64, tangent: &m
 }
 
 /// Sums over all slip intervals.
-fn union_of(slips: &[Slip], harmonics: &Harmonics) -> IntervalSums {
+pub(super) fn union_of(slips: &[Slip], harmonics: &Harmonics) -> IntervalSums {
     let mut sums = IntervalSums::new(harmonics);
     for slip in slips {
         sums.add(slip.start, slip.end);

@@ -22,6 +22,8 @@ const PER_HARMONIC: usize = 8;
 /// Rounds after which a march is taken as it is. An elastoplastic contact forgets its start with
 /// the first slip in either direction; several coupled points take some rounds more.
 const MOST_ROUNDS: usize = 200;
+/// Step of differences in a parameter, relative to it.
+const DIFFERENCE: f64 = 1e-5;
 /// Change of the forces over a round, relative to the largest, that counts as none.
 const PERIODIC: f64 = 1e-13;
 
@@ -326,6 +328,45 @@ impl FrictionLaw for Marched {
             summary.slip_fraction = round.slipping[i] as f64 / samples.count as f64;
             if summary.slip_fraction > 0.0 {
                 summary.dissipation = spans * round.work[i];
+            }
+        }
+    }
+
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        self.law.parameters()
+    }
+
+    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn FrictionLaw>, Error> {
+        let law = self.law.with_parameter(index, value)?;
+        Ok(Box::new(Self { law, samples: self.samples }))
+    }
+
+    fn magnified(&self, factor: f64) -> Box<dyn FrictionLaw> {
+        Box::new(Self { law: self.law.magnified(factor), samples: self.samples })
+    }
+
+    /// By central differences: a march has no derivative in a parameter that would serve all laws.
+    fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
+        out.fill(0.0);
+        let value = self.law.parameters()[index].1;
+        let step = DIFFERENCE * value;
+        if !(step > 0.0 && step.is_finite()) {
+            return;
+        }
+        let slots = motion.table.harmonics().slots();
+        let mut load = SlipLoad::default();
+        for side in [0.5, -0.5] {
+            let Ok(law) = self.with_parameter(index, value + side * step) else { continue };
+            law.slip_load(motion, false, &mut load);
+            let stiffness = law.stiffness();
+            let weight = side.signum() / step;
+            for (i, series) in out.chunks_exact_mut(slots).enumerate() {
+                for (slot, slope) in series.iter_mut().enumerate() {
+                    let stuck: f64 = (0..self.points())
+                        .map(|j| stiffness[(i, j)] * motion.displacement[j * slots + slot])
+                        .sum();
+                    *slope += weight * (stuck - load.value[i * slots + slot]);
+                }
             }
         }
     }

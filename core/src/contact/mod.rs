@@ -8,6 +8,7 @@
 mod cycle;
 mod describing;
 mod jenkins;
+mod jenkins_parameters;
 mod march_rate;
 mod marched;
 
@@ -175,6 +176,31 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
 
     /// Contact forces at `samples` equidistant instants, instant after instant [N].
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
+
+    /// Names and values of the parameters, each addressed by its position; none by default.
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
+    /// The same law with another value of one parameter.
+    ///
+    /// # Errors
+    /// A value that the law refuses.
+    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn FrictionLaw>, Error> {
+        let _ = index;
+        Err(Error::value("parameter", value, "the law has no parameters"))
+    }
+
+    /// The same law with all its forces multiplied by `factor` and its stiffness kept: at `factor`
+    /// times the displacements its force is `factor` times as large.
+    fn magnified(&self, factor: f64) -> Box<dyn FrictionLaw>;
+
+    /// Series of the derivative of the contact force in parameter `index` at fixed displacement,
+    /// laid out as the displacement.
+    fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
+        let _ = (motion, index);
+        out.fill(0.0);
+    }
 }
 
 /// Parameters of a law by name.

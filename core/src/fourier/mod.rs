@@ -1,9 +1,11 @@
 //! Trigonometric series: the ground floor.
 
+mod gradient;
 mod harmonics;
 mod interval_sums;
 mod turning_points;
 
+pub use gradient::amplitude_gradient;
 pub use harmonics::Harmonics;
 pub use interval_sums::IntervalSums;
 pub use turning_points::{SampleTable, TurningPoint};

@@ -290,6 +290,30 @@ impl Compliance for CyclicCompliance {
         self.wave(harmonic)?.displacement(harmonic, omega, contact, slip_load, observe, out)
     }
 
+    fn slip_displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        self.wave(harmonic)?.slip_displacement(harmonic, omega, contact, slip_load, observe, out)
+    }
+
+    fn displacement_slope(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        self.wave(harmonic)?.displacement_slope(harmonic, omega, contact, slip_load, observe, out)
+    }
+
     fn stuck_frequencies(&self) -> &[f64] {
         &self.stuck_frequencies
     }

@@ -81,6 +81,22 @@ impl DirectCompliance {
         Ok(lu)
     }
 
+    /// `2k²ωM − ikC`: how fast the dynamic stiffness falls with ω.
+    fn softening(&self, harmonic: usize, omega: f64) -> Mat<c64> {
+        let (n, order) = (self.mass.nrows(), harmonic as f64);
+        Mat::from_fn(n, n, |i, j| {
+            2.0 * order * order * omega * self.mass[(i, j)]
+                - c64::new(0.0, order) * self.damping[(i, j)]
+        })
+    }
+
+    /// Forces on all DOFs from the slip loads.
+    fn of_slip(&self, slip_load: &[c64]) -> Mat<c64> {
+        Mat::from_fn(self.mass.nrows(), 1, |dof, _| {
+            slip_load.iter().enumerate().map(|(i, q)| self.rows[(i, dof)].conj() * q).sum()
+        })
+    }
+
     fn load(&self, harmonic: usize) -> Mat<c64> {
         let load = self.loads.iter().find(|load| load.harmonic == harmonic);
         Mat::from_fn(self.mass.nrows(), 1, |i, _| {
@@ -110,7 +126,6 @@ impl Compliance for DirectCompliance {
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
         let contacts = self.contacts();
         out.reset(contacts);
-        let order = harmonic as f64;
         let lu = self.factor(harmonic, omega)?;
         let rows = &self.rows;
         let of_contacts = lu.solve(rows.adjoint().to_owned());
@@ -124,11 +139,7 @@ impl Compliance for DirectCompliance {
         }
         if let Some((contact_slope, stuck_slope)) = &mut out.slope {
             // dG = −G (ikC − 2k²ωM) G
-            let n = self.mass.nrows();
-            let change = Mat::from_fn(n, n, |i, j| {
-                2.0 * order * order * omega * self.mass[(i, j)]
-                    - c64::new(0.0, order) * self.damping[(i, j)]
-            });
+            let change = self.softening(harmonic, omega);
             let contact_change = rows * lu.solve(&change * &of_contacts);
             let load_change = rows * lu.solve(&change * &of_load);
             for column in 0..contacts {
@@ -150,16 +161,37 @@ impl Compliance for DirectCompliance {
         observe: &[usize],
         out: &mut [c64],
     ) -> Result<(), Error> {
-        let mut load = self.load(harmonic);
-        for (i, force) in slip_load.iter().enumerate() {
-            for dof in 0..self.mass.nrows() {
-                load[(dof, 0)] += self.rows[(i, dof)].conj() * force;
-            }
-        }
-        let x = self.factor(harmonic, omega)?.solve(load);
-        for (value, &dof) in out.iter_mut().zip(observe) {
-            *value = x[(dof, 0)];
-        }
+        let load = self.load(harmonic) + self.of_slip(slip_load);
+        observed(self.factor(harmonic, omega)?.solve(load).as_ref(), observe, out);
+        Ok(())
+    }
+
+    fn slip_displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        _contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        let x = self.factor(harmonic, omega)?.solve(self.of_slip(slip_load));
+        observed(x.as_ref(), observe, out);
+        Ok(())
+    }
+
+    fn displacement_slope(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        _contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        let lu = self.factor(harmonic, omega)?;
+        let x = lu.solve(self.load(harmonic) + self.of_slip(slip_load));
+        observed(lu.solve(self.softening(harmonic, omega) * x).as_ref(), observe, out);
         Ok(())
     }
 
@@ -174,5 +206,11 @@ impl Compliance for DirectCompliance {
     fn narrowest_bandwidth(&self) -> f64 {
         // No mode is known; a hundredth of the lowest frequency resolves ordinary damping.
         self.stuck_frequencies.iter().copied().find(|w| *w > 0.0).unwrap_or(1.0) * 0.01
+    }
+}
+
+fn observed(x: MatRef<'_, c64>, observe: &[usize], out: &mut [c64]) {
+    for (value, &dof) in out.iter_mut().zip(observe) {
+        *value = x[(dof, 0)];
     }
 }

@@ -54,11 +54,19 @@ impl Flexibility {
         }
     }
 
-    pub(super) fn displacement(&self, slip_load: &[c64], observe: &[usize], out: &mut [c64]) {
+    /// Static displacements under the slip loads, and the external load if `loaded`.
+    pub(super) fn displacement(
+        &self,
+        loaded: bool,
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) {
+        let share = f64::from(u8::from(loaded));
         for (x, &dof) in out.iter_mut().zip(observe) {
             let slip: f64 =
                 (0..slip_load.len()).map(|i| self.of_contacts[(dof, i)] * slip_load[i].re).sum();
-            *x = c64::new(self.of_load[(dof, 0)] + slip, 0.0);
+            *x = c64::new(share * self.of_load[(dof, 0)] + slip, 0.0);
         }
     }
 }

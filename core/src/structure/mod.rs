@@ -94,6 +94,34 @@ pub trait Compliance: Send + Sync {
     fn ring(&self) -> Option<&Ring> {
         None
     }
+    /// Displacement amplitudes under the slip loads alone: [`Compliance::displacement`] without
+    /// the external load, linear in `contact` and `slip_load`.
+    ///
+    /// # Errors
+    /// As [`Compliance::receptance`].
+    fn slip_displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error>;
+
+    /// Derivative of [`Compliance::displacement`] in ω at fixed `contact` and `slip_load` [m s].
+    ///
+    /// # Errors
+    /// As [`Compliance::receptance`].
+    fn displacement_slope(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error>;
 
     /// Natural frequencies of the stuck structure, ascending [rad/s].
     fn stuck_frequencies(&self) -> &[f64];

@@ -278,34 +278,49 @@ impl Compliance for ModalCompliance {
     ) -> Result<(), Error> {
         out.fill(c64::new(0.0, 0.0));
         if harmonic == 0 {
-            let Some(flexibility) = &self.flexibility else {
-                return Err(self.singular());
-            };
-            flexibility.displacement(slip_load, observe, out);
+            let flexibility = self.flexibility.as_ref().ok_or_else(|| self.singular())?;
+            flexibility.displacement(true, slip_load, observe, out);
             return Ok(());
         }
-        // The free structure carries the whole contact force, the stuck one the slip load alone.
-        let forces: Vec<c64> = match &self.restraint {
-            Some(stiffness) => (0..self.contacts())
-                .map(|i| {
-                    let stuck: c64 =
-                        (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum();
-                    slip_load[i] - stuck
-                })
-                .collect(),
-            None => slip_load.to_vec(),
-        };
-        let load = self.load(harmonic);
-        for j in 0..self.right.ncols() {
-            let (weight, _) = self.spectrum.weight(j, harmonic as f64 * omega);
-            let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
-            for (i, force) in forces.iter().enumerate() {
-                excitation += self.contact_left[(i, j)] * force;
-            }
-            let coordinate = weight * excitation;
-            for (x, &dof) in out.iter_mut().zip(observe) {
-                *x += self.right[(dof, j)] * coordinate;
-            }
+        let weight = |j| self.spectrum.weight(j, harmonic as f64 * omega).0;
+        self.add_modes(self.load(harmonic), contact, slip_load, observe, weight, out);
+        Ok(())
+    }
+
+    fn slip_displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        out.fill(c64::new(0.0, 0.0));
+        if harmonic == 0 {
+            let flexibility = self.flexibility.as_ref().ok_or_else(|| self.singular())?;
+            flexibility.displacement(false, slip_load, observe, out);
+            return Ok(());
+        }
+        let weight = |j| self.spectrum.weight(j, harmonic as f64 * omega).0;
+        self.add_modes(None, contact, slip_load, observe, weight, out);
+        Ok(())
+    }
+
+    fn displacement_slope(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        out.fill(c64::new(0.0, 0.0));
+        let order = harmonic as f64;
+        let slope = |j| order * self.spectrum.weight(j, order * omega).1;
+        if harmonic > 0 {
+            self.add_modes(self.load(harmonic), contact, slip_load, observe, slope, out);
         }
         Ok(())
     }
@@ -324,6 +339,39 @@ impl Compliance for ModalCompliance {
 }
 
 impl ModalCompliance {
+    /// Sums the modes, each with its weight, into the displacements of the DOFs `observe`.
+    fn add_modes(
+        &self,
+        load: Option<&[c64]>,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        weight: impl Fn(usize) -> c64,
+        out: &mut [c64],
+    ) {
+        // The free structure carries the whole contact force, the stuck one the slip load alone.
+        let forces: Vec<c64> = match &self.restraint {
+            Some(stiffness) => (0..self.contacts())
+                .map(|i| {
+                    let stuck: c64 =
+                        (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum();
+                    slip_load[i] - stuck
+                })
+                .collect(),
+            None => slip_load.to_vec(),
+        };
+        for j in 0..self.right.ncols() {
+            let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
+            for (i, force) in forces.iter().enumerate() {
+                excitation += self.contact_left[(i, j)] * force;
+            }
+            let coordinate = weight(j) * excitation;
+            for (x, &dof) in out.iter_mut().zip(observe) {
+                *x += self.right[(dof, j)] * coordinate;
+            }
+        }
+    }
+
     fn singular(&self) -> Error {
         Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
     }

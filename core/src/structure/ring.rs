@@ -7,7 +7,7 @@
 
 use super::modes::real_modes;
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
-use super::ring_order::RingOrder;
+use super::ring_order::{RingMotion, RingOrder};
 use super::{compliance, Compliance, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -194,6 +194,49 @@ impl Ring {
         [value, slope]
     }
 
+    /// Reads observed DOFs off the sectors they belong to, with the motion at their ports.
+    fn observe(
+        &self,
+        motion: &RingMotion,
+        observe: &[usize],
+        out: &mut [c64],
+        read: impl Fn(&dyn Compliance, &[c64], &[c64], &[usize], &mut [c64]) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let (ports, dofs) = (self.layout.ports(), self.layout.dofs);
+        for (x, &dof) in out.iter_mut().zip(observe) {
+            let sector = dof / dofs;
+            let range = sector * ports..(sector + 1) * ports;
+            let (port, force) = (&motion.port[range.clone()], &motion.force[range]);
+            read(
+                self.sectors[sector].as_ref(),
+                port,
+                force,
+                &[dof % dofs],
+                std::slice::from_mut(x),
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The same ring with another stiffness of its contacts, all of them in a row.
+    ///
+    /// # Errors
+    /// As [`Ring::new`].
+    pub fn with_contact_stiffness(&self, stiffness: MatRef<'_, f64>) -> Result<Self, Error> {
+        let contacts = self.layout.contacts;
+        let own = |index: usize| {
+            let at = index * contacts;
+            stiffness.get(at..at + contacts, at..at + contacts).to_owned()
+        };
+        let parts = self
+            .parts
+            .iter()
+            .enumerate()
+            .map(|(index, part)| RingSector { stiffness: own(index), ..part.clone() })
+            .collect();
+        Self::new(parts, self.coupling.clone())
+    }
+
     /// The disk as one structure, with all contacts and loads.
     ///
     /// # Errors
@@ -329,9 +372,9 @@ impl Compliance for Ring {
             values.copy_from_slice(&column.contact);
         }
         if let Some((contact_slope, stuck_slope)) = &mut out.slope {
-            stuck_slope.copy_from_slice(&order.respond_rate(true, &stuck));
+            stuck_slope.copy_from_slice(&order.respond_rate(true, &stuck).contact);
             for (values, column) in contact_slope.chunks_exact_mut(contacts).zip(&columns) {
-                values.copy_from_slice(&order.respond_rate(false, column));
+                values.copy_from_slice(&order.respond_rate(false, column).contact);
             }
         }
         Ok(())
@@ -347,21 +390,46 @@ impl Compliance for Ring {
         out: &mut [c64],
     ) -> Result<(), Error> {
         let motion = self.order(harmonic, omega, false)?.respond(true, slip_load);
-        let (ports, dofs) = (self.layout.ports(), self.layout.dofs);
-        let mut value = [c64::new(0.0, 0.0)];
-        for (x, &dof) in out.iter_mut().zip(observe) {
-            let sector = dof / dofs;
-            let range = sector * ports..(sector + 1) * ports;
-            self.sectors[sector].displacement(
-                harmonic,
-                omega,
-                &motion.port[range.clone()],
-                &motion.force[range],
-                &[dof % dofs],
-                &mut value,
-            )?;
-            *x = value[0];
-        }
+        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
+            sector.displacement(harmonic, omega, port, force, dof, value)
+        })
+    }
+
+    fn slip_displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        _contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        let motion = self.order(harmonic, omega, false)?.respond(false, slip_load);
+        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
+            sector.slip_displacement(harmonic, omega, port, force, dof, value)
+        })
+    }
+
+    fn displacement_slope(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        _contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        let order = self.order(harmonic, omega, true)?;
+        let motion = order.respond(true, slip_load);
+        let rate = order.respond_rate(true, &motion);
+        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
+            sector.displacement_slope(harmonic, omega, port, force, dof, value)
+        })?;
+        let mut moved = vec![c64::new(0.0, 0.0); observe.len()];
+        self.observe(&rate, observe, &mut moved, |sector, port, force, dof, value| {
+            sector.slip_displacement(harmonic, omega, port, force, dof, value)
+        })?;
+        out.iter_mut().zip(moved).for_each(|(out, moved)| *out += moved);
         Ok(())
     }
 

@@ -86,9 +86,9 @@ impl RingOrder {
         self.couple(port, force)
     }
 
-    /// Derivative in ω of the contact displacements of a response at fixed loads.
+    /// Derivative in ω of a response at fixed loads.
     #[must_use]
-    pub fn respond_rate(&self, loaded: bool, motion: &RingMotion) -> Vec<c64> {
+    pub fn respond_rate(&self, loaded: bool, motion: &RingMotion) -> RingMotion {
         let (count, ports) = (self.receptances.len(), self.layout.ports());
         let zero = c64::new(0.0, 0.0);
         let mut port = vec![zero; count * ports];
@@ -108,7 +108,7 @@ impl RingOrder {
             }
             self.add_product(i, &change[range], &mut port);
         }
-        self.couple(port, vec![zero; count * ports]).contact
+        self.couple(port, change)
     }
 
     /// Lets the neighbours act on one another: `port` holds the motion without them, `force` the

@@ -19,6 +19,7 @@ MODULES: Mapping[str, str] = {
     "forced_response": "stickslip.cli.curves",
     "exact_response": "stickslip.cli.curves",
     "transient": "stickslip.cli.transients",
+    "damper_curve": "stickslip.cli.dampers",
 }
 """The module of every kind of result; results of one module are drawn together."""
 

@@ -10,6 +10,7 @@ from stickslip.plot.charts import (
     slip,
     waveform,
 )
+from stickslip.plot.damper import DamperOptions, damper
 from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
 from stickslip.plot.orbits import MultiplierOptions, events, multipliers
 from stickslip.plot.transients import (
@@ -27,6 +28,7 @@ __all__ = [
     "BladeBarOptions",
     "BladeCurveOptions",
     "CurveOptions",
+    "DamperOptions",
     "DiameterOptions",
     "Frame",
     "HistoryOptions",
@@ -39,6 +41,7 @@ __all__ = [
     "blade_curves",
     "contact_history",
     "curves",
+    "damper",
     "events",
     "history",
     "hysteresis",

@@ -84,7 +84,7 @@ _ADVICE = {
         "Read error_estimate, and raise max_harmonics or tolerance."
     ),
     Status.ORBIT_STALLED: (
-        "Shooting stopped before the orbit closed. "
-        "Raise max_iterations, approach this omega in smaller steps, or let transient settle there."
+        "Shooting stopped before the orbit closed: at an undamped resonance friction may not bound "
+        "the motion. Raise max_iterations, or see with transient whether the motion settles."
     ),
 }

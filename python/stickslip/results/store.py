@@ -27,6 +27,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.results.forced_response", "ForcedResponse"),
     "exact_response": ("stickslip.results.exact_response", "ExactResponse"),
     "transient": ("stickslip.results.transient", "Transient"),
+    "damper_curve": ("stickslip.results.damper_curve", "DamperCurve"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 

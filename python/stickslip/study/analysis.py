@@ -8,6 +8,7 @@ from pydantic import Tag
 
 from stickslip.study.analysis_tables import ForcedResponseTable
 from stickslip.study.certify_table import CertifyTable
+from stickslip.study.damper_curve_table import DamperCurveTable
 from stickslip.study.entries import chosen_by
 from stickslip.study.exact_table import ExactTable
 from stickslip.study.single_harmonic_table import SingleHarmonicTable
@@ -20,7 +21,8 @@ AnalysisTable = Annotated[
     | Annotated[ExactTable, Tag("<exact>")]
     | Annotated[TransientTable, Tag("<transient>")]
     | Annotated[CertifyTable, Tag("<certify>")]
-    | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")],
+    | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")]
+    | Annotated[DamperCurveTable, Tag("<damper-curve>")],
     chosen_by(
         "kind",
         "forced-response",
@@ -28,6 +30,7 @@ AnalysisTable = Annotated[
         "transient",
         "certify",
         "single-harmonic",
+        "damper-curve",
         default="forced-response",
     ),
 ]

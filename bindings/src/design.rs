@@ -1,0 +1,272 @@
+//! Damper design: peaks along a parameter, the least of them, and sensitivities.
+
+use crate::arrays::{refused, series, table, vector};
+use crate::problem::Problem;
+use crate::response::{status_code, ResidualArgument};
+use crate::settings::{evaluated, settings};
+use crate::watch::Watch;
+use numpy::{
+    Complex64, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods as _,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use stickslip_core::balance::{Cause, Linearised, Method, Settings, Unknowns};
+use stickslip_core::design::{optimum, peak_curve, Common, Curve, Peak, Target, Variation};
+use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
+use stickslip_core::Model;
+
+/// Peaks along a parameter.
+#[pyclass(frozen, module = "stickslip._core")]
+pub struct Peaks {
+    peaks: Vec<Peak>,
+    curve: Curve,
+}
+
+impl From<Curve> for Peaks {
+    fn from(curve: Curve) -> Self {
+        Self { peaks: curve.peaks.clone(), curve }
+    }
+}
+
+#[pymethods]
+impl Peaks {
+    #[getter]
+    fn value<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, self.peaks.iter().map(|p| p.value))
+    }
+
+    #[getter]
+    fn omega<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, self.peaks.iter().map(|p| p.omega))
+    }
+
+    #[getter]
+    fn amplitude<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, self.peaks.iter().map(|p| p.amplitude))
+    }
+
+    #[getter]
+    fn sensitivity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, self.peaks.iter().map(|p| p.slope))
+    }
+
+    #[getter]
+    fn error_estimate<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, self.peaks.iter().map(|p| p.error_estimate))
+    }
+
+    #[getter]
+    fn harmonics<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        vector(py, self.peaks.iter().map(|p| p.harmonics as i64))
+    }
+
+    #[getter]
+    fn at_edge<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        vector(py, self.peaks.iter().map(|p| p.at_edge))
+    }
+
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
+        vector(py, self.peaks.iter().map(|p| status_code(p.status)))
+    }
+
+    #[getter]
+    fn interrupted(&self) -> bool {
+        self.curve.interrupted
+    }
+
+    #[getter]
+    fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let profile = &self.curve.profile;
+        let timings = PyDict::new(py);
+        for (stage, time) in [
+            ("compliance", profile.compliance),
+            ("law", profile.law),
+            ("linear_solve", profile.linear_solve),
+            ("recovery", profile.recovery),
+            ("total", profile.total),
+        ] {
+            timings.set_item(stage, time.as_secs_f64())?;
+        }
+        Ok(timings)
+    }
+
+    #[getter]
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let profile = &self.curve.profile;
+        let counters = PyDict::new(py);
+        counters.set_item("points", self.curve.points)?;
+        counters.set_item("evaluations", profile.evaluations)?;
+        counters.set_item("factorisations", profile.factorisations)?;
+        counters.set_item("homotopies", profile.homotopies)?;
+        Ok(counters)
+    }
+}
+
+/// What is varied, and which peak is followed: `parameter` is "level" or one of the laws'.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Design {
+    parameter: String,
+    contacts: Vec<usize>,
+    factor: bool,
+    dof: usize,
+    measure: String,
+    omega: (f64, f64),
+    harmonics: Option<usize>,
+    tolerance: f64,
+    residual: ResidualArgument,
+    max_harmonics: usize,
+    max_iterations: usize,
+}
+
+impl Design {
+    fn parse(self) -> PyResult<(Variation, Target, Settings)> {
+        let variation = if self.parameter == "level" {
+            Variation::Level
+        } else {
+            Variation::Law {
+                parameter: self.parameter,
+                contacts: self.contacts,
+                common: if self.factor { Common::Factor } else { Common::Value },
+            }
+        };
+        let measure: Measure = self.measure.parse().map_err(refused)?;
+        let target = Target { dof: self.dof, measure, span: self.omega };
+        let settings = settings(
+            self.harmonics,
+            self.tolerance,
+            &self.residual,
+            Method::Newton,
+            self.max_harmonics,
+            self.max_iterations,
+        )?;
+        Ok((variation, target, settings))
+    }
+}
+
+/// Runs an analysis that Ctrl-C may end early.
+fn watched<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, stickslip_core::Error> + Send,
+) -> PyResult<T> {
+    let (result, raised) = Watch::during(py, progress, work);
+    raised.raise_unless_interrupt(py)?;
+    result.map_err(refused)
+}
+
+/// The peak at every value of a parameter.
+#[pyfunction]
+pub fn damper_curve(
+    py: Python<'_>,
+    problem: &Problem,
+    design: Design,
+    values: PyReadonlyArray1<'_, f64>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Peaks> {
+    let (variation, target, settings) = design.parse()?;
+    let values = values.as_array().to_vec();
+    let model: &Model = &problem.model;
+    let curve = watched(py, progress.as_ref(), |look| {
+        peak_curve(model, settings, &variation, &values, &target, look)
+    })?;
+    Ok(curve.into())
+}
+
+/// The local minima of the peak over a parameter, the least first, and all peaks computed.
+#[pyfunction]
+pub fn optimal_damper(
+    py: Python<'_>,
+    problem: &Problem,
+    design: Design,
+    bounds: (f64, f64),
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Peaks, Peaks)> {
+    let (variation, target, settings) = design.parse()?;
+    let model: &Model = &problem.model;
+    let found = watched(py, progress.as_ref(), |look| {
+        optimum(model, settings, &variation, bounds, &target, look)
+    })?;
+    let minima = Peaks { peaks: found.minima, curve: found.curve.clone() };
+    Ok((minima, found.curve.into()))
+}
+
+/// What amplitudes are differentiated by: "omega", "level", or a contact's parameter.
+#[derive(FromPyObject)]
+pub enum CauseArgument {
+    Named(String),
+    Law((usize, String)),
+}
+
+impl CauseArgument {
+    fn parse(&self, model: &Model) -> PyResult<Cause> {
+        let unknown = |text: String| PyValueError::new_err(format!("sensitivity: no {text}"));
+        match self {
+            Self::Named(name) if name == "omega" => Ok(Cause::Frequency),
+            Self::Named(name) if name == "level" => Ok(Cause::Load),
+            Self::Named(name) => Err(unknown(name.clone())),
+            Self::Law((contact, name)) => {
+                let law = model.laws().get(*contact);
+                let parameters = law.map(|law| law.parameters()).unwrap_or_default();
+                let parameter = parameters.iter().position(|(known, _)| known == name);
+                parameter
+                    .map(|parameter| Cause::Law { contact: *contact, parameter })
+                    .ok_or_else(|| unknown(format!("parameter {name} of contact {contact}")))
+            }
+        }
+    }
+}
+
+/// Derivatives of the amplitude of a DOF at solved points, one column per cause.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub fn sensitivity<'py>(
+    py: Python<'py>,
+    problem: &Problem,
+    omega: PyReadonlyArray1<'py, f64>,
+    harmonics: PyReadonlyArray1<'py, i64>,
+    contact_displacement: PyReadonlyArray3<'py, Complex64>,
+    half_wave: bool,
+    residual: ResidualArgument,
+    dof: usize,
+    measure: &str,
+    causes: Vec<CauseArgument>,
+    march: Option<usize>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let model: &Model = &*evaluated(problem, march)?;
+    let measure: Measure = measure.parse().map_err(refused)?;
+    let residual = residual.parse()?;
+    let causes: Vec<Cause> =
+        causes.iter().map(|cause| cause.parse(model)).collect::<PyResult<_>>()?;
+    let (omega, harmonics) = (omega.as_array().to_vec(), harmonics.as_array().to_vec());
+    let shape = contact_displacement.shape();
+    let (points, orders, contacts) = (shape[0], shape[1], shape[2]);
+    if points != omega.len()
+        || harmonics.len() != omega.len()
+        || contacts != model.compliance().contacts()
+        || dof >= model.compliance().dofs()
+    {
+        return Err(PyValueError::new_err("sensitivity: arrays of another model"));
+    }
+    let view = contact_displacement.as_array();
+    let mut rows = Vec::with_capacity(points * causes.len());
+    let mut last: Option<SampleTable> = None;
+    for (n, (&omega, &highest)) in omega.iter().zip(&harmonics).enumerate() {
+        let highest = usize::try_from(highest).unwrap_or(0).clamp(1, orders.max(2) - 1);
+        let sample_table = match last.take() {
+            Some(table) if table.harmonics().highest() == highest => table,
+            _ => SampleTable::new(Harmonics::new(highest, half_wave)),
+        };
+        let values = (0..contacts)
+            .flat_map(|i| series(sample_table.harmonics(), |k| view[[n, k, i]]))
+            .collect();
+        let solution = Unknowns::new(sample_table.harmonics().clone(), values);
+        let slopes = Linearised::new(model, &sample_table, residual, omega, &solution)
+            .and_then(|mut linearised| linearised.amplitude(dof, measure, &causes));
+        rows.extend(slopes.map_err(refused)?.1);
+        last = Some(sample_table);
+    }
+    table(py, points, causes.len(), rows)
+}

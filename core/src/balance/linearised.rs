@@ -1,0 +1,222 @@
+//! The balance linearised at a solution: exact derivatives of everything it determines.
+//!
+//! Differentiating the balance leaves its Jacobian in the stuck form, `J = I − G ∂Q`, and on the
+//! right what changes at fixed contact displacements:
+//!
+//! | cause | `J dU =` |
+//! |---|---|
+//! | frequency | `dU^stuck/dω + dG/dω Q` |
+//! | a factor on the load | `U^stuck` |
+//! | a parameter p of a law | `−G ∂F/∂p` |
+//!
+//! An amplitude follows by the envelope theorem: at its turning points a motion is stationary, so
+//! that only their heights count, not where they move.
+
+use super::condensed::Condensed;
+use super::unknowns::{gather, scatter, Unknowns};
+use crate::contact::Residual;
+use crate::fourier::{amplitude, amplitude_gradient, Measure, SampleTable};
+use crate::model::Model;
+use crate::solve::System as _;
+use crate::timing::Profile;
+use crate::Error;
+use faer::c64;
+
+/// What a solution is differentiated by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// The excitation frequency.
+    Frequency,
+    /// A factor on all external loads, at its value one.
+    Load,
+    /// A parameter of a contact's law, both by position.
+    Law {
+        /// Position of the contact.
+        contact: usize,
+        /// Position among the parameters of its law.
+        parameter: usize,
+    },
+}
+
+/// The balance at a solution, with its Jacobian.
+pub struct Linearised<'a> {
+    equations: Condensed<'a>,
+    omega: f64,
+    x: Vec<f64>,
+    slip_load: Vec<f64>,
+}
+
+impl<'a> Linearised<'a> {
+    /// Linearises at a solution in the harmonics of `table`.
+    ///
+    /// # Errors
+    /// As for the solution itself: a singular static stiffness or an undamped resonance.
+    pub fn new(
+        model: &'a Model,
+        table: &'a SampleTable,
+        residual: Residual,
+        omega: f64,
+        solution: &Unknowns,
+    ) -> Result<Self, Error> {
+        let mut equations = Condensed::new(model, table, residual, true);
+        equations.set_omega(omega).map_err(|(_, error)| error)?;
+        let x = solution.recast(table.harmonics());
+        let mut ignored = vec![0.0; equations.size()];
+        equations.residual(&x, &mut ignored);
+        let slip_load = equations.slip_load();
+        Ok(Self { equations, omega, x, slip_load })
+    }
+
+    /// Work done so far.
+    #[must_use]
+    pub fn profile(&self) -> &Profile {
+        &self.equations.profile
+    }
+
+    /// Derivative of the contact displacements; `None` if the Jacobian is singular.
+    pub fn contact_rate(&mut self, cause: Cause) -> Option<Vec<f64>> {
+        let rhs = match cause {
+            Cause::Frequency => self.equations.frequency_rate(),
+            Cause::Load => self.equations.stuck_response().to_vec(),
+            Cause::Law { .. } => {
+                let mut rhs = vec![0.0; self.x.len()];
+                let mut force = self.explicit(cause);
+                force.iter_mut().for_each(|f| *f = -*f);
+                self.equations.add_response(&force, &mut rhs);
+                rhs
+            }
+        };
+        let mut rate = vec![0.0; rhs.len()];
+        self.equations.solve(&rhs, &mut rate).then_some(rate)
+    }
+
+    /// `∂F/∂p` at fixed contact displacements.
+    fn explicit(&self, cause: Cause) -> Vec<f64> {
+        let mut force = vec![0.0; self.x.len()];
+        if let Cause::Law { contact, parameter } = cause {
+            let slots = self.equations.harmonics().slots();
+            let points = self.equations.model.points()[contact].clone();
+            let motion = self.equations.motion(contact, &self.x);
+            self.equations.model.laws()[contact].parameter_slope(
+                motion,
+                parameter,
+                &mut force[points.start * slots..points.end * slots],
+            );
+        }
+        force
+    }
+
+    /// Series of the displacement of one DOF.
+    ///
+    /// # Errors
+    /// As [`Linearised::new`].
+    pub fn displacement(&self, dof: usize) -> Result<Vec<f64>, Error> {
+        let compliance = self.equations.model.compliance();
+        self.series(&self.x, &self.slip_load, |order, u, q, out| {
+            compliance.displacement(order, self.omega, u, q, &[dof], out)
+        })
+    }
+
+    /// Derivative of the series of the displacement of one DOF, from that of the contacts.
+    ///
+    /// # Errors
+    /// As [`Linearised::new`].
+    pub fn displacement_rate(
+        &self,
+        dof: usize,
+        cause: Cause,
+        contact_rate: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        let compliance = self.equations.model.compliance();
+        // The force that leaves the structure: what its stuck spring does not carry, less what the
+        // parameter does by itself.
+        let mut slip_rate = self.explicit(cause);
+        slip_rate.iter_mut().for_each(|f| *f = -*f);
+        self.equations.add_tangent_product(contact_rate, &mut slip_rate);
+        let loaded = cause == Cause::Load;
+        let mut rate = self.series(contact_rate, &slip_rate, |order, u, q, out| {
+            if loaded {
+                compliance.displacement(order, self.omega, u, q, &[dof], out)
+            } else {
+                compliance.slip_displacement(order, self.omega, u, q, &[dof], out)
+            }
+        })?;
+        if cause == Cause::Frequency {
+            let slope = self.series(&self.x, &self.slip_load, |order, u, q, out| {
+                compliance.displacement_slope(order, self.omega, u, q, &[dof], out)
+            })?;
+            rate.iter_mut().zip(&slope).for_each(|(r, s)| *r += s);
+        }
+        Ok(rate)
+    }
+
+    /// Builds a series order by order from contact displacements and slip loads.
+    fn series(
+        &self,
+        x: &[f64],
+        slip_load: &[f64],
+        of: impl Fn(usize, &[c64], &[c64], &mut [c64]) -> Result<(), Error>,
+    ) -> Result<Vec<f64>, Error> {
+        let harmonics = self.equations.harmonics();
+        let mut series = vec![0.0; harmonics.slots()];
+        let (mut u, mut q, mut out) = (Vec::new(), Vec::new(), [c64::new(0.0, 0.0)]);
+        for order in harmonics.orders() {
+            gather(harmonics, order, x, &mut u);
+            gather(harmonics, order, slip_load, &mut q);
+            of(order, &u, &q, &mut out)?;
+            scatter(harmonics, order, &out, &mut series);
+        }
+        Ok(series)
+    }
+
+    /// Amplitude of one DOF, and its derivative in every one of `causes`, not a number where the
+    /// Jacobian is singular.
+    ///
+    /// # Errors
+    /// As [`Linearised::new`].
+    pub fn amplitude(
+        &mut self,
+        dof: usize,
+        measure: Measure,
+        causes: &[Cause],
+    ) -> Result<(f64, Vec<f64>), Error> {
+        let series = self.displacement(dof)?;
+        let gradient = amplitude_gradient(self.equations.table, &series, measure);
+        let mut slopes = Vec::with_capacity(causes.len());
+        for &cause in causes {
+            slopes.push(match self.contact_rate(cause) {
+                Some(rate) => self.slope(dof, &gradient, cause, &rate)?,
+                None => f64::NAN,
+            });
+        }
+        Ok((amplitude(self.equations.table, &series, measure), slopes))
+    }
+
+    /// Amplitude of one DOF with its derivative and that of the contact displacements in
+    /// frequency; `None` where the Jacobian is singular.
+    ///
+    /// # Errors
+    /// As [`Linearised::new`].
+    pub fn frequency_jet(
+        &mut self,
+        dof: usize,
+        measure: Measure,
+    ) -> Result<Option<(f64, f64, Vec<f64>)>, Error> {
+        let series = self.displacement(dof)?;
+        let gradient = amplitude_gradient(self.equations.table, &series, measure);
+        let Some(rate) = self.contact_rate(Cause::Frequency) else { return Ok(None) };
+        let slope = self.slope(dof, &gradient, Cause::Frequency, &rate)?;
+        Ok(Some((amplitude(self.equations.table, &series, measure), slope, rate)))
+    }
+
+    fn slope(
+        &self,
+        dof: usize,
+        gradient: &[f64],
+        cause: Cause,
+        contact_rate: &[f64],
+    ) -> Result<f64, Error> {
+        let rate = self.displacement_rate(dof, cause, contact_rate)?;
+        Ok(gradient.iter().zip(&rate).map(|(g, r)| g * r).sum())
+    }
+}

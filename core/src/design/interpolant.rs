@@ -1,0 +1,101 @@
+//! A curve between two points with slopes, through the inverse square of its height.
+//!
+//! Near a resonance 1/A² is close to a parabola in ω, however narrow the resonance is, so that a
+//! cubic through its values and slopes sees a peak from afar.
+
+/// A point of a curve with its slope.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Knot {
+    pub(super) at: f64,
+    pub(super) height: f64,
+    pub(super) slope: f64,
+}
+
+/// Heights below this share of the reference count as much.
+const FLOOR: f64 = 1e-9;
+/// Places at which an interpolant is looked at.
+const LOOKS: usize = 32;
+
+/// The cubic of 1/A² between two points.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Interpolant {
+    /// Coefficients of `t⁰ … t³`, t from 0 to 1.
+    cubic: [f64; 4],
+    reference: f64,
+}
+
+impl Interpolant {
+    /// Between two points; heights are measured against `reference`.
+    pub(super) fn new(left: Knot, right: Knot, reference: f64) -> Self {
+        let width = right.at - left.at;
+        let inverse = |knot: Knot| {
+            let height = (knot.height / reference).max(FLOOR);
+            let value = height.powi(-2);
+            (value, -2.0 * width * knot.slope / reference * value / height)
+        };
+        let ((g, dg), (h, dh)) = (inverse(left), inverse(right));
+        let cubic = [g, dg, 3.0 * (h - g) - 2.0 * dg - dh, 2.0 * (g - h) + dg + dh];
+        Self { cubic, reference }
+    }
+
+    /// Height at the share `t` of the interval; infinite where the cubic has no sense.
+    pub(super) fn height(&self, t: f64) -> f64 {
+        let [a, b, c, d] = self.cubic;
+        let value = a + t * (b + t * (c + t * d));
+        if value > 0.0 {
+            self.reference / value.sqrt()
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Share of the interval at which the height has its maximum between the ends, if it has one.
+    pub(super) fn top(&self) -> Option<f64> {
+        let [_, b, c, d] = self.cubic;
+        // The minimum of the cubic: the root of b + 2 c t + 3 d t² at which it rises.
+        let discriminant = c * c - 3.0 * b * d;
+        if discriminant < 0.0 {
+            return None;
+        }
+        let root = discriminant.sqrt();
+        let t = if c >= 0.0 { -b / (c + root) } else { (root - c) / (3.0 * d) };
+        (t > 0.0 && t < 1.0).then_some(t)
+    }
+
+    /// Share and height of the largest value that the curve may have between its ends if the
+    /// interpolant errs by the share `error` at most, in the middle.
+    pub(super) fn promise(&self, error: f64) -> (f64, f64) {
+        let optimistic =
+            |t: f64| (t, self.height(t) * (1.0 + 16.0 * error * (t * (1.0 - t)).powi(2)));
+        (1..LOOKS)
+            .map(|i| i as f64 / LOOKS as f64)
+            .chain(self.top())
+            .map(optimistic)
+            .fold((0.5, 0.0), |best, look| if look.1 > best.1 { look } else { best })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_resonance_is_seen_from_afar() {
+        let (natural, damping) = (1.3, 1e-4);
+        let knot = |w: f64| {
+            let (real, imaginary) = (natural * natural - w * w, damping * w);
+            let height = (real * real + imaginary * imaginary).sqrt().recip();
+            let rate = -2.0 * w * real + damping * damping * w;
+            Knot { at: w, height, slope: -rate * height.powi(3) }
+        };
+        let (left, right) = (knot(1.2), knot(1.37));
+        let t = Interpolant::new(left, right, left.height).top().unwrap();
+        let at = left.at + t * (right.at - left.at);
+        assert!((at - natural).abs() < 2e-3, "{at}");
+        // From there two more looks find it.
+        let middle = knot(at);
+        let (a, b) = if middle.slope > 0.0 { (middle, right) } else { (left, middle) };
+        let t = Interpolant::new(a, b, a.height).top().unwrap();
+        assert!((a.at + t * (b.at - a.at) - natural).abs() < 1e-4);
+    }
+}

@@ -1,0 +1,192 @@
+//! The value of a parameter that makes a peak least.
+//!
+//! As a function of the parameter the peak is the highest of several smooth maxima: continuous,
+//! with a kink wherever two of them swap, and it is often least just there. Its exact slope says
+//! on which side of a minimum a value lies.
+
+use super::curve::{Curve, Follower, Peak, Target};
+use super::variation::Variation;
+use crate::balance::{HarmonicChoice, PointStatus, Progress, Settings};
+use crate::model::Model;
+use crate::Error;
+use std::time::Instant;
+
+/// Values of the coarse curve.
+const COARSE: usize = 40;
+/// Gain, relative, that is not worth another peak.
+const GAIN: f64 = 1e-8;
+/// Shortest bracket, relative to the value.
+const SHORTEST: f64 = 1e-7;
+/// Share of the work that the coarse curve is, for the progress.
+const CURVE_SHARE: f64 = 0.7;
+/// Times that a curve which turns unseen between two values is halved there.
+const HALVINGS: usize = 4;
+
+/// The least peak, and how it was found.
+#[derive(Debug, Clone)]
+pub struct Optimum {
+    /// Every local minimum, the least first.
+    pub minima: Vec<Peak>,
+    /// All peaks computed, by value.
+    pub curve: Curve,
+}
+
+/// A value of the parameter with what is to be made least and its slope.
+#[derive(Debug, Clone, Copy)]
+struct Trial {
+    peak: Peak,
+    height: f64,
+    slope: f64,
+}
+
+/// Finds every local minimum of the peak over `bounds` that a curve of logarithmically spaced
+/// values shows, refined to a relative gain of 1e-8. With automatic harmonics minima count as one
+/// if the rise between them is below twice the tolerance.
+///
+/// # Errors
+/// Bounds that are not positive and ordered, or as for the curve.
+pub fn optimum(
+    model: &Model,
+    settings: Settings,
+    variation: &Variation,
+    (low, high): (f64, f64),
+    target: &Target,
+    progress: &Progress<'_>,
+) -> Result<Optimum, Error> {
+    let start = Instant::now();
+    if !(low > 0.0 && low < high && high.is_finite()) {
+        return Err(Error::value("bounds: upper", high, "must lie above the lower one, above 0"));
+    }
+    let mut follower = Follower::new(model, settings, variation, target, progress)?;
+    let mut trials = Vec::new();
+    for i in 0..COARSE {
+        let share = i as f64 / (COARSE - 1) as f64;
+        let value = if i + 1 == COARSE { high } else { low * (high / low).powf(share) };
+        trials.extend(try_value(&mut follower, value, CURVE_SHARE * share)?);
+    }
+    for _ in 0..HALVINGS {
+        let hidden: Vec<f64> = trials
+            .windows(2)
+            .filter(|ends| turns_unseen(ends[0], ends[1]))
+            .map(|ends| 0.5 * (ends[0].peak.value + ends[1].peak.value))
+            .collect();
+        for value in hidden {
+            insert(&mut trials, try_value(&mut follower, value, CURVE_SHARE)?);
+        }
+    }
+    let brackets: Vec<[Trial; 2]> = trials
+        .windows(2)
+        .filter(|ends| ends[0].slope < 0.0 && ends[1].slope > 0.0)
+        .map(|ends| [ends[0], ends[1]])
+        .collect();
+    let mut minima = Vec::new();
+    if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
+        minima.extend([(first.slope >= 0.0).then_some(*first)].into_iter().flatten());
+        minima.extend([(last.slope <= 0.0).then_some(*last)].into_iter().flatten());
+    }
+    for (index, bracket) in brackets.iter().enumerate() {
+        let share = CURVE_SHARE + (1.0 - CURVE_SHARE) * index as f64 / brackets.len() as f64;
+        minima.push(refine(&mut follower, *bracket, &mut trials, share)?);
+    }
+    minima.sort_by(|a, b| a.height.total_cmp(&b.height));
+    // With automatic harmonics both sides of a dent are known to the tolerance only.
+    let depth = match settings.harmonics {
+        HarmonicChoice::Auto => 2.0 * settings.tolerance,
+        HarmonicChoice::Fixed(_) => 0.0,
+    };
+    let minima = prominent(minima, &trials, depth);
+    let peaks = trials.iter().map(|trial| trial.peak).collect();
+    let minima = minima.into_iter().map(|trial| trial.peak).collect();
+    Ok(Optimum { minima, curve: follower.finish(peaks, start) })
+}
+
+/// The peak at a value, if it is found.
+fn try_value(follower: &mut Follower<'_>, value: f64, share: f64) -> Result<Option<Trial>, Error> {
+    let peak = follower.peak(value, share)?;
+    if peak.status == PointStatus::NotComputed || !peak.amplitude.is_finite() {
+        return Ok(None);
+    }
+    let (height, slope) = follower.variation.objective(value, peak.amplitude, peak.slope);
+    Ok(Some(Trial { peak, height, slope }))
+}
+
+fn insert(trials: &mut Vec<Trial>, trial: Option<Trial>) {
+    if let Some(trial) = trial {
+        let at = trials.partition_point(|other| other.peak.value < trial.peak.value);
+        trials.insert(at, trial);
+    }
+}
+
+/// Whether the curve falls from one end into the interval but ends higher, without a rise at the
+/// other end: a minimum and a maximum lie between.
+fn turns_unseen(a: Trial, b: Trial) -> bool {
+    let falls_in = a.slope < 0.0 && b.slope <= 0.0 && b.height > a.height;
+    let rises_out = b.slope > 0.0 && a.slope >= 0.0 && a.height > b.height;
+    falls_in || rises_out
+}
+
+/// Drops every minimum that a rise of less than the share `depth` parts from a lower one.
+fn prominent(minima: Vec<Trial>, trials: &[Trial], depth: f64) -> Vec<Trial> {
+    let mut kept: Vec<Trial> = Vec::new();
+    for minimum in minima {
+        let parted = |lower: &Trial| {
+            let (one, two) = (lower.peak.value, minimum.peak.value);
+            let between = one.min(two)..=one.max(two);
+            let inside = trials.iter().filter(|trial| between.contains(&trial.peak.value));
+            let top = inside.map(|trial| trial.height).fold(0.0, f64::max);
+            top > (1.0 + depth) * minimum.height
+        };
+        if kept.iter().all(parted) {
+            kept.push(minimum);
+        }
+    }
+    kept
+}
+
+/// Closes in on the minimum between a falling and a rising end. Cubics find a smooth minimum and
+/// the crossing of the tangents finds a kink, in turns; halving guards both.
+fn refine(
+    follower: &mut Follower<'_>,
+    [mut a, mut b]: [Trial; 2],
+    trials: &mut Vec<Trial>,
+    share: f64,
+) -> Result<Trial, Error> {
+    let mut earlier = [f64::INFINITY; 2];
+    for step in 0..60 {
+        let width = b.peak.value - a.peak.value;
+        let best = if a.height <= b.height { a } else { b };
+        // Where the curve is convex no point of the bracket lies below these.
+        let crossing = (b.height - a.height - b.slope * width) / (a.slope - b.slope);
+        let floor = (a.height + a.slope * crossing).max(best.height - best.slope.abs() * width);
+        if best.height - floor <= GAIN * best.height || width <= SHORTEST * b.peak.value {
+            break;
+        }
+        let halve = width > 0.5 * earlier[1];
+        earlier = [width, earlier[0]];
+        let shift = if halve {
+            0.5 * width
+        } else if step % 2 == 0 {
+            crossing
+        } else {
+            cubic(a, b).unwrap_or(crossing)
+        };
+        let value = a.peak.value + shift.clamp(0.001 * width, 0.999 * width);
+        let Some(trial) = try_value(follower, value, share)? else { break };
+        insert(trials, Some(trial));
+        if trial.slope < 0.0 {
+            a = trial;
+        } else {
+            b = trial;
+        }
+    }
+    Ok(if a.height <= b.height { a } else { b })
+}
+
+/// Distance from `a` to the minimum of the cubic through both ends.
+fn cubic(a: Trial, b: Trial) -> Option<f64> {
+    let width = b.peak.value - a.peak.value;
+    let s = a.slope + b.slope - 3.0 * (b.height - a.height) / width;
+    let root = (s * s - a.slope * b.slope).sqrt();
+    let shift = width * (1.0 - (b.slope + root - s) / (b.slope - a.slope + 2.0 * root));
+    (shift > 0.0 && shift < width).then_some(shift)
+}

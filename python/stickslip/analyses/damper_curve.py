@@ -1,0 +1,273 @@
+"""The peak of a response along a parameter of its dampers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import fields
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip.analyses.arguments import (
+    Progress,
+    Residual,
+    Span,
+    require_held,
+    require_model,
+    require_progress,
+)
+from stickslip.analyses.damper_assumptions import damper_assumptions
+from stickslip.analyses.damper_settings import DamperSettings
+from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS
+from stickslip.analyses.variation import (
+    PARAMETERS,
+    Common,
+    Parameter,
+    Variation,
+    chosen_contacts,
+    local_stiffness,
+    resonance_range,
+)
+from stickslip.errors import Interrupted, ModelError
+from stickslip.model import ContactRef, Model
+from stickslip.results.arrays import Float, Measure
+from stickslip.results.damper_curve import DamperArrays, DamperCurve
+from stickslip.results.status import Status
+
+if TYPE_CHECKING:
+    from stickslip import _core
+
+__all__ = ["curve_of", "damper_curve", "settings_for"]
+
+RIGID = 250.0
+"""Stiffness of a contact, over that of the structure, from which the rigid limit is taken.
+
+The peak is nearly linear in 1/k_d there, so that this and twice this give the limit to about the
+square of its inverse, while the harmonics needed stay at some hundred.
+"""
+
+
+def damper_curve(
+    model: Model,
+    *,
+    dof: str,
+    slip_force: ArrayLike | None = None,
+    stiffness: ArrayLike | None = None,
+    level: ArrayLike | None = None,
+    contacts: Iterable[ContactRef] | ContactRef | None = None,
+    common: Common = "value",
+    omega: Span | None = None,
+    mode: int = 0,
+    measure: Measure = "half_range",
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 1e-3,
+    residual: Residual = "centred",
+    progress: Progress = None,
+    max_harmonics: int = MAX_HARMONICS,
+    max_iterations: int = MAX_ITERATIONS,
+) -> DamperCurve:
+    """Peak amplitude and frequency against slip force, contact stiffness or level of the forces.
+
+    The peak itself is followed: at every value the highest point over frequency is found from
+    some twenty solutions with exact slopes, and the next value starts from them.
+
+    Parameters
+    ----------
+    model : Model
+        Structure, contacts and forces.
+    dof : str
+        The degree of freedom whose peak is followed.
+    slip_force, stiffness, level : array_like, shape (n,)
+        Values of one of them, in the order to follow: slip forces F_d [N], stiffnesses k_d [N/m]
+        of the contacts, or factors on all forces. An infinite slip force never slips; an infinite
+        stiffness is the limit of a rigid contact.
+    contacts : iterable of int or str, optional
+        The contacts that take the value. Default: all; of slip forces those that are finite,
+        unless none is.
+    common : {"value", "factor"}, optional
+        Whether the contacts all take the value, or multiply their own by it.
+    omega : (float, float), optional
+        Range of frequencies in which the peak is the highest point [rad/s]. Default: from 5 %
+        below the free to 5 % above the highest stuck natural frequency of `mode`, over the lowest
+        harmonic of the forces.
+    mode : int, optional
+        The mode whose resonance that is, counted from 0.
+    measure : {"half_range", "max", "fundamental"}, optional
+        See `ForcedResponse.amplitude`.
+    harmonics, tolerance, residual, progress, max_harmonics, max_iterations
+        See `stickslip.forced_response`; automatic harmonics are chosen at every peak.
+
+    Returns
+    -------
+    DamperCurve
+        One entry per value.
+
+    Raises
+    ------
+    ModelError
+        If not exactly one parameter is given, or an argument is of the wrong type or outside its
+        range.
+    Interrupted
+        On Ctrl-C; its `result` holds the values that had been reached.
+
+    References
+    ----------
+    Guillen (1999), Figs 2.6, 2.10, 2.11, 4.3 to 4.8, there from full sweeps. Griffin (1980): the
+    optimal slip force of a blade damper.
+    """
+    require_model(model)
+    require_progress(progress)
+    parameter, values = _one_of(slip_force=slip_force, stiffness=stiffness, level=level)
+    settings = settings_for(
+        model,
+        Variation(
+            parameter=parameter, contacts=chosen_contacts(contacts, parameter, model), common=common
+        ),
+        values,
+        omega=omega,
+        mode=mode,
+        dof=dof,
+        measure=measure,
+        harmonics=harmonics,
+        tolerance=tolerance,
+        residual=residual,
+        max_harmonics=max_harmonics,
+        max_iterations=max_iterations,
+    )
+    limit = parameter == "stiffness" and bool(np.isinf(values).any())
+    if limit and common == "factor":
+        raise ModelError('stiffness: an infinite factor has no meaning; use common="value"')
+    rigid = RIGID * local_stiffness(model, settings.variation.contacts) if limit else None
+    result = curve_of(model, settings, _peaks(model, settings, values, rigid, progress), rigid)
+    if result.interrupted:
+        done = int(result.arrays.solved.sum())
+        raise Interrupted(
+            f"damper curve interrupted after {done} of {values.size} values, which the result of "
+            "this exception holds",
+            result,
+        )
+    if progress is not None:
+        progress(1.0)
+    return result
+
+
+def settings_for(
+    model: Model,
+    variation: Variation,
+    values: Float,
+    *,
+    omega: Span | None,
+    mode: int,
+    dof: str,
+    measure: Measure,
+    harmonics: int | Literal["auto"],
+    tolerance: float,
+    residual: Residual,
+    max_harmonics: int,
+    max_iterations: int,
+) -> DamperSettings:
+    """Return the checked settings of a curve over some values."""
+    finite = values[np.isfinite(values)]
+    if variation.parameter == "stiffness" and finite.size < values.size:
+        finite = np.append(finite, RIGID * local_stiffness(model, variation.contacts))
+    if omega is None:
+        omega = resonance_range(model, variation, mode, finite)
+    elif not isinstance(omega, tuple):
+        raise ModelError("omega: give a range (from, to) in rad/s")
+    settings = DamperSettings(
+        variation=variation,
+        dof=dof,
+        measure=measure,
+        span=omega,
+        harmonics=harmonics,
+        tolerance=tolerance,
+        residual=residual,
+        max_harmonics=max_harmonics,
+        max_iterations=max_iterations,
+    )
+    model.structure.index(settings.dof)
+    require_held(model, settings.residual)
+    return settings
+
+
+def curve_of(
+    model: Model,
+    settings: DamperSettings,
+    peaks: tuple[DamperArrays, _core.Peaks],
+    rigid: float | None = None,
+) -> DamperCurve:
+    """Return the result that the core's peaks make."""
+    arrays, solution = peaks
+    return DamperCurve(
+        model=model,
+        dofs=(settings.dof,),
+        settings=settings,
+        arrays=arrays,
+        interrupted=solution.interrupted,
+        timings=dict(solution.timings),
+        counters=dict(solution.counters),
+        assumptions=damper_assumptions(settings, arrays, rigid),
+    )
+
+
+def _peaks(
+    model: Model, settings: DamperSettings, values: Float, rigid: float | None, progress: Progress
+) -> tuple[DamperArrays, _core.Peaks]:
+    from stickslip import _core
+
+    solved = values
+    if rigid is not None:
+        # A rigid contact stands for two stiff ones.
+        pairs = [[rigid, 2.0 * rigid] if np.isinf(value) else [value] for value in values]
+        solved = np.concatenate([np.array(pair) for pair in pairs])
+    try:
+        peaks = _core.damper_curve(model.problem, settings.design(model), solved, progress)
+    except ModelError:
+        raise
+    except ValueError as error:
+        raise ModelError(str(error)) from error
+    arrays = DamperArrays.of(peaks)
+    return (arrays if rigid is None else _with_limit(arrays, values)), peaks
+
+
+def _with_limit(arrays: DamperArrays, values: Float) -> DamperArrays:
+    """Replace every pair of stiff contacts by their limit, linear in 1/k_d."""
+    second = np.arange(values.size) + np.cumsum(np.isinf(values))
+    last = {entry.name: np.array(getattr(arrays, entry.name)[second]) for entry in fields(arrays)}
+    for place in np.flatnonzero(np.isinf(values)):
+        two = int(second[place])
+        one = two - 1
+        for name in ("omega", "amplitude"):
+            numbers = getattr(arrays, name)
+            last[name][place] = 2.0 * numbers[two] - numbers[one]
+        change = abs(arrays.amplitude[two] - arrays.amplitude[one])
+        estimate = arrays.error_estimate
+        last["error_estimate"][place] = 2.0 * estimate[two] + estimate[one] + change
+        last["sensitivity"][place] = 0.0
+        if arrays.status[two] == Status.CONVERGED.code:
+            last["status"][place] = arrays.status[one]
+    return DamperArrays(**{**last, "value": values})
+
+
+def _one_of(**given: ArrayLike | None) -> tuple[Parameter, Float]:
+    """Return the one parameter that is given, and its values."""
+    names = [name for name in PARAMETERS if given[name] is not None]
+    if len(names) != 1:
+        got = f"{' and '.join(names)} are given" if names else "none is given"
+        raise ModelError(f"slip_force, stiffness, level: {got}; give exactly one of them")
+    (name,) = names
+    try:
+        values = np.atleast_1d(np.asarray(given[name]))
+    except ValueError:
+        raise ModelError(f"{name}: a ragged list; give one list of values") from None
+    if values.dtype.kind not in "fiu" or values.ndim != 1 or not values.size:
+        raise ModelError(f"{name}: give a list of at least one real number")
+    numbers = np.array(values, dtype=np.float64)
+    # Zero friction and zero stiffness are legal, no force is no response.
+    low = numbers <= 0.0 if name == "level" else numbers < 0.0
+    bad = np.flatnonzero(np.isnan(numbers) | low | ((name == "level") & np.isinf(numbers)))
+    if bad.size:
+        least = "finite factors above 0" if name == "level" else "values from 0 on"
+        raise ModelError(f"{name}[{bad[0]}] is {numbers[bad[0]]:g}; give {least}")
+    return name, numbers

@@ -1,0 +1,217 @@
+"""The damper that makes a peak least."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from stickslip.analyses.arguments import Progress, Residual, Span, require_model, require_progress
+from stickslip.analyses.damper_curve import curve_of, settings_for
+from stickslip.analyses.damper_settings import DamperSettings
+from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS, forced_response
+from stickslip.analyses.variation import (
+    Common,
+    Parameter,
+    Variation,
+    chosen_contacts,
+    local_stiffness,
+)
+from stickslip.checks import choice, real_number
+from stickslip.errors import Interrupted, ModelError
+from stickslip.model import ContactRef, Model
+from stickslip.results.arrays import Measure, amplitude_of
+from stickslip.results.damper_curve import DamperArrays, LeastPeak
+from stickslip.results.optimal_damper import OptimalDamper
+
+__all__ = ["optimal_damper"]
+
+STICKS = 1.0
+"""Upper bound of a slip force, over the largest force of the stuck contact: from it on nothing
+slips, and the peak does not change any more."""
+SLIDES = 1e-3
+"""Lower bound, likewise: so little friction takes off a peak about as much as its damping does."""
+STIFFNESSES = (1e-2, 250.0)
+"""Bounds of a stiffness, over that of the structure at the contact."""
+LEVELS = (1.0, 1e3)
+"""Bounds of a level, over the one at which contacts begin to slip."""
+
+
+def optimal_damper(
+    model: Model,
+    *,
+    dof: str,
+    parameter: Parameter = "slip_force",
+    bounds: tuple[float, float] | None = None,
+    contacts: Iterable[ContactRef] | ContactRef | None = None,
+    common: Common = "value",
+    omega: Span | None = None,
+    mode: int = 0,
+    measure: Measure = "half_range",
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 1e-3,
+    residual: Residual = "centred",
+    progress: Progress = None,
+    max_harmonics: int = MAX_HARMONICS,
+    max_iterations: int = MAX_ITERATIONS,
+) -> OptimalDamper:
+    """Find the slip force, stiffness or level at which the peak of a response is least.
+
+    A curve of 40 values shows the local minima; each is closed in on with the exact derivative of
+    the peak. The peak is continuous in the parameter, with kinks where two maxima of the response
+    swap, and often least in a kink; such a minimum is found as the crossing of two tangents. With
+    automatic harmonics minima count as one if the rise between them is below twice the tolerance.
+
+    Parameters
+    ----------
+    model : Model
+        Structure, contacts and forces.
+    dof : str
+        The degree of freedom whose peak is to be least.
+    parameter : {"slip_force", "stiffness", "level"}, optional
+        What is varied. With "level", a factor on all forces, the amplitude per unit of level is
+        made least: friction knows the ratio of force and slip force alone.
+    bounds : (float, float), optional
+        Values to look between. Default, for slip forces: from 1/1000 to all of the largest force
+        that the stuck contacts bear in the range of frequencies, beyond which nothing slips; for
+        levels likewise; for stiffnesses: 1/100 to 250 times that of the structure.
+    contacts : iterable of int or str, optional
+        The contacts that are varied. Default: all; of slip forces those that are finite, unless
+        none is.
+    common : {"value", "factor"}, optional
+        Whether all contacts take one common value, or multiply their own by one common factor.
+        Different values for each contact are not looked for.
+    omega, mode, measure
+        See `stickslip.damper_curve`.
+    harmonics, tolerance, residual, progress, max_harmonics, max_iterations
+        See `stickslip.forced_response`; automatic harmonics are chosen at every peak.
+
+    Returns
+    -------
+    OptimalDamper
+        The least peak, all local minima, and the curve.
+
+    Raises
+    ------
+    ModelError
+        If an argument is of the wrong type or outside its range, or no peak is found.
+    Interrupted
+        On Ctrl-C; its `result` holds the curve as far as it had been computed.
+    """
+    from stickslip import _core
+
+    require_model(model)
+    require_progress(progress)
+    choice(parameter, "parameter", ("slip_force", "stiffness", "level"))
+    variation = Variation(
+        parameter=parameter, contacts=chosen_contacts(contacts, parameter, model), common=common
+    )
+    given = None if bounds is None else _checked(bounds)
+    values = np.array(given if given is not None else (1.0,))
+    if parameter == "stiffness" and given is None:
+        given = _default_bounds(model, variation, None)
+        values = np.array(given)
+    settings = settings_for(
+        model,
+        variation,
+        values,
+        omega=omega,
+        mode=mode,
+        dof=dof,
+        measure=measure,
+        harmonics=harmonics,
+        tolerance=tolerance,
+        residual=residual,
+        max_harmonics=max_harmonics,
+        max_iterations=max_iterations,
+    )
+    low, high = given if given is not None else _default_bounds(model, variation, settings)
+    try:
+        minima, peaks = _core.optimal_damper(
+            model.problem, settings.design(model), (low, high), progress
+        )
+    except ModelError:
+        raise
+    except ValueError as error:
+        raise ModelError(str(error)) from error
+    curve = curve_of(model, settings, (DamperArrays.of(peaks), peaks))
+    if curve.interrupted:
+        raise Interrupted(
+            f"optimal damper interrupted after {curve.values.size} peaks, which the result of this "
+            "exception holds",
+            curve,
+        )
+    rows = zip(minima.value, minima.omega, minima.amplitude, strict=True)
+    found = tuple(LeastPeak(*map(float, row)) for row in rows)
+    if not found:
+        raise ModelError(
+            f"optimal damper: no peak was found between {low:g} and {high:g}; try other bounds, or "
+            "damper_curve for the status of each value"
+        )
+    if progress is not None:
+        progress(1.0)
+    result = OptimalDamper(minima=found, bounds=(low, high), curve=curve, assumptions=())
+    return replace(result, assumptions=_assumptions(result))
+
+
+def _assumptions(result: OptimalDamper) -> tuple[str, ...]:
+    low, high = result.bounds
+    unit = result.curve.settings.variation.unit
+    texts = [
+        f"The least peak was looked for between {low:.6g} and {high:.6g} {unit}; a local minimum "
+        "narrower than the coarse curve of 40 values may have been passed over."
+    ]
+    if result.at_bound:
+        texts.append("It lies at a bound: a better value may lie outside.")
+    return (*texts, *result.curve.assumptions)
+
+
+def _checked(bounds: tuple[float, float]) -> tuple[float, float]:
+    if not isinstance(bounds, tuple | list) or len(bounds) != 2:
+        raise ModelError("bounds: give two values, (lowest, highest)")
+    low, high = (real_number(value, "bounds") for value in bounds)
+    if not 0.0 < low < high:
+        raise ModelError(f"bounds: ({low:g}, {high:g}); give 0 < lowest < highest")
+    return low, high
+
+
+def _default_bounds(
+    model: Model, variation: Variation, settings: DamperSettings | None
+) -> tuple[float, float]:
+    """Return bounds that hold all that friction can do."""
+    if settings is None:
+        stiffness = local_stiffness(model, variation.contacts)
+        if variation.common == "factor":
+            own = [model.contacts[model.contact_index(name)] for name in variation.contacts]
+            stiffness /= max(contact.parameters()["stiffness"] for contact in own)
+        return STIFFNESSES[0] * stiffness, STIFFNESSES[1] * stiffness
+    ratio = _stuck_force(model, variation, settings)
+    if not ratio > 0.0:
+        raise ModelError(
+            "bounds: the contacts bear no force while they stick, so that friction does nothing; "
+            "check the forces, or give bounds=(lowest, highest)"
+        )
+    if variation.parameter == "level":
+        return LEVELS[0] / ratio, LEVELS[1] / ratio
+    return SLIDES * ratio, STICKS * ratio
+
+
+def _stuck_force(model: Model, variation: Variation, settings: DamperSettings) -> float:
+    """Return the largest force of a stuck contact [N], over its own slip force if that counts."""
+    varied = variation.contacts or chosen_contacts(None, "slip_force", model)
+    stuck = Variation(parameter="slip_force", contacts=varied).apply(model, np.inf)
+    highest = max((force.harmonic for force in model.forces), default=1)
+    response = forced_response(stuck, settings.span, max(highest, 1), observe=[settings.dof])
+    largest = 0.0
+    for name in varied:
+        position = model.contact_index(name)
+        column = response.arrays.contact_force[:, :, response._columns(position, 0)][:, :, 0]
+        force = float(np.nanmax(amplitude_of(np.ascontiguousarray(column), "half_range")))
+        relative = variation.common == "factor" or variation.parameter == "level"
+        own = model.contacts[position].parameters()["slip_force"]
+        if relative and not 0.0 < own < np.inf:
+            continue
+        largest = max(largest, force / own if relative else force)
+    return largest

@@ -1,0 +1,250 @@
+"""How amplitudes change with the parameters of the contacts, the load and the frequency."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias, get_args, overload
+
+import numpy as np
+
+from stickslip.checks import choice, text, unknown
+from stickslip.errors import ModelError
+from stickslip.model import ContactRef, Model
+from stickslip.results.arrays import Float, Measure, constant
+from stickslip.results.contact_motion import ContactMotion
+
+if TYPE_CHECKING:
+    from stickslip.results.peaks import Peak
+
+__all__ = ["COMMON", "Sensitivities"]
+
+COMMON = {"level": "m", "omega": "m s/rad"}
+"""What belongs to no contact: a factor on all forces, and the excitation frequency."""
+
+Cause: TypeAlias = "str | tuple[int, str]"
+
+
+class Sensitivities(ContactMotion):
+    """The part of a forced response that concerns its derivatives.
+
+    They are exact: the balance is differentiated at its solution, with the Jacobian and the
+    derivatives of the friction law that Newton's method uses, and nothing is solved anew.
+    """
+
+    half_wave: bool
+
+    if TYPE_CHECKING:
+
+        def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
+            """See `ForcedResponse.peak`."""
+
+    @overload
+    def sensitivity(
+        self,
+        dof: str,
+        contact: ContactRef | None = None,
+        parameter: None = None,
+        measure: Measure = "half_range",
+    ) -> dict[tuple[str, str], Float]: ...
+
+    @overload
+    def sensitivity(
+        self,
+        dof: str,
+        contact: ContactRef | None = None,
+        *,
+        parameter: str,
+        measure: Measure = "half_range",
+    ) -> Float: ...
+
+    @overload
+    def sensitivity(
+        self,
+        dof: str,
+        contact: ContactRef | None,
+        parameter: str,
+        measure: Measure = "half_range",
+    ) -> Float: ...
+
+    def sensitivity(
+        self,
+        dof: str,
+        contact: ContactRef | None = None,
+        parameter: str | None = None,
+        measure: Measure = "half_range",
+    ) -> Float | dict[tuple[str, str], Float]:
+        """Return the derivative of an amplitude in parameters of the contacts, or in the load.
+
+        Where two turning points are equally high, or a contact is just about to slip, it is that
+        of one side.
+
+        Parameters
+        ----------
+        dof : str
+            A degree of freedom of the structure; it need not have been observed.
+        contact : int or str, optional
+            A contact. Default: all.
+        parameter : str, optional
+            A parameter of the contact's law ("slip_force", "stiffness"). Without a contact: that
+            of all contacts, changed together by the same amount. Also "level", a factor on all
+            forces, at its value 1, and "omega", the frequency. Default: all parameters.
+        measure : {"half_range", "max", "fundamental"}, optional
+            See `ForcedResponse.amplitude`.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,), or dict
+            Amplitude per parameter, [m/N] for a slip force. Without a parameter: one array for
+            every (contact name, parameter). Not-a-number at points that were not solved.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, contact, parameter or measure.
+        """
+        causes = _causes(self.model, contact, parameter)
+        slopes = self._slopes(dof, list(causes.values()), measure)
+        if parameter is None:
+            names = causes.keys()
+            return {name: constant(slopes[:, i].copy()) for i, name in enumerate(names)}
+        return constant(slopes.sum(axis=1))
+
+    @overload
+    def peak_sensitivity(
+        self,
+        dof: str,
+        contact: ContactRef | None = None,
+        parameter: None = None,
+        measure: Measure = "half_range",
+    ) -> dict[tuple[str, str], float]: ...
+
+    @overload
+    def peak_sensitivity(
+        self,
+        dof: str,
+        contact: ContactRef | None = None,
+        *,
+        parameter: str,
+        measure: Measure = "half_range",
+    ) -> float: ...
+
+    @overload
+    def peak_sensitivity(
+        self,
+        dof: str,
+        contact: ContactRef | None,
+        parameter: str,
+        measure: Measure = "half_range",
+    ) -> float: ...
+
+    def peak_sensitivity(
+        self,
+        dof: str,
+        contact: ContactRef | None = None,
+        parameter: str | None = None,
+        measure: Measure = "half_range",
+    ) -> float | dict[tuple[str, str], float]:
+        """Return the derivative of the height of the peak.
+
+        The frequency of the peak moves with the parameter, but the amplitude is stationary in it:
+        the derivative of the peak is that of the amplitude at its frequency.
+
+        Parameters
+        ----------
+        dof, contact, parameter, measure
+            See `sensitivity`; "omega" is no parameter of a peak.
+
+        Returns
+        -------
+        float or dict
+            As `sensitivity`, one number each.
+
+        Raises
+        ------
+        ModelError
+            As `sensitivity` and `ForcedResponse.peak`.
+        """
+        from stickslip.analyses.forced_response import forced_response
+
+        if parameter == "omega":
+            raise ModelError(
+                'parameter: "omega" is no parameter of a peak, which is stationary in it; '
+                'use sensitivity(..., parameter="omega") for the curve'
+            )
+        causes = _causes(self.model, contact, parameter)
+        peak = self.peak(dof, measure)
+        settings = self.settings
+        there = forced_response(
+            self.model,
+            [peak.omega],
+            settings.harmonics,
+            tolerance=settings.tolerance,
+            residual=settings.residual,
+            evaluation=settings.evaluation,
+            samples=settings.samples,
+            observe=[dof],
+            max_harmonics=settings.max_harmonics,
+            max_iterations=settings.max_iterations,
+        )
+        slopes = there._slopes(dof, list(causes.values()), measure)[0]
+        if parameter is None:
+            return {name: float(slope) for name, slope in zip(causes, slopes, strict=True)}
+        return float(slopes.sum())
+
+    def _slopes(self, dof: str, causes: list[Cause], measure: Measure) -> Float:
+        """Return the derivatives of an amplitude, shape (n, causes)."""
+        from stickslip import _core
+
+        if self.kind != "forced_response":
+            raise ModelError(
+                f"sensitivity: a {type(self).__name__} has none; they are those of the balance "
+                "that forced_response solves"
+            )
+        position = self.model.structure.index(text(dof, "dof"))
+        choice(measure, "measure", get_args(Measure))
+        arrays = self.arrays
+        solved = arrays.solved
+        slopes = np.full((arrays.omega.size, len(causes)), np.nan)
+        if solved.any():
+            try:
+                slopes[solved] = _core.sensitivity(
+                    self.model.problem,
+                    arrays.omega[solved],
+                    arrays.harmonics[solved],
+                    np.ascontiguousarray(arrays.contact_displacement[solved]),
+                    self.half_wave,
+                    self.settings.residual,
+                    position,
+                    measure,
+                    causes,
+                    self.settings.march,
+                )
+            except ValueError as error:
+                raise ModelError(f"sensitivity of {dof!r}: {error}") from error
+        return slopes
+
+
+def _causes(
+    model: Model, contact: ContactRef | None, parameter: str | None
+) -> dict[tuple[str, str], Cause]:
+    """Return what is differentiated by, by (contact name, parameter)."""
+    if parameter is not None:
+        text(parameter, "parameter")
+    if parameter in COMMON:
+        if contact is not None:
+            raise ModelError(f"parameter: {parameter!r} belongs to no contact; leave contact out")
+        return {("", parameter): parameter}
+    positions = range(len(model.contacts)) if contact is None else [model.contact_index(contact)]
+    known = {
+        (model.contact_names[position], name): (position, name)
+        for position in positions
+        for name in model.contacts[position].parameters()
+    }
+    if parameter is None:
+        return dict(known)
+    causes: dict[tuple[str, str], Cause] = {
+        key: cause for key, cause in known.items() if key[1] == parameter
+    }
+    if not causes:
+        names = [*dict.fromkeys(name for _, name in known), *(COMMON if contact is None else ())]
+        raise ModelError(unknown("parameter", parameter, names))
+    return causes
