@@ -49,6 +49,18 @@ impl RingOrder {
         Self { layout, receptances, links, interface: CyclicTridiagonal::new(rows) }
     }
 
+    /// Number of sectors.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.receptances.len()
+    }
+
+    /// Number of ports of a sector.
+    #[must_use]
+    pub fn ports(&self) -> usize {
+        self.layout.ports()
+    }
+
     /// Receptance of the ports of a sector, column after column, and its response to its loads.
     #[must_use]
     pub fn sector(&self, index: usize) -> &Receptance {
