@@ -9,7 +9,7 @@ use crate::fourier::Harmonics;
 use crate::solve::{BlockRow, CyclicTridiagonal};
 use crate::structure::{RingLayout, RingOrder};
 use faer::linalg::solvers::{PartialPivLu, Solve as _};
-use faer::Mat;
+use faer::{Mat, MatRef};
 use std::ops::{AddAssign as _, Range, SubAssign as _};
 
 /// Factors of `I − G ∂Q` for a ring.
@@ -82,7 +82,7 @@ impl RingNewton {
             let before = &sectors[(i + count - 1) % count];
             sectors[i].row(before, ends)
         });
-        let chain = CyclicTridiagonal::new(rows.collect());
+        let chain = CyclicTridiagonal::new(rows.collect(), ends[2]);
         Self { slots, layout: layout.clone(), local, ends, sectors, chain }
     }
 
@@ -115,7 +115,9 @@ impl RingNewton {
             );
             part += sector.ports.get(.., ..middle) * force;
         }
-        let ports = self.chain.solve(right.as_ref());
+        let mut solved: Vec<f64> = (0..count * total).map(|i| right[(i, 0)]).collect();
+        self.chain.solve(&mut solved);
+        let ports = MatRef::from_column_major_slice(&solved, count * total, 1);
         let port = |i: usize, range: Range<usize>| {
             ports.get(i * total + range.start..i * total + range.end, ..)
         };
@@ -173,6 +175,7 @@ impl Sector {
         upper.get_mut(.., middle..).add_assign(coupling * &self.link[0]);
         lower.get_mut(.., ..reach).sub_assign(&behind_slip);
         lower.get_mut(.., middle..).add_assign(coupling * &before.link[1]);
+        let [lower, own, upper] = [lower, own, upper].map(|matrix| row_major(&matrix));
         BlockRow { lower, own, upper }
     }
 }
@@ -259,4 +262,11 @@ fn tangents(
 fn picked(tangent: &Mat<f64>, which: &[usize], slots: usize) -> Mat<f64> {
     let at = |i: usize| which[i / slots] * slots + i % slots;
     Mat::from_fn(which.len() * slots, which.len() * slots, |i, j| tangent[(at(i), at(j))])
+}
+
+fn row_major(matrix: &Mat<f64>) -> Vec<f64> {
+    (0..matrix.nrows())
+        .flat_map(|i| (0..matrix.ncols()).map(move |j| (i, j)))
+        .map(|at| matrix[at])
+        .collect()
 }
