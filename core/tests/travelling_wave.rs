@@ -12,7 +12,7 @@ use stickslip_core::balance::{
 };
 use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
-use stickslip_core::model::{Model, SectorContact};
+use stickslip_core::model::{Contact, Model, SectorContact};
 use stickslip_core::structure::{
     CyclicMatrix, CyclicStructure, HarmonicLoad, Receptance, RingCoupling, Structure,
 };
@@ -160,6 +160,48 @@ fn a_ring_of_sectors_is_the_whole_disk() {
     }
 }
 
+/// Mistuned, with and without friction between neighbours: the ring solver against dense matrices.
+#[test]
+fn mistuned_rings_move_as_the_assembled_disk() {
+    for (count, between, highest) in [
+        (1, None, 3),
+        (2, Some((2e5, 8.0)), 3),
+        (3, None, 5),
+        (9, None, 7),
+        (9, Some((2e5, 8.0)), 5),
+    ] {
+        let factors: Vec<f64> =
+            (0..count).map(|i| 1.0 + 0.07 * (2.3 * f64::from(i) + 0.4).sin()).collect();
+        let ring = sectors(&factors, 2, between);
+        let contacts = (0..ring.laws().len()).map(|i| Contact {
+            law: ring.laws()[i].softened(1.0),
+            rows: ring.ports().rows.get(i..i + 1, ..).to_owned(),
+        });
+        let loads = ring.ports().loads.clone();
+        let dense = Model::new(ring.structure().clone(), contacts.collect(), loads).unwrap();
+        let everywhere: Vec<usize> = (0..3 * factors.len()).collect();
+        let omega: Vec<f64> = (0..18).map(|i| 150.0 + 25.0 * f64::from(i)).collect();
+        let solve = |model: &Model| {
+            sweep(ForcedBalance::new(model, fixed(highest), &everywhere).unwrap(), &omega).unwrap()
+        };
+        let (ours, theirs) = (solve(&ring), solve(&dense));
+        let mut slips = false;
+        for (a, b) in ours.points.iter().zip(&theirs.points) {
+            assert_eq!((a.status, b.status), (PointStatus::Converged, PointStatus::Converged));
+            assert!(a.iterations <= b.iterations + 3, "{} {}", a.iterations, b.iterations);
+            slips |= b.contacts.iter().any(|c| c.slip_fraction > 0.0);
+            let size = b.displacement.iter().map(|x| x.norm()).fold(0.0, f64::max);
+            for (a, b) in a.displacement.iter().zip(&b.displacement) {
+                assert!((a - b).norm() < 1e-9 * size);
+            }
+            for (a, b) in a.error_estimate.iter().zip(&b.error_estimate) {
+                assert!((a - b).abs() < 1e-6 * size);
+            }
+        }
+        assert!(slips);
+    }
+}
+
 /// Laws of another stiffness reach the couplings between neighbours, and sensitivities the ring.
 #[test]
 fn other_laws_and_slopes_of_rings_are_those_of_the_whole_disk() {
@@ -172,7 +214,7 @@ fn other_laws_and_slopes_of_rings_are_those_of_the_whole_disk() {
     let ring = stiffer(&sectors(&factors, 2, between));
     let whole = {
         let assembled = |model: &Model| {
-            let contacts = (0..model.laws().len()).map(|i| stickslip_core::model::Contact {
+            let contacts = (0..model.laws().len()).map(|i| Contact {
                 law: model.laws()[i].softened(1.0),
                 rows: model.ports().rows.get(i..i + 1, ..).to_owned(),
             });

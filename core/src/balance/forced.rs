@@ -203,6 +203,9 @@ impl<'a> ForcedBalance<'a> {
         let interrupted = || !progress(share);
         let mut equations = Condensed::new(self.model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
+        if self.settings.method != Method::Newton {
+            equations.densify();
+        }
         let solved = self.solve_equations(&mut equations, omega, start)?;
         self.add_profile(&equations.profile);
         Ok(solved)

@@ -6,6 +6,7 @@ mod homotopy;
 mod line_search;
 mod newton;
 mod qr;
+mod small_dense;
 
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
 pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};

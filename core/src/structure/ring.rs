@@ -106,7 +106,15 @@ impl Ring {
         }
         let reaches =
             |c: &usize| parts.iter().any(|part| (0..dofs).any(|j| part.next[(*c, j)] != 0.0));
-        let between: Vec<usize> = (0..contacts).filter(reaches).collect();
+        let mut between: Vec<usize> = (0..contacts).filter(reaches).collect();
+        // Points that a contact couples belong together.
+        let coupled = |a: usize, b: usize| parts.iter().any(|part| part.stiffness[(a, b)] != 0.0);
+        while let Some(more) = (0..contacts)
+            .find(|c| !between.contains(c) && between.iter().any(|&other| coupled(*c, other)))
+        {
+            between.push(more);
+        }
+        between.sort_unstable();
         let mut interface: Vec<usize> = (0..dofs)
             .filter(|&i| {
                 [&coupling.mass, &coupling.damping, &coupling.stiffness]

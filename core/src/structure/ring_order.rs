@@ -39,14 +39,28 @@ impl RingOrder {
                 let contact = &receptances[i].contact;
                 let own = Mat::from_fn(size, size, |a, b| contact[(first + b) * ports + first + a]);
                 let before = &links[(i + count - 1) % count][0];
+                let identity = (0..4 * size * size).map(|at| at % (2 * size + 1) == 0);
                 BlockRow {
                     lower: real((&own * before.transpose()).as_ref()),
-                    own: Mat::identity(2 * size, 2 * size),
+                    own: identity.map(|diagonal| f64::from(u8::from(diagonal))).collect(),
                     upper: real((&own * &links[i][0]).as_ref()),
                 }
             })
             .collect();
-        Self { layout, receptances, links, interface: CyclicTridiagonal::new(rows) }
+        let interface = CyclicTridiagonal::new(rows, 2 * size);
+        Self { layout, receptances, links, interface }
+    }
+
+    /// Number of sectors.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.receptances.len()
+    }
+
+    /// Number of ports of a sector.
+    #[must_use]
+    pub fn ports(&self) -> usize {
+        self.layout.ports()
     }
 
     /// Receptance of the ports of a sector, column after column, and its response to its loads.
@@ -116,20 +130,17 @@ impl RingOrder {
     fn couple(&self, mut port: Vec<c64>, mut force: Vec<c64>) -> RingMotion {
         let (count, ports) = (self.receptances.len(), self.layout.ports());
         let (first, size) = (self.layout.first_interface(), self.layout.interface.len());
-        let alone = Mat::from_fn(count * 2 * size, 1, |row, _| {
-            let (i, local) = (row / (2 * size), row % (2 * size));
-            let value = port[i * ports + first + local / 2];
-            if local % 2 == 0 {
-                value.re
-            } else {
-                value.im
+        let mut interface = Vec::with_capacity(count * 2 * size);
+        for i in 0..count {
+            for y in &port[i * ports + first..(i + 1) * ports] {
+                interface.extend([y.re, y.im]);
             }
-        });
-        let solved = self.interface.solve(alone.as_ref());
+        }
+        self.interface.solve(&mut interface);
         for i in 0..count {
             for local in 0..size {
                 let at = i * 2 * size + 2 * local;
-                port[i * ports + first + local] = c64::new(solved[(at, 0)], solved[(at + 1, 0)]);
+                port[i * ports + first + local] = c64::new(interface[at], interface[at + 1]);
             }
         }
         let mut coupling = vec![c64::new(0.0, 0.0); count * ports];
@@ -191,14 +202,18 @@ impl RingOrder {
     }
 }
 
-/// A complex matrix as a real one of pairs (real part, imaginary part).
-fn real(matrix: MatRef<'_, c64>) -> Mat<f64> {
-    Mat::from_fn(2 * matrix.nrows(), 2 * matrix.ncols(), |i, j| {
-        let z = matrix[(i / 2, j / 2)];
-        match (i % 2, j % 2) {
-            (0, 0) | (1, 1) => z.re,
-            (0, _) => -z.im,
-            _ => z.im,
-        }
-    })
+/// A complex matrix as a real one of pairs (real part, imaginary part), row by row.
+fn real(matrix: MatRef<'_, c64>) -> Vec<f64> {
+    let columns = 2 * matrix.ncols();
+    (0..2 * matrix.nrows() * columns)
+        .map(|at| {
+            let (i, j) = (at / columns, at % columns);
+            let z = matrix[(i / 2, j / 2)];
+            match (i % 2, j % 2) {
+                (0, 0) | (1, 1) => z.re,
+                (0, _) => -z.im,
+                _ => z.im,
+            }
+        })
+        .collect()
 }
