@@ -9,8 +9,6 @@ import stickslip as ss
 from stickslip.disk import BladedDisk, Interface
 from stickslip.model import Model
 
-RNG = np.random.default_rng(7)
-
 # errata.md, section 4: tuned ring of 36, coupling 1e5 N/m, engine order 2; peak of the damper [m]
 TUNED_PEAKS = {1: 8.0014e-5, 3: 8.3035e-5, 7: 8.6130e-5, 15: 8.3912e-5, 35: 8.4116e-5}
 
@@ -32,13 +30,13 @@ def shrouded(sectors=8, engine_order=3, **options):
     )
 
 
-def general_interface(sectors=7):
+def general_interface(sectors=7, seed=7):
     """Return a disk coupled by blocks of mass, damping and stiffness that are not symmetric."""
-    size = 4
-    part = RNG.standard_normal((size, size))
+    size, rng = 4, np.random.default_rng(seed)
+    part = rng.standard_normal((size, size))
     mass = np.eye(size) + 0.1 * part @ part.T
     stiffness = 4e4 * (np.diag([3.0, 4.0, 5.0, 6.0]) + 0.1 * (part + part.T))
-    blocks = [RNG.standard_normal((size, size)) for _ in range(3)]
+    blocks = [rng.standard_normal((size, size)) for _ in range(3)]
     return BladedDisk(
         ss.Structure(mass, stiffness, ss.Rayleigh(mass=2.0, stiffness=1e-5), ["a", "b", "c", "d"]),
         sectors,
@@ -47,7 +45,7 @@ def general_interface(sectors=7):
             ss.Jenkins("b", "next.c", stiffness=3e4, slip_force=1.0),
         ],
         forces=[ss.Force("d", 4.0), ss.Force("b", 1.0, 0.3, harmonic=2)],
-        engine_order=2,
+        engine_order=int(rng.integers(1, 12)),
         interface=Interface(2e3 * blocks[0], 0.02 * blocks[1], 0.1 * blocks[2]),
     )
 
@@ -110,12 +108,12 @@ def test_friction_between_blades_moves_as_the_assembly(engine_order):
     assert np.abs(one.energy.imbalance).max() < 1e-9
 
 
-@pytest.mark.parametrize("sectors", [2, 3, 7])
-def test_general_interface_blocks_move_as_the_assembly(sectors):
+@pytest.mark.parametrize(("sectors", "seed"), [(2, 1), (3, 2), (4, 3), (7, 4), (8, 5), (9, 6)])
+def test_general_interface_blocks_move_as_the_assembly(sectors, seed):
     one = assert_sectors_move_as_the_assembly(
-        general_interface(sectors), np.linspace(120.0, 320.0, 9), 4
+        general_interface(sectors, seed), np.linspace(120.0, 320.0, 9), 4
     )
-    assert one.slip_fraction(1).max() > 0.0
+    assert max(one.slip_fraction(contact).max() for contact in (0, 1)) > 0.1
     assert np.abs(one.energy.imbalance).max() < 1e-9
 
 

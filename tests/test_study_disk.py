@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import stickslip as ss
 from small_study import ANALYSIS, ONE_CONTACT, ONE_FORCE, SMALL, STRUCTURE
+from stickslip.cli import app
 from stickslip.disk import BladedDisk, MistunedDisk
 from stickslip.study import Study, json_schema
 
@@ -138,6 +140,20 @@ def test_bad_disk_tables_are_refused_in_one_line(text, message):
     with pytest.raises(ss.ModelError, match=message) as refusal:
         list(Study.parse(text).run())
     assert "\n" not in str(refusal.value)
+
+
+def test_the_command_line_runs_shows_and_plots_disks(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    table = 'mistuning = { deviation = "5 %" }\n'
+    (tmp_path / "tuned.toml").write_text(TUNED)
+    (tmp_path / "ring.toml").write_text(TUNED.replace(DISK, DISK + table))
+    for name, fact in (("tuned", "6 equal sectors"), ("ring", "6 sectors of their own")):
+        for words in (f"run {name}.toml", f"plot results/{name}.nc", f"show results/{name}.nc"):
+            outcome = CliRunner().invoke(app, words.split())
+            assert outcome.exit_code == 0, outcome.output
+        assert fact in outcome.output
+        assert "engine order 2" in outcome.output
+        assert (tmp_path / "results" / f"{name}.png").is_file()
 
 
 def test_the_schema_knows_the_disk():
