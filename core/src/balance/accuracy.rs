@@ -8,7 +8,7 @@
 
 use super::condensed::Condensed;
 use super::solution::Point;
-use super::unknowns::{gather, Unknowns};
+use super::unknowns::Unknowns;
 use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
@@ -71,12 +71,7 @@ pub(super) fn errors(
     extended.add_tangent_product(&step, &mut slip_load);
     corrected.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
     let orders = point.harmonics + 1;
-    let (mut u, mut q) = (Vec::new(), Vec::new());
-    let mut observed = vec![c64::new(0.0, 0.0); observe.len()];
-    for order in harmonics.orders() {
-        gather(harmonics, order, &corrected, &mut u);
-        gather(harmonics, order, &slip_load, &mut q);
-        model.compliance().displacement(order, point.omega, &u, &q, observe, &mut observed)?;
+    extended.displacements(&corrected, &slip_load, observe, |order, observed, _, _| {
         for (dof, error) in errors.iter_mut().enumerate() {
             let before = if order < orders {
                 point.displacement[dof * orders + order]
@@ -85,6 +80,6 @@ pub(super) fn errors(
             };
             *error += (observed[dof] - before).norm();
         }
-    }
+    })?;
     Ok(errors)
 }

@@ -1,11 +1,13 @@
 //! The condensed equations at one frequency: `R(U) = U − μ U^stuck − G Q(U)`.
 
 use super::linear::{Factor, Linear};
+use super::unknowns::gather;
 use crate::contact::{FrictionLaw, Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::timing::Profile;
 use crate::Error;
+use faer::c64;
 
 /// What a homotopy scales, from easy to the problem at hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +24,7 @@ pub struct Condensed<'a> {
     pub(super) table: &'a SampleTable,
     pub(super) residual: Residual,
     pub(super) linear: Linear,
+    omega: f64,
     pub(super) stuck: Vec<f64>,
     pub(super) loads: Vec<SlipLoad>,
     pub(super) path: Path,
@@ -47,6 +50,7 @@ impl<'a> Condensed<'a> {
             table,
             residual,
             linear,
+            omega: f64::NAN,
             stuck: Vec::new(),
             loads: vec![SlipLoad::default(); model.laws().len()],
             path: Path::Load,
@@ -70,6 +74,7 @@ impl<'a> Condensed<'a> {
         self.stuck.clear();
         self.stuck.resize(contacts * slots, 0.0);
         self.factor = None;
+        self.omega = omega;
         let (linear, stuck, model) = (&mut self.linear, &mut self.stuck, self.model);
         Profile::time(&mut self.profile.compliance, || {
             linear.evaluate(model.compliance(), harmonics, omega, stuck)
@@ -81,6 +86,32 @@ impl<'a> Condensed<'a> {
         if let Linear::Ring { slopes, .. } = self.linear {
             self.linear = Linear::dense(self.table, slopes);
         }
+    }
+
+    /// Displacements of the DOFs `observe` at every kept order, handed to `store(order, values)`,
+    /// with the contact displacements `x` and slip loads that belong to them.
+    ///
+    /// # Errors
+    /// As [`Condensed::set_omega`].
+    pub(super) fn displacements(
+        &self,
+        x: &[f64],
+        slip_load: &[f64],
+        observe: &[usize],
+        mut store: impl FnMut(usize, &[c64], &[c64], &[c64]),
+    ) -> Result<(), Error> {
+        let harmonics = self.table.harmonics();
+        let compliance = self.model.compliance();
+        let (mut u, mut q) = (Vec::new(), Vec::new());
+        let mut observed = vec![c64::new(0.0, 0.0); observe.len()];
+        for (index, order) in harmonics.orders().enumerate() {
+            gather(harmonics, order, x, &mut u);
+            gather(harmonics, order, slip_load, &mut q);
+            let at = (index, order);
+            self.linear.displacement(compliance, at, self.omega, &u, &q, observe, &mut observed)?;
+            store(order, &observed, &u, &q);
+        }
+        Ok(())
     }
 
     /// Has the iterations ask whether to end the analysis.

@@ -68,6 +68,26 @@ impl Linear {
         Ok(())
     }
 
+    /// Displacements of the DOFs `observe` at the harmonic of position `index`, `order`.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn displacement(
+        &self,
+        compliance: &dyn Compliance,
+        (index, order): (usize, usize),
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        match (self, compliance.ring()) {
+            (Self::Ring { orders, .. }, Some(ring)) => {
+                ring.displacement_of(&orders[index], order, omega, slip_load, observe, out)
+            }
+            _ => compliance.displacement(order, omega, contact, slip_load, observe, out),
+        }
+    }
+
     /// `out += G q`.
     pub(super) fn add_response(&self, harmonics: &Harmonics, slip_load: &[f64], out: &mut [f64]) {
         match self {

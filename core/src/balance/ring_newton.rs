@@ -6,11 +6,9 @@
 
 use crate::contact::SlipLoad;
 use crate::fourier::Harmonics;
-use crate::solve::{BlockRow, CyclicTridiagonal};
+use crate::solve::{Block, BlockFactors, BlockRow, CyclicTridiagonal};
 use crate::structure::{RingLayout, RingOrder};
-use faer::linalg::solvers::{PartialPivLu, Solve as _};
-use faer::{Mat, MatRef};
-use std::ops::{AddAssign as _, Range, SubAssign as _};
+use std::ops::Range;
 
 /// Factors of `I − G ∂Q` for a ring.
 pub(super) struct RingNewton {
@@ -28,16 +26,16 @@ pub(super) struct RingNewton {
 /// One sector with the contacts L inside it eliminated; R are its other ports.
 struct Sector {
     /// `(I − A_LL T_L)` and T_L, if any of L slips.
-    slip: Option<(PartialPivLu<f64>, Mat<f64>)>,
+    slip: Option<(BlockFactors, Block)>,
     /// A_RL, and `(I − A_LL T_L)⁻¹ A_LR`.
-    to_ports: Mat<f64>,
-    from_ports: Mat<f64>,
+    to_ports: Block,
+    from_ports: Block,
     /// Receptance of R with L free to slip.
-    ports: Mat<f64>,
+    ports: Block,
     /// Tangent of the contacts with the next sector.
-    between: Mat<f64>,
-    /// Coupling Z to the next sector on the interface, and its transpose, in real form.
-    link: [Mat<f64>; 2],
+    between: Block,
+    /// Coupling −Z to the next sector on the interface, and its transpose, in real form.
+    link: [Block; 2],
 }
 
 impl RingNewton {
@@ -63,14 +61,15 @@ impl RingNewton {
                 let mut ports = expansion.receptance(i, &rest, &rest);
                 let mut from_ports = expansion.receptance(i, &local, &rest);
                 let to_ports = expansion.receptance(i, &rest, &local);
-                let slip = (tangent.norm_max() > 0.0).then(|| {
+                let slip = (!tangent.is_zero()).then(|| {
                     let inside = expansion.receptance(i, &local, &local);
-                    let size = inside.nrows();
-                    let lu =
-                        (Mat::<f64>::identity(size, size) - inside * &tangent).partial_piv_lu();
-                    lu.solve_in_place(&mut from_ports);
-                    ports += &to_ports * (&tangent * &from_ports);
-                    (lu, tangent)
+                    let mut matrix = Block::identity(inside.rows());
+                    matrix.subtract_product(&inside, &tangent);
+                    let factors = BlockFactors::new(matrix);
+                    factors.solve(&mut from_ports);
+                    let slip_load = Block::minus_product(&tangent, &from_ports);
+                    ports.subtract_product(&to_ports, &slip_load);
+                    (factors, tangent)
                 });
                 let between = picked(&tangents[i], &layout.between, slots);
                 Sector { slip, to_ports, from_ports, ports, between, link: expansion.link(i) }
@@ -78,11 +77,9 @@ impl RingNewton {
             .collect();
         let reach = layout.between.len() * slots;
         let ends = [reach, 2 * reach, rest.len() * slots];
-        let rows = (0..count).map(|i| {
-            let before = &sectors[(i + count - 1) % count];
-            sectors[i].row(before, ends)
-        });
-        let chain = CyclicTridiagonal::new(rows.collect(), ends[2]);
+        let rows: Vec<BlockRow> =
+            (0..count).map(|i| sectors[i].row(&sectors[(i + count - 1) % count], ends)).collect();
+        let chain = CyclicTridiagonal::new(&rows);
         Self { slots, layout: layout.clone(), local, ends, sectors, chain }
     }
 
@@ -90,72 +87,78 @@ impl RingNewton {
     pub(super) fn solve(&self, rhs: &[f64], step: &mut [f64]) {
         let (count, per) = (self.sectors.len(), self.layout.contacts * self.slots);
         let [reach, middle, total] = self.ends;
-        let given = |i: usize, which: &[usize]| {
+        let given = |i: usize, which: &[usize]| -> Vec<f64> {
             let own = &rhs[i * per..(i + 1) * per];
-            Mat::from_fn(which.len() * self.slots, 1, |at, _| {
-                own[which[at / self.slots] * self.slots + at % self.slots]
-            })
+            which.iter().flat_map(|c| own[c * self.slots..(c + 1) * self.slots].to_vec()).collect()
         };
-        let mut right = Mat::<f64>::zeros(count * total, 1);
+        let mut ports = vec![0.0; count * total];
         let mut inside = Vec::with_capacity(count);
         for (i, sector) in self.sectors.iter().enumerate() {
             let before = (i + count - 1) % count;
             let mut own = given(i, &self.local);
-            let mut part = right.get_mut(i * total..(i + 1) * total, ..);
-            if let Some((lu, tangent)) = &sector.slip {
-                lu.solve_in_place(&mut own);
-                part += &sector.to_ports * (tangent * &own);
+            let part = &mut ports[i * total..(i + 1) * total];
+            if let Some((factors, tangent)) = &sector.slip {
+                factors.solve_vector(&mut own);
+                let mut slip_load = vec![0.0; own.len()];
+                tangent.subtract_from(&own, &mut slip_load);
+                sector.to_ports.subtract_from(&slip_load, part);
             }
             inside.push(own);
-            let force = self.slip_force(
-                i,
-                before,
-                given(i, &self.layout.between),
-                given(before, &self.layout.between),
-            );
-            part += sector.ports.get(.., ..middle) * force;
+            if reach > 0 {
+                let between = &self.layout.between;
+                let mut force = vec![0.0; total];
+                self.subtract_slip(
+                    i,
+                    before,
+                    &given(i, between),
+                    &given(before, between),
+                    &mut force,
+                );
+                sector.ports.subtract_from(&force, part);
+            }
         }
-        let mut solved: Vec<f64> = (0..count * total).map(|i| right[(i, 0)]).collect();
-        self.chain.solve(&mut solved);
-        let ports = MatRef::from_column_major_slice(&solved, count * total, 1);
-        let port = |i: usize, range: Range<usize>| {
-            ports.get(i * total + range.start..i * total + range.end, ..)
-        };
-        let relative = |i: usize| {
-            given(i, &self.layout.between)
-                + port(i, 0..reach)
-                + port((i + 1) % count, reach..middle)
+        self.chain.solve(&mut ports);
+        let port =
+            |i: usize, range: Range<usize>| &ports[i * total + range.start..i * total + range.end];
+        let relative = |i: usize| -> Vec<f64> {
+            let (own, next) = (port(i, 0..reach), port((i + 1) % count, reach..middle));
+            let moved = given(i, &self.layout.between);
+            moved.iter().zip(own).zip(next).map(|((r, o), w)| r + o + w).collect()
         };
         for (i, sector) in self.sectors.iter().enumerate() {
             let (before, next) = ((i + count - 1) % count, (i + 1) % count);
-            let mut force = Mat::<f64>::zeros(total, 1);
-            let slip = self.slip_force(i, before, relative(i), relative(before));
-            force.get_mut(..middle, ..).copy_from(slip);
-            let coupling = &sector.link[0] * port(next, middle..total)
-                + &self.sectors[before].link[1] * port(before, middle..total);
-            force.get_mut(middle.., ..).copy_from(-coupling);
-            let moved = &inside[i] + &sector.from_ports * force;
+            let moved = relative(i);
+            // Minus the forces on R.
+            let mut force = vec![0.0; total];
+            if reach > 0 {
+                self.subtract_slip(i, before, &moved, &relative(before), &mut force);
+            }
+            sector.link[0].subtract_from(port(next, middle..total), &mut force[middle..]);
+            let behind = &self.sectors[before].link[1];
+            behind.subtract_from(port(before, middle..total), &mut force[middle..]);
+            sector.from_ports.subtract_from(&force, &mut inside[i]);
             let out = &mut step[i * per..(i + 1) * per];
-            for (which, values) in [(&self.local, moved), (&self.layout.between, relative(i))] {
-                for (at, contact) in which.iter().enumerate() {
-                    for slot in 0..self.slots {
-                        out[contact * self.slots + slot] = values[(at * self.slots + slot, 0)];
-                    }
+            for (which, values) in [(&self.local, &inside[i]), (&self.layout.between, &moved)] {
+                for (contact, values) in which.iter().zip(values.chunks_exact(self.slots)) {
+                    out[contact * self.slots..(contact + 1) * self.slots].copy_from_slice(values);
                 }
             }
         }
     }
 
-    /// Slip loads that relative displacements cause at a sector's contacts with the next one and
-    /// at those of the sector before.
-    fn slip_force(&self, i: usize, before: usize, own: Mat<f64>, behind: Mat<f64>) -> Mat<f64> {
+    /// Subtracts the slip loads that relative displacements cause at a sector's contacts with the
+    /// next one and at those of the sector before.
+    fn subtract_slip(
+        &self,
+        i: usize,
+        before: usize,
+        own: &[f64],
+        behind: &[f64],
+        force: &mut [f64],
+    ) {
         let [reach, middle, _] = self.ends;
-        let mut force = Mat::<f64>::zeros(middle, 1);
-        if reach > 0 {
-            force.get_mut(..reach, ..).copy_from(&self.sectors[i].between * own);
-            force.get_mut(reach.., ..).copy_from(&self.sectors[before].between * behind);
-        }
-        force
+        self.sectors[i].between.subtract_from(own, &mut force[..reach]);
+        self.sectors[before].between.subtract_from(behind, &mut force[reach..middle]);
     }
 }
 
@@ -163,19 +166,20 @@ impl Sector {
     /// Block row of the ports R: `z = e + A F` with slip loads `T (o_i + w_{i+1})` and
     /// `T' (o_{i−1} + w_i)`, and coupling forces `−(Z y_{i+1} + Z'ᵀ y_{i−1})`.
     fn row(&self, before: &Self, [reach, middle, total]: [usize; 3]) -> BlockRow {
-        let own_slip = self.ports.get(.., ..reach) * &self.between;
-        let behind_slip = self.ports.get(.., reach..middle) * &before.between;
-        let coupling = self.ports.get(.., middle..);
-        let zero = Mat::<f64>::zeros(total, total);
         let (mut lower, mut own, mut upper) =
-            (zero.clone(), Mat::<f64>::identity(total, total), zero);
-        own.get_mut(.., ..reach).sub_assign(&own_slip);
-        own.get_mut(.., reach..middle).sub_assign(&behind_slip);
-        upper.get_mut(.., reach..middle).sub_assign(&own_slip);
-        upper.get_mut(.., middle..).add_assign(coupling * &self.link[0]);
-        lower.get_mut(.., ..reach).sub_assign(&behind_slip);
-        lower.get_mut(.., middle..).add_assign(coupling * &before.link[1]);
-        let [lower, own, upper] = [lower, own, upper].map(|matrix| row_major(&matrix));
+            (Block::zeros(total, total), Block::identity(total), Block::zeros(total, total));
+        if reach > 0 {
+            let own_slip = Block::minus_product(&self.ports.column_part(0..reach), &self.between);
+            let behind_slip =
+                Block::minus_product(&self.ports.column_part(reach..middle), &before.between);
+            own.add_columns(0, &own_slip);
+            own.add_columns(reach, &behind_slip);
+            upper.add_columns(reach, &own_slip);
+            lower.add_columns(0, &behind_slip);
+        }
+        let coupling = self.ports.column_part(middle..total);
+        upper.add_columns(middle, &Block::minus_product(&coupling, &self.link[0]));
+        lower.add_columns(middle, &Block::minus_product(&coupling, &before.link[1]));
         BlockRow { lower, own, upper }
     }
 }
@@ -188,7 +192,7 @@ struct Expansion<'a> {
 
 impl Expansion<'_> {
     /// Receptance of a sector between some of its ports.
-    fn receptance(&self, sector: usize, rows: &[usize], columns: &[usize]) -> Mat<f64> {
+    fn receptance(&self, sector: usize, rows: &[usize], columns: &[usize]) -> Block {
         self.expand(rows.len(), columns.len(), |order, i, j| {
             let contact = &order.sector(sector).contact;
             let ports = order.ports();
@@ -196,12 +200,12 @@ impl Expansion<'_> {
         })
     }
 
-    /// Coupling to the next sector, and its transpose.
-    fn link(&self, sector: usize) -> [Mat<f64>; 2] {
+    /// Minus the coupling to the next sector, and its transpose.
+    fn link(&self, sector: usize) -> [Block; 2] {
         let size = self.orders.first().map_or(0, |order| order.link(sector).nrows());
         [
-            self.expand(size, size, |order, i, j| order.link(sector)[(i, j)]),
-            self.expand(size, size, |order, i, j| order.link(sector)[(j, i)]),
+            self.expand(size, size, |order, i, j| -order.link(sector)[(i, j)]),
+            self.expand(size, size, |order, i, j| -order.link(sector)[(j, i)]),
         ]
     }
 
@@ -210,9 +214,9 @@ impl Expansion<'_> {
         rows: usize,
         columns: usize,
         of: impl Fn(&RingOrder, usize, usize) -> faer::c64,
-    ) -> Mat<f64> {
+    ) -> Block {
         let slots = self.harmonics.slots();
-        let mut matrix = Mat::<f64>::zeros(rows * slots, columns * slots);
+        let mut matrix = Block::zeros(rows * slots, columns * slots);
         for (order, k) in self.orders.iter().zip(self.harmonics.orders()) {
             let Some(slot) = self.harmonics.slot(k) else { continue };
             for j in 0..columns {
@@ -240,9 +244,9 @@ fn tangents(
     count: usize,
     loads: &[SlipLoad],
     points: &[Range<usize>],
-) -> Vec<Mat<f64>> {
+) -> Vec<Block> {
     let size = layout.contacts * slots;
-    let mut tangents = vec![Mat::<f64>::zeros(size, size); count];
+    let mut tangents = vec![Block::zeros(size, size); count];
     for (load, points) in loads.iter().zip(points) {
         if !load.active || layout.contacts == 0 {
             continue;
@@ -259,14 +263,14 @@ fn tangents(
 }
 
 /// The part of a tangent that belongs to some points.
-fn picked(tangent: &Mat<f64>, which: &[usize], slots: usize) -> Mat<f64> {
+fn picked(tangent: &Block, which: &[usize], slots: usize) -> Block {
+    let size = which.len() * slots;
     let at = |i: usize| which[i / slots] * slots + i % slots;
-    Mat::from_fn(which.len() * slots, which.len() * slots, |i, j| tangent[(at(i), at(j))])
-}
-
-fn row_major(matrix: &Mat<f64>) -> Vec<f64> {
-    (0..matrix.nrows())
-        .flat_map(|i| (0..matrix.ncols()).map(move |j| (i, j)))
-        .map(|at| matrix[at])
-        .collect()
+    let mut part = Block::zeros(size, size);
+    for i in 0..size {
+        for j in 0..size {
+            part[(i, j)] = tangent[(at(i), at(j))];
+        }
+    }
+    part
 }

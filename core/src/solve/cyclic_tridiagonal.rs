@@ -1,71 +1,50 @@
 //! Block tridiagonal systems that close on themselves: rings of equal parts, each coupled to its
 //! two neighbours. The effort grows with the number of blocks, not with its cube.
 
-use super::small_dense::{factorise, solve, subtract_product};
+use super::small_dense::{Block, BlockFactors};
 
-/// One block row: `lower x_{i−1} + own x_i + upper x_{i+1}`, indices modulo the number of blocks;
-/// matrices row by row.
+/// One block row: `lower x_{i−1} + own x_i + upper x_{i+1}`, indices modulo the number of blocks.
 #[derive(Debug, Clone)]
 pub struct BlockRow {
     /// Coupling to the block before.
-    pub lower: Vec<f64>,
+    pub lower: Block,
     /// The block itself.
-    pub own: Vec<f64>,
+    pub own: Block,
     /// Coupling to the next block.
-    pub upper: Vec<f64>,
+    pub upper: Block,
 }
 
 /// Factors of a cyclic block tridiagonal matrix: the last block is a border of the others, which
 /// are eliminated one after the other without pivoting between blocks.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct CyclicTridiagonal {
     size: usize,
     eliminated: Vec<Eliminated>,
-    border: Factors,
-}
-
-#[derive(Debug, Clone)]
-struct Factors {
-    lu: Vec<f64>,
-    pivots: Vec<usize>,
-}
-
-impl Factors {
-    fn new(mut matrix: Vec<f64>, size: usize) -> Self {
-        let mut pivots = vec![0; size];
-        factorise(&mut matrix, size, &mut pivots);
-        Self { lu: matrix, pivots }
-    }
-
-    fn solve(&self, right: &mut [f64], columns: usize) {
-        solve(&self.lu, self.pivots.len(), &self.pivots, right, columns);
-    }
+    border: BlockFactors,
 }
 
 /// An eliminated block: its pivot, pivot⁻¹ times its coupling to the next block and to the border,
 /// and the rows of the next block and of the border in its columns.
 #[derive(Debug, Clone)]
 struct Eliminated {
-    pivot: Factors,
-    to_next: Vec<f64>,
-    to_border: Vec<f64>,
-    from_next: Vec<f64>,
-    from_border: Vec<f64>,
+    pivot: BlockFactors,
+    to_next: Option<Block>,
+    to_border: Block,
+    from_next: Block,
+    from_border: Block,
 }
 
 impl CyclicTridiagonal {
-    /// Factors the matrix of these block rows, each block `size` × `size`.
+    /// Factors the matrix of these block rows.
     #[must_use]
-    pub fn new(rows: Vec<BlockRow>, size: usize) -> Self {
-        let Some((last, inner)) = rows.split_last() else {
-            let border = Factors { lu: Vec::new(), pivots: Vec::new() };
-            return Self { size: 0, eliminated: Vec::new(), border };
-        };
+    pub fn new(rows: &[BlockRow]) -> Self {
+        let Some((last, inner)) = rows.split_last() else { return Self::default() };
+        let size = last.own.rows();
         let mut border = last.own.clone();
         let Some(first) = inner.first() else {
-            add(&mut border, &last.lower);
-            add(&mut border, &last.upper);
-            return Self { size, eliminated: Vec::new(), border: Factors::new(border, size) };
+            border.add(&last.lower);
+            border.add(&last.upper);
+            return Self { size, eliminated: Vec::new(), border: BlockFactors::new(border) };
         };
         // The block at hand, and what couples it to the border in either direction.
         let (mut own, mut to_border) = (first.own.clone(), first.lower.clone());
@@ -75,30 +54,28 @@ impl CyclicTridiagonal {
             let next = inner.get(index + 1);
             if next.is_none() {
                 // Its next block is the border itself.
-                add(&mut to_border, &row.upper);
-                add(&mut from_border, &last.lower);
+                to_border.add(&row.upper);
+                from_border.add(&last.lower);
             }
-            let pivot = Factors::new(own, size);
-            pivot.solve(&mut to_border, size);
-            subtract_product(&mut border, &from_border, &to_border, size, size);
+            let pivot = BlockFactors::new(own);
+            pivot.solve(&mut to_border);
+            border.subtract_product(&from_border, &to_border);
             let Some(next) = next else {
-                let (to_next, from_next) = (vec![0.0; size * size], Vec::new());
+                let (to_next, from_next) = (None, Block::default());
                 eliminated.push(Eliminated { pivot, to_next, to_border, from_next, from_border });
                 break;
             };
             let mut to_next = row.upper.clone();
-            pivot.solve(&mut to_next, size);
+            pivot.solve(&mut to_next);
             own = next.own.clone();
-            subtract_product(&mut own, &next.lower, &to_next, size, size);
-            let mut next_to_border = vec![0.0; size * size];
-            subtract_product(&mut next_to_border, &next.lower, &to_border, size, size);
-            let mut border_from_next = vec![0.0; size * size];
-            subtract_product(&mut border_from_next, &from_border, &to_next, size, size);
-            let from_next = next.lower.clone();
+            own.subtract_product(&next.lower, &to_next);
+            let next_to_border = Block::minus_product(&next.lower, &to_border);
+            let border_from_next = Block::minus_product(&from_border, &to_next);
+            let (to_next, from_next) = (Some(to_next), next.lower.clone());
             eliminated.push(Eliminated { pivot, to_next, to_border, from_next, from_border });
             (to_border, from_border) = (next_to_border, border_from_next);
         }
-        Self { size, eliminated, border: Factors::new(border, size) }
+        Self { size, eliminated, border: BlockFactors::new(border) }
     }
 
     /// Solves for a right-hand side stacked block after block, in place.
@@ -107,25 +84,21 @@ impl CyclicTridiagonal {
         let (inner, border) = right.split_at_mut(self.eliminated.len() * size);
         for (index, part) in self.eliminated.iter().enumerate() {
             let (own, rest) = inner[index * size..].split_at_mut(size);
-            part.pivot.solve(own, 1);
-            subtract_product(border, &part.from_border, own, size, 1);
-            if !part.from_next.is_empty() {
-                subtract_product(&mut rest[..size], &part.from_next, own, size, 1);
+            part.pivot.solve_vector(own);
+            part.from_border.subtract_from(own, border);
+            if part.to_next.is_some() {
+                part.from_next.subtract_from(own, &mut rest[..size]);
             }
         }
-        self.border.solve(border, 1);
+        self.border.solve_vector(border);
         for (index, part) in self.eliminated.iter().enumerate().rev() {
             let (own, rest) = inner[index * size..].split_at_mut(size);
-            if rest.len() >= size {
-                subtract_product(own, &part.to_next, &rest[..size], size, 1);
+            if let Some(to_next) = &part.to_next {
+                to_next.subtract_from(&rest[..size], own);
             }
-            subtract_product(own, &part.to_border, border, size, 1);
+            part.to_border.subtract_from(border, own);
         }
     }
-}
-
-fn add(sum: &mut [f64], other: &[f64]) {
-    sum.iter_mut().zip(other).for_each(|(a, b)| *a += b);
 }
 
 #[cfg(test)]
@@ -139,13 +112,14 @@ mod tests {
         for count in 1..8 {
             let size = 3;
             let mut seed = 0.3_f64;
-            let mut random = |shift: f64| -> Vec<f64> {
-                (0..size * size)
-                    .map(|at| {
-                        seed = (seed * 997.0 + 0.123).fract();
-                        seed - 0.5 + if at % (size + 1) == 0 { shift } else { 0.0 }
-                    })
-                    .collect()
+            let mut random = |shift: f64| {
+                let mut block = Block::zeros(size, size);
+                for at in 0..size * size {
+                    seed = (seed * 997.0 + 0.123).fract();
+                    let diagonal = if at % (size + 1) == 0 { shift } else { 0.0 };
+                    block[(at / size, at % size)] = seed - 0.5 + diagonal;
+                }
+                block
             };
             let rows: Vec<BlockRow> = (0..count)
                 .map(|_| BlockRow { lower: random(0.0), own: random(4.0), upper: random(0.0) })
@@ -158,7 +132,7 @@ mod tests {
                     (&row.upper, (i + 1) % count),
                 ];
                 for (part, j) in parts {
-                    for (at, value) in part.iter().enumerate() {
+                    for (at, value) in part.values().iter().enumerate() {
                         dense[(i * size + at / size, j * size + at % size)] += value;
                     }
                 }
@@ -166,7 +140,7 @@ mod tests {
             let right = Mat::from_fn(count * size, 1, |i, _| (1.0 + i as f64).sin());
             let expected = dense.partial_piv_lu().solve(&right);
             let mut found: Vec<f64> = (0..count * size).map(|i| right[(i, 0)]).collect();
-            CyclicTridiagonal::new(rows, size).solve(&mut found);
+            CyclicTridiagonal::new(&rows).solve(&mut found);
             for (i, found) in found.iter().enumerate() {
                 assert!((expected[(i, 0)] - found).abs() < 1e-12, "{count}");
             }

@@ -13,6 +13,7 @@ pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
 pub use qr::Qr;
+pub use small_dense::{Block, BlockFactors};
 
 use faer::Mat;
 

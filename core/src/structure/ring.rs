@@ -202,6 +202,25 @@ impl Ring {
         [value, slope]
     }
 
+    /// [`Compliance::displacement`] with the equations of this harmonic and frequency at hand.
+    ///
+    /// # Errors
+    /// As [`Compliance::receptance`].
+    pub fn displacement_of(
+        &self,
+        order: &RingOrder,
+        harmonic: usize,
+        omega: f64,
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        let motion = order.respond(true, slip_load);
+        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
+            sector.displacement(harmonic, omega, port, force, dof, value)
+        })
+    }
+
     /// Reads observed DOFs off the sectors they belong to, with the motion at their ports.
     fn observe(
         &self,
@@ -397,10 +416,8 @@ impl Compliance for Ring {
         observe: &[usize],
         out: &mut [c64],
     ) -> Result<(), Error> {
-        let motion = self.order(harmonic, omega, false)?.respond(true, slip_load);
-        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
-            sector.displacement(harmonic, omega, port, force, dof, value)
-        })
+        let order = self.order(harmonic, omega, false)?;
+        self.displacement_of(&order, harmonic, omega, slip_load, observe, out)
     }
 
     fn slip_displacement(

@@ -2,7 +2,7 @@
 
 use super::ring::RingLayout;
 use super::Receptance;
-use crate::solve::{BlockRow, CyclicTridiagonal};
+use crate::solve::{Block, BlockRow, CyclicTridiagonal};
 use faer::{c64, Mat, MatRef};
 
 /// The sectors' receptances at their ports and the couplings of neighbours, with the factors of
@@ -34,20 +34,19 @@ impl RingOrder {
     ) -> Self {
         let (count, ports, first) = (links.len(), layout.ports(), layout.first_interface());
         let size = layout.interface.len();
-        let rows = (0..count)
+        let rows: Vec<BlockRow> = (0..count)
             .map(|i| {
                 let contact = &receptances[i].contact;
                 let own = Mat::from_fn(size, size, |a, b| contact[(first + b) * ports + first + a]);
                 let before = &links[(i + count - 1) % count][0];
-                let identity = (0..4 * size * size).map(|at| at % (2 * size + 1) == 0);
                 BlockRow {
                     lower: real((&own * before.transpose()).as_ref()),
-                    own: identity.map(|diagonal| f64::from(u8::from(diagonal))).collect(),
+                    own: Block::identity(2 * size),
                     upper: real((&own * &links[i][0]).as_ref()),
                 }
             })
             .collect();
-        let interface = CyclicTridiagonal::new(rows, 2 * size);
+        let interface = CyclicTridiagonal::new(&rows);
         Self { layout, receptances, links, interface }
     }
 
@@ -202,18 +201,17 @@ impl RingOrder {
     }
 }
 
-/// A complex matrix as a real one of pairs (real part, imaginary part), row by row.
-fn real(matrix: MatRef<'_, c64>) -> Vec<f64> {
-    let columns = 2 * matrix.ncols();
-    (0..2 * matrix.nrows() * columns)
-        .map(|at| {
-            let (i, j) = (at / columns, at % columns);
-            let z = matrix[(i / 2, j / 2)];
-            match (i % 2, j % 2) {
-                (0, 0) | (1, 1) => z.re,
-                (0, _) => -z.im,
-                _ => z.im,
-            }
-        })
-        .collect()
+/// A complex matrix as a real one of pairs (real part, imaginary part).
+fn real(matrix: MatRef<'_, c64>) -> Block {
+    let mut real = Block::zeros(2 * matrix.nrows(), 2 * matrix.ncols());
+    for j in 0..matrix.ncols() {
+        for i in 0..matrix.nrows() {
+            let z = matrix[(i, j)];
+            real[(2 * i, 2 * j)] = z.re;
+            real[(2 * i + 1, 2 * j + 1)] = z.re;
+            real[(2 * i, 2 * j + 1)] = -z.im;
+            real[(2 * i + 1, 2 * j)] = z.im;
+        }
+    }
+    real
 }
