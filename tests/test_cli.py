@@ -326,6 +326,8 @@ def test_a_defect_is_one_line_that_says_how_to_report_it(folder, monkeypatch):
 def test_ctrl_c_saves_what_was_computed_and_ends_with_130(folder):
     code = """
 import os, signal, sys
+# a shell in the background has its children ignore Ctrl-C
+signal.signal(signal.SIGINT, signal.default_int_handler)
 import stickslip.study.analysis_tables as tables
 from stickslip.cli import app
 whole = tables.forced_response
