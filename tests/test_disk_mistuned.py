@@ -164,6 +164,19 @@ def test_exact_orbits_and_time_integration_agree_with_the_balance():
     assert np.abs(certificate.relative).max() < 1e-3
 
 
+def test_the_ring_at_200_rad_s_against_time_integration(ring):
+    # errata.md, section 4: largest error of a blade at H = 1, 3, 9 and 25
+    disk, observe = ring.mistuned(PATTERN), [f"{blade}.damper" for blade in range(36)]
+    close = ss.forced_response(disk, [200.0], 61, observe=observe).blade_amplitudes("damper")
+    for harmonics, error in ((1, 0.45), (3, 0.27), (9, 0.09), (25, 6e-4)):
+        frf = ss.forced_response(disk, [200.0], harmonics, observe=observe)
+        off = np.abs(frf.blade_amplitudes("damper") / close - 1.0).max()
+        assert off == pytest.approx(error, rel=0.1)
+    run = ss.transient(disk, 200.0, 60, tolerance=1e-6, observe=observe, keep=1)
+    settled = [run.amplitude(name) for name in observe]
+    assert settled == pytest.approx(list(close[0]), rel=1e-4)
+
+
 def test_amplitudes_of_all_blades_side_by_side(mistuned, tuned):
     amplitudes = mistuned.blade_amplitudes("damper")
     assert amplitudes.shape == (56, 36)
