@@ -3,6 +3,7 @@ import runpy
 from pathlib import Path
 
 import pytest
+from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip.study import Study
@@ -68,7 +69,9 @@ def test_the_mistuned_ring_is_amplified_as_the_table_says(tmp_path, monkeypatch,
     # errata.md, section 4: 7 %, seed 0, couplings of 7000 N/m, 3 harmonics
     assert mistuned.amplification(tuned, "damper").factor == pytest.approx(1.575, rel=1e-3)
     monkeypatch.chdir(tmp_path)
+    pyplot.switch_backend("agg")
     runpy.run_path(os.fspath(EXAMPLES / "beam-ring" / "ring.py"), run_name="__main__")
+    pyplot.close("all")
     assert capsys.readouterr().out == "amplification 1.575 at blade 13, 193.1 rad/s\n"
     assert (tmp_path / "beam-ring.png").stat().st_size > 0
 

@@ -105,7 +105,9 @@ class DiskTable(Table):
         examples=[{"3": 6}],
     )
     interface: InterfaceTable | None = Field(
-        default=None, description="Blocks that couple each sector to the next."
+        default=None,
+        title="Interface",
+        description="Blocks that couple each sector to the next.",
     )
     boundary: Mapping[str, str] = Field(
         default={},
@@ -114,7 +116,9 @@ class DiskTable(Table):
         examples=[{"right": "left"}],
     )
     mistuning: MistuningTable | None = Field(
-        default=None, description="Deviations of the sectors; left out: all are equal."
+        default=None,
+        title="Mistuning",
+        description="Deviations of the sectors; left out: all are equal.",
     )
 
     @model_validator(mode="after")

@@ -155,6 +155,7 @@ class StudyTables(Table):
     )
     disk: DiskTable | None = Field(
         default=None,
+        title="Disk",
         description="Makes the structure a sector of a bladed disk; left out: it is the whole.",
     )
     coupling: Annotated[tuple[CouplingTable, ...], Strict(False)] = Field(
