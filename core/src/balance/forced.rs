@@ -2,7 +2,7 @@
 
 use super::accuracy::{errors, extended_order};
 use super::condensed::{Condensed, Path};
-use super::scale::Scale;
+use super::scale::{Scale, OF_HARMONICS};
 use super::settings::{HarmonicChoice, Method, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::{gather, Unknowns};
@@ -179,7 +179,11 @@ impl<'a> ForcedBalance<'a> {
             match point.status {
                 PointStatus::Converged => {
                     self.scale.include(&point);
-                    let error = self.scale.relative(&point, point.error_estimate.iter().copied());
+                    let error = self.scale.relative(
+                        &point,
+                        OF_HARMONICS,
+                        point.error_estimate.iter().copied(),
+                    );
                     if error <= self.settings.tolerance {
                         let generous = error <= GENEROUS * self.settings.tolerance;
                         self.rung = (rung - usize::from(generous && rung > 0)).max(lowest_rung);
