@@ -26,6 +26,7 @@ def assumed(model, omega=(1.0,), harmonics=5, **options):
 
 def test_assumptions_on_harmonics():
     assert "Only the odd harmonics up to 5 were solved for" in assumed(one_dof())
+    assert "Only harmonic 1 was solved for" in assumed(one_dof(), harmonics=1)
     even = one_dof(ss.Force("x", 0.3), ss.Force("x", 0.1, harmonic=2))
     assert "All harmonics from 0 to 5 were solved for" in assumed(even)
     assert "chosen per point" in assumed(one_dof(), harmonics="auto")
@@ -67,3 +68,11 @@ def test_assumptions_on_truncation_and_observation():
 def test_assumptions_on_huge_numbers_raise_no_warning():
     frf = ss.forced_response(one_dof(ss.Force("x", 1e200), slip_force=1e199), [0.9, 2.1], 3)
     assert frf.assumptions
+
+
+def test_a_single_harmonic_is_not_told_to_keep_more():
+    result = ss.single_harmonic(snecma_beam(25.0), [170.0, 200.0])
+    said = " ".join(result.assumptions)
+    assert "the worst point; forced_response keeps more of them." in said
+    assert "keep more harmonics" not in said
+    assert "odd harmonics" not in said

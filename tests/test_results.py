@@ -167,6 +167,16 @@ def test_energy_balance(frf):
     np.testing.assert_allclose(fed, lost + frf.dissipation((0, 0)), rtol=1e-7)
 
 
+def test_rounding_is_no_imbalance():
+    undamped = one_dof(ss.Force("x", 0.5), damping=0.0, slip_force=100.0)
+    static = one_dof(ss.Force("x", 0.5, harmonic=0), slip_force=100.0)
+    for model in (undamped, static):
+        for solve in (ss.forced_response, ss.exact_response):
+            energy = solve(model, [1.5, 2.0, 2.5]).energy
+            assert np.abs(energy.imbalance).max() < 1e-9
+            assert (energy.apparent > 0.0).all()
+
+
 def test_residual_bounds():
     grid = [120.0, 190.0, 300.0]
     centred = ss.forced_response(snecma_beam(), grid, 9)

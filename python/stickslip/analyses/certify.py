@@ -42,8 +42,8 @@ def certify(
 ) -> ForcedResponse:
     """Compare a harmonic balance with exact orbits at some of its points.
 
-    The error estimate of a result is an estimate; this is the error itself. A point costs a few
-    times what it does with ``harmonics="auto"``.
+    The error estimate of a result is an estimate; this is the error itself. A point costs its
+    orbit, and as much again to follow it through the period.
 
     Parameters
     ----------
