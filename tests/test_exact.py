@@ -305,7 +305,7 @@ def test_bad_input_is_refused_in_one_line(arguments, options, message):
 def test_derivatives_are_those_of_a_balance(exact, derivative, monkeypatch):
     runs = []
     monkeypatch.setattr(_core, "forced_response", lambda *_: runs.append(1))
-    with pytest.raises(ss.ModelError, match="^sensitivity: none of an exact_response; "):
+    with pytest.raises(ss.ModelError, match=r"^sensitivity: none of an exact_response; "):
         getattr(exact, derivative)("tip", parameter="level")
     assert not runs
 

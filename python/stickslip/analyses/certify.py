@@ -133,7 +133,8 @@ def _comparison(
 
     def compare(place: int) -> Float:
         curve = (turn @ series[indices[place]]).real
-        return np.abs(curve - exact.waveforms(place, _SAMPLES)).max(axis=0)
+        largest: Float = np.abs(curve - exact.waveforms(place, _SAMPLES)).max(axis=0)
+        return largest
 
     return compare
 

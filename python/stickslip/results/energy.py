@@ -78,8 +78,10 @@ def energy_of(result: ForcedResponse) -> Energy:
     viscous = np.pi * arrays.omega * (taken * order**2).sum(axis=1)
     # A model without contacts has no columns to sum, but unsolved points all the same.
     friction = arrays.dissipation.sum(axis=1)
-    parts = [np.where(arrays.solved, part, np.nan) for part in (work, viscous, friction)]
-    return Energy(*(constant(part) for part in parts), apparent_work(result))
+    work, viscous, friction = (
+        constant(np.where(arrays.solved, part, np.nan)) for part in (work, viscous, friction)
+    )
+    return Energy(work, viscous, friction, apparent_work(result))
 
 
 def apparent_work(result: ForcedResponse) -> Float:
