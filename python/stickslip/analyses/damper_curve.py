@@ -13,6 +13,7 @@ from stickslip.analyses.arguments import (
     Progress,
     Residual,
     Span,
+    require_forced,
     require_held,
     require_model,
     require_progress,
@@ -187,6 +188,9 @@ def settings_for(
         max_iterations=max_iterations,
     )
     model.structure.index(settings.dof)
+    kept = settings.max_harmonics if settings.harmonics == "auto" else settings.harmonics
+    entry = "max_harmonics" if settings.harmonics == "auto" else "harmonics"
+    require_forced(model, kept, entry)
     require_held(model, settings.residual)
     return settings
 
