@@ -41,10 +41,11 @@ class OptimalDamper:
     assumptions: tuple[str, ...]
 
     def __repr__(self) -> str:
+        count = len(self.minima)
         return (
             f"OptimalDamper({self.parameter} = {self.value:.6g} "
             f"{self.curve.settings.variation.unit}: peak {self.amplitude:.6g} m at "
-            f"{self.omega:.6g} rad/s, {len(self.minima)} local minima)"
+            f"{self.omega:.6g} rad/s, {count} local {'minimum' if count == 1 else 'minima'})"
         )
 
     @property
