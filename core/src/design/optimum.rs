@@ -174,7 +174,11 @@ fn refine(
             cubic(a, b).unwrap_or(crossing)
         };
         let value = a.peak.value + shift.clamp(0.001 * width, 0.999 * width);
-        let Some(trial) = try_value(follower, value, share)? else { break };
+        let mut tried = try_value(follower, value, share)?;
+        if tried.is_none() && !follower.interrupted {
+            tried = try_value(follower, a.peak.value + 0.5 * width, share)?;
+        }
+        let Some(trial) = tried else { break };
         insert(trials, Some(trial));
         if trial.slope < 0.0 {
             a = trial;

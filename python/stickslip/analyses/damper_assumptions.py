@@ -87,9 +87,9 @@ def _harmonics(settings: DamperSettings, arrays: DamperArrays) -> str:
         return ""
     if settings.harmonics == "auto":
         low, high = kept.min(), kept.max()
-        several = "" if low == high else f", at some peaks only up to {low},"
+        several = "" if low == high else f", at some peaks only up to {low}"
         return (
-            f"Harmonics up to {high} were kept{several} chosen at each peak to a tolerance of "
+            f"Harmonics up to {high} were kept{several}, chosen at each peak to a tolerance of "
             f"{settings.tolerance:g}."
         )
     return f"Harmonics up to {settings.harmonics} were kept."

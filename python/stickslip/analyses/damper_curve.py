@@ -120,6 +120,8 @@ def damper_curve(
     require_model(model)
     require_progress(progress)
     parameter, values = _one_of(slip_force=slip_force, stiffness=stiffness, level=level)
+    if parameter == "stiffness" and common == "factor" and np.isinf(values).any():
+        raise ModelError('stiffness: an infinite factor has no meaning; use common="value"')
     settings = settings_for(
         model,
         Variation(
@@ -136,8 +138,6 @@ def damper_curve(
         max_harmonics=max_harmonics,
         max_iterations=max_iterations,
     )
-    if parameter == "stiffness" and common == "factor" and np.isinf(values).any():
-        raise ModelError('stiffness: an infinite factor has no meaning; use common="value"')
     start = _rigid_from(model, settings.variation)
     rigid = start if _is_rigid(values, start).any() else None
     result = curve_of(model, settings, _peaks(model, settings, values, rigid, progress), rigid)

@@ -151,13 +151,13 @@ def optimal_damper(
     found = tuple(LeastPeak(*map(float, row)) for row in rows)
     if not found:
         raise ModelError(
-            f"optimal damper: {int(curve.arrays.solved.sum())} peaks were found between {low:g} and "
+            f"optimal damper: {curve.arrays.solved.sum()} peaks were found between {low:g} and "
             f"{high:g}, none of them a minimum; try other bounds, or damper_curve for the status "
             "of each value"
         )
     if progress is not None:
         progress(1.0)
-    result = OptimalDamper(minima=found, bounds=(low, high), curve=curve, assumptions=())
+    result = OptimalDamper.of(found, (low, high), curve, ())
     return replace(result, assumptions=_assumptions(result))
 
 
