@@ -1,13 +1,18 @@
 """Certificates: the true error of a harmonic balance, at chosen and at random points."""
 
 import pickle
+import sys
 
 import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip import _core
 from stickslip.reference import snecma_beam
 from stickslip.results.certificate import Certificate
+
+# the module, which the function of the same name hides in the package
+certify_module = sys.modules[ss.certify.__module__]
 
 
 @pytest.fixture(scope="module")
@@ -151,6 +156,61 @@ def test_an_interrupted_certification_keeps_what_was_compared():
     certificate = it.value.result.certificate
     assert 0 < certificate.indices.size < 4000
     np.testing.assert_array_equal(certificate.indices, np.arange(certificate.indices.size))
+
+
+def test_an_interruption_while_orbits_are_followed_keeps_them_all(coarse, monkeypatch):
+    whole = ss.ExactResponse.waveforms
+
+    def stop(self, index, samples):
+        if index == 20:
+            raise KeyboardInterrupt
+        return whole(self, index, samples)
+
+    monkeypatch.setattr(ss.ExactResponse, "waveforms", stop)
+    message = "interrupted after 51 of 51 points, 20 of them over the whole period"
+    with pytest.raises(ss.Interrupted, match=message) as it:
+        ss.certify(coarse, "all")
+    certificate = it.value.result.certificate
+    assert np.isfinite(certificate.error).all()
+    assert np.isfinite(certificate.waveform_error[:20]).all()
+    assert np.isnan(certificate.waveform_error[20:]).all()
+
+
+def test_waveforms_are_compared_at_once_for_all_dofs(coarse, certified):
+    exact = ss.exact_response(coarse.model, coarse.omega[[30]], harmonics=1)
+    for column, dof in enumerate(coarse.dofs):
+        apart = np.abs(coarse.waveform(dof, 30, 1024) - exact.waveform(dof, 0, 1024)).max()
+        assert certified.certificate.waveform_error[30, column] == pytest.approx(apart, rel=1e-6)
+
+
+def test_orbits_are_run_once_per_point(coarse, monkeypatch):
+    runs = []
+    whole = _core.orbit_history
+    monkeypatch.setattr(_core, "orbit_history", lambda *all_: runs.append(1) or whole(*all_))
+    ss.certify(coarse, 7)
+    assert len(runs) == 7
+
+
+def test_progress_covers_the_comparison(coarse, monkeypatch):
+    monkeypatch.setattr(certify_module, "_REPORT_EVERY", 0.0)
+    shares = []
+    ss.certify(coarse, "all", progress=shares.append)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert sum(0.5 < share < 1.0 for share in shares) >= 40
+
+
+def test_rounding_beside_a_static_load_is_no_error():
+    structure = ss.Structure([[2.0, 0.1], [0.1, 1.0]], [[9, -3], [-3, 5]], [[0.4, 0], [0, 0.3]])
+    model = ss.Model(
+        structure,
+        [ss.Jenkins(structure.dofs[0], stiffness=10.0, slip_force=100.0)],
+        [ss.Force(structure.dofs[1], 0.7, harmonic=0)],
+    )
+    frf = ss.forced_response(model, np.linspace(0.5, 3.0, 20), 5)
+    certificate = ss.certify(frf, "all").certificate
+    assert certificate.worst.relative == 0.0
+    assert not certificate.error.any()
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip import _core
 from stickslip.analyses.exact_response import ExactSettings
 from stickslip.reference import beam_pair, snecma_beam
 
@@ -286,6 +287,7 @@ def test_a_point_without_orbit_says_so():
         ([one_dof(), [-1.0]], {}, r"omega\[0\] is -1; give finite frequencies above 0"),
         ([one_dof(), [1.0]], {"harmonics": "auto"}, "harmonics: 'auto' is not an integer"),
         ([one_dof(), [1.0]], {"harmonics": 0}, "harmonics: 0 lies below 1"),
+        ([one_dof(), [1.0]], {"harmonics": 10**7}, "harmonics: 10000000 .*; give at most 255"),
         ([one_dof(), [1.0]], {"residual": "none"}, "unknown residual 'none'"),
         ([one_dof(), [1.0]], {"observe": ["y"]}, "observe: unknown dof 'y'"),
         ([one_dof(), [1.0]], {"progress": 3}, "progress: 3 cannot be called"),
@@ -297,6 +299,15 @@ def test_bad_input_is_refused_in_one_line(arguments, options, message):
     with pytest.raises(ss.ModelError, match=message) as refused:
         ss.exact_response(*arguments, **options)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("derivative", ["sensitivity", "peak_sensitivity"])
+def test_derivatives_are_those_of_a_balance(exact, derivative, monkeypatch):
+    runs = []
+    monkeypatch.setattr(_core, "forced_response", lambda *_: runs.append(1))
+    with pytest.raises(ss.ModelError, match=r"^sensitivity: none of an exact_response; "):
+        getattr(exact, derivative)("tip", parameter="level")
+    assert not runs
 
 
 def test_orbits_are_immutable_and_travel(exact):

@@ -1,5 +1,7 @@
 """The dissertation's solvers: Broyden's method and the marched evaluation."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -61,6 +63,22 @@ def test_broyden_with_several_contacts_a_range_and_automatic_harmonics():
     np.testing.assert_allclose(broyden.omega, newton.omega, rtol=1e-7)
     np.testing.assert_allclose(broyden.amplitude("1.tip"), newton.amplitude("1.tip"), rtol=1e-6)
     assert broyden.peak("2.tip") == pytest.approx(newton.peak("2.tip"), rel=1e-7)
+
+
+def test_the_sensitivity_of_a_peak_is_solved_with_the_settings_of_its_curve(monkeypatch):
+    module = sys.modules[Settings.__module__]
+    solve, methods = module.forced_response, []
+
+    def spy(*arguments, **options):
+        methods.append((options["method"], options["jacobian"]))
+        return solve(*arguments, **options)
+
+    monkeypatch.setattr(module, "forced_response", spy)
+    slope = beam(method="broyden", jacobian="differences").peak_sensitivity(
+        "tip", parameter="level"
+    )
+    assert methods == [("broyden", "differences")]
+    assert slope == pytest.approx(beam().peak_sensitivity("tip", parameter="level"), rel=1e-6)
 
 
 # ---------------------------------------------------------------------------------- marched

@@ -208,7 +208,9 @@ def test_segments_and_windows():
     for options, message in (
         ({"last": 17}, "last: 17 is too large; give at most 16"),
         ({"segment": 17}, "segment: 17 is too large"),
-        ({"window": "bell"}, "window: .* give 'boxcar' or 'hann'"),
+        ({"window": "bell"}, "^window: 'bell' is none .* give 'boxcar' or 'hann'$"),
+        ({"window": "kaiser"}, "^window: 'kaiser' is none .* give 'boxcar' or 'hann'$"),
+        ({"window": 3}, "^window: 3 is not text"),
     ):
         with pytest.raises(ss.ModelError, match=message) as refused:
             run.spectrum("tip", **options)
@@ -225,6 +227,7 @@ def test_states():
     assert state.velocity[5] == 0.5
     assert state.contact_force.tolist() == [-2.0, 0.0, 3.0]
     assert state.vector.shape == (15,)
+    assert not state.vector.flags.writeable
     assert state == ss.State.of_vector(model, state.vector)
     assert state != ss.State.rest(model)
     assert not ss.State.rest(model).vector.any()

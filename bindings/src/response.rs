@@ -15,6 +15,7 @@ use stickslip_core::balance::{
 };
 use stickslip_core::contact::Motion;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
+use stickslip_core::orbit::Rescue;
 use stickslip_core::timing::Profile;
 
 /// Frequencies: a grid, or a range whose steps the core chooses.
@@ -230,7 +231,10 @@ pub fn forced_response(
     let model = evaluated(problem, march)?;
     let contacts = model.compliance().contacts();
     swept(py, progress.as_ref(), observe.len(), contacts, |look| {
-        let balance = ForcedBalance::new(&model, settings, &observe)?.watched(look);
+        let rescue = Rescue::new(&model, settings.residual, look);
+        let fresh_start = |omega: f64, highest: usize| rescue.amplitudes(omega, highest);
+        let balance =
+            ForcedBalance::new(&model, settings, &observe)?.watched(look).rescued(&fresh_start);
         match range {
             Some((from, to)) => sweep_range(balance, from, to),
             None => sweep(balance, &grid),

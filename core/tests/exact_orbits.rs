@@ -222,6 +222,9 @@ fn an_unbounded_resonance_is_no_orbit() {
     };
     assert_eq!(orbit(&system, 2.0).response.status, PointStatus::Stalled);
     assert_eq!(orbit(&system, 2.1).response.status, PointStatus::Converged);
+    let alone = System { dampers: Vec::new(), ..system };
+    assert_eq!(orbit(&alone, 2.0).response.status, PointStatus::Stalled);
+    assert_eq!(orbit(&alone, 1.9).response.status, PointStatus::Converged);
 }
 
 fn assert_balanced(system: &System, omega: f64) -> Result<(), TestCaseError> {

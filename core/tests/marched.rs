@@ -5,21 +5,12 @@
 
 mod common;
 
-use common::snecma_beam;
-use faer::{mat, Mat};
-use stickslip_core::balance::{
-    refine_peak, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus, Settings, Solution,
-};
+use common::coupled::{Coupled, SLIP_FORCE, STIFFNESS};
+use faer::mat;
 use stickslip_core::contact::{
-    FrictionLaw, Jenkins, Marched, Motion, PointState, PointSummary, Residual, SlipLoad,
+    FrictionLaw, Jenkins, Marched, Motion, PointSummary, Residual, SlipLoad,
 };
-use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
-use stickslip_core::model::{Contact, Model};
-use stickslip_core::solve::FirstJacobian;
-use stickslip_core::structure::{HarmonicLoad, Structure};
-
-const STIFFNESS: f64 = 2.0;
-const SLIP_FORCE: f64 = 1.0;
+use stickslip_core::fourier::{Harmonics, SampleTable};
 
 /// One harmonic of a series: order, cosine and sine coefficient.
 type Term = (usize, f64, f64);
@@ -68,98 +59,6 @@ fn jenkins() -> Box<dyn FrictionLaw> {
 
 fn marched(samples: usize) -> Marched {
     Marched::new(jenkins(), samples).unwrap()
-}
-
-/// Two elements in other coordinates, v = T u: a law of two points that couple.
-#[derive(Debug)]
-struct Coupled {
-    transform: Mat<f64>,
-    elements: [Jenkins; 2],
-}
-
-impl Coupled {
-    fn new() -> Self {
-        let element = |k, f| Jenkins::new(k, f).unwrap();
-        Self {
-            transform: mat![[1.0, -0.6], [0.3, 0.9]],
-            elements: [element(STIFFNESS, SLIP_FORCE), element(1.3, 0.7)],
-        }
-    }
-
-    fn inverse(&self) -> Mat<f64> {
-        use faer::linalg::solvers::DenseSolveCore as _;
-        self.transform.partial_piv_lu().inverse()
-    }
-}
-
-impl FrictionLaw for Coupled {
-    fn points(&self) -> usize {
-        2
-    }
-
-    fn is_odd(&self) -> bool {
-        true
-    }
-
-    fn stiffness(&self) -> Mat<f64> {
-        let own = mat![[STIFFNESS, 0.0], [0.0, 1.3]];
-        self.transform.transpose() * own * &self.transform
-    }
-
-    fn softened(&self, _: f64) -> Box<dyn FrictionLaw> {
-        Box::new(Self::new())
-    }
-
-    fn magnified(&self, _: f64) -> Box<dyn FrictionLaw> {
-        Box::new(Self::new())
-    }
-
-    fn slip_load(&self, _: Motion<'_>, _: bool, _: &mut SlipLoad) {}
-
-    fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
-        let (t, inverse) = (&self.transform, self.inverse());
-        let mut own = [0.0; 2];
-        let mut sticks = [0.0; 2];
-        for i in 0..2 {
-            let dv = t[(i, 0)] * du[0] + t[(i, 1)] * du[1];
-            let mut g = [inverse[(0, i)] * force[0] + inverse[(1, i)] * force[1]];
-            self.elements[i].advance(&[dv], &mut g, Some(&mut sticks[i..=i]));
-            own[i] = g[0];
-        }
-        for i in 0..2 {
-            force[i] = t[(0, i)] * own[0] + t[(1, i)] * own[1];
-        }
-        if let Some(gain) = gain {
-            if sticks == [1.0; 2] {
-                // Rounding must not look like slip.
-                gain.copy_from_slice(&[1.0, 0.0, 0.0, 1.0]);
-                return;
-            }
-            for i in 0..2 {
-                for j in 0..2 {
-                    gain[2 * i + j] = (0..2).map(|l| t[(l, i)] * sticks[l] * inverse[(j, l)]).sum();
-                }
-            }
-        }
-    }
-
-    fn limits(&self) -> Vec<f64> {
-        vec![f64::INFINITY; 2]
-    }
-
-    fn tangent(&self, _: &[PointState]) -> Mat<f64> {
-        self.stiffness()
-    }
-
-    fn slip_rate(&self, _: &[PointState]) -> Mat<f64> {
-        Mat::zeros(2, 2)
-    }
-
-    fn summary(&self, _: Motion<'_>, _: &mut [PointSummary]) {}
-
-    fn force_history(&self, _: Motion<'_>, _: usize) -> Vec<f64> {
-        Vec::new()
-    }
 }
 
 #[test]
@@ -328,112 +227,4 @@ fn the_onset_of_slip_is_continuous() {
     for (a, b) in at(stuck).value.iter().zip(&at(slipping).value) {
         assert!((a - b).abs() < 1e-9, "{a} {b}");
     }
-}
-
-fn solve(model: &Model, settings: Settings) -> Solution {
-    let omega: Vec<f64> = (0..80).map(|i| 150.0 + f64::from(i)).collect();
-    let curve = sweep(ForcedBalance::new(model, settings, &[0, 1]).unwrap(), &omega).unwrap();
-    assert!(curve.points.iter().all(|p| p.status == PointStatus::Converged));
-    curve
-}
-
-/// Root mean square distance of the harmonics of the tip, relative to their largest.
-fn apart(one: &Solution, other: &Solution) -> f64 {
-    let mut sum = 0.0;
-    for (p, q) in one.points.iter().zip(&other.points) {
-        let size = q.displacement.iter().map(|x| x.norm()).fold(0.0, f64::max);
-        let change = p.displacement.iter().zip(&q.displacement).map(|(a, b)| (a - b).norm_sqr());
-        sum += change.sum::<f64>() / size.powi(2);
-    }
-    (sum / one.points.len() as f64).sqrt()
-}
-
-#[test]
-fn marched_sweeps_approach_the_exact_one() {
-    let exact = snecma_beam(20.313).model();
-    let fixed = Settings { harmonics: HarmonicChoice::Fixed(9), ..Settings::default() };
-    let curve = solve(&exact, fixed);
-    let errors = [64, 256, 1024].map(|samples| {
-        let model = exact.marched(samples).unwrap();
-        let marched = solve(&model, fixed);
-        assert_eq!(marched.profile.homotopies, 0);
-        if samples == 1024 {
-            // The estimate sees the same discarded harmonics.
-            for (p, q) in marched.points.iter().zip(&curve.points) {
-                let size = q.displacement[11].norm();
-                let (a, b) = (p.error_estimate[1], q.error_estimate[1]);
-                assert!((a - b).abs() < 0.2 * b + 1e-3 * size, "{} rad/s: {a} {b}", p.omega);
-            }
-            let broyden = Method::Broyden(FirstJacobian::Exact);
-            assert!(apart(&solve(&model, Settings { method: broyden, ..fixed }), &marched) < 1e-9);
-        }
-        apart(&marched, &curve)
-    });
-    let rate = (errors[0] / errors[2]).log2() / 4.0;
-    assert!((rate - 2.0).abs() < 0.3, "{errors:?}");
-    assert!(errors[2] < 3e-5, "{errors:?}");
-}
-
-#[test]
-fn a_peak_is_refined_with_the_same_evaluation() {
-    let exact = snecma_beam(20.313).model();
-    let fixed = Settings { harmonics: HarmonicChoice::Fixed(9), ..Settings::default() };
-    let peak = |model: &Model| {
-        refine_peak(model, fixed, 1, Measure::HalfRange, [185.0, 190.0, 200.0], &|_| true).unwrap()
-    };
-    let (coarse, fine) = (peak(&exact.marched(40).unwrap()), peak(&exact.marched(4096).unwrap()));
-    assert!((fine.1 / peak(&exact).1 - 1.0).abs() < 1e-5);
-    assert!((coarse.1 / peak(&exact).1 - 1.0).abs() > 1e-4);
-}
-
-/// A contact of two coupled points in a model, against the same two elements as two contacts.
-#[test]
-fn a_law_without_closed_form_runs_through_the_whole_balance() {
-    let build = |coupled: bool| {
-        let mass = mat![[2.0, 0.1], [0.1, 1.0]];
-        let stiffness = mat![[30.0, -10.0], [-10.0, 15.0]];
-        let damping = mat![[0.3, -0.1], [-0.1, 0.2]];
-        let structure =
-            Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
-        let law = Coupled::new();
-        let contacts = if coupled {
-            vec![Contact { law: Box::new(law), rows: Mat::identity(2, 2) }]
-        } else {
-            let row = |i: usize| Mat::from_fn(1, 2, |_, j| law.transform[(i, j)]);
-            (0..2).map(|i| Contact { law: Box::new(law.elements[i]), rows: row(i) }).collect()
-        };
-        let amplitude = [faer::c64::new(6.0, 0.0), faer::c64::new(0.0, 3.0)].to_vec();
-        let loads = vec![HarmonicLoad { harmonic: 1, amplitude }];
-        Model::new(structure, contacts, loads).unwrap().marched(256).unwrap()
-    };
-    let fixed = Settings { harmonics: HarmonicChoice::Fixed(7), ..Settings::default() };
-    let omega: Vec<f64> = (0..40).map(|i| 1.0 + 0.15 * f64::from(i)).collect();
-    let run =
-        |model: &Model| sweep(ForcedBalance::new(model, fixed, &[0, 1]).unwrap(), &omega).unwrap();
-    let (one, two) = (run(&build(true)), run(&build(false)));
-    assert!(two.points.iter().any(|p| p.contacts.iter().all(|c| c.slip_fraction > 0.0)));
-    assert!(one.points.iter().all(|p| p.status == PointStatus::Converged));
-    assert!(apart(&one, &two) < 1e-9);
-    for (p, q) in one.points.iter().zip(&two.points) {
-        let work = |p: &stickslip_core::balance::Point| -> f64 {
-            p.contacts.iter().map(|contact| contact.dissipation).sum()
-        };
-        assert!((work(p) - work(q)).abs() <= 1e-8 * work(q).max(1e-3));
-    }
-}
-
-#[test]
-fn too_few_samples_are_named() {
-    let refused = |samples: usize| snecma_beam(1.0).model().marched(samples).err().unwrap();
-    assert!(refused(6).to_string().contains("samples = 6: must be an even number from 8"));
-    assert!(refused(33).to_string().contains("samples = 33"));
-    let model = snecma_beam(1.0).model().marched(60).unwrap();
-    let ask = |highest: usize| {
-        let harmonics = HarmonicChoice::Fixed(highest);
-        let settings = Settings { harmonics, ..Settings::default() };
-        ForcedBalance::new(&model, settings, &[0]).map(|_| ()).map_err(|e| e.to_string())
-    };
-    assert_eq!(ask(14), Ok(()));
-    let message = ask(15).unwrap_err();
-    assert!(message.contains("harmonics = 15: needs at least 64 samples; lower it to 14"));
 }

@@ -106,6 +106,24 @@ fn negative_damping_beyond_the_damper_grows_without_bound() {
 }
 
 #[test]
+fn a_run_that_is_ended_keeps_whole_periods() {
+    let system = snecma_beam(20.0);
+    let calls = std::cell::Cell::new(0);
+    let patience = |_: f64| {
+        calls.set(calls.get() + 1);
+        calls.get() < 8
+    };
+    let settings = settings(200.0, Scheme::RungeKutta(10_000), 100);
+    let history = transient(&system.model(), &settings, None, &[0], &patience).unwrap();
+    assert!(history.interrupted);
+    let periods = history.change.len();
+    assert!(periods > 0 && periods < 100);
+    assert_eq!(history.trace.time.len(), 64 * periods + 1);
+    assert_eq!(history.range.len(), periods);
+    assert_eq!(history.poincare.len(), periods + 1);
+}
+
+#[test]
 fn bad_settings_and_states_are_refused() {
     let system = snecma_beam(20.0);
     let model = system.model();

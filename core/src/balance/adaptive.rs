@@ -2,6 +2,7 @@
 
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
+use super::scale::OF_STEPS;
 use super::solution::{Point, PointStatus, Solution};
 use super::sweep::{check_frequency, finish};
 use super::unknowns::Unknowns;
@@ -162,7 +163,7 @@ fn line_error(balance: &ForcedBalance<'_>, points: &[Point], new: &Point) -> Opt
             .sum();
         bend * missed.sqrt()
     });
-    Some(balance.scale.relative(new, errors))
+    Some(balance.scale.relative(new, OF_STEPS, errors))
 }
 
 fn is_solved(point: &Point) -> bool {

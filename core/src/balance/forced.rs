@@ -2,11 +2,11 @@
 
 use super::accuracy::{errors, extended_order};
 use super::condensed::{Condensed, Path};
-use super::scale::Scale;
+use super::scale::{Scale, OF_HARMONICS};
 use super::settings::{HarmonicChoice, Method, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
-use super::Progress;
+use super::{FreshStart, Progress};
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
@@ -37,6 +37,7 @@ pub struct ForcedBalance<'a> {
     rung: usize,
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
+    rescue: &'a FreshStart<'a>,
     share: f64,
     pub(super) profile: Profile,
 }
@@ -83,6 +84,7 @@ impl<'a> ForcedBalance<'a> {
             rung: FIRST_RUNG,
             scale: Scale::default(),
             progress: &|_| true,
+            rescue: &|_, _| None,
             share: 0.0,
             profile: Profile::default(),
         })
@@ -92,6 +94,13 @@ impl<'a> ForcedBalance<'a> {
     #[must_use]
     pub fn watched(mut self, progress: &'a Progress<'a>) -> Self {
         self.progress = progress;
+        self
+    }
+
+    /// Has `rescue` asked for a start where Newton's method fails, before any homotopy.
+    #[must_use]
+    pub fn rescued(mut self, rescue: &'a FreshStart<'a>) -> Self {
+        self.rescue = rescue;
         self
     }
 
@@ -170,7 +179,11 @@ impl<'a> ForcedBalance<'a> {
             match point.status {
                 PointStatus::Converged => {
                     self.scale.include(&point);
-                    let error = self.scale.relative(&point, point.error_estimate.iter().copied());
+                    let error = self.scale.relative(
+                        &point,
+                        OF_HARMONICS,
+                        point.error_estimate.iter().copied(),
+                    );
                     if error <= self.settings.tolerance {
                         let generous = error <= GENEROUS * self.settings.tolerance;
                         self.rung = (rung - usize::from(generous && rung > 0)).max(lowest_rung);
@@ -235,7 +248,12 @@ impl<'a> ForcedBalance<'a> {
             |unknowns| unknowns.recast(harmonics),
         );
         let mut report = self.iterate(equations, &mut x);
-        if !matches!(report.outcome, Outcome::Converged | Outcome::Interrupted) {
+        let failed =
+            |report: &Report| !matches!(report.outcome, Outcome::Converged | Outcome::Interrupted);
+        if failed(&report) {
+            self.start_again(equations, omega, &mut x, &mut report);
+        }
+        if failed(&report) {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
         }
@@ -267,6 +285,28 @@ impl<'a> ForcedBalance<'a> {
         self.profile.updates += effort.updates;
         self.profile.restarts += usize::from(effort.jacobians > 1);
         report
+    }
+
+    /// Newton's method from the start that the rescue offers, if it offers one.
+    fn start_again(
+        &self,
+        equations: &mut Condensed<'_>,
+        omega: f64,
+        x: &mut Vec<f64>,
+        report: &mut Report,
+    ) {
+        let harmonics = equations.harmonics();
+        let Some(amplitudes) = (self.rescue)(omega, harmonics.highest()) else { return };
+        let orders = harmonics.highest() + 1;
+        let mut trial = vec![0.0; x.len()];
+        let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
+        points.for_each(|(amplitudes, series)| harmonics.write_series(amplitudes, series));
+        let again = newton(equations, &mut trial, self.settings.newton);
+        report.iterations += again.iterations;
+        if matches!(again.outcome, Outcome::Converged | Outcome::Interrupted) {
+            (report.outcome, report.residual) = (again.outcome, again.residual);
+            *x = trial;
+        }
     }
 
     /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact stiffness, whose path is

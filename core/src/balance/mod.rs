@@ -30,6 +30,10 @@ pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
 pub use unknowns::Unknowns;
 
+/// Amplitudes of the contact displacements, point after point, from which a balance up to a
+/// harmonic may start at a frequency [rad/s] at which Newton's method has failed.
+pub type FreshStart<'a> = dyn Fn(f64, usize) -> Option<Vec<faer::c64>> + 'a;
+
 /// Called between points and between Newton iterations with the share of the work done; `false`
 /// ends the analysis and keeps what is solved.
 pub type Progress<'a> = dyn Fn(f64) -> bool + 'a;

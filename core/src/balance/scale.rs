@@ -2,10 +2,13 @@
 
 use super::solution::Point;
 
-/// A DOF's error counts relative to its amplitude, but not to less than this share of the largest
-/// amplitude it has had: an antiresonance needs no accuracy of its own, …
-const FLOOR: f64 = 0.02;
-/// … nor to less than this share of the largest amplitude of any DOF, below which a motion that
+/// A DOF's truncation error counts relative to its amplitude, but not to less than this share of the
+/// largest amplitude it has had; …
+pub(super) const OF_HARMONICS: f64 = 1e-3;
+/// … that of a straight line between two points not to less than this: an antiresonance needs no
+/// points of its own; …
+pub(super) const OF_STEPS: f64 = 0.02;
+/// … and neither to less than this share of the largest amplitude of any DOF, below which a motion that
 /// symmetry forbids is rounding.
 const NOISE: f64 = 1e-6;
 
@@ -25,15 +28,20 @@ impl Scale {
         }
     }
 
-    /// Largest of the errors of the DOFs of `point`, each relative to its size; infinite if one
-    /// is not a number.
-    pub(super) fn relative(&self, point: &Point, errors: impl Iterator<Item = f64>) -> f64 {
+    /// Largest of the errors of the DOFs of `point`, each relative to its size or to the share
+    /// `floor` of its largest one; infinite if one is not a number.
+    pub(super) fn relative(
+        &self,
+        point: &Point,
+        floor: f64,
+        errors: impl Iterator<Item = f64>,
+    ) -> f64 {
         let sizes = sizes(point);
         let overall = self.largest.iter().chain(&sizes).copied().fold(0.0, f64::max);
         let mut worst = 0.0_f64;
         for (dof, (error, size)) in errors.zip(&sizes).enumerate() {
             let own = self.largest.get(dof).copied().unwrap_or(0.0);
-            let reference = size.max(FLOOR * own).max(NOISE * overall).max(f64::MIN_POSITIVE);
+            let reference = size.max(floor * own).max(NOISE * overall).max(f64::MIN_POSITIVE);
             let relative = error / reference;
             worst = if relative.is_nan() { f64::INFINITY } else { worst.max(relative) };
         }

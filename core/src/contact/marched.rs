@@ -7,6 +7,7 @@
 //! form, and comparisons with those that have one.
 
 use super::march_rate::{is_identity, is_unit_row, Rate};
+use super::samples::Samples;
 use super::{Describing, FrictionLaw, Motion, PointState, PointSummary, Residual, SlipLoad};
 use crate::fourier::Harmonics;
 use crate::Error;
@@ -34,17 +35,6 @@ pub struct Marched {
     samples: usize,
 }
 
-/// Displacements at the instants of one span, with the basis there.
-struct Samples {
-    /// Instants in the span.
-    count: usize,
-    /// −1 if the second half of the period mirrors the first.
-    sign: f64,
-    basis: Vec<f64>,
-    /// Instant after instant.
-    displacement: Vec<f64>,
-}
-
 /// One round of forces that repeat.
 struct Round {
     /// Instant after instant.
@@ -57,14 +47,6 @@ struct Round {
     work: Vec<f64>,
     /// Whether anything has slipped from the start on.
     slipped: bool,
-}
-
-impl Samples {
-    /// Displacements at instant n.
-    fn at(&self, n: usize) -> &[f64] {
-        let points = self.displacement.len() / self.count;
-        &self.displacement[n * points..(n + 1) * points]
-    }
 }
 
 impl Marched {
@@ -84,22 +66,6 @@ impl Marched {
     #[must_use]
     pub fn automatic_samples(highest: usize) -> usize {
         AUTOMATIC.max((PER_HARMONIC * (highest + 1)).next_power_of_two())
-    }
-
-    fn sample(&self, motion: Motion<'_>) -> Samples {
-        let harmonics = motion.table.harmonics();
-        let slots = harmonics.slots();
-        let half = harmonics.half_wave();
-        let count = if half { self.samples / 2 } else { self.samples };
-        let mut basis = vec![0.0; count * slots];
-        let mut displacement = Vec::with_capacity(count * self.points());
-        for (n, row) in basis.chunks_exact_mut(slots).enumerate() {
-            harmonics.basis(TAU * n as f64 / self.samples as f64, row);
-            for series in motion.displacement.chunks_exact(slots) {
-                displacement.push(series.iter().zip(&*row).map(|(c, b)| c * b).sum());
-            }
-        }
-        Samples { count, sign: if half { -1.0 } else { 1.0 }, basis, displacement }
     }
 
     /// Slip load of a contact that never slips, from the extreme samples: its value, and their
@@ -258,7 +224,7 @@ impl FrictionLaw for Marched {
         let harmonics = motion.table.harmonics();
         let (slots, points) = (harmonics.slots(), self.points());
         out.reset(points * slots, tangent);
-        let samples = self.sample(motion);
+        let samples = Samples::of(motion, self.samples);
         let basis = |n: usize| &samples.basis[n * slots..(n + 1) * slots];
         if let Some((load, ends)) = self.stuck(&samples, motion.residual) {
             if harmonics.has_mean() {
@@ -318,7 +284,7 @@ impl FrictionLaw for Marched {
 
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
         out.fill(PointSummary::default());
-        let samples = self.sample(motion);
+        let samples = Samples::of(motion, self.samples);
         if self.stuck(&samples, motion.residual).is_some() {
             return;
         }
@@ -375,7 +341,7 @@ impl FrictionLaw for Marched {
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
         let harmonics = motion.table.harmonics();
         let (slots, points) = (harmonics.slots(), self.points());
-        let grid = self.sample(motion);
+        let grid = Samples::of(motion, self.samples);
         let stuck = self.stuck(&grid, motion.residual);
         let round = self.march(&grid);
         let mut history = Vec::with_capacity(samples * points);

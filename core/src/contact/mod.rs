@@ -11,6 +11,7 @@ mod jenkins;
 mod jenkins_parameters;
 mod march_rate;
 mod marched;
+mod samples;
 
 pub use describing::Describing;
 pub use jenkins::Jenkins;

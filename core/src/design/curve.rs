@@ -33,7 +33,8 @@ pub struct Peak {
     pub amplitude: f64,
     /// Derivative of its amplitude in the parameter.
     pub slope: f64,
-    /// How its computation ended; if a point of the search failed, how that ended.
+    /// How its computation ended; if a part of the range that may hold the highest point could not
+    /// be solved, how that ended, and the peak is missing.
     pub status: PointStatus,
     /// Highest harmonic kept.
     pub harmonics: usize,
@@ -165,9 +166,13 @@ impl<'a> Follower<'a> {
             let Some(found) = self.search(&member, share)? else {
                 return Ok(self.failed(value));
             };
+            if let Some(status) = found.failure {
+                // A lower maximum is no peak.
+                self.seeds = found.samples;
+                return Ok(Peak::missing(value, status));
+            }
             let best = &found.samples[found.best];
-            let (mut status, order, estimate) =
-                self.judge(&member, best.knot.at, Some(best), share)?;
+            let (status, order, estimate) = self.judge(&member, best.knot.at, Some(best), share)?;
             if order > self.order && status != PointStatus::NotComputed {
                 // The harmonics that the peak asks for may move it, and change which is highest.
                 self.seeds = found.samples;
@@ -178,7 +183,6 @@ impl<'a> Follower<'a> {
                 self.interrupted = true;
                 return Ok(Peak::missing(value, status));
             }
-            status = found.failure.unwrap_or(status);
             let peak = Peak {
                 value,
                 omega: best.knot.at,
@@ -220,6 +224,7 @@ impl<'a> Follower<'a> {
             balance: &mut balance,
             samples: Vec::new(),
             gaps: Vec::new(),
+            failures: 0,
             failure: None,
         };
         let found = search.run(&self.seeds)?;

@@ -81,8 +81,10 @@ pub fn optimum(
         .collect();
     let mut minima = Vec::new();
     if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
-        minima.extend([(first.slope >= 0.0).then_some(*first)].into_iter().flatten());
-        minima.extend([(last.slope <= 0.0).then_some(*last)].into_iter().flatten());
+        // Beside values without a peak a curve that falls towards them has no minimum.
+        let least = |end: &Trial, bound: f64, falls: bool| falls && end.peak.value == bound;
+        minima.extend(least(first, low, first.slope >= 0.0).then_some(*first));
+        minima.extend(least(last, high, last.slope <= 0.0).then_some(*last));
     }
     for (index, bracket) in brackets.iter().enumerate() {
         let share = CURVE_SHARE + (1.0 - CURVE_SHARE) * index as f64 / brackets.len() as f64;
@@ -103,7 +105,8 @@ pub fn optimum(
 /// The peak at a value, if it is found.
 fn try_value(follower: &mut Follower<'_>, value: f64, share: f64) -> Result<Option<Trial>, Error> {
     let peak = follower.peak(value, share)?;
-    if peak.status == PointStatus::NotComputed || !peak.amplitude.is_finite() {
+    let solved = matches!(peak.status, PointStatus::Converged | PointStatus::HarmonicsLimit);
+    if !solved || !peak.amplitude.is_finite() {
         return Ok(None);
     }
     let (height, slope) = follower.variation.objective(value, peak.amplitude, peak.slope);
@@ -171,7 +174,11 @@ fn refine(
             cubic(a, b).unwrap_or(crossing)
         };
         let value = a.peak.value + shift.clamp(0.001 * width, 0.999 * width);
-        let Some(trial) = try_value(follower, value, share)? else { break };
+        let mut tried = try_value(follower, value, share)?;
+        if tried.is_none() && !follower.interrupted {
+            tried = try_value(follower, a.peak.value + 0.5 * width, share)?;
+        }
+        let Some(trial) = tried else { break };
         insert(trials, Some(trial));
         if trial.slope < 0.0 {
             a = trial;

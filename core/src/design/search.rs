@@ -26,6 +26,10 @@ const IDLE: u32 = 1;
 const SHORTEST: f64 = 1e-9;
 /// Points after which a search ends in any case.
 const MOST_POINTS: usize = 200;
+/// Points without a solution after which an interval is closed without another attempt.
+const MOST_FAILURES: usize = 40;
+/// Gain in height, relative, that an interval without a solution must not promise.
+const DOUBT: f64 = 1e-6;
 /// Distance at which an undamped resonance is passed, relative to the frequency.
 const ASIDE: f64 = 1e-8;
 /// Maxima from this share of the highest are looked at again at the next parameter.
@@ -72,7 +76,7 @@ pub(super) struct Found {
     pub(super) samples: Vec<Sample>,
     /// Position of the highest.
     pub(super) best: usize,
-    /// Why a point is missing, if one is.
+    /// Why the highest point may lie elsewhere, where nothing could be solved.
     pub(super) failure: Option<PointStatus>,
 }
 
@@ -85,6 +89,9 @@ pub(super) struct Search<'a, 'b> {
     pub(super) samples: Vec<Sample>,
     /// What is known of the intervals between them.
     pub(super) gaps: Vec<Gap>,
+    /// Points without a solution.
+    pub(super) failures: usize,
+    /// How the last of them ended.
     pub(super) failure: Option<PointStatus>,
 }
 
@@ -111,8 +118,25 @@ impl Search<'_, '_> {
                 return Ok(None);
             }
         }
+        let failure = if self.is_in_doubt() { self.failure } else { None };
         let best = self.best();
-        Ok(best.map(|best| Found { samples: self.samples, best, failure: self.failure }))
+        Ok(best.map(|best| Found { samples: self.samples, best, failure }))
+    }
+
+    /// Whether a part of the range that could not be solved may hold a higher point.
+    fn is_in_doubt(&self) -> bool {
+        let (Some(best), Some(first), Some(last)) =
+            (self.best(), self.samples.first(), self.samples.last())
+        else {
+            return true;
+        };
+        let (low, high) = self.target.span;
+        let reference = self.samples[best].knot.height;
+        let ends = first.knot.at > low * (1.0 + 2.0 * ASIDE) || last.knot.at < high;
+        ends || self.samples.windows(2).zip(&self.gaps).any(|(pair, gap)| {
+            let interpolant = Interpolant::new(pair[0].knot, pair[1].knot, reference);
+            gap.closed && interpolant.promise(gap.error).1 > reference * (1.0 + DOUBT)
+        })
     }
 
     fn best(&self) -> Option<usize> {
@@ -146,8 +170,7 @@ impl Search<'_, '_> {
         let (left, right) = (self.samples[interval].knot, self.samples[interval + 1].knot);
         let width = right.at - left.at;
         let gap = self.gaps[interval];
-        let omega = left.at + gap.stride(share) * width;
-        let Some(sample) = self.solve(omega, None)? else {
+        let Some(sample) = self.inside(interval, gap.stride(share))? else {
             // Nothing more is asked of an interval whose inside cannot be solved.
             self.gaps[interval].closed = true;
             return Ok(self.failure != Some(PointStatus::NotComputed));
@@ -169,12 +192,48 @@ impl Search<'_, '_> {
         Ok(true)
     }
 
-    /// Solves at one frequency, from `start` or from the samples around it.
+    /// A point inside an interval: at the share asked for, or halfway from there to an end.
+    fn inside(&mut self, interval: usize, share: f64) -> Result<Option<Sample>, Error> {
+        let (left, right) = (self.samples[interval].knot.at, self.samples[interval + 1].knot.at);
+        for share in [share, 0.5 * share, 0.5 * (1.0 + share)] {
+            let solved = self.solve(left + share * (right - left), None)?;
+            let sample = solved.filter(|sample| left < sample.knot.at && sample.knot.at < right);
+            let ended = self.failure == Some(PointStatus::NotComputed);
+            if sample.is_some() || ended || self.failures > MOST_FAILURES {
+                return Ok(sample);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Solves at one frequency: from `start` or the samples around it, from the stuck response,
+    /// or from either neighbour as it is.
     fn solve(&mut self, omega: f64, start: Option<Unknowns>) -> Result<Option<Sample>, Error> {
+        let after = self.samples.partition_point(|sample| sample.knot.at < omega);
         let start = start.or_else(|| predicted(&self.samples, omega));
-        let point = match self.balance.solve(omega, start.as_ref()) {
+        let neighbours = [after.checked_sub(1), Some(after)].into_iter().flatten();
+        let neighbours: Vec<_> = neighbours
+            .filter_map(|i| self.samples.get(i))
+            .map(|sample| Some(sample.unknowns.clone()))
+            .collect();
+        for start in start.map(Some).into_iter().chain([None]).chain(neighbours) {
+            let sample = self.attempt(omega, start.as_ref())?;
+            if sample.is_some() || self.failure == Some(PointStatus::NotComputed) {
+                return Ok(sample);
+            }
+            if self.failures > MOST_FAILURES {
+                break;
+            }
+        }
+        self.failures += 1;
+        Ok(None)
+    }
+
+    /// Solves at one frequency from one start.
+    fn attempt(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Option<Sample>, Error> {
+        let point = match self.balance.solve(omega, start) {
             Err(Error::UndampedResonance { .. }) => {
-                self.balance.solve(omega * (1.0 + ASIDE), start.as_ref())?
+                self.balance.solve(omega * (1.0 + ASIDE), start)?
             }
             solved => solved?,
         };

@@ -10,6 +10,8 @@ use std::f64::consts::TAU;
 
 /// Share of a sampling interval by which rounding may miss an instant.
 const ROUNDING: f64 = 1e-9;
+/// Steps between two looks at whether to go on.
+const LOOK: usize = 4096;
 /// Periods that are dropped at once at least: moving the rest costs.
 const BLOCK: usize = 16;
 
@@ -90,15 +92,18 @@ impl<'a> Output<'a> {
     }
 
     /// Takes the Runge-Kutta steps of one period that begins at `begin` [s]. Between steps, motions
-    /// are cubic, from displacements and velocities at both ends.
+    /// are cubic, from displacements and velocities at both ends. `false` if the caller has ended the
+    /// run, which then keeps whole periods alone.
     pub(super) fn step_through(
         &self,
         scheme: &mut RungeKutta<'_>,
         state: &mut State,
         begin: f64,
         history: &mut History,
-    ) -> Result<(), Halt> {
+        progress: &dyn Fn() -> bool,
+    ) -> Result<bool, Halt> {
         let steps = scheme.steps();
+        let kept = history.trace.time.len();
         let h = scheme.step();
         let mut sample = 1;
         let mut range = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.shapes.len()];
@@ -111,6 +116,10 @@ impl<'a> Output<'a> {
         }
         let mut before = state.clone();
         for index in 0..steps {
+            if index % LOOK == LOOK - 1 && !progress() {
+                self.truncate(&mut history.trace, kept);
+                return Ok(false);
+            }
             before.clone_from(state);
             scheme.advance(state, index);
             if !state.is_bounded() {
@@ -137,7 +146,17 @@ impl<'a> Output<'a> {
             }
         }
         history.range.extend(range);
-        Ok(())
+        Ok(true)
+    }
+
+    /// Keeps the first `instants` of a trace.
+    fn truncate(&self, trace: &mut Trace, instants: usize) {
+        let (dofs, points) = (self.shapes.len(), self.system.points());
+        trace.time.truncate(instants);
+        trace.displacement.truncate(instants * dofs);
+        trace.velocity.truncate(instants * dofs);
+        trace.contact_displacement.truncate(instants * points);
+        trace.force.truncate(instants * points);
     }
 
     /// Drops the histories of the periods that are not to be kept, once they are `blocks` of what

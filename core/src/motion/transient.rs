@@ -155,14 +155,24 @@ pub fn transient(
         let begin = number as f64 * TAU / settings.omega;
         state.time = 0.0;
         let passed = match &mut integrator {
-            Integrator::Exact(flow) => output.follow(flow, &mut state, begin, &mut history),
+            Integrator::Exact(flow) => {
+                output.follow(flow, &mut state, begin, &mut history).map(|()| true)
+            }
             Integrator::RungeKutta(scheme) => {
-                output.step_through(scheme, &mut state, begin, &mut history)
+                let go_on = || progress(number as f64 / settings.periods as f64);
+                output.step_through(scheme, &mut state, begin, &mut history, &go_on)
             }
         };
-        if let Err(halt) = passed {
-            history.halt = Some(halt);
-            break;
+        match passed {
+            Ok(true) => {}
+            Ok(false) => {
+                history.interrupted = true;
+                break;
+            }
+            Err(halt) => {
+                history.halt = Some(halt);
+                break;
+            }
         }
         let after = coordinates.coordinates(&state);
         let size = norm(&before).max(norm(&after));

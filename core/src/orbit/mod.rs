@@ -3,6 +3,7 @@
 
 mod periodic;
 mod quadrature;
+mod rescue;
 mod residual;
 mod settings;
 mod shooting;
@@ -10,5 +11,6 @@ mod survey;
 mod sweep;
 
 pub use periodic::{Orbit, PeriodicOrbits};
+pub use rescue::Rescue;
 pub use settings::OrbitSettings;
 pub use sweep::{orbit_peak, orbit_sweep, Orbits};

@@ -106,6 +106,11 @@ impl<'a> PeriodicOrbits<'a> {
         (self.progress)(share)
     }
 
+    /// Changes how many harmonics are reported.
+    pub(super) fn report_up_to(&mut self, highest: usize) {
+        self.settings.harmonics = highest;
+    }
+
     /// Whether orbits are half-wave symmetric.
     #[must_use]
     pub fn half_wave(&self) -> bool {

@@ -8,9 +8,9 @@ use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
 
-/// Least pivot, relative to the largest, of a closing condition that determines the orbit: at a
-/// resonance that nothing bounds it does not.
-const SINGULAR: f64 = 1e-14;
+/// Least pivot, relative to the transition matrix, of a closing condition that determines the
+/// orbit: at a resonance that nothing bounds it does not.
+const SINGULAR: f64 = 1e-13;
 
 /// The closing condition of a periodic orbit at one frequency, in the coordinates of
 /// [`Transition`].
@@ -170,6 +170,7 @@ impl System for Shooting<'_> {
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
         let mut matrix = self.derivative();
         let size = matrix.nrows();
+        let scale = 1.0 + matrix.norm_max();
         for i in 0..size {
             matrix[(i, i)] -= 1.0;
         }
@@ -186,9 +187,7 @@ impl System for Shooting<'_> {
             }
         }
         let lu = matrix.partial_piv_lu();
-        let pivots = (0..size).map(|i| lu.U()[(i, i)].abs());
-        let (least, largest) = pivots.fold((f64::MAX, 0.0_f64), |(l, m), p| (l.min(p), m.max(p)));
-        if least <= SINGULAR * largest {
+        if (0..size).any(|i| lu.U()[(i, i)].abs() <= SINGULAR * scale) {
             return false;
         }
         lu.solve_in_place(&mut right);

@@ -1,6 +1,7 @@
 //! Reference systems and an independent time integration, shared by all tests.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub mod coupled;
 pub mod passive;
 
 use faer::{c64, mat, Mat};

@@ -19,6 +19,7 @@ __all__ = [
     "Span",
     "grid_of",
     "observed_dofs",
+    "require_forced",
     "require_held",
     "require_model",
     "require_progress",
@@ -131,6 +132,16 @@ def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[st
         if name in names[:position]:
             raise ModelError(f"observe: {name!r} is given more than once; name each dof once")
     return tuple(map(str, names))
+
+
+def require_forced(model: Model, highest: int, entry: str) -> None:
+    """Refuse to leave out the harmonic of a force; `entry` names what bounds the harmonics."""
+    for position, force in enumerate(model.forces, start=1):
+        if force.harmonic > highest and force.amplitude:
+            raise ModelError(
+                f"{entry}: {highest} would leave out force {position} at {force.dof!r}, of "
+                f"harmonic {force.harmonic}; give at least {force.harmonic}, or drop the force"
+            )
 
 
 def require_held(model: Model, residual: Residual) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.model import Model
+from stickslip.model import Model, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
 from stickslip.results.status import Status
 
@@ -19,10 +19,13 @@ if TYPE_CHECKING:
     from stickslip.analyses.forced_response import Settings
     from stickslip.analyses.transient import TransientSettings
 
-__all__ = ["assumptions_of", "orbit_assumptions", "transient_assumptions"]
+__all__ = ["assumptions_of", "orbit_assumptions", "transient_assumptions", "turn_per_step"]
 
 LARGE_ERROR = 0.05
 """Share of the amplitude above which the discarded harmonics are worth a warning."""
+
+COARSE_TURN = 0.5
+"""Angle per Runge-Kutta step above which a motion loses accuracy noticeably [rad]."""
 
 _SHOWN = 6
 _BASES = {
@@ -62,6 +65,7 @@ def assumptions_of(
     half_wave: bool,
     missing: int = 0,
     interrupted: bool = False,
+    single: bool = False,
 ) -> tuple[str, ...]:
     """Say what a forced response took for granted, one text per assumption.
 
@@ -81,6 +85,8 @@ def assumptions_of(
         Number of points asked for that are not among the arrays.
     interrupted : bool, optional
         Whether the run was stopped before its end.
+    single : bool, optional
+        Whether the method knows one harmonic only, and says so itself.
 
     Returns
     -------
@@ -91,14 +97,14 @@ def assumptions_of(
     # Numbers far outside any unit overflow when squared; what is not finite then is left out.
     with np.errstate(all="ignore"):
         texts = (
-            _harmonics(settings, arrays, half_wave),
+            "" if single else _harmonics(settings, arrays, half_wave),
             _residual(model, settings, arrays),
             _evaluation(model, settings),
             _BASES.get(base, f"The compliance is evaluated by {base}."),
             _frequencies(settings, arrays, missing, interrupted=interrupted),
             _observed(model, dofs),
             _damping(model.structure.damping),
-            _truncation(dofs, arrays),
+            _truncation(dofs, arrays, _OTHER_METHOD if single else "keep more harmonics there"),
             _failures(arrays),
         )
     return tuple(text for text in texts if text)
@@ -202,6 +208,7 @@ def transient_assumptions(
         texts = (
             f"The run starts from {begun}{history}.",
             stepped,
+            _coarse_steps(model, settings),
             open_end,
             _kept(settings),
             _observed(model, dofs),
@@ -210,6 +217,39 @@ def transient_assumptions(
     return tuple(text for text in texts if text)
 
 
+def turn_per_step(model: Model, settings: TransientSettings) -> float:
+    """Return the angle by which the fastest stuck motion turns in a Runge-Kutta step [rad].
+
+    Parameters
+    ----------
+    model : Model
+        What moves.
+    settings : TransientSettings
+        The frequency of the forces and the steps per period.
+
+    Returns
+    -------
+    float
+        Highest natural frequency with all contacts stuck times the step; 0 for another scheme.
+    """
+    if settings.scheme != "rk4":
+        return 0.0
+    step = 2.0 * np.pi / (settings.omega * settings.steps)
+    return step * float(natural_frequencies(model)[-1])
+
+
+def _coarse_steps(model: Model, settings: TransientSettings) -> str:
+    turn = turn_per_step(model, settings)
+    if not turn > COARSE_TURN:
+        return ""
+    needed = int(np.ceil(settings.steps * turn / COARSE_TURN))
+    return (
+        f"The highest stuck natural frequency turns by {turn:.2g} rad in a Runge-Kutta step, too "
+        f"much to be followed well; {needed} steps per period would."
+    )
+
+
+_OTHER_METHOD = "forced_response keeps more of them"
 _UNASKED = "No tolerance was given, so that the last period need not be a steady one; see change."
 
 
@@ -229,6 +269,11 @@ def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> str:
         if settings.harmonics == "auto"
         else ""
     )
+    if half_wave and most == 1:
+        return (
+            "Only harmonic 1 was solved for: the forces and the friction laws are half-wave "
+            "symmetric, and harmonics above it were left out."
+        )
     if half_wave:
         return (
             f"Only the odd harmonics up to {most} were solved for{chosen}: the forces and the "
@@ -319,7 +364,7 @@ def _is_positive(matrix: NDArray[np.float64]) -> bool:
     return True
 
 
-def _truncation(dofs: tuple[str, ...], arrays: Arrays) -> str:
+def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> str:
     # The exact half range of every dof and point would cost as much as the solution; the root
     # sum of squares finds the point, and only there is the range taken.
     size = np.sqrt((np.abs(arrays.displacement[:, 1:]) ** 2).sum(axis=1))
@@ -336,7 +381,7 @@ def _truncation(dofs: tuple[str, ...], arrays: Arrays) -> str:
         return ""
     return (
         f"The discarded harmonics could still change {dofs[dof]!r} by {share:.1%} at omega = "
-        f"{arrays.omega[point]:.6g} rad/s, the worst point; keep more harmonics there."
+        f"{arrays.omega[point]:.6g} rad/s, the worst point; {remedy}."
     )
 
 

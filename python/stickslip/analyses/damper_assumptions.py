@@ -74,9 +74,10 @@ def _rigid(rigid: float | None) -> str:
     if rigid is None:
         return ""
     return (
-        f"The infinite stiffness is the limit of {rigid:.4g} and {2.0 * rigid:.4g} N/m, some "
-        "hundred times the stiffness of the structure at the contact, taken as linear in 1/k_d; "
-        "its error estimate holds the whole last change."
+        f"Stiffnesses above {2.0 * rigid:.4g} N/m were not solved: an infinite stiffness is the "
+        f"limit of {rigid:.4g} and {2.0 * rigid:.4g} N/m, some hundred times the stiffness of the "
+        "structure at the contact, taken as linear in 1/k_d, and finite ones lie on the same line; "
+        "the error estimate holds the whole last change."
     )
 
 
@@ -85,9 +86,11 @@ def _harmonics(settings: DamperSettings, arrays: DamperArrays) -> str:
     if not kept.size:
         return ""
     if settings.harmonics == "auto":
+        low, high = kept.min(), kept.max()
+        several = "" if low == high else f", at some peaks only up to {low}"
         return (
-            f"Harmonics up to {kept.min()} to {kept.max()} were kept, chosen at each peak to a "
-            f"tolerance of {settings.tolerance:g}."
+            f"Harmonics up to {high} were kept{several}, chosen at each peak to a tolerance of "
+            f"{settings.tolerance:g}."
         )
     return f"Harmonics up to {settings.harmonics} were kept."
 

@@ -13,6 +13,7 @@ from stickslip.analyses.arguments import (
     Progress,
     Residual,
     Span,
+    require_forced,
     require_held,
     require_model,
     require_progress,
@@ -31,7 +32,7 @@ from stickslip.analyses.variation import (
 )
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import ContactRef, Model
-from stickslip.results.arrays import Float, Measure
+from stickslip.results.arrays import Bool, Float, Measure
 from stickslip.results.damper_curve import DamperArrays, DamperCurve
 from stickslip.results.status import Status
 
@@ -81,7 +82,8 @@ def damper_curve(
     slip_force, stiffness, level : array_like, shape (n,)
         Values of one of them, in the order to follow: slip forces F_d [N], stiffnesses k_d [N/m]
         of the contacts, or factors on all forces. An infinite slip force never slips; an infinite
-        stiffness is the limit of a rigid contact.
+        stiffness is the limit of a rigid contact, and common values above 500 times the stiffness
+        of the structure lie on the line in 1/k_d towards it.
     contacts : iterable of int or str, optional
         The contacts that take the value. Default: all; of slip forces those that are finite,
         unless none is.
@@ -119,6 +121,8 @@ def damper_curve(
     require_model(model)
     require_progress(progress)
     parameter, values = _one_of(slip_force=slip_force, stiffness=stiffness, level=level)
+    if parameter == "stiffness" and common == "factor" and np.isinf(values).any():
+        raise ModelError('stiffness: an infinite factor has no meaning; use common="value"')
     settings = settings_for(
         model,
         Variation(
@@ -135,10 +139,8 @@ def damper_curve(
         max_harmonics=max_harmonics,
         max_iterations=max_iterations,
     )
-    limit = parameter == "stiffness" and bool(np.isinf(values).any())
-    if limit and common == "factor":
-        raise ModelError('stiffness: an infinite factor has no meaning; use common="value"')
-    rigid = RIGID * local_stiffness(model, settings.variation.contacts) if limit else None
+    start = _rigid_from(model, settings.variation)
+    rigid = start if _is_rigid(values, start).any() else None
     result = curve_of(model, settings, _peaks(model, settings, values, rigid, progress), rigid)
     if result.interrupted:
         done = int(result.arrays.solved.sum())
@@ -168,9 +170,10 @@ def settings_for(
     max_iterations: int,
 ) -> DamperSettings:
     """Return the checked settings of a curve over some values."""
-    finite = values[np.isfinite(values)]
+    start = _rigid_from(model, variation)
+    finite = values[~_is_rigid(values, start)]
     if variation.parameter == "stiffness" and finite.size < values.size:
-        finite = np.append(finite, RIGID * local_stiffness(model, variation.contacts))
+        finite = np.append(finite, start)
     if omega is None:
         omega = resonance_range(model, variation, mode, finite)
     elif not isinstance(omega, tuple):
@@ -187,6 +190,9 @@ def settings_for(
         max_iterations=max_iterations,
     )
     model.structure.index(settings.dof)
+    kept = settings.max_harmonics if settings.harmonics == "auto" else settings.harmonics
+    entry = "max_harmonics" if settings.harmonics == "auto" else "harmonics"
+    require_forced(model, kept, entry)
     require_held(model, settings.residual)
     return settings
 
@@ -219,7 +225,11 @@ def _peaks(
     solved = values
     if rigid is not None:
         # A rigid contact stands for two stiff ones.
-        pairs = [[rigid, 2.0 * rigid] if np.isinf(value) else [value] for value in values]
+        stiff = _is_rigid(values, rigid)
+        pairs = [
+            [rigid, 2.0 * rigid] if instead else [value]
+            for value, instead in zip(values, stiff, strict=True)
+        ]
         solved = np.concatenate([np.array(pair) for pair in pairs])
     try:
         peaks = _core.damper_curve(model.problem, settings.design(model), solved, progress)
@@ -228,23 +238,39 @@ def _peaks(
     except ValueError as error:
         raise ModelError(str(error)) from error
     arrays = DamperArrays.of(peaks)
-    return (arrays if rigid is None else _with_limit(arrays, values)), peaks
+    return (arrays if rigid is None else _with_limit(arrays, values, rigid)), peaks
 
 
-def _with_limit(arrays: DamperArrays, values: Float) -> DamperArrays:
-    """Replace every pair of stiff contacts by their limit, linear in 1/k_d."""
-    second = np.arange(values.size) + np.cumsum(np.isinf(values))
+def _rigid_from(model: Model, variation: Variation) -> float:
+    """Return the stiffness from which the rigid limit is taken [N/m]; infinity of other values."""
+    if variation.parameter != "stiffness" or variation.common == "factor":
+        return np.inf
+    return RIGID * local_stiffness(model, variation.contacts)
+
+
+def _is_rigid(values: Float, rigid: float) -> Bool:
+    """Return which stiffnesses lie beyond the two that the rigid limit uses, shape (n,)."""
+    stiff: Bool = values > 2.0 * rigid
+    return stiff
+
+
+def _with_limit(arrays: DamperArrays, values: Float, rigid: float) -> DamperArrays:
+    """Replace every pair of stiff contacts by the line through them, in 1/k_d."""
+    stiff = _is_rigid(values, rigid)
+    second = np.arange(values.size) + np.cumsum(stiff)
     last = {entry.name: np.array(getattr(arrays, entry.name)[second]) for entry in fields(arrays)}
-    for place in np.flatnonzero(np.isinf(values)):
+    for place in np.flatnonzero(stiff):
         two = int(second[place])
         one = two - 1
+        share = 2.0 * rigid / values[place]
         for name in ("omega", "amplitude"):
             numbers = getattr(arrays, name)
-            last[name][place] = 2.0 * numbers[two] - numbers[one]
+            last[name][place] = numbers[two] + (1.0 - share) * (numbers[two] - numbers[one])
         change = abs(arrays.amplitude[two] - arrays.amplitude[one])
         estimate = arrays.error_estimate
         last["error_estimate"][place] = 2.0 * estimate[two] + estimate[one] + change
-        last["sensitivity"][place] = 0.0
+        slope = (arrays.amplitude[two] - arrays.amplitude[one]) / (2.0 * rigid)
+        last["sensitivity"][place] = share**2 * slope
         if arrays.status[two] == Status.CONVERGED.code:
             last["status"][place] = arrays.status[one]
     return DamperArrays(**{**last, "value": values})

@@ -21,7 +21,12 @@ from stickslip.analyses.arguments import (
     require_time,
 )
 from stickslip.analyses.assumptions import orbit_assumptions
-from stickslip.analyses.forced_response import MAX_ITERATIONS, Settings, forced_response
+from stickslip.analyses.forced_response import (
+    MAX_HARMONICS,
+    MAX_ITERATIONS,
+    Settings,
+    forced_response,
+)
 from stickslip.analyses.memory import require_memory
 from stickslip.checks import whole_number
 from stickslip.errors import Interrupted, ModelError
@@ -72,7 +77,7 @@ class ExactSettings(Settings):
     method: str = "exact"
 
     def __post_init__(self) -> None:
-        whole_number(self.harmonics, "harmonics", smallest=1)
+        whole_number(self.harmonics, "harmonics", smallest=1, largest=MAX_HARMONICS)
         super().__post_init__()
 
 

@@ -15,6 +15,7 @@ from stickslip.analyses.arguments import (
     Span,
     grid_of,
     observed_dofs,
+    require_forced,
     require_held,
     require_model,
     require_progress,
@@ -239,6 +240,9 @@ def forced_response(
         )
         points = sum(contact.points for contact in model.contacts)
         require_memory(grid.size, max(kept, 1), len(dofs), points)
+    fixed = settings.fixed_harmonics
+    entry = "max_harmonics" if fixed is None else "harmonics"
+    require_forced(model, settings.max_harmonics if fixed is None else fixed, entry)
     require_held(model, settings.residual)
     solution = _solve(model, grid, dofs, settings, progress)
     result = _result(model, settings, dofs, solution)

@@ -32,11 +32,13 @@ STICKS = 1.0
 """Upper bound of a slip force, over the largest force of the stuck contact: from it on nothing
 slips, and the peak does not change any more."""
 SLIDES = 1e-3
-"""Lower bound, likewise: so little friction takes off a peak about as much as its damping does."""
+"""Lower bound, likewise, unless a share of the load lies lower."""
+LOAD = (0.03, 1e4)
+"""Bounds of a slip force, over what stuck contacts bear at the low end of the range, away from
+their resonance: the scale of the load, to which the best slip force belongs however light the
+damping is. That at resonance rises as the damping falls."""
 STIFFNESSES = (1e-2, 250.0)
 """Bounds of a stiffness, over that of the structure at the contact."""
-LEVELS = (1.0, 1e3)
-"""Bounds of a level, over the one at which contacts begin to slip."""
 
 
 def optimal_damper(
@@ -75,8 +77,10 @@ def optimal_damper(
         made least: friction knows the ratio of force and slip force alone.
     bounds : (float, float), optional
         Values to look between. Default, for slip forces: from 1/1000 to all of the largest force
-        that the stuck contacts bear in the range of frequencies, beyond which nothing slips; for
-        levels likewise; for stiffnesses: 1/100 to 250 times that of the structure.
+        that the stuck contacts bear in the range of frequencies, beyond which nothing slips. At
+        light damping that rises far above the load: the lower bound is then 0.03 times, and the
+        upper one at most 10 000 times, what they bear at the low end of the range. For levels
+        likewise; for stiffnesses: 1/100 to 250 times that of the structure.
     contacts : iterable of int or str, optional
         The contacts that are varied. Default: all; of slip forces those that are finite, unless
         none is.
@@ -147,12 +151,13 @@ def optimal_damper(
     found = tuple(LeastPeak(*map(float, row)) for row in rows)
     if not found:
         raise ModelError(
-            f"optimal damper: no peak was found between {low:g} and {high:g}; try other bounds, or "
-            "damper_curve for the status of each value"
+            f"optimal damper: {curve.arrays.solved.sum()} peaks were found between {low:g} and "
+            f"{high:g}, none of them a minimum; try other bounds, or damper_curve for the status "
+            "of each value"
         )
     if progress is not None:
         progress(1.0)
-    result = OptimalDamper(minima=found, bounds=(low, high), curve=curve, assumptions=())
+    result = OptimalDamper.of(found, (low, high), curve, ())
     return replace(result, assumptions=_assumptions(result))
 
 
@@ -180,38 +185,47 @@ def _checked(bounds: tuple[float, float]) -> tuple[float, float]:
 def _default_bounds(
     model: Model, variation: Variation, settings: DamperSettings | None
 ) -> tuple[float, float]:
-    """Return bounds that hold all that friction can do."""
+    """Return bounds around the scale of the load, or of the stiffness of the structure."""
     if settings is None:
         stiffness = local_stiffness(model, variation.contacts)
         if variation.common == "factor":
             own = [model.contacts[model.contact_index(name)] for name in variation.contacts]
             stiffness /= max(contact.parameters()["stiffness"] for contact in own)
         return STIFFNESSES[0] * stiffness, STIFFNESSES[1] * stiffness
-    ratio = _stuck_force(model, variation, settings)
+    load, ratio = _stuck_forces(model, variation, settings)
     if not ratio > 0.0:
         raise ModelError(
             "bounds: the contacts bear no force while they stick, so that friction does nothing; "
             "check the forces, or give bounds=(lowest, highest)"
         )
-    if variation.parameter == "level":
-        return LEVELS[0] / ratio, LEVELS[1] / ratio
-    return SLIDES * ratio, STICKS * ratio
+    low, high = SLIDES * ratio, STICKS * ratio
+    if load > 0.0:
+        low, high = min(low, LOAD[0] * load), min(high, LOAD[1] * load)
+    return (1.0 / high, 1.0 / low) if variation.parameter == "level" else (low, high)
 
 
-def _stuck_force(model: Model, variation: Variation, settings: DamperSettings) -> float:
-    """Return the largest force of a stuck contact [N], over its own slip force if that counts."""
+def _stuck_forces(
+    model: Model, variation: Variation, settings: DamperSettings
+) -> tuple[float, float]:
+    """Return the largest force of a stuck contact at the low end of the range, and anywhere [N].
+
+    Over its own slip force, if that counts.
+    """
     varied = variation.contacts or chosen_contacts(None, "slip_force", model)
     stuck = Variation(parameter="slip_force", contacts=varied).apply(model, np.inf)
     highest = max((force.harmonic for force in model.forces), default=1)
     response = forced_response(stuck, settings.span, max(highest, 1), observe=[settings.dof])
-    largest = 0.0
+    load = largest = 0.0
     for name in varied:
         position = model.contact_index(name)
         column = response.arrays.contact_force[:, :, response._columns(position, 0)][:, :, 0]
-        force = float(np.nanmax(amplitude_of(np.ascontiguousarray(column), "half_range")))
+        forces = amplitude_of(np.ascontiguousarray(column), "half_range")
+        start = forces[np.isfinite(forces)][:1].sum()
         relative = variation.common == "factor" or variation.parameter == "level"
         own = model.contacts[position].parameters()["slip_force"]
         if relative and not 0.0 < own < np.inf:
             continue
-        largest = max(largest, force / own if relative else force)
-    return largest
+        scale = own if relative else 1.0
+        load = max(load, float(start) / scale)
+        largest = max(largest, float(np.nanmax(forces)) / scale)
+    return load, largest

@@ -152,6 +152,7 @@ def _solve(
         half_wave=solution.half_wave,
         missing=solution.omega.size - arrays.omega.size,
         interrupted=solution.interrupted,
+        single=True,
     )
     return ForcedResponse(
         model=model,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -15,7 +16,7 @@ from stickslip.analyses.arguments import (
     require_progress,
     require_time,
 )
-from stickslip.analyses.assumptions import transient_assumptions
+from stickslip.analyses.assumptions import transient_assumptions, turn_per_step
 from stickslip.analyses.memory import require_numbers
 from stickslip.checks import brief, choice, real_number, whole_number
 from stickslip.errors import Interrupted, ModelError
@@ -31,6 +32,9 @@ __all__ = ["SCHEMES", "TransientSettings", "transient"]
 
 SCHEMES = ("exact", "rk4")
 """The exact flow between events, and the classical Runge-Kutta method of fourth order."""
+
+STABLE_TURN = 2.8
+"""Largest angle per step at which the classical Runge-Kutta method is stable: sqrt(8), rounded."""
 
 PERIODS, STEPS, SAMPLES = 200, 1000, 128
 
@@ -140,8 +144,8 @@ def transient(
     Raises
     ------
     ModelError
-        If an argument is of the wrong type or outside its range, or the result would not fit into
-        the memory.
+        If an argument is of the wrong type or outside its range, the result would not fit into
+        the memory, or the Runge-Kutta steps are too long to be stable.
     Interrupted
         On Ctrl-C; its `result` holds the periods that had been computed.
 
@@ -163,6 +167,7 @@ def transient(
     )
     dofs = observed_dofs(observe, model)
     require_progress(progress)
+    _require_stable(model, settings)
     first = _start(model, start)
     _require_room(model, settings, dofs)
     history = _solve(model, settings, dofs, first, progress)
@@ -190,6 +195,18 @@ def _start(model: Model, start: object) -> State | None:
         )
     start.require_fit(model, "start")
     return start
+
+
+def _require_stable(model: Model, settings: TransientSettings) -> None:
+    """Refuse Runge-Kutta steps in which the fastest stuck motion would grow without bound."""
+    turn = turn_per_step(model, settings)
+    if turn > STABLE_TURN:
+        needed = math.ceil(settings.steps * turn / STABLE_TURN)
+        raise ModelError(
+            f"steps: {settings.steps} Runge-Kutta steps per period are unstable: the highest stuck "
+            f"natural frequency turns by {turn:.3g} rad in one, and may by {STABLE_TURN:g}; give "
+            f"at least {needed}"
+        )
 
 
 def _require_room(model: Model, settings: TransientSettings, dofs: tuple[str, ...]) -> None:

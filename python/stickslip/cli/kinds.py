@@ -20,6 +20,7 @@ MODULES: Mapping[str, str] = {
     "exact_response": "stickslip.cli.curves",
     "transient": "stickslip.cli.transients",
     "damper_curve": "stickslip.cli.dampers",
+    "optimal_damper": "stickslip.cli.optima",
 }
 """The module of every kind of result; results of one module are drawn together."""
 

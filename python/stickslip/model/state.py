@@ -134,8 +134,10 @@ class State:
 
     @property
     def vector(self) -> Float:
-        """The state as one vector (x, v, f), shape (2 N + n_p,)."""
-        return np.concatenate([self.displacement, self.velocity, self.contact_force])
+        """The state as one vector (x, v, f), shape (2 N + n_p,), read-only."""
+        vector = np.concatenate([self.displacement, self.velocity, self.contact_force])
+        vector.flags.writeable = False
+        return vector
 
     def require_fit(self, model: Model, entry: str) -> None:
         """Refuse a model with other degrees of freedom or another number of contact points.

@@ -83,9 +83,10 @@ class Certificate:
     amplitude: Float
     """(p, d) Half peak-to-peak amplitude of the exact orbit [m]."""
     error: Float
-    """(p, d) Amplitude of the curve less that of the orbit [m]."""
+    """(p, d) Amplitude of the curve less that of the orbit [m]; 0 where it is rounding only."""
     waveform_error: Float
-    """(p, d) Largest difference between the two over the period [m]."""
+    """(p, d) Largest difference between the two over the period [m]; not-a-number too where an
+    interruption came before it was looked for."""
     estimate: Float
     """(p, d) Error estimate of the curve [m]."""
 

@@ -12,7 +12,7 @@ from stickslip.results.arrays import Float, constant
 if TYPE_CHECKING:
     from stickslip.results.forced_response import ForcedResponse
 
-__all__ = ["Energy", "energy_of"]
+__all__ = ["Energy", "apparent_work", "energy_of"]
 
 
 class Energy(NamedTuple):
@@ -24,10 +24,15 @@ class Energy(NamedTuple):
     """(n,) Energy lost to the damping matrix [J]."""
     friction: Float
     """(n,) Energy lost at all contacts together [J]."""
+    apparent: Float
+    """(n,) Work that the forces would do in phase with the velocity, pi k |P_k| |X_k| [J]."""
 
     @property
     def imbalance(self) -> Float:
-        """What is missing in work = viscous + friction, relative to the largest, shape (n,)."""
+        """What is missing in work = viscous + friction, relative to the largest, shape (n,).
+
+        The apparent work counts among them: without damping and slip the others are rounding.
+        """
         terms = np.abs(np.stack(self))
         scale = np.maximum(terms.max(axis=0), np.finfo(np.float64).tiny)
         return constant((self.work - self.viscous - self.friction) / scale)
@@ -77,5 +82,31 @@ def energy_of(result: ForcedResponse) -> Energy:
         viscous += np.pi * arrays.omega * harmonic**2 * taken
     # A model without contacts has no columns to sum, but unsolved points all the same.
     friction = arrays.dissipation.sum(axis=1)
-    parts = [np.where(arrays.solved, part, np.nan) for part in (work, viscous, friction)]
-    return Energy(*(constant(part) for part in parts))
+    work, viscous, friction = (
+        constant(np.where(arrays.solved, part, np.nan)) for part in (work, viscous, friction)
+    )
+    return Energy(work, viscous, friction, apparent_work(result))
+
+
+def apparent_work(result: ForcedResponse) -> Float:
+    """Return the work that the forces would do in phase with the velocity.
+
+    A static load does none, but it is a scale of rounding, and is counted as if of harmonic 1.
+
+    Parameters
+    ----------
+    result : ForcedResponse
+        Forces at degrees of freedom that are not observed are left out.
+
+    Returns
+    -------
+    ndarray of float64, shape (n,)
+        [J]; not-a-number where the point is not solved.
+    """
+    series = result.arrays.displacement
+    apparent = np.zeros(result.arrays.omega.size)
+    for force in result.model.forces:
+        if force.harmonic < series.shape[1] and force.dof in result.dofs:
+            motion = series[:, force.harmonic, result.dofs.index(force.dof)]
+            apparent += np.pi * max(force.harmonic, 1) * np.abs(force.coefficient * motion)
+    return constant(np.where(result.arrays.solved, apparent, np.nan))

@@ -15,7 +15,7 @@ from stickslip.model import Model, PointRef
 from stickslip.model.state import State
 from stickslip.results.arrays import Bool, Complex, Float, Int, Measure, constant
 from stickslip.results.dataset import CURVE_VARIABLES, curve_dataset, curve_parts, curve_settings
-from stickslip.results.energy import Energy
+from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
 from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
@@ -122,7 +122,7 @@ class ExactResponse(ForcedResponse):
         """Work of the forces and energy lost, per period, integrated along the orbits."""
         arrays = self.arrays
         friction = np.where(arrays.solved, arrays.dissipation.sum(axis=1), np.nan)
-        return Energy(arrays.work, arrays.viscous, constant(friction))
+        return Energy(arrays.work, arrays.viscous, constant(friction), apparent_work(self))
 
     def events(self, index: int) -> Events:
         """Return when contact points begin to stick and to slip, over one period.
@@ -212,6 +212,13 @@ class ExactResponse(ForcedResponse):
         Parameters and errors are those of `ForcedResponse.waveform`.
         """
         return self._orbit(0, self._column(dof), index, samples)
+
+    def waveforms(self, index: int, samples: int = 256) -> Float:
+        """Return one period of all observed displacements at once, shape (samples, n_o).
+
+        Parameters and errors are those of `waveform`; the columns are in the order of `dofs`.
+        """
+        return self._orbit(0, slice(None), index, samples)
 
     def velocity_waveform(self, dof: str, index: int, samples: int = 256) -> Float:
         """Return one period of a velocity, along the orbit.

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.model.contact import contact_from_spec
+from stickslip.model.force import force_from_spec
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
+from stickslip.results.result import Result
+from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from typing import Unpack
 
+    import xarray as xr
     from matplotlib.axes import Axes
 
     from stickslip.plot.damper import DamperOptions
@@ -20,8 +28,11 @@ __all__ = ["OptimalDamper"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class OptimalDamper:
+class OptimalDamper(Result):
     """The least peak over a parameter, and how it was found.
+
+    Its `model` is the one at the best value, ready for any other analysis; `curve.model` is the
+    one that was given.
 
     Attributes
     ----------
@@ -31,20 +42,20 @@ class OptimalDamper:
         Between which values it was looked for.
     curve : DamperCurve
         All peaks computed, by value: the coarse curve and what closed in on the minima.
-    assumptions : tuple of str
-        What was taken for granted, and what to look at before the numbers are used.
     """
+
+    kind: ClassVar[str] = "optimal_damper"
 
     minima: tuple[LeastPeak, ...]
     bounds: tuple[float, float]
     curve: DamperCurve
-    assumptions: tuple[str, ...]
 
     def __repr__(self) -> str:
+        count = len(self.minima)
         return (
             f"OptimalDamper({self.parameter} = {self.value:.6g} "
             f"{self.curve.settings.variation.unit}: peak {self.amplitude:.6g} m at "
-            f"{self.omega:.6g} rad/s, {len(self.minima)} local minima)"
+            f"{self.omega:.6g} rad/s, {count} local {'minimum' if count == 1 else 'minima'})"
         )
 
     @property
@@ -85,9 +96,9 @@ class OptimalDamper:
         return forces.pop()
 
     @property
-    def model(self) -> Model:
-        """The model at the best value, for any other analysis."""
-        return self.curve.model_at(self.value)
+    def status(self) -> Status:
+        """How the least peak ended: converged, or at the limit of harmonics."""
+        return self.curve.status[int(np.flatnonzero(self.curve.values == self.value)[0])]
 
     @property
     def at_bound(self) -> bool:
@@ -102,6 +113,101 @@ class OptimalDamper:
     @property
     def _contacts(self) -> tuple[str, ...]:
         return self.curve.settings.variation.contacts
+
+    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+        """Return everything as an xarray dataset with units on every variable.
+
+        Parameters
+        ----------
+        derived : bool, optional
+            Whether to add what follows from the other variables: nothing here.
+
+        Returns
+        -------
+        xarray.Dataset
+            That of the curve, with the dimension minimum of the local minima, the least first,
+            and the contacts and forces of the model that was given.
+        """
+        dataset = self.curve.to_dataset(derived=derived)
+        unit = self.curve.settings.variation.unit
+        for name, units, meaning in (
+            ("value", unit, "value of the parameter at a minimum"),
+            ("omega", "rad/s", "angular frequency of a minimum"),
+            ("amplitude", "m", "amplitude of a minimum"),
+        ):
+            numbers = np.array([getattr(one, name) for one in self.minima])
+            about = {"units": units, "long_name": meaning}
+            dataset[f"minimum_{name}"] = ("minimum", numbers, about)
+        bounds = {"units": unit, "long_name": "between which values the least was looked for"}
+        dataset["bounds"] = ("bound", np.array(self.bounds), bounds)
+        given = self.curve.model
+        for name, entries in (("contacts", given.contacts), ("forces", given.forces)):
+            specs = np.array([json.dumps(entry.to_spec()) for entry in entries], dtype=np.str_)
+            about = {"units": "1", "long_name": f"{name} of the model that was given, JSON texts"}
+            dataset[f"given_{name}"] = (f"given_{name}_entry", specs, about)
+        dataset.attrs |= {
+            "title": "Least peak of a structure with dry friction over a parameter",
+            "assumptions": json.dumps(self.assumptions, ensure_ascii=False),
+            "curve_assumptions": json.dumps(self.curve.assumptions, ensure_ascii=False),
+        }
+        return dataset
+
+    @classmethod
+    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+        """Return the result that a dataset holds.
+
+        Parameters
+        ----------
+        dataset : xarray.Dataset
+            As `to_dataset` makes it.
+        model : Model
+            The model at the best value.
+
+        Returns
+        -------
+        OptimalDamper
+            Equal to the one that made the dataset, bit by bit.
+
+        Raises
+        ------
+        KeyError, ValueError
+            If the dataset is incomplete, or belongs to another model.
+        """
+        given = Model(
+            model.structure,
+            [contact_from_spec(json.loads(text)) for text in dataset["given_contacts"].values],
+            [force_from_spec(json.loads(text)) for text in dataset["given_forces"].values],
+        )
+        own = dataset.assign_attrs(assumptions=dataset.attrs["curve_assumptions"])
+        columns = [dataset[f"minimum_{name}"].values for name in LeastPeak._fields]
+        minima = tuple(LeastPeak(*map(float, row)) for row in zip(*columns, strict=True))
+        if not minima:
+            raise ValueError("no minimum")
+        low, high = map(float, dataset["bounds"].values)
+        curve = DamperCurve.from_dataset(own, given)
+        assumptions = tuple(json.loads(dataset.attrs["assumptions"]))
+        return cls.of(minima, (low, high), curve, assumptions)
+
+    @classmethod
+    def of(
+        cls,
+        minima: tuple[LeastPeak, ...],
+        bounds: tuple[float, float],
+        curve: DamperCurve,
+        assumptions: tuple[str, ...],
+    ) -> Self:
+        """Return the result with what it has in common with its curve."""
+        return cls(
+            model=curve.model_at(minima[0].value),
+            dofs=curve.dofs,
+            interrupted=curve.interrupted,
+            timings=curve.timings,
+            counters=curve.counters,
+            assumptions=assumptions,
+            minima=minima,
+            bounds=bounds,
+            curve=curve,
+        )
 
     def plot(self, **options: Unpack[DamperOptions]) -> Axes:
         """Draw the damper performance curve with its least peak.

@@ -165,6 +165,7 @@ class Sensitivities(ContactMotion):
         """
         from stickslip.analyses.forced_response import forced_response
 
+        self._require_balance()
         if parameter == "omega":
             raise ModelError(
                 'parameter: "omega" is no parameter of a peak, which is stationary in it; '
@@ -179,6 +180,8 @@ class Sensitivities(ContactMotion):
             settings.harmonics,
             tolerance=settings.tolerance,
             residual=settings.residual,
+            method=settings.method,
+            jacobian=settings.jacobian,
             evaluation=settings.evaluation,
             samples=settings.samples,
             observe=[dof],
@@ -190,15 +193,18 @@ class Sensitivities(ContactMotion):
             return {name: float(slope) for name, slope in zip(causes, slopes, strict=True)}
         return float(slopes.sum())
 
+    def _require_balance(self) -> None:
+        if self.kind != "forced_response":
+            raise ModelError(
+                f"sensitivity: none of an {self.kind}; differentiate the balance that "
+                "forced_response solves"
+            )
+
     def _slopes(self, dof: str, causes: list[Cause], measure: Measure) -> Float:
         """Return the derivatives of an amplitude, shape (n, causes)."""
         from stickslip import _core
 
-        if self.kind != "forced_response":
-            raise ModelError(
-                f"sensitivity: a {type(self).__name__} has none; they are those of the balance "
-                "that forced_response solves"
-            )
+        self._require_balance()
         position = self.model.structure.index(text(dof, "dof"))
         choice(measure, "measure", get_args(Measure))
         arrays = self.arrays

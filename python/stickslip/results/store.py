@@ -28,6 +28,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "exact_response": ("stickslip.results.exact_response", "ExactResponse"),
     "transient": ("stickslip.results.transient", "Transient"),
     "damper_curve": ("stickslip.results.damper_curve", "DamperCurve"),
+    "optimal_damper": ("stickslip.results.optimal_damper", "OptimalDamper"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 
@@ -80,7 +81,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    ForcedResponse, ExactResponse or Transient
+    ForcedResponse, ExactResponse, Transient, DamperCurve or OptimalDamper
         Of the kind that was saved and equal to it, bit by bit, with its model: peaks can still be
         refined, and runs continued.
 

@@ -300,16 +300,19 @@ class Transient(Result):
             else whole_number(segment, "segment", smallest=1, largest=taken)
         )
         samples = self.settings.samples
+        name = text(window, "window")
         try:
             return spectrum_of(
                 self._whole(motion, taken),
                 samples=samples,
                 rate=samples / self.period,
                 segment=count,
-                window=text(window, "window"),
+                window=name,
             )
-        except ValueError as error:
-            raise ModelError(f"window: {error}; give 'boxcar' or 'hann'") from None
+        except ValueError:
+            raise ModelError(
+                f"window: {name!r} is none that its name alone determines; give 'boxcar' or 'hann'"
+            ) from None
 
     @property
     def kept_periods(self) -> int:

@@ -1,0 +1,61 @@
+//! The error estimate of discarded harmonics against the true error.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{snecma_beam, System};
+use stickslip_core::balance::{sweep, ForcedBalance, HarmonicChoice, Point, Settings, Solution};
+
+fn fixed(highest: usize) -> Settings {
+    Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
+}
+
+fn grid(from: f64, to: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
+}
+
+fn solve(system: &System, settings: Settings, omega: &[f64]) -> Solution {
+    let model = system.model();
+    let observe: Vec<usize> = (0..system.dofs()).collect();
+    let balance = ForcedBalance::new(&model, settings, &observe).unwrap();
+    sweep(balance, omega).unwrap()
+}
+
+/// Median ratio of the estimated to the true sum of harmonic changes, and the share of points at
+/// which the estimate is less than a third of the truth.
+fn estimate_against_truth(stiffness: f64, load: f64, highest: usize) -> (f64, f64) {
+    let mut beam = snecma_beam(load);
+    beam.dampers[0].2 = stiffness;
+    let omega = grid(120.0, 290.0, 86);
+    let (kept, exact) = (solve(&beam, fixed(highest), &omega), solve(&beam, fixed(121), &omega));
+    let mut ratios = Vec::new();
+    for (p, q) in kept.points.iter().zip(&exact.points) {
+        let series = |p: &Point, k: usize| {
+            if k <= p.harmonics {
+                p.displacement[p.harmonics + 1 + k]
+            } else {
+                faer::c64::new(0.0, 0.0)
+            }
+        };
+        let truth: f64 = (0..=121).map(|k| (series(p, k) - series(q, k)).norm()).sum();
+        if truth > 1e-4 * series(q, 1).norm() {
+            ratios.push(p.error_estimate[1] / truth);
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    let low = ratios.iter().filter(|r| **r < 1.0 / 3.0).count() as f64 / ratios.len() as f64;
+    (ratios[ratios.len() / 2], low)
+}
+
+#[test]
+fn error_estimates_match_true_errors_in_size() {
+    for (stiffness, load) in [(2.4e7, 6.563), (2.4e7, 20.313), (2.4e7, 31.475), (2.4e9, 20.313)] {
+        for highest in [3, 7, 15, 21] {
+            let (median, low) = estimate_against_truth(stiffness, load, highest);
+            let case = format!("{stiffness:e} N/m, {load} N, H = {highest}: {median:.2}, {low:.2}");
+            assert!(median > 0.7 && median < 4.0, "{case}");
+            assert!(low < 0.1, "{case}");
+        }
+    }
+}

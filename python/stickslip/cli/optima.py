@@ -1,0 +1,71 @@
+"""What the command line prints and draws of optimal dampers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from stickslip.cli import dampers
+from stickslip.cli.console import grid, new_table, show
+from stickslip.units import quantity
+
+if TYPE_CHECKING:
+    from stickslip.cli.picture import Panel
+    from stickslip.results.optimal_damper import OptimalDamper
+    from stickslip.study.tables import OutputTable
+
+__all__ = ["cautions", "facts", "failures", "panels", "tables"]
+
+
+def tables(
+    results: Sequence[tuple[str, OptimalDamper]], label: str, dofs: Iterable[str], length_unit: str
+) -> None:
+    """Print every local minimum, the least first."""
+    table = new_table()
+    if label:
+        table.add_column(label, overflow="fold")
+    for heading in ("dof", "varied"):
+        table.add_column(heading, overflow="fold")
+    for heading in ("value", f"peak [{length_unit}]", "rad/s"):
+        table.add_column(heading, justify="right", overflow="fold")
+    length = quantity(f"1 {length_unit}", "m", "unit of length")
+    for name, result in results:
+        settings = result.curve.settings
+        for minimum in result.minima:
+            table.add_row(
+                *([name] if label else []),
+                settings.dof,
+                f"{result.parameter} [{settings.variation.unit}]",
+                f"{minimum.value:.6g}",
+                f"{minimum.amplitude / length:.6e}",
+                f"{minimum.omega:#.6g}",
+            )
+    show(table)
+
+
+def facts(result: OptimalDamper) -> None:
+    """Print what a result is of, how it was computed and what it took for granted."""
+    dampers.facts(result.curve)
+    # The others are those of the curve.
+    own = result.assumptions[: len(result.assumptions) - len(result.curve.assumptions)]
+    grid([("assumed", text) for text in own])
+
+
+def failures(name: str, result: OptimalDamper) -> list[str]:
+    """Word what was not solved, one line per cause."""
+    return dampers.failures(name, result.curve)
+
+
+def cautions(name: str, result: OptimalDamper) -> list[str]:
+    """Return what puts the numbers in doubt, one line each."""
+    lines = dampers.cautions(name, result.curve)
+    if result.at_bound:
+        lines.append(f"{name}: the least peak lies at a bound; a better one may lie outside")
+    return lines
+
+
+def panels(
+    results: Sequence[OptimalDamper], dofs: Sequence[str], output: OutputTable
+) -> list[Panel]:
+    """Return the damper performance curves."""
+    return dampers.panels([result.curve for result in results], dofs, output)

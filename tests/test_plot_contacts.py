@@ -1,0 +1,130 @@
+"""Figures of one point: waveforms, loops and slip."""
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import numpy as np
+import pytest
+from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
+
+import stickslip as ss
+from stickslip import plot
+from stickslip.plot.style import prefixed
+from stickslip.reference import snecma_beam
+
+GRID = np.linspace(150.0, 250.0, 60)
+
+
+@pytest.fixture(scope="module")
+def frf():
+    return ss.forced_response(snecma_beam(), GRID, harmonics=9)
+
+
+@pytest.fixture
+def ax():
+    """Axes that pyplot does not know, drawn at the end so that every warning shows."""
+    figure = Figure(layout="constrained")
+    yield figure.add_subplot()
+    figure.canvas.draw()
+    assert not plt.get_fignums()
+
+
+def legend(ax):
+    return [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_waveform(frf, ax):
+    plot.waveform(frf, "tip", 20, ax=ax, length_unit="mm", samples=64)
+    (wave,) = ax.lines
+    np.testing.assert_allclose(wave.get_ydata()[:-1], 1e3 * frf.waveform("tip", 20, 64))
+    assert wave.get_ydata()[0] == wave.get_ydata()[-1]
+    np.testing.assert_allclose(wave.get_xdata(), np.arange(65) / 64)
+    assert ax.get_xlabel() == "time over period t/T"
+    assert ax.get_ylabel() == "displacement of tip [mm]"
+    assert ax.get_title() == f"ω = {GRID[20]:.5g} rad/s"
+
+
+def test_waveforms(frf, ax):
+    plot.waveform(frf, ["tip", "mode"], -1, ax=ax)
+    assert legend(ax) == ["tip", "mode"]
+    assert ax.get_ylabel() == "displacement [m]"
+
+
+def test_hysteresis(frf, ax):
+    index = frf.index(195.0)
+    plot.hysteresis(frf, 0, index, ax=ax, length_unit="um", samples=4096)
+    loop, *limits = ax.lines
+    u, f = loop.get_data()
+    assert (u[0], f[0]) == (u[-1], f[-1])
+    area = 0.5e-6 * np.sum((f[1:] + f[:-1]) * np.diff(u))
+    assert area == pytest.approx(frf.dissipation((0, 0))[index], rel=1e-4)
+    assert sorted(line.get_ydata()[0] for line in limits) == [-246.048, 246.048]
+    assert ax.get_xlabel() == "relative displacement u [µm]"
+    assert ax.get_ylabel() == "contact force f [N]"
+    lost = prefixed(frf.dissipation((0, 0))[index], "J")
+    assert ax.get_title() == f"jenkins at ω = {frf.omega[index]:.5g} rad/s: {lost} per cycle"
+
+
+def test_hysteresis_loops(frf, ax):
+    chosen = [frf.index(omega) for omega in (155.0, 180.0, 200.0)]
+    plot.hysteresis(frf, ("jenkins", 0), np.array(chosen), ax=ax)
+    assert ax.get_title() == "jenkins[0]"
+    texts = legend(ax)
+    assert texts[0] == f"ω = {frf.omega[chosen[0]]:.5g} rad/s: sticks"
+    assert all(text.endswith("per cycle") for text in texts[1:])
+
+
+def test_slip(frf, ax):
+    plot.slip(frf, ax=ax, omega_unit="Hz")
+    (share,) = ax.lines
+    np.testing.assert_array_equal(share.get_ydata(), frf.slip_fraction((0, 0)))
+    assert ax.get_title() == "jenkins"
+    assert ax.get_ylim() == (-0.03, 1.03)
+    assert ax.get_xlabel() == "frequency [Hz]"
+
+
+def test_slip_of_several(ax):
+    single = snecma_beam()
+    contacts = [
+        ss.Jenkins(dof, stiffness=1e6, slip_force=20.0, name=dof) for dof in ("damper", "tip")
+    ]
+    model = ss.Model(single.structure, contacts, single.forces)
+    frf = ss.forced_response(model, GRID[:5], 5)
+    plot.slip(frf, ax=ax)
+    assert legend(ax) == ["damper", "tip"]
+    plot.slip(frf, ("tip", 0), ax=(other := Figure().add_subplot()))
+    assert other.get_title() == "tip[0]"
+
+
+def test_nothing_to_draw(ax):
+    frf = ss.forced_response(snecma_beam(), GRID, 9, max_iterations=1)
+    failed = int(np.flatnonzero(~frf.converged)[0])
+    for draw in (plot.waveform, plot.hysteresis):
+        what = "tip" if draw is plot.waveform else 0
+        with pytest.raises(ss.ModelError, match=r"has no solution to draw \(stalled\)"):
+            draw(frf, what, failed, ax=ax)
+    with pytest.raises(ss.ModelError, match="index: empty"):
+        plot.hysteresis(frf, 0, [], ax=ax)
+    with pytest.raises(ss.ModelError, match="dof: empty"):
+        plot.waveform(frf, [], 0, ax=ax)
+    linear = ss.forced_response(ss.Model(snecma_beam().structure), [1.0], 1)
+    with pytest.raises(ss.ModelError, match="the model has none, so that nothing slips"):
+        plot.slip(linear, ax=ax)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0 J"),
+        (0.0761, "76.1 mJ"),
+        (3.2e-5, "32 µJ"),
+        (1.0, "1 J"),
+        (4567.0, "4.57 kJ"),
+        (1e-15, "1e-06 nJ"),
+        (np.nan, "nan J"),
+    ],
+)
+def test_prefixes(value, text):
+    assert prefixed(value, "J") == text
