@@ -180,8 +180,11 @@ fn refine(
         };
         let value = a.peak.value + shift.clamp(0.001 * width, 0.999 * width);
         let mut tried = try_value(follower, value, share)?;
-        if tried.is_none() && !follower.interrupted {
-            tried = try_value(follower, a.peak.value + 0.5 * width, share)?;
+        // A value without a peak is passed by.
+        for part in [0.5, 0.4, 0.6, 0.25, 0.75] {
+            if tried.is_none() && !follower.interrupted {
+                tried = try_value(follower, a.peak.value + part * width, share)?;
+            }
         }
         let Some(trial) = tried else { break };
         insert(trials, Some(trial));
