@@ -186,6 +186,10 @@ impl<'a> Follower<'a> {
                 self.interrupted = true;
                 return Ok(Peak::missing(value, status));
             }
+            if matches!(status, PointStatus::Stalled | PointStatus::Singular) {
+                self.seeds = found.samples;
+                return Ok(Peak::missing(value, status));
+            }
             let peak = Peak {
                 value,
                 omega: best.knot.at,
