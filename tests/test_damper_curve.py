@@ -434,10 +434,13 @@ def test_an_optimum_is_saved_and_loaded(beam: ss.Model, tmp_path: Path) -> None:
 
 def test_stiffnesses_beyond_the_rigid_limit_lie_on_its_line() -> None:
     stiff = [4e6, 6e6, 1e12, 1e20, 1e300, np.inf]
-    curve = ss.damper_curve(light(0.01, 5.0), stiffness=stiff, dof="tip", tolerance=1e-4)
+    curve = ss.damper_curve(light(0.01, 1.0), stiffness=stiff, dof="tip", tolerance=1e-4)
     assert all(status == "converged" for status in curve.status)
-    assert curve.amplitude == pytest.approx(curve.amplitude[-1], rel=2e-3)
-    assert np.all(np.diff(curve.amplitude[2:]) <= 0.0)
+    limit = curve.amplitude[-1]
+    assert curve.amplitude[2:] == pytest.approx(limit, rel=1e-5)
+    # One on either side of where solutions end: on one line in 1/k_d.
+    slopes = (limit - curve.amplitude[:2]) * stiff[:2]
+    assert slopes[0] == pytest.approx(slopes[1], rel=0.1)
     assert any("above 5e+06 N/m were not solved" in text for text in curve.assumptions)
 
 

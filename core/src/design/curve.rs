@@ -105,6 +105,8 @@ pub(super) struct Follower<'a> {
     order: usize,
     seeds: Vec<Sample>,
     points: usize,
+    /// Values without a solved peak.
+    pub(super) missing: Vec<Peak>,
     pub(super) interrupted: bool,
 }
 
@@ -137,6 +139,7 @@ impl<'a> Follower<'a> {
             order,
             seeds: Vec::new(),
             points: 0,
+            missing: Vec::new(),
             interrupted: false,
         })
     }
@@ -172,8 +175,7 @@ impl<'a> Follower<'a> {
                 return Ok(Peak::missing(value, status));
             }
             let best = &found.samples[found.best];
-            let (status, order, estimate) =
-                self.judge(&member, best.knot.at, Some(best), share)?;
+            let (status, order, estimate) = self.judge(&member, best.knot.at, Some(best), share)?;
             if order > self.order && status != PointStatus::NotComputed {
                 // The harmonics that the peak asks for may move it, and change which is highest.
                 self.seeds = found.samples;
@@ -182,6 +184,10 @@ impl<'a> Follower<'a> {
             }
             if status == PointStatus::NotComputed {
                 self.interrupted = true;
+                return Ok(Peak::missing(value, status));
+            }
+            if matches!(status, PointStatus::Stalled | PointStatus::Singular) {
+                self.seeds = found.samples;
                 return Ok(Peak::missing(value, status));
             }
             let peak = Peak {
