@@ -21,7 +21,7 @@ use std::sync::Arc;
 const LADDER: [usize; 17] = [1, 3, 5, 7, 9, 13, 19, 27, 39, 57, 83, 121, 177, 261, 387, 575, 857];
 /// Below this order the friction force has no shape that an estimate could start from.
 const LOWEST_ORDER: usize = 3;
-/// Automatic harmonics start here: enough for a smooth slip cycle.
+/// First rung: enough for a smooth slip cycle.
 const FIRST_RUNG: usize = 3;
 /// An estimate this far below the tolerance lets the next point try one rung less.
 const GENEROUS: f64 = 0.05;
@@ -131,10 +131,6 @@ impl<'a> ForcedBalance<'a> {
     #[must_use]
     pub fn half_wave(&self) -> bool {
         self.half_wave
-    }
-
-    pub(super) fn observed(&self) -> usize {
-        self.observe.len()
     }
 
     pub(crate) fn table(&mut self, highest: usize) -> Arc<SampleTable> {
@@ -248,12 +244,10 @@ impl<'a> ForcedBalance<'a> {
             |unknowns| unknowns.recast(harmonics),
         );
         let mut report = self.iterate(equations, &mut x);
-        let failed =
-            |report: &Report| !matches!(report.outcome, Outcome::Converged | Outcome::Interrupted);
-        if failed(&report) {
+        if has_failed(&report) {
             self.start_again(equations, omega, &mut x, &mut report);
         }
-        if failed(&report) {
+        if has_failed(&report) {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
         }
@@ -303,7 +297,7 @@ impl<'a> ForcedBalance<'a> {
         points.for_each(|(amplitudes, series)| harmonics.write_series(amplitudes, series));
         let again = newton(equations, &mut trial, self.settings.newton);
         report.iterations += again.iterations;
-        if matches!(again.outcome, Outcome::Converged | Outcome::Interrupted) {
+        if !has_failed(&again) {
             (report.outcome, report.residual) = (again.outcome, again.residual);
             *x = trial;
         }
@@ -317,7 +311,7 @@ impl<'a> ForcedBalance<'a> {
             equations.choose(path);
             let followed = homotopy(equations, &mut along, self.settings.newton);
             report.iterations += followed.iterations;
-            if matches!(followed.outcome, Outcome::Converged | Outcome::Interrupted) {
+            if !has_failed(&followed) {
                 (report.outcome, report.residual) = (followed.outcome, followed.residual);
                 *x = along;
                 break;
@@ -390,4 +384,8 @@ impl<'a> ForcedBalance<'a> {
             errors(self.model, &table, residual, &solution, self.observe, point)?;
         Ok(())
     }
+}
+
+fn has_failed(report: &Report) -> bool {
+    !matches!(report.outcome, Outcome::Converged | Outcome::Interrupted)
 }

@@ -33,7 +33,7 @@ pub(super) fn sweep_with<'a>(
         let share = points.len() as f64 / omega.len() as f64;
         interrupted = interrupted || !balance.report(share);
         if interrupted {
-            let (status, observed) = (PointStatus::NotComputed, balance.observed());
+            let (status, observed) = (PointStatus::NotComputed, balance.observe.len());
             points.push(Point::empty(frequency, status, observed, contacts));
             continue;
         }

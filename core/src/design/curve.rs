@@ -105,6 +105,8 @@ pub(super) struct Follower<'a> {
     order: usize,
     seeds: Vec<Sample>,
     points: usize,
+    /// Values without a solved peak.
+    pub(super) missing: Vec<Peak>,
     pub(super) interrupted: bool,
 }
 
@@ -137,6 +139,7 @@ impl<'a> Follower<'a> {
             order,
             seeds: Vec::new(),
             points: 0,
+            missing: Vec::new(),
             interrupted: false,
         })
     }
@@ -181,6 +184,10 @@ impl<'a> Follower<'a> {
             }
             if status == PointStatus::NotComputed {
                 self.interrupted = true;
+                return Ok(Peak::missing(value, status));
+            }
+            if matches!(status, PointStatus::Stalled | PointStatus::Singular) {
+                self.seeds = found.samples;
                 return Ok(Peak::missing(value, status));
             }
             let peak = Peak {

@@ -97,7 +97,9 @@ pub fn optimum(
         HarmonicChoice::Fixed(_) => 0.0,
     };
     let minima = prominent(minima, &trials, depth);
-    let peaks = trials.iter().map(|trial| trial.peak).collect();
+    let missing = std::mem::take(&mut follower.missing);
+    let mut peaks: Vec<Peak> = trials.iter().map(|trial| trial.peak).chain(missing).collect();
+    peaks.sort_by(|a, b| a.value.total_cmp(&b.value));
     let minima = minima.into_iter().map(|trial| trial.peak).collect();
     Ok(Optimum { minima, curve: follower.finish(peaks, start) })
 }
@@ -107,6 +109,9 @@ fn try_value(follower: &mut Follower<'_>, value: f64, share: f64) -> Result<Opti
     let peak = follower.peak(value, share)?;
     let solved = matches!(peak.status, PointStatus::Converged | PointStatus::HarmonicsLimit);
     if !solved || !peak.amplitude.is_finite() {
+        if peak.status != PointStatus::NotComputed {
+            follower.missing.push(peak);
+        }
         return Ok(None);
     }
     let (height, slope) = follower.variation.objective(value, peak.amplitude, peak.slope);
@@ -175,8 +180,11 @@ fn refine(
         };
         let value = a.peak.value + shift.clamp(0.001 * width, 0.999 * width);
         let mut tried = try_value(follower, value, share)?;
-        if tried.is_none() && !follower.interrupted {
-            tried = try_value(follower, a.peak.value + 0.5 * width, share)?;
+        // A value without a peak is passed by.
+        for part in [0.5, 0.4, 0.6, 0.25, 0.75] {
+            if tried.is_none() && !follower.interrupted {
+                tried = try_value(follower, a.peak.value + part * width, share)?;
+            }
         }
         let Some(trial) = tried else { break };
         insert(trials, Some(trial));
