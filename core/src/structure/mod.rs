@@ -12,6 +12,7 @@ mod modes;
 mod ports;
 mod restraint;
 mod ring;
+mod ring_compliance;
 mod ring_order;
 mod spectrum;
 mod system;
