@@ -183,6 +183,51 @@ def certificate(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "certificate.png")
 
 
+def bladed_disks(folder: Path = ASSETS) -> Path:
+    """Draw a mistuned ring blade by blade, some of its curves, and the SAFE diagram of a blisk."""
+    ring = ss.reference.beam_ring(coupling=7e3, engine_order=3)
+    omega = np.linspace(160.0, 240.0, 161)
+    observe = [f"{blade}.damper" for blade in range(36)]
+    pattern = ss.mistuning_pattern(36, 0.07, "uniform", seed=0)
+    mistuned = ss.forced_response(ring.mistuned(pattern), omega, 9, observe=observe)
+    tuned = ss.forced_response(ring, omega, 9)
+    figure = Figure(figsize=(14.0, 4.2), layout="constrained")
+    bars, curves, safe = figure.subplots(1, 3)
+    plot.blade_bars(mistuned, "damper", tuned=tuned, length_unit="um", ax=bars)
+    shown = [1, 7, 12, 13, 20, 26]
+    plot.blade_curves(mistuned, "damper", shown, tuned=tuned, length_unit="um", ax=curves)
+    bars.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False)
+    bars.set_title("")
+    plot.safe(ss.reference.laxalde_blisk(), 500.0, orders=[2, 4, 8, 18, 22], ax=safe)
+    above = {"loc": "lower left", "bbox_to_anchor": (-0.1, 1.0), "columnspacing": 1.0}
+    safe.legend(ncols=3, fontsize="small", frameon=False, **above)
+    return _save(figure, folder / "bladed-disks.png")
+
+
+def amplification(folder: Path = ASSETS) -> Path:
+    """Tabulate the amplification factors of the mistuned ring over the coupling stiffness."""
+    kept, dofs = (1, 3, 25), ("damper", "tip")
+    pattern = ss.mistuning_pattern(36, 0.07, "uniform", seed=0)
+    omega = np.linspace(150.0, 260.0, 111)
+    observe = [f"{blade}.{dof}" for blade in range(36) for dof in dofs]
+    heads = [f"{dof}, H = {harmonics}" for dof in dofs for harmonics in kept]
+    lines = [f"| coupling [N/m] | {' | '.join(heads)} |", "|---" * 7 + "|"]
+    for coupling in ss.reference.RING_COUPLINGS:
+        ring = ss.reference.beam_ring(coupling=coupling, engine_order=3)
+        pairs = [
+            (
+                ss.forced_response(ring.mistuned(pattern), omega, harmonics, observe=observe),
+                ss.forced_response(ring, omega, harmonics),
+            )
+            for harmonics in kept
+        ]
+        factors = [one.amplification(tuned, dof).factor for dof in dofs for one, tuned in pairs]
+        lines.append(f"| {coupling:g} | {' | '.join(f'{value:.3f}' for value in factors)} |")
+    file = folder / "amplification.md"
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return file
+
+
 def _errors(
     model: ss.Model, exact: ss.ForcedResponse, harmonics: int | Literal["auto"]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -215,3 +260,5 @@ if __name__ == "__main__":
     print(exact_orbits())
     print(transient())
     print(certificate())
+    print(bladed_disks())
+    print(amplification())

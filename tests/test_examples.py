@@ -3,6 +3,7 @@ import runpy
 from pathlib import Path
 
 import pytest
+from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip.study import Study
@@ -51,3 +52,37 @@ def test_the_script_is_short():
     lines = (EXAMPLES / "snecma-beam" / "beam.py").read_text().splitlines()
     assert len(lines) <= 15
     assert max(map(len, lines)) <= 100
+
+
+def test_the_tuned_ring_peaks_where_the_table_says():
+    (tuned,) = Study.load(EXAMPLES / "beam-ring" / "tuned.toml").run()
+    assert tuned.converged.all()
+    # errata.md, section 4: tuned ring of 36, converged
+    assert tuned.peak("damper").amplitude == pytest.approx(8.4116e-5, rel=1e-4)
+    assert tuned.sector(9).peak("damper").amplitude == pytest.approx(8.4116e-5, rel=1e-4)
+
+
+def test_the_mistuned_ring_is_amplified_as_the_table_says(tmp_path, monkeypatch, capsys):
+    study = Study.load(EXAMPLES / "beam-ring" / "mistuned.toml")
+    (mistuned,) = study.run()
+    tuned = ss.forced_response(study.model.disk, mistuned.omega, 3)
+    # errata.md, section 4: 7 %, seed 0, couplings of 7000 N/m, 3 harmonics
+    assert mistuned.amplification(tuned, "damper").factor == pytest.approx(1.575, rel=1e-3)
+    monkeypatch.chdir(tmp_path)
+    pyplot.switch_backend("agg")
+    runpy.run_path(os.fspath(EXAMPLES / "beam-ring" / "ring.py"), run_name="__main__")
+    pyplot.close("all")
+    assert capsys.readouterr().out == "amplification 1.575 at blade 13, 193.1 rad/s\n"
+    assert (tmp_path / "beam-ring.png").stat().st_size > 0
+
+
+def test_the_blisk_goes_from_stuck_to_slipping_tips():
+    study = Study.load(EXAMPLES / "laxalde-blisk" / "study.toml")
+    low, *_, high = study.run()
+    stuck, slipping = (
+        ss.natural_frequencies(study.model, points, nodal_diameter=2)[0]
+        for points in ([], ["shroud"])
+    )
+    assert low.peak("tip").omega == pytest.approx(stuck, rel=1e-4)
+    assert high.peak("tip").omega == pytest.approx(slipping, rel=1e-4)
+    assert slipping / (2.0 * 3.141592653589793) == pytest.approx(189.3018526, rel=1e-8)

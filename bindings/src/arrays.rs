@@ -1,6 +1,8 @@
 //! NumPy arrays to matrices and series, and back.
 
-use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{
+    Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stickslip_core::fourier::Harmonics;
@@ -14,6 +16,14 @@ pub fn refused(error: stickslip_core::Error) -> PyErr {
 pub fn matrix(array: &PyReadonlyArray2<'_, f64>) -> faer::Mat<f64> {
     let view = array.as_array();
     faer::Mat::from_fn(view.nrows(), view.ncols(), |i, j| view[[i, j]])
+}
+
+/// Dense matrices from the first dimension of a three-dimensional array.
+pub fn matrices(array: &PyReadonlyArray3<'_, f64>) -> Vec<faer::Mat<f64>> {
+    let view = array.as_array();
+    view.outer_iter()
+        .map(|one| faer::Mat::from_fn(one.nrows(), one.ncols(), |i, j| one[[i, j]]))
+        .collect()
 }
 
 /// Real coefficients of complex amplitudes `X_0, X_1, …`.

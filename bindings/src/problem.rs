@@ -1,15 +1,21 @@
 //! The problem: structure, contacts and loads in numbers.
 
-use crate::arrays::{matrix, refused, vector};
-use numpy::{Complex64, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use crate::arrays::{matrices, matrix, refused, vector};
+use numpy::{Complex64, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 use stickslip_core::contact::{law, Parameters};
-use stickslip_core::model::{Contact, Model};
-use stickslip_core::structure::{HarmonicLoad, Structure};
+use stickslip_core::model::{Contact, Model, SectorContact};
+use stickslip_core::structure::{
+    CyclicMatrix, CyclicStructure, HarmonicLoad, RingCoupling, Structure,
+};
 
-type ContactSpec<'py> = (String, PyReadonlyArray2<'py, f64>, Bound<'py, PyDict>);
+type Matrix<'py> = PyReadonlyArray2<'py, f64>;
+type ContactSpec<'py> = (String, Matrix<'py>, Bound<'py, PyDict>);
+type SectorContactSpec<'py> = (String, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
+type SectorMatrices<'py> = PyReadonlyArray3<'py, f64>;
+type Forces<'py> = Vec<(usize, PyReadonlyArray1<'py, Complex64>)>;
 
 /// A structure with its contacts and loads, decomposed once.
 #[pyclass(frozen, module = "stickslip._core")]
@@ -28,28 +34,14 @@ impl Problem {
         damping: PyReadonlyArray2<'_, f64>,
         stiffness: PyReadonlyArray2<'_, f64>,
         contacts: Vec<ContactSpec<'_>>,
-        forces: Vec<(usize, PyReadonlyArray1<'_, Complex64>)>,
+        forces: Forces<'_>,
     ) -> PyResult<Self> {
         let (mass, damping, stiffness) = (matrix(&mass), matrix(&damping), matrix(&stiffness));
-        let mut specs = Vec::with_capacity(contacts.len());
-        for (name, rows, dictionary) in contacts {
-            let mut parameters = Parameters::new();
-            for (key, value) in dictionary.iter() {
-                let values = value
-                    .extract::<f64>()
-                    .map(|v| vec![v])
-                    .or_else(|_| value.extract::<Vec<f64>>())?;
-                parameters.insert(key.extract()?, values);
-            }
-            specs.push((name, matrix(&rows), parameters));
-        }
-        let loads = forces
+        let specs = contacts
             .into_iter()
-            .map(|(harmonic, amplitude)| HarmonicLoad {
-                harmonic,
-                amplitude: amplitude.as_array().iter().copied().collect(),
-            })
-            .collect();
+            .map(|(name, rows, dictionary)| Ok((name, matrix(&rows), parameters(&dictionary)?)))
+            .collect::<PyResult<Vec<_>>>()?;
+        let loads = harmonic_loads(forces);
         let model = py
             .detach(|| {
                 let contacts = specs
@@ -64,6 +56,78 @@ impl Problem {
             })
             .map_err(refused)?;
         Ok(Self { model: Arc::new(model) })
+    }
+
+    /// Builds one sector of a tuned disk in a travelling wave. Matrices are `(block of the sector,
+    /// block that couples it to the next)`, contacts `(law, rows on the sector, rows on the next,
+    /// parameters)`, forces those on sector 0.
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)]
+    fn travelling_wave(
+        py: Python<'_>,
+        mass: (Matrix<'_>, Matrix<'_>),
+        damping: (Matrix<'_>, Matrix<'_>),
+        stiffness: (Matrix<'_>, Matrix<'_>),
+        sectors: usize,
+        engine_order: usize,
+        contacts: Vec<SectorContactSpec<'_>>,
+        forces: Forces<'_>,
+    ) -> PyResult<Self> {
+        let [mass, damping, stiffness] = [mass, damping, stiffness]
+            .map(|(own, next)| CyclicMatrix::new(matrix(&own), matrix(&next)));
+        let cyclic = CyclicStructure { mass, damping, stiffness, sectors, engine_order };
+        let contacts = sector_contacts(contacts)?;
+        let loads = harmonic_loads(forces);
+        let model =
+            py.detach(|| Model::travelling_wave(cyclic, contacts, loads)).map_err(refused)?;
+        Ok(Self { model: Arc::new(model) })
+    }
+
+    /// Builds a ring of sectors that may differ. Matrices are `(blocks of the sectors, block that
+    /// couples each to the next)`; contacts and forces are given sector by sector, as of a wave.
+    #[staticmethod]
+    fn ring(
+        py: Python<'_>,
+        mass: (SectorMatrices<'_>, Matrix<'_>),
+        damping: (SectorMatrices<'_>, Matrix<'_>),
+        stiffness: (SectorMatrices<'_>, Matrix<'_>),
+        contacts: Vec<Vec<SectorContactSpec<'_>>>,
+        forces: Vec<Forces<'_>>,
+    ) -> PyResult<Self> {
+        let coupling = RingCoupling {
+            mass: matrix(&mass.1),
+            damping: matrix(&damping.1),
+            stiffness: matrix(&stiffness.1),
+        };
+        let [mass, damping, stiffness] =
+            [mass.0, damping.0, stiffness.0].map(|stack| matrices(&stack));
+        let contacts = contacts.into_iter().map(sector_contacts).collect::<PyResult<Vec<_>>>()?;
+        let loads = forces.into_iter().map(harmonic_loads).collect();
+        let model = py
+            .detach(|| {
+                let structures = mass
+                    .iter()
+                    .zip(&damping)
+                    .zip(&stiffness)
+                    .map(|((m, c), k)| Structure::new(m.as_ref(), c.as_ref(), k.as_ref()))
+                    .collect::<Result<Vec<_>, _>>()?;
+                Model::ring(structures, coupling, contacts, loads)
+            })
+            .map_err(refused)?;
+        Ok(Self { model: Arc::new(model) })
+    }
+
+    /// Natural frequencies [rad/s] of a travelling wave of a nodal diameter, with the points
+    /// `(contact, point)` slipping, others stuck.
+    fn wave_frequencies<'py>(
+        &self,
+        py: Python<'py>,
+        diameter: usize,
+        slipping: Vec<(usize, usize)>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let frequencies =
+            py.detach(|| self.model.wave_frequencies(diameter, &slipping)).map_err(refused)?;
+        Ok(vector(py, frequencies))
     }
 
     /// Natural frequencies [rad/s] with the points `(contact, point)` slipping, others stuck.
@@ -88,4 +152,33 @@ impl Problem {
     fn static_singular(&self) -> bool {
         self.model.static_singular()
     }
+}
+
+/// Parameters of a law: numbers, or lists of numbers, by name.
+fn parameters(dictionary: &Bound<'_, PyDict>) -> PyResult<Parameters> {
+    let mut parameters = Parameters::new();
+    for (key, value) in dictionary.iter() {
+        let values =
+            value.extract::<f64>().map(|v| vec![v]).or_else(|_| value.extract::<Vec<f64>>())?;
+        parameters.insert(key.extract()?, values);
+    }
+    Ok(parameters)
+}
+
+fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<SectorContact>> {
+    contacts
+        .into_iter()
+        .map(|(name, own, next, dictionary)| {
+            let law = law(&name, &parameters(&dictionary)?).map_err(refused)?;
+            Ok(SectorContact { law, own: matrix(&own), next: matrix(&next) })
+        })
+        .collect()
+}
+
+fn harmonic_loads(forces: Forces<'_>) -> Vec<HarmonicLoad> {
+    let load = |(harmonic, amplitude): (usize, PyReadonlyArray1<'_, Complex64>)| HarmonicLoad {
+        harmonic,
+        amplitude: amplitude.as_array().iter().copied().collect(),
+    };
+    forces.into_iter().map(load).collect()
 }

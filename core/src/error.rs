@@ -59,6 +59,9 @@ pub enum Error {
         /// Natural frequency in rad/s.
         natural: f64,
     },
+    /// Time-domain analysis of one sector.
+    #[error("one sector of a travelling wave has no motion of its own in time; give the whole disk, disk.mistuned(0)")]
+    TravellingWave,
     /// A friction law that is not registered.
     #[error("contact law '{name}' is unknown; known laws: {known}")]
     UnknownLaw {

@@ -18,6 +18,14 @@ if TYPE_CHECKING:
     from stickslip.analyses.optimal_damper import optimal_damper
     from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
+    from stickslip.disk import (
+        BladedDisk,
+        Coupling,
+        Interface,
+        MistunedDisk,
+        cyclic_sector,
+        mistuning_pattern,
+    )
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
@@ -32,12 +40,16 @@ if TYPE_CHECKING:
     from stickslip.results.transient import Transient
 
 __all__ = [
+    "BladedDisk",
+    "Coupling",
     "DamperCurve",
     "ExactResponse",
     "Force",
     "ForcedResponse",
+    "Interface",
     "Interrupted",
     "Jenkins",
+    "MistunedDisk",
     "ModalDamping",
     "Model",
     "ModelError",
@@ -49,11 +61,13 @@ __all__ = [
     "Transient",
     "__version__",
     "certify",
+    "cyclic_sector",
     "damper_curve",
     "exact_response",
     "forced_response",
     "join",
     "load",
+    "mistuning_pattern",
     "natural_frequencies",
     "optimal_damper",
     "plot",
@@ -65,12 +79,16 @@ __all__ = [
 ]
 
 _HOMES = {
+    "BladedDisk": "disk",
+    "Coupling": "disk",
     "DamperCurve": "results.damper_curve",
     "ExactResponse": "results.exact_response",
     "Force": "model",
     "ForcedResponse": "results",
     "Interrupted": "errors",
+    "Interface": "disk",
     "Jenkins": "model",
+    "MistunedDisk": "disk",
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",
@@ -82,11 +100,13 @@ _HOMES = {
     "Transient": "results.transient",
     "__version__": "_core",
     "certify": "analyses.certify",
+    "cyclic_sector": "disk",
     "damper_curve": "analyses.damper_curve",
     "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",
     "load": "results.store",
+    "mistuning_pattern": "disk",
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 Float = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Contact = tuple[str, Float, Mapping[str, float]]
+SectorContact = tuple[str, Float, Float, Mapping[str, float]]
 Residual = str | float
 
 __version__: str
@@ -22,6 +23,25 @@ class Problem:
         contacts: Sequence[Contact],
         forces: Sequence[tuple[int, Complex]],
     ) -> None: ...
+    @staticmethod
+    def travelling_wave(
+        mass: tuple[Float, Float],
+        damping: tuple[Float, Float],
+        stiffness: tuple[Float, Float],
+        sectors: int,
+        engine_order: int,
+        contacts: Sequence[SectorContact],
+        forces: Sequence[tuple[int, Complex]],
+    ) -> Problem: ...
+    @staticmethod
+    def ring(
+        mass: tuple[Float, Float],
+        damping: tuple[Float, Float],
+        stiffness: tuple[Float, Float],
+        contacts: Sequence[Sequence[SectorContact]],
+        forces: Sequence[Sequence[tuple[int, Complex]]],
+    ) -> Problem: ...
+    def wave_frequencies(self, diameter: int, slipping: Sequence[tuple[int, int]]) -> Float: ...
     def natural_frequencies(self, slipping: Sequence[tuple[int, int]]) -> Float: ...
     @property
     def modal_base(self) -> str: ...

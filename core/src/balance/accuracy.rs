@@ -8,7 +8,7 @@
 
 use super::condensed::Condensed;
 use super::solution::Point;
-use super::unknowns::{gather, Unknowns};
+use super::unknowns::Unknowns;
 use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
@@ -33,7 +33,7 @@ pub(super) fn extended_order(
     model: &Model,
     slipping: usize,
 ) -> usize {
-    let last_mode = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
+    let last_mode = model.compliance().highest_frequency();
     let per_order = if kept.half_wave() { 1 } else { 2 };
     let affordable = UNKNOWNS / (per_order * slipping.max(1));
     let reach = (PAST_LAST_MODE * last_mode / omega).min(UNKNOWNS as f64) as usize;
@@ -71,12 +71,7 @@ pub(super) fn errors(
     extended.add_tangent_product(&step, &mut slip_load);
     corrected.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
     let orders = point.harmonics + 1;
-    let (mut u, mut q) = (Vec::new(), Vec::new());
-    let mut observed = vec![c64::new(0.0, 0.0); observe.len()];
-    for order in harmonics.orders() {
-        gather(harmonics, order, &corrected, &mut u);
-        gather(harmonics, order, &slip_load, &mut q);
-        model.compliance().displacement(order, point.omega, &u, &q, observe, &mut observed)?;
+    extended.displacements(&corrected, &slip_load, observe, |order, observed, _, _| {
         for (dof, error) in errors.iter_mut().enumerate() {
             let before = if order < orders {
                 point.displacement[dof * orders + order]
@@ -85,6 +80,6 @@ pub(super) fn errors(
             };
             *error += (observed[dof] - before).norm();
         }
-    }
+    })?;
     Ok(errors)
 }

@@ -1,14 +1,13 @@
 //! The condensed equations at one frequency: `R(U) = U − μ U^stuck − G Q(U)`.
 
-use super::unknowns::scatter;
+use super::linear::{Factor, Linear};
+use super::unknowns::gather;
 use crate::contact::{FrictionLaw, Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::structure::Receptance;
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
-use faer::linalg::solvers::PartialPivLu;
 
 /// What a homotopy scales, from easy to the problem at hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,8 +23,8 @@ pub struct Condensed<'a> {
     pub(super) model: &'a Model,
     pub(super) table: &'a SampleTable,
     pub(super) residual: Residual,
-    /// One receptance per kept order.
-    pub(super) receptances: Vec<Receptance>,
+    pub(super) linear: Linear,
+    omega: f64,
     pub(super) stuck: Vec<f64>,
     pub(super) loads: Vec<SlipLoad>,
     pub(super) path: Path,
@@ -33,7 +32,7 @@ pub struct Condensed<'a> {
     /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
     pub(super) softened: Option<(f64, Vec<Box<dyn FrictionLaw>>)>,
     pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
-    pub(super) factor: Option<PartialPivLu<f64>>,
+    pub(super) factor: Option<Factor>,
     /// Points of contacts with a tangent, of the last factorisation.
     pub(super) active: Vec<usize>,
     pub(super) profile: Profile,
@@ -42,12 +41,16 @@ pub struct Condensed<'a> {
 impl<'a> Condensed<'a> {
     /// Equations of a model in the harmonics of a table; call [`Condensed::set_omega`] next.
     pub fn new(model: &'a Model, table: &'a SampleTable, residual: Residual, slopes: bool) -> Self {
-        let blank = Receptance { slope: slopes.then(Default::default), ..Receptance::default() };
+        let linear = match model.compliance().ring() {
+            Some(_) => Linear::Ring { orders: Vec::new(), slopes },
+            None => Linear::dense(table, slopes),
+        };
         Self {
             model,
             table,
             residual,
-            receptances: vec![blank; table.harmonics().orders().count()],
+            linear,
+            omega: f64::NAN,
             stuck: Vec::new(),
             loads: vec![SlipLoad::default(); model.laws().len()],
             path: Path::Load,
@@ -71,18 +74,42 @@ impl<'a> Condensed<'a> {
         self.stuck.clear();
         self.stuck.resize(contacts * slots, 0.0);
         self.factor = None;
-        let (receptances, model) = (&mut self.receptances, self.model);
+        self.omega = omega;
+        let (linear, stuck, model) = (&mut self.linear, &mut self.stuck, self.model);
         Profile::time(&mut self.profile.compliance, || {
-            for (receptance, order) in receptances.iter_mut().zip(harmonics.orders()) {
-                model
-                    .compliance()
-                    .receptance(order, omega, receptance)
-                    .map_err(|error| (order, error))?;
-            }
-            Ok(())
-        })?;
-        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
-            scatter(harmonics, order, &receptance.stuck, &mut self.stuck);
+            linear.evaluate(model.compliance(), harmonics, omega, stuck)
+        })
+    }
+
+    /// Takes the dense receptance also of a ring, for methods that need the whole Jacobian.
+    pub(super) fn densify(&mut self) {
+        if let Linear::Ring { slopes, .. } = self.linear {
+            self.linear = Linear::dense(self.table, slopes);
+        }
+    }
+
+    /// Displacements of the DOFs `observe` at every kept order, handed to `store(order, values)`,
+    /// with the contact displacements `x` and slip loads that belong to them.
+    ///
+    /// # Errors
+    /// As [`Condensed::set_omega`].
+    pub(super) fn displacements(
+        &self,
+        x: &[f64],
+        slip_load: &[f64],
+        observe: &[usize],
+        mut store: impl FnMut(usize, &[c64], &[c64], &[c64]),
+    ) -> Result<(), Error> {
+        let harmonics = self.table.harmonics();
+        let compliance = self.model.compliance();
+        let (mut u, mut q) = (Vec::new(), Vec::new());
+        let mut observed = vec![c64::new(0.0, 0.0); observe.len()];
+        for (index, order) in harmonics.orders().enumerate() {
+            gather(harmonics, order, x, &mut u);
+            gather(harmonics, order, slip_load, &mut q);
+            let at = (index, order);
+            self.linear.displacement(compliance, at, self.omega, &u, &q, observe, &mut observed)?;
+            store(order, &observed, &u, &q);
         }
         Ok(())
     }
@@ -130,21 +157,13 @@ impl<'a> Condensed<'a> {
 
     /// `out += G q` over all kept harmonics.
     pub fn add_response(&self, slip_load: &[f64], out: &mut [f64]) {
-        self.add_product(slip_load, out, |receptance| &receptance.contact);
+        self.linear.add_response(self.table.harmonics(), slip_load, out);
     }
 
     /// Rate of change of the residual with frequency at fixed unknowns, sign reversed.
     pub fn frequency_rate(&self) -> Vec<f64> {
-        let harmonics = self.table.harmonics();
         let mut rate = vec![0.0; self.stuck.len()];
-        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
-            if let Some((_, stuck)) = &receptance.slope {
-                scatter(harmonics, order, stuck, &mut rate);
-            }
-        }
-        self.add_product(&self.slip_load(), &mut rate, |receptance| {
-            receptance.slope.as_ref().map_or(&[], |(contact, _)| contact)
-        });
+        self.linear.add_rate(self.table.harmonics(), &self.slip_load(), &mut rate);
         rate
     }
 
@@ -159,42 +178,6 @@ impl<'a> Condensed<'a> {
             let rows = load.tangent.chunks_exact(range.len());
             for (row, value) in rows.zip(&mut out[range.clone()]) {
                 *value += row.iter().zip(&x[range.clone()]).map(|(t, x)| t * x).sum::<f64>();
-            }
-        }
-    }
-
-    fn add_product(
-        &self,
-        slip_load: &[f64],
-        out: &mut [f64],
-        matrix: impl Fn(&Receptance) -> &[c64],
-    ) {
-        let harmonics = self.table.harmonics();
-        let slots = harmonics.slots();
-        let contacts = self.model.compliance().contacts();
-        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
-            let Some(slot) = harmonics.slot(order) else { continue };
-            let g = matrix(receptance);
-            if g.is_empty() {
-                continue;
-            }
-            for column in 0..contacts {
-                let at = column * slots + slot;
-                let q = if order == 0 {
-                    c64::new(slip_load[at], 0.0)
-                } else {
-                    c64::new(slip_load[at], -slip_load[at + 1])
-                };
-                if q == c64::new(0.0, 0.0) {
-                    continue;
-                }
-                for row in 0..contacts {
-                    let u = g[column * contacts + row] * q;
-                    out[row * slots + slot] += u.re;
-                    if order > 0 {
-                        out[row * slots + slot + 1] -= u.im;
-                    }
-                }
             }
         }
     }

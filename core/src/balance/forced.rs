@@ -5,7 +5,7 @@ use super::condensed::{Condensed, Path};
 use super::scale::{Scale, OF_HARMONICS};
 use super::settings::{HarmonicChoice, Method, Settings};
 use super::solution::{Point, PointStatus};
-use super::unknowns::{gather, Unknowns};
+use super::unknowns::Unknowns;
 use super::{FreshStart, Progress};
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
@@ -212,6 +212,9 @@ impl<'a> ForcedBalance<'a> {
         let interrupted = || !progress(share);
         let mut equations = Condensed::new(self.model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
+        if self.settings.method != Method::Newton {
+            equations.densify();
+        }
         let solved = self.solve_equations(&mut equations, omega, start)?;
         self.add_profile(&equations.profile);
         Ok(solved)
@@ -338,19 +341,7 @@ impl<'a> ForcedBalance<'a> {
         point.contact_force = vec![zero; contacts * orders];
         let slip_load = equations.slip_load();
         let stiffness = self.model.contact_stiffness();
-        let (mut u, mut q) = (Vec::new(), Vec::new());
-        let mut observed = vec![zero; self.observe.len()];
-        for order in harmonics.orders() {
-            gather(harmonics, order, x, &mut u);
-            gather(harmonics, order, &slip_load, &mut q);
-            self.model.compliance().displacement(
-                order,
-                omega,
-                &u,
-                &q,
-                self.observe,
-                &mut observed,
-            )?;
+        equations.displacements(x, &slip_load, self.observe, |order, observed, u, q| {
             for (i, value) in observed.iter().enumerate() {
                 point.displacement[i * orders + order] = *value;
             }
@@ -359,7 +350,7 @@ impl<'a> ForcedBalance<'a> {
                 point.contact_displacement[i * orders + order] = u[i];
                 point.contact_force[i * orders + order] = stuck - q[i];
             }
-        }
+        })?;
         let mut summaries = vec![PointSummary::default(); contacts];
         for (index, law) in self.model.laws().iter().enumerate() {
             let range = self.model.points()[index].clone();

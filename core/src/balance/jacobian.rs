@@ -4,6 +4,8 @@
 //! direction is found from their block and carried to the stuck contacts by substitution.
 
 use super::condensed::{Condensed, Path};
+use super::linear::{Factor, Linear};
+use super::ring_newton::RingNewton;
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
@@ -64,7 +66,16 @@ impl Condensed<'_> {
                 self.active.extend(points.clone());
             }
         }
-        self.factor = Some(self.assemble().partial_piv_lu());
+        self.factor = Some(match (&self.linear, self.model.compliance().ring()) {
+            (Linear::Ring { orders, .. }, Some(ring)) => Factor::Ring(RingNewton::new(
+                orders,
+                self.table.harmonics(),
+                ring.layout(),
+                &self.loads,
+                self.model.points(),
+            )),
+            _ => Factor::Dense(self.assemble().partial_piv_lu()),
+        });
     }
 
     /// Subtracts `G ∂Q` of one contact, whose first active column block is `first`.
@@ -79,7 +90,8 @@ impl Condensed<'_> {
         let slots = harmonics.slots();
         let contacts = self.model.compliance().contacts();
         let size = points.len() * slots;
-        for (receptance, order) in self.receptances.iter().zip(harmonics.orders()) {
+        let Linear::Dense(receptances) = &self.linear else { return };
+        for (receptance, order) in receptances.iter().zip(harmonics.orders()) {
             let Some(slot) = harmonics.slot(order) else { continue };
             for (row, &point) in self.active.iter().enumerate() {
                 let target = row * slots + slot;
@@ -176,7 +188,15 @@ impl System for Condensed<'_> {
             self.factorise();
             self.profile.factorisations += 1;
         }
-        let Some(factor) = &self.factor else { return false };
+        let factor = match &self.factor {
+            Some(Factor::Dense(factor)) => factor,
+            Some(Factor::Ring(factor)) => {
+                factor.solve(rhs, step);
+                self.profile.linear_solve += start.elapsed();
+                return step.iter().all(|s| s.is_finite());
+            }
+            None => return false,
+        };
         let mut block = Mat::from_fn(self.active.len() * slots, 1, |i, _| {
             rhs[self.active[i / slots] * slots + i % slots]
         });

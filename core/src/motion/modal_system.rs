@@ -43,8 +43,11 @@ impl ModalSystem {
     /// The modal form of a model.
     ///
     /// # Errors
-    /// The eigenvalue iteration fails.
+    /// The eigenvalue iteration fails; the model is one sector of a travelling wave.
     pub fn new(model: &Model) -> Result<Self, Error> {
+        if model.is_travelling_wave() {
+            return Err(Error::TravellingWave);
+        }
         let structure = model.structure();
         let modes = real_modes(structure.mass(), structure.stiffness())?;
         let damping = modes.project(structure.damping());

@@ -1,15 +1,19 @@
 //! Solvers that know nothing of friction: a system has a residual and a Newton direction.
 
 mod broyden;
+mod cyclic_tridiagonal;
 mod homotopy;
 mod line_search;
 mod newton;
 mod qr;
+mod small_dense;
 
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
+pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
 pub use qr::Qr;
+pub use small_dense::{Block, BlockFactors};
 
 use faer::Mat;
 

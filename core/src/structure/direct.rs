@@ -3,17 +3,20 @@
 
 use super::modal::complex;
 use super::modes::real_modes;
+use super::ports::{forced_harmonics, HarmonicLoad};
 use super::{Compliance, Ports, Receptance, Structure};
 use crate::Error;
 use faer::linalg::solvers::{PartialPivLu, Solve as _};
 use faer::{c64, Mat, MatRef};
 
-/// The stuck structure as its matrices.
+/// The stuck structure as its matrices, complex in a travelling wave.
 #[derive(Debug, Clone)]
 pub struct DirectCompliance {
-    structure: Structure,
-    restrained: Mat<f64>,
-    ports: Ports,
+    mass: Mat<c64>,
+    damping: Mat<c64>,
+    restrained: Mat<c64>,
+    rows: Mat<c64>,
+    loads: Vec<HarmonicLoad>,
     stuck_frequencies: Vec<f64>,
     free_frequencies: Vec<f64>,
 }
@@ -27,35 +30,41 @@ impl DirectCompliance {
         ports.check(structure.dofs())?;
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
-        let mut direct = Self::of(structure, ports, restrained.as_ref());
-        direct.stuck_frequencies = real_modes(structure.mass(), restrained.as_ref())?.frequencies();
-        direct.free_frequencies =
-            real_modes(structure.mass(), structure.stiffness())?.frequencies();
-        Ok(direct)
+        let direct = Self::of(structure, ports, restrained.as_ref());
+        let stuck = real_modes(structure.mass(), restrained.as_ref())?.frequencies();
+        let free = real_modes(structure.mass(), structure.stiffness())?.frequencies();
+        Ok(direct.with_frequencies(stuck, free))
     }
 
     /// As [`DirectCompliance::new`], without the natural frequencies.
     pub(super) fn of(structure: &Structure, ports: &Ports, restrained: MatRef<'_, f64>) -> Self {
-        Self {
-            structure: structure.clone(),
-            restrained: restrained.to_owned(),
-            ports: ports.clone(),
-            stuck_frequencies: Vec::new(),
-            free_frequencies: Vec::new(),
-        }
+        let matrices = [structure.mass(), structure.damping(), restrained].map(complex);
+        Self::of_matrices(matrices, complex(ports.rows.as_ref()), ports.loads.clone())
+    }
+
+    /// From mass, damping, restrained stiffness, rows of B and loads.
+    pub(super) fn of_matrices(
+        [mass, damping, restrained]: [Mat<c64>; 3],
+        rows: Mat<c64>,
+        loads: Vec<HarmonicLoad>,
+    ) -> Self {
+        let (stuck_frequencies, free_frequencies) = (Vec::new(), Vec::new());
+        Self { mass, damping, restrained, rows, loads, stuck_frequencies, free_frequencies }
+    }
+
+    /// With the natural frequencies of the stuck and of the free structure.
+    pub(super) fn with_frequencies(self, stuck: Vec<f64>, free: Vec<f64>) -> Self {
+        Self { stuck_frequencies: stuck, free_frequencies: free, ..self }
     }
 
     /// Factors `K_s + ikωC − (kω)²M`.
     fn factor(&self, harmonic: usize, omega: f64) -> Result<PartialPivLu<c64>, Error> {
-        let n = self.structure.dofs();
+        let n = self.mass.nrows();
         let excitation = omega;
         let omega = harmonic as f64 * omega;
-        let (mass, damping) = (self.structure.mass(), self.structure.damping());
         let dynamic = Mat::from_fn(n, n, |i, j| {
-            c64::new(
-                self.restrained[(i, j)] - omega * omega * mass[(i, j)],
-                omega * damping[(i, j)],
-            )
+            self.restrained[(i, j)] - omega * omega * self.mass[(i, j)]
+                + c64::new(0.0, omega) * self.damping[(i, j)]
         });
         let lu = dynamic.partial_piv_lu();
         let pivots = (0..n).map(|i| lu.U()[(i, i)].norm());
@@ -74,23 +83,24 @@ impl DirectCompliance {
 
     /// `2k²ωM − ikC`: how fast the dynamic stiffness falls with ω.
     fn softening(&self, harmonic: usize, omega: f64) -> Mat<c64> {
-        let (n, order) = (self.structure.dofs(), harmonic as f64);
-        let (mass, damping) = (self.structure.mass(), self.structure.damping());
+        let (n, order) = (self.mass.nrows(), harmonic as f64);
         Mat::from_fn(n, n, |i, j| {
-            c64::new(2.0 * order * order * omega * mass[(i, j)], -order * damping[(i, j)])
+            2.0 * order * order * omega * self.mass[(i, j)]
+                - c64::new(0.0, order) * self.damping[(i, j)]
         })
     }
 
     /// Forces on all DOFs from the slip loads.
     fn of_slip(&self, slip_load: &[c64]) -> Mat<c64> {
-        Mat::from_fn(self.structure.dofs(), 1, |dof, _| {
-            slip_load.iter().enumerate().map(|(i, q)| self.ports.rows[(i, dof)] * q).sum()
+        Mat::from_fn(self.mass.nrows(), 1, |dof, _| {
+            slip_load.iter().enumerate().map(|(i, q)| self.rows[(i, dof)].conj() * q).sum()
         })
     }
 
     fn load(&self, harmonic: usize) -> Mat<c64> {
-        Mat::from_fn(self.structure.dofs(), 1, |i, _| {
-            let amplitude = self.ports.load(harmonic).map_or(c64::new(0.0, 0.0), |load| load[i]);
+        let load = self.loads.iter().find(|load| load.harmonic == harmonic);
+        Mat::from_fn(self.mass.nrows(), 1, |i, _| {
+            let amplitude = load.map_or(c64::new(0.0, 0.0), |load| load.amplitude[i]);
             if harmonic == 0 {
                 c64::new(amplitude.re, 0.0)
             } else {
@@ -102,23 +112,23 @@ impl DirectCompliance {
 
 impl Compliance for DirectCompliance {
     fn contacts(&self) -> usize {
-        self.ports.rows.nrows()
+        self.rows.nrows()
     }
 
     fn dofs(&self) -> usize {
-        self.structure.dofs()
+        self.mass.nrows()
     }
 
     fn forced_harmonics(&self) -> Vec<usize> {
-        self.ports.forced_harmonics()
+        forced_harmonics(&self.loads)
     }
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
         let contacts = self.contacts();
         out.reset(contacts);
         let lu = self.factor(harmonic, omega)?;
-        let rows = complex(self.ports.rows.as_ref());
-        let of_contacts = lu.solve(rows.transpose());
+        let rows = &self.rows;
+        let of_contacts = lu.solve(rows.adjoint().to_owned());
         let of_load = lu.solve(self.load(harmonic));
         for column in 0..contacts {
             for row in 0..contacts {
@@ -130,8 +140,8 @@ impl Compliance for DirectCompliance {
         if let Some((contact_slope, stuck_slope)) = &mut out.slope {
             // dG = −G (ikC − 2k²ωM) G
             let change = self.softening(harmonic, omega);
-            let contact_change = &rows * lu.solve(&change * &of_contacts);
-            let load_change = &rows * lu.solve(&change * &of_load);
+            let contact_change = rows * lu.solve(&change * &of_contacts);
+            let load_change = rows * lu.solve(&change * &of_load);
             for column in 0..contacts {
                 for row in 0..contacts {
                     contact_slope[column * contacts + row] = contact_change[(row, column)];

@@ -4,19 +4,26 @@
 //! harmonic k produces when all contacts stick. That form stays well scaled at high harmonics,
 //! needs no partition of the matrices and takes ω as an unknown.
 
+mod cyclic;
 mod direct;
 mod flexibility;
 mod modal;
 mod modes;
 mod ports;
 mod restraint;
+mod ring;
+mod ring_compliance;
+mod ring_order;
 mod spectrum;
 mod system;
 
+pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
 pub use direct::DirectCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
 pub use modes::{natural_frequencies, real_modes, RealModes};
 pub use ports::{HarmonicLoad, Ports};
+pub use ring::{Ring, RingCoupling, RingLayout, RingSector};
+pub use ring_order::{RingMotion, RingOrder};
 pub use system::Structure;
 
 use crate::Error;
@@ -84,6 +91,10 @@ pub trait Compliance: Send + Sync {
         out: &mut [c64],
     ) -> Result<(), Error>;
 
+    /// The ring of sectors that this is, if it is one: its equations need no dense receptance.
+    fn ring(&self) -> Option<&Ring> {
+        None
+    }
     /// Displacement amplitudes under the slip loads alone: [`Compliance::displacement`] without
     /// the external load, linear in `contact` and `slip_load`.
     ///
@@ -115,6 +126,11 @@ pub trait Compliance: Send + Sync {
 
     /// Natural frequencies of the stuck structure, ascending [rad/s].
     fn stuck_frequencies(&self) -> &[f64];
+
+    /// Highest natural frequency of the stuck structure, or about it [rad/s].
+    fn highest_frequency(&self) -> f64 {
+        self.stuck_frequencies().last().copied().unwrap_or(0.0)
+    }
 
     /// Natural frequencies with all contacts removed, ascending [rad/s].
     fn free_frequencies(&self) -> &[f64];

@@ -7,8 +7,8 @@
 //! | any other, also unsymmetric | complex, stuck | directly |
 
 use super::flexibility::Flexibility;
-use super::modes::real_modes;
-use super::ports::Ports;
+use super::modes::{real_modes, HermitianModes};
+use super::ports::{HarmonicLoad, Ports};
 use super::restraint::restrain;
 use super::spectrum::{complex_modes, real_spectrum, Spectrum};
 use super::{Compliance, DirectCompliance, Receptance, Structure};
@@ -20,7 +20,7 @@ const COUPLING: f64 = 1e-10;
 /// … or, relative to the largest entry and per mode, that still counts as rounding.
 const ROUNDING: f64 = 1e-15;
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
-const FREE_FLOOR: f64 = 1e-8;
+pub(super) const FREE_FLOOR: f64 = 1e-8;
 /// Distance to an undamped resonance, relative to the squared frequency, that is refused.
 const RESONANCE: f64 = 1e-9;
 
@@ -56,6 +56,18 @@ pub struct ModalCompliance {
     forced: Vec<usize>,
 }
 
+/// What a modal compliance is made of: modes of the stuck and of the free structure, the damping in
+/// both, rows of B (complex in a travelling wave), contact stiffness and loads.
+pub(super) struct Wave {
+    pub(super) stuck: HermitianModes,
+    pub(super) free: HermitianModes,
+    pub(super) in_stuck: Mat<c64>,
+    pub(super) in_free: Mat<c64>,
+    pub(super) rows: Mat<c64>,
+    pub(super) stiffness: Mat<f64>,
+    pub(super) loads: Vec<HarmonicLoad>,
+}
+
 /// The compliance of a structure: modal, or by direct solution where its complex modes are
 /// defective (critically damped or undamped rigid-body modes with general damping).
 ///
@@ -89,57 +101,65 @@ impl ModalCompliance {
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
         let stuck = real_modes(structure.mass(), restrained.as_ref())?;
         let free = real_modes(structure.mass(), structure.stiffness())?;
-        let in_stuck = stuck.project(structure.damping());
-        let in_free = free.project(structure.damping());
-        let (base, spectrum, right, left, restraint) = if is_diagonal(in_stuck.as_ref()) {
-            let (spectrum, shapes) = real_spectrum(&stuck, in_stuck.as_ref(), 0.0);
-            let left = shapes.transpose().to_owned();
-            (ModalBase::Stuck, spectrum, shapes, left, None)
-        } else if is_diagonal(in_free.as_ref()) {
-            let (spectrum, shapes) = real_spectrum(&free, in_free.as_ref(), FREE_FLOOR);
-            let left = shapes.transpose().to_owned();
-            let restraint = Some(ports.stiffness.clone());
-            (ModalBase::Free, spectrum, shapes, left, restraint)
-        } else {
-            let Some((poles, right, left)) = complex_modes(&stuck, in_stuck.as_ref())? else {
-                return Ok(None);
-            };
-            (ModalBase::Complex, Spectrum::Complex { poles }, right, left, None)
+        let wave = Wave {
+            in_stuck: complex(stuck.project(structure.damping()).as_ref()),
+            in_free: complex(free.project(structure.damping()).as_ref()),
+            stuck: stuck.to_hermitian(),
+            free: free.to_hermitian(),
+            rows: complex(ports.rows.as_ref()),
+            stiffness: ports.stiffness.clone(),
+            loads: ports.loads.clone(),
         };
-        let rows = complex(ports.rows.as_ref());
-        let modal = Self {
+        let Some(modal) = Self::of_wave(wave)? else { return Ok(None) };
+        let modal = Self { flexibility: Flexibility::new(&stuck, ports), ..modal };
+        let direct = || DirectCompliance::of(structure, ports, restrained.as_ref());
+        Ok(modal.reproduces(direct).then_some(modal))
+    }
+
+    /// The modal form of complex matrices, without a static part.
+    pub(super) fn of_wave(wave: Wave) -> Result<Option<Self>, Error> {
+        let Wave { stuck, free, in_stuck, in_free, rows, stiffness, loads } = wave;
+        let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
+        let (base, spectrum, right, left, restraint) = if is_diagonal(in_stuck.as_ref()) {
+            let spectrum = real_spectrum(&stuck.omega_squared, in_stuck.as_ref(), 0.0);
+            let left = stuck.shapes.adjoint().to_owned();
+            (ModalBase::Stuck, spectrum, stuck.shapes, left, None)
+        } else if is_diagonal(in_free.as_ref()) {
+            let spectrum = real_spectrum(&free.omega_squared, in_free.as_ref(), FREE_FLOOR);
+            let left = free.shapes.adjoint().to_owned();
+            (ModalBase::Free, spectrum, free.shapes, left, Some(stiffness))
+        } else {
+            let modes =
+                complex_modes(&stuck.omega_squared, stuck.shapes.as_ref(), in_stuck.as_ref())?;
+            let Some((spectrum, right, left)) = modes else { return Ok(None) };
+            (ModalBase::Complex, spectrum, right, left, None)
+        };
+        Ok(Some(Self {
             base,
             bandwidth: spectrum.narrowest_bandwidth(),
             contact_right: &rows * &right,
-            contact_left: (&left * rows.transpose()).transpose().to_owned(),
-            loads: ports
-                .loads
+            contact_left: (&left * rows.adjoint()).transpose().to_owned(),
+            forced: super::ports::forced_harmonics(&loads),
+            loads: loads
                 .iter()
                 .map(|load| (load.harmonic, multiply(left.as_ref(), &load.amplitude)))
                 .collect(),
             right,
             spectrum,
             restraint,
-            flexibility: Flexibility::new(&stuck, ports),
-            stuck_frequencies: stuck.frequencies(),
-            free_frequencies: free.frequencies(),
-            forced: ports.forced_harmonics(),
-        };
-        Ok(modal.reproduces(structure, ports, restrained.as_ref()).then_some(modal))
+            flexibility: None,
+            stuck_frequencies,
+            free_frequencies,
+        }))
     }
 
     /// Compares complex modes with a direct solution: eigenvectors of a nearly defective problem
     /// lose digits, and then the direct form must serve.
-    fn reproduces(
-        &self,
-        structure: &Structure,
-        ports: &Ports,
-        restrained: MatRef<'_, f64>,
-    ) -> bool {
+    pub(super) fn reproduces(&self, direct: impl FnOnce() -> DirectCompliance) -> bool {
         if self.base != ModalBase::Complex {
             return true;
         }
-        let direct = DirectCompliance::of(structure, ports, restrained);
+        let direct = direct();
         let highest = self.stuck_frequencies.last().copied().unwrap_or(1.0).max(1.0);
         let (mut ours, mut theirs) = (Receptance::default(), Receptance::default());
         [0.013, 0.11, 0.7].iter().all(|share| {
@@ -357,12 +377,12 @@ impl ModalCompliance {
     }
 }
 
-fn is_diagonal(matrix: MatRef<'_, f64>) -> bool {
+fn is_diagonal(matrix: MatRef<'_, c64>) -> bool {
     let size = matrix.nrows();
     let rounding = ROUNDING * size as f64 * matrix.norm_max();
     let coupled = |i: usize, j: usize| {
-        let own = (matrix[(i, i)] * matrix[(j, j)]).abs().sqrt();
-        i != j && matrix[(i, j)].abs() > (COUPLING * own).max(rounding)
+        let own = (matrix[(i, i)].norm() * matrix[(j, j)].norm()).sqrt();
+        i != j && matrix[(i, j)].norm() > (COUPLING * own).max(rounding)
     };
     !(0..size).any(|j| (0..size).any(|i| coupled(i, j)))
 }

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use faer::linalg::solvers::DenseSolveCore as _;
-use faer::{Mat, MatRef, Side};
+use faer::{c64, Mat, MatRef, Side};
 
 /// Undamped modes: `Φᵀ M Φ = I`, `Φᵀ K Φ = diag(ω²)`.
 #[derive(Debug, Clone)]
@@ -46,10 +46,62 @@ impl RealModes {
         self.omega_squared.iter().map(|w| w.max(0.0).sqrt()).collect()
     }
 
+    /// The same modes as complex ones.
+    pub(super) fn to_hermitian(&self) -> HermitianModes {
+        HermitianModes {
+            omega_squared: self.omega_squared.clone(),
+            shapes: super::modal::complex(self.shapes.as_ref()),
+        }
+    }
+
     /// `Φᵀ A Φ` of a matrix A.
     #[must_use]
     pub fn project(&self, matrix: MatRef<'_, f64>) -> Mat<f64> {
         self.shapes.transpose() * matrix * &self.shapes
+    }
+}
+
+/// Modes of a Hermitian problem: `Φᴴ M Φ = I`, `Φᴴ K Φ = diag(ω²)`.
+#[derive(Debug, Clone)]
+pub(super) struct HermitianModes {
+    pub(super) omega_squared: Vec<f64>,
+    pub(super) shapes: Mat<c64>,
+}
+
+/// Modes of a Hermitian stiffness and a positive definite Hermitian mass.
+pub(super) fn hermitian_modes(
+    mass: MatRef<'_, c64>,
+    stiffness: MatRef<'_, c64>,
+) -> Result<HermitianModes, Error> {
+    let cholesky = mass.llt(Side::Lower).map_err(|_| Error::IndefiniteMass)?;
+    let lower = cholesky.L();
+    let mut reduced = stiffness.to_owned();
+    let par = faer::Par::Seq;
+    faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
+    let mut reduced = reduced.adjoint().to_owned();
+    faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
+    let eigen = reduced
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|_| Error::Eigenvalues("stiffness".to_owned()))?;
+    let mut shapes = eigen.U().to_owned();
+    faer::linalg::triangular_solve::solve_upper_triangular_in_place(
+        lower.adjoint(),
+        shapes.as_mut(),
+        par,
+    );
+    let omega_squared = (0..mass.nrows()).map(|j| eigen.S()[j].re).collect();
+    Ok(HermitianModes { omega_squared, shapes })
+}
+
+impl HermitianModes {
+    /// Natural frequencies [rad/s]; rounding below zero counts as a rigid-body mode.
+    pub(super) fn frequencies(&self) -> Vec<f64> {
+        self.omega_squared.iter().map(|w| w.max(0.0).sqrt()).collect()
+    }
+
+    /// `Φᴴ A Φ` of a matrix A.
+    pub(super) fn project(&self, matrix: MatRef<'_, c64>) -> Mat<c64> {
+        self.shapes.adjoint() * (matrix * &self.shapes)
     }
 }
 

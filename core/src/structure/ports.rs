@@ -53,15 +53,15 @@ impl Ports {
             .find(|load| load.harmonic == harmonic)
             .map(|load| load.amplitude.as_slice())
     }
+}
 
-    pub(super) fn forced_harmonics(&self) -> Vec<usize> {
-        let mut harmonics: Vec<usize> = self
-            .loads
-            .iter()
-            .filter(|load| load.amplitude.iter().any(|p| p.norm() > 0.0))
-            .map(|load| load.harmonic)
-            .collect();
-        harmonics.sort_unstable();
-        harmonics
-    }
+/// Harmonics with a load that is not zero, ascending.
+pub(super) fn forced_harmonics(loads: &[HarmonicLoad]) -> Vec<usize> {
+    let mut harmonics: Vec<usize> = loads
+        .iter()
+        .filter(|load| load.amplitude.iter().any(|p| p.norm() > 0.0))
+        .map(|load| load.harmonic)
+        .collect();
+    harmonics.sort_unstable();
+    harmonics
 }

@@ -1,7 +1,6 @@
 //! The frequency dependence of a modal sum: real modes with modal damping, or complex modes.
 
-use super::modal::complex;
-use super::modes::{inverse, RealModes};
+use super::modes::inverse;
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 
@@ -53,44 +52,52 @@ impl Spectrum {
     }
 }
 
-/// Modal denominators and shapes of real modes with a diagonal modal damping.
+/// Modal denominators of modes with a diagonal modal damping.
 pub(super) fn real_spectrum(
-    modes: &RealModes,
-    damping: MatRef<'_, f64>,
+    omega_squared: &[f64],
+    damping: MatRef<'_, c64>,
     floor: f64,
-) -> (Spectrum, Mat<c64>) {
-    let spectrum = Spectrum::Real {
-        omega_squared: modes.omega_squared.clone(),
-        damping: (0..damping.nrows()).map(|j| damping[(j, j)]).collect(),
+) -> Spectrum {
+    Spectrum::Real {
+        omega_squared: omega_squared.to_vec(),
+        damping: (0..damping.nrows()).map(|j| damping[(j, j)].re).collect(),
         floor,
-    };
-    (spectrum, complex(modes.shapes.as_ref()))
+    }
 }
 
 /// Poles, and both sides R and L of the modal sum.
-pub(super) type ComplexModes = (Vec<c64>, Mat<c64>, Mat<c64>);
+pub(super) type ComplexModes = (Spectrum, Mat<c64>, Mat<c64>);
 
-/// Poles and both sides of the modal sum of the state-space problem in real modal coordinates,
-/// with state `(S q, q')`, S = diag(ω_j): nearly normal for light damping. `None` if the
-/// eigenvectors do not span the space.
+/// Poles and both sides of the modal sum of the state-space problem in modal coordinates, with
+/// state `(S q, q')`, S = diag(ω_j): nearly normal for light damping. `None` if the eigenvectors
+/// do not span the space.
 pub(super) fn complex_modes(
-    modes: &RealModes,
-    damping: MatRef<'_, f64>,
+    omega_squared: &[f64],
+    shapes: MatRef<'_, c64>,
+    damping: MatRef<'_, c64>,
 ) -> Result<Option<ComplexModes>, Error> {
-    let n = modes.omega_squared.len();
-    let highest = modes.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs())).sqrt();
-    let scale: Vec<f64> = modes
-        .omega_squared
+    let n = omega_squared.len();
+    let highest = omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs())).sqrt();
+    let scale: Vec<f64> = omega_squared
         .iter()
         .map(|w| w.abs().sqrt().max(1e-4 * highest).max(f64::MIN_POSITIVE))
         .collect();
     let state = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
-        (true, true) => 0.0,
-        (true, false) => scale[i] * f64::from(u8::from(i == j - n)),
-        (false, true) => -modes.omega_squared[j] / scale[j] * f64::from(u8::from(i - n == j)),
+        (true, true) => c64::new(0.0, 0.0),
+        (true, false) => c64::new(scale[i] * f64::from(u8::from(i == j - n)), 0.0),
+        (false, true) => {
+            let own = -omega_squared[j] / scale[j] * f64::from(u8::from(i - n == j));
+            c64::new(own, 0.0)
+        }
         (false, false) => -damping[(i - n, j - n)],
     });
-    let eigen = state.eigen().map_err(|_| Error::Eigenvalues("damping".to_owned()))?;
+    let is_real = (0..n).all(|j| (0..n).all(|i| damping[(i, j)].im == 0.0));
+    let eigen = if is_real {
+        Mat::from_fn(2 * n, 2 * n, |i, j| state[(i, j)].re).eigen()
+    } else {
+        state.eigen()
+    };
+    let eigen = eigen.map_err(|_| Error::Eigenvalues("damping".to_owned()))?;
     let vectors = eigen.U();
     let inverse = inverse(vectors);
     let poles: Vec<c64> = (0..2 * n).map(|j| eigen.S()[j]).collect();
@@ -99,9 +106,8 @@ pub(super) fn complex_modes(
     if !spans || !poles.iter().all(finite) {
         return Ok(None);
     }
-    let shapes = complex(modes.shapes.as_ref());
     let top = Mat::from_fn(n, 2 * n, |i, j| vectors[(i, j)] / scale[i]);
-    let right = &shapes * top;
-    let left = inverse.get(.., n..) * shapes.transpose();
-    Ok(Some((poles, right, left)))
+    let right = shapes * top;
+    let left = inverse.get(.., n..) * shapes.adjoint();
+    Ok(Some((Spectrum::Complex { poles }, right, left)))
 }

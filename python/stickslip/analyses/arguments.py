@@ -23,6 +23,7 @@ __all__ = [
     "require_held",
     "require_model",
     "require_progress",
+    "require_time",
     "residual_of",
     "span_of",
     "tolerance_of",
@@ -40,6 +41,15 @@ def require_model(model: object) -> None:
     """Refuse what is no `Model`."""
     if not isinstance(model, Model):
         raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+
+
+def require_time(model: Model) -> None:
+    """Refuse one sector of a travelling wave, which has no motion of its own in time."""
+    if model.travels:
+        raise ModelError(
+            "model: a tuned BladedDisk is one sector of a travelling wave, which has no motion of "
+            "its own in time; give all sectors, disk.mistuned(0)"
+        )
 
 
 def require_progress(progress: object) -> None:
@@ -154,7 +164,8 @@ def require_held(model: Model, residual: Residual) -> None:
     for _, force in static:
         load[model.structure.index(force.dof)] += force.amplitude
     prescribed = bool(model.contacts) and residual != "from_rest" and bool(load.any())
-    if prescribed and not _holds(model.structure.stiffness, load):
+    _, _, stiffness = model.matrices_at(0)
+    if prescribed and not _holds(stiffness.real, load):
         raise ModelError(
             f"{entry} rests on contacts alone, whose mean force residual={residual!r} prescribes; "
             'use residual="from_rest" or ground the structure'

@@ -41,6 +41,15 @@ _BASES = {
         "The damping is not proportional: the compliance is the sum over the complex modes of the "
         "stuck structure."
     ),
+    "waves": (
+        "All sectors are equal and move alike, one after the other: harmonic k of the motion meets "
+        "the disk at nodal diameter k E modulo n. With positive damping that is its only steady "
+        "state."
+    ),
+    "sectors": (
+        "The sectors of the ring are solved one by one, from their own modes, and joined exactly "
+        "where neighbours touch."
+    ),
     "direct": (
         "The modes cannot be separated well: the compliance is solved for at every frequency."
     ),

@@ -18,6 +18,7 @@ from stickslip.analyses.arguments import (
     require_held,
     require_model,
     require_progress,
+    require_time,
 )
 from stickslip.analyses.assumptions import orbit_assumptions
 from stickslip.analyses.forced_response import (
@@ -141,6 +142,7 @@ def exact_response(
     (Springer, 2004).
     """
     require_model(model)
+    require_time(model)
     grid = grid_of(omega)
     settings = ExactSettings(
         harmonics=harmonics,

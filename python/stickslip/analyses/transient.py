@@ -14,6 +14,7 @@ from stickslip.analyses.arguments import (
     observed_dofs,
     require_model,
     require_progress,
+    require_time,
 )
 from stickslip.analyses.assumptions import transient_assumptions, turn_per_step
 from stickslip.analyses.memory import require_numbers
@@ -154,6 +155,7 @@ def transient(
     3.1). The exact flow is this package's.
     """
     require_model(model)
+    require_time(model)
     settings = TransientSettings(
         omega=omega,
         scheme=scheme,

@@ -101,7 +101,7 @@ class Variation:
             parameters = {**own, self.parameter: new}
             return type(contact).from_parameters(contact.dofs, parameters, contact.name)
 
-        return Model(model.structure, map(changed, model.contacts), model.forces)
+        return model.replaced(contacts=[changed(contact) for contact in model.contacts])
 
 
 def chosen_contacts(

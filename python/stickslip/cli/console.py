@@ -33,6 +33,8 @@ __all__ = [
     "tell",
 ]
 
+_SHOWN_PARTS = 6
+
 _STAGES = {
     "compliance": "compliance",
     "law": "law (force, tangent)",
@@ -112,14 +114,25 @@ def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | 
 
 def model_rows(model: Model) -> list[tuple[str, str]]:
     """Return what a result is of, as rows of its facts."""
+    from stickslip.disk import BladedDisk, MistunedDisk
+
     rows = [("dofs", f"{len(model.structure)}: {listed(model.structure.dofs)}")]
-    for contact in model.contacts:
+    if isinstance(model, BladedDisk):
+        order = f"engine order {model.engine_order}"
+        rows.append(("disk", f"{model.sectors} equal sectors, {order}; of sector 0:"))
+    elif isinstance(model, MistunedDisk):
+        order = f"engine order {model.disk.engine_order}"
+        rows.append(("disk", f"{model.sectors} sectors of their own, {order}"))
+    for contact in model.contacts[:_SHOWN_PARTS]:
         values = ", ".join(f"{name} {value:g}" for name, value in contact.parameters().items())
         place = " - ".join(contact.dofs)
         rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {values}"))
-    for force in model.forces:
+    for force in model.forces[:_SHOWN_PARTS]:
         values = f"amplitude {force.amplitude:g} N, phase {force.phase:g} rad"
         rows.append(("force", f"{force.dof}: harmonic {force.harmonic}, {values}"))
+    for name, parts in (("contacts", model.contacts), ("forces", model.forces)):
+        if len(parts) > _SHOWN_PARTS:
+            rows.append((name, f"{len(parts)} in all"))
     return rows
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, count
-from typing import TYPE_CHECKING, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from stickslip.model.structure import Structure
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["ContactRef", "Model", "PointRef", "natural_frequencies"]
+__all__ = ["ContactRef", "Model", "PointRef", "listed_items", "natural_frequencies"]
 
 _Item = TypeVar("_Item")
 
@@ -32,6 +32,7 @@ ContactRef: TypeAlias = int | str
 """A contact: its position, counted from 0, or its name."""
 PointRef: TypeAlias = ContactRef | tuple[ContactRef, int]
 """A contact point: (contact, point), or the contact alone where it has one point."""
+AnyMatrix: TypeAlias = NDArray[np.float64] | NDArray[np.complex128]
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -64,6 +65,9 @@ class Model:
         have the same name.
     """
 
+    travels: ClassVar[bool] = False
+    """Whether it stands for a travelling wave, which has no motion of its own in time."""
+
     structure: Structure
     contacts: tuple[Contact, ...]
     forces: tuple[Force, ...]
@@ -76,15 +80,15 @@ class Model:
                 f"structure: {brief(structure)} is not a Structure; give ss.Structure(...)"
             )
         object.__setattr__(self, "structure", structure)
-        object.__setattr__(self, "contacts", _named(_listed(contacts, "contact", Contact)))
-        object.__setattr__(self, "forces", _listed(forces, "force", Force))
+        object.__setattr__(self, "contacts", _named(listed_items(contacts, "contact", Contact)))
+        object.__setattr__(self, "forces", listed_items(forces, "force", Force))
         self._require_dofs()
 
     def __repr__(self) -> str:
         names = ", ".join(self.contact_names[:6]) + (", ..." if len(self.contacts) > 6 else "")
         return f"Model({self.structure!r}, contacts=[{names}], {len(self.forces)} force(s))"
 
-    def __reduce__(self) -> tuple[type[Model], tuple[object, ...]]:
+    def __reduce__(self) -> tuple[object, ...]:
         # The compiled problem is rebuilt on the other side: it cannot be pickled.
         return Model, (self.structure, self.contacts, self.forces)
 
@@ -191,11 +195,65 @@ class Model:
         slip_force = real_number(slip_force, "factor on the slip forces")
         if slip_force < 0.0:
             raise ModelError(f"factor on the slip forces: {slip_force:g} is negative; give >= 0")
+        return self.replaced(
+            contacts=[contact.scaled(slip_force) for contact in self.contacts],
+            forces=[replace(one, amplitude=one.amplitude * force) for one in self.forces],
+        )
+
+    def replaced(
+        self, *, contacts: Iterable[Contact] | None = None, forces: Iterable[Force] | None = None
+    ) -> Model:
+        """Return the model with other contacts or forces.
+
+        Parameters
+        ----------
+        contacts : iterable of Contact, optional
+            The contacts. Default: those of the model.
+        forces : iterable of Force, optional
+            The forces. Default: those of the model.
+
+        Returns
+        -------
+        Model
+            A new model of the same kind and structure.
+
+        Raises
+        ------
+        ModelError
+            As for a new model.
+        """
         return Model(
             self.structure,
-            [contact.scaled(slip_force) for contact in self.contacts],
-            [replace(one, amplitude=one.amplitude * force) for one in self.forces],
+            self.contacts if contacts is None else contacts,
+            self.forces if forces is None else forces,
         )
+
+    def matrices_at(self, harmonic: int) -> tuple[AnyMatrix, AnyMatrix, AnyMatrix]:
+        """Return mass, damping and stiffness as a harmonic of the motion meets them.
+
+        Parameters
+        ----------
+        harmonic : int
+            The harmonic k. A `Model` is the same for all; a sector of a disk is not.
+
+        Returns
+        -------
+        mass, damping, stiffness : ndarray, shape (N, N)
+            Without the contacts [kg], [kg/s], [N/m].
+        """
+        structure = self.structure
+        return structure.mass, structure.damping, structure.stiffness
+
+    def frequencies(
+        self, points: list[tuple[int, int]], nodal_diameter: int | None
+    ) -> NDArray[np.float64]:
+        """Return natural frequencies with contact points slipping; see `natural_frequencies`."""
+        if nodal_diameter is not None:
+            raise ModelError(
+                f"nodal_diameter: {brief(nodal_diameter)} of a model without sectors; leave it "
+                "out, or give a BladedDisk"
+            )
+        return self.problem.natural_frequencies(points)
 
     @cached_property
     def problem(self) -> _core.Problem:
@@ -231,7 +289,9 @@ class Model:
         return list(loads.items())
 
 
-def natural_frequencies(model: Model, slipping: Iterable[PointRef] = ()) -> NDArray[np.float64]:
+def natural_frequencies(
+    model: Model, slipping: Iterable[PointRef] = (), *, nodal_diameter: int | None = None
+) -> NDArray[np.float64]:
     """Natural frequencies with some contact points slipping and all others stuck.
 
     Parameters
@@ -240,6 +300,8 @@ def natural_frequencies(model: Model, slipping: Iterable[PointRef] = ()) -> NDAr
         Its forces and damping play no part.
     slipping : iterable of int, str or (int or str, int), optional
         The contact points that slip: contact, or (contact, point). Default: all stick.
+    nodal_diameter : int, optional
+        Nodal diameter of a `BladedDisk`, 0 to n-1. Default: the one its engine order excites.
 
     Returns
     -------
@@ -249,20 +311,28 @@ def natural_frequencies(model: Model, slipping: Iterable[PointRef] = ()) -> NDAr
     Raises
     ------
     ModelError
-        If `model` is no `Model`, or there is no such contact or point.
+        If `model` is no `Model`; if there is no such contact, point or nodal diameter.
     """
     if not isinstance(model, Model):
         raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
     refs = members(slipping, "slipping", "slipping=[...]")
     points = sorted({model.point(ref) for ref in refs})
-    problem = model.problem
     try:
-        return problem.natural_frequencies(points)
+        return model.frequencies(points, nodal_diameter)
+    except ModelError:
+        raise
     except ValueError as error:
         raise ModelError(str(error)) from error
 
 
-def _listed(items: Iterable[_Item], entry: str, kind: type[object]) -> tuple[_Item, ...]:
+def listed_items(items: Iterable[_Item], entry: str, kind: type[object]) -> tuple[_Item, ...]:
+    """Return the members of a list that must all be of one kind; `entry` is what they are called.
+
+    Raises
+    ------
+    ModelError
+        If it is no list, or a member is of another kind.
+    """
     listed = members(items, f"{entry}s", f"{entry}s=[...]")
     for number, item in enumerate(listed, 1):
         if not isinstance(item, kind):

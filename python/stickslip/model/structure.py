@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
-from typing import TypeAlias
 
 import numpy as np
 
@@ -15,147 +14,17 @@ from stickslip.checks import (
     brief,
     members,
     real_matrix,
-    real_number,
     text,
     unknown,
 )
 from stickslip.errors import ModelError
+from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 
 __all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
 
 # Printed matrices carry rounded digits; anything larger than this is a wrong matrix.
 _ASYMMETRY = 1e-8
 _SHOWN = 6
-
-
-@dataclass(frozen=True, kw_only=True)
-class Rayleigh:
-    """Proportional damping, C = mass * M + stiffness * K.
-
-    Parameters
-    ----------
-    mass : float, optional
-        Factor on the mass matrix [1/s].
-    stiffness : float, optional
-        Factor on the stiffness matrix [s]. Negative factors describe negative damping.
-
-    Raises
-    ------
-    ModelError
-        If a factor is not a finite number.
-    """
-
-    mass: float = 0.0
-    stiffness: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "mass", real_number(self.mass, "Rayleigh mass factor"))
-        factor = real_number(self.stiffness, "Rayleigh stiffness factor")
-        object.__setattr__(self, "stiffness", factor)
-
-    def matrix(self, mass: Matrix, stiffness: Matrix) -> Matrix:
-        """Return the damping matrix.
-
-        Parameters
-        ----------
-        mass, stiffness : ndarray of float64, shape (N, N)
-            The structure's matrices [kg], [N/m].
-
-        Returns
-        -------
-        ndarray of float64, shape (N, N)
-            Damping [kg/s].
-
-        Raises
-        ------
-        ModelError
-            If it is not finite.
-        """
-        with np.errstate(over="ignore", invalid="ignore"):
-            return _finite(self.mass * mass + self.stiffness * stiffness, self)
-
-
-@dataclass(frozen=True)
-class ModalDamping:
-    """Damping ratios of the structure's own modes, its contacts being free.
-
-    With mass-normalised modes Phi, C = M Phi diag(2 zeta omega) Phi^T M. Rigid-body modes stay
-    undamped.
-
-    Parameters
-    ----------
-    ratio : float or sequence of float
-        Fraction of critical damping: one for all modes, or one per mode in ascending frequency.
-
-    Raises
-    ------
-    ModelError
-        If a ratio is not a finite number; on use, if the number of ratios is not the number of
-        modes or the stiffness matrix has a negative eigenvalue.
-    """
-
-    ratio: float | Sequence[float]
-
-    def __post_init__(self) -> None:
-        given = self.ratio.tolist() if isinstance(self.ratio, np.ndarray) else self.ratio
-        ratio: float | tuple[float, ...]
-        if isinstance(given, Sequence) and not isinstance(given, str):
-            ratio = tuple(
-                real_number(value, f"damping ratio at position {mode}")
-                for mode, value in enumerate(given)
-            )
-        else:
-            ratio = real_number(given, "damping ratio")
-        object.__setattr__(self, "ratio", ratio)
-
-    def matrix(self, mass: Matrix, stiffness: Matrix) -> Matrix:
-        """Return the damping matrix.
-
-        Parameters
-        ----------
-        mass, stiffness : ndarray of float64, shape (N, N)
-            The structure's matrices [kg], [N/m].
-
-        Returns
-        -------
-        ndarray of float64, shape (N, N)
-            Damping [kg/s].
-
-        Raises
-        ------
-        ModelError
-            If there are not N ratios, an eigenvalue is negative, or the damping is not finite.
-        """
-        from scipy.linalg import eigh
-
-        size = len(mass)
-        ratios = np.asarray(self.ratio, dtype=np.float64)
-        if ratios.ndim == 1 and ratios.size != size:
-            raise ModelError(
-                f"damping: {ratios.size} ratios for {size} modes; give one per mode, or one for all"
-            )
-        squares, modes = eigh(stiffness, mass)
-        if squares[0] < -1e-8 * np.abs(squares).max():
-            raise ModelError(
-                f"damping: the lowest mode has omega^2 = {squares[0]:.6g} < 0, a ratio means "
-                "nothing there; give a damping matrix"
-            )
-        # The eigenvalues of rigid-body modes are rounding noise of either sign.
-        omega = np.sqrt(np.clip(squares, 0.0, None))
-        shapes = mass @ modes
-        with np.errstate(over="ignore", invalid="ignore"):
-            damping = (shapes * (2.0 * ratios * omega)) @ shapes.T
-        return _finite(np.asarray(damping, dtype=np.float64), self)
-
-
-def _finite(damping: Matrix, law: Rayleigh | ModalDamping) -> Matrix:
-    if not np.isfinite(damping).all():
-        raise ModelError(f"damping: {brief(law)} makes entries beyond 1e308; give smaller numbers")
-    return damping
-
-
-DampingLaw: TypeAlias = Rayleigh | ModalDamping
-"""What makes a damping matrix of mass and stiffness."""
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -181,6 +50,8 @@ class Structure:
         digits leave it, has been averaged out.
     dofs : tuple of str
         Names of the degrees of freedom.
+    damping_law : Rayleigh, ModalDamping or None
+        What the damping was made of; None where it was given as a matrix.
 
     Raises
     ------
@@ -200,6 +71,7 @@ class Structure:
     stiffness: Matrix
     damping: Matrix
     dofs: tuple[str, ...]
+    damping_law: DampingLaw | None
 
     def __init__(
         self,
@@ -221,6 +93,8 @@ class Structure:
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
             object.__setattr__(self, field, value)
+        law = damping if isinstance(damping, DampingLaw) else None
+        object.__setattr__(self, "damping_law", law)
 
     def __repr__(self) -> str:
         shown = ", ".join(self.dofs[:_SHOWN]) + (", ..." if len(self) > _SHOWN else "")
@@ -229,9 +103,37 @@ class Structure:
     def __len__(self) -> int:
         return len(self.dofs)
 
-    def __reduce__(self) -> tuple[type[Structure], tuple[object, ...]]:
+    def __reduce__(self) -> tuple[object, ...]:
         # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        return Structure, (self.mass, self.stiffness, self.damping, self.dofs)
+        matrices = self.mass, self.stiffness, self.damping
+        return Structure.of_law, (*matrices, self.dofs, self.damping_law)
+
+    @classmethod
+    def of_law(
+        cls,
+        mass: MatrixLike,
+        stiffness: MatrixLike,
+        damping: MatrixLike | None,
+        dofs: Iterable[str] | None,
+        law: DampingLaw | None,
+    ) -> Structure:
+        """Return a structure with a damping matrix that a law made, to the last bit.
+
+        Parameters
+        ----------
+        mass, stiffness, damping, dofs
+            As of a new structure.
+        law : Rayleigh, ModalDamping or None
+            The law that made the damping, if any.
+
+        Returns
+        -------
+        Structure
+            The structure.
+        """
+        made = cls(mass, stiffness, damping, dofs)
+        object.__setattr__(made, "damping_law", law)
+        return made
 
     def index(self, name: str) -> int:
         """Return the position of a degree of freedom.

@@ -1,5 +1,6 @@
 """Plots of results on Matplotlib axes."""
 
+from stickslip.plot.blades import BladeBarOptions, BladeCurveOptions, blade_bars, blade_curves
 from stickslip.plot.charts import (
     CurveOptions,
     Frame,
@@ -10,6 +11,7 @@ from stickslip.plot.charts import (
     waveform,
 )
 from stickslip.plot.damper import DamperOptions, damper
+from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
 from stickslip.plot.orbits import MultiplierOptions, events, multipliers
 from stickslip.plot.transients import (
     HistoryOptions,
@@ -23,14 +25,20 @@ from stickslip.plot.transients import (
 )
 
 __all__ = [
+    "BladeBarOptions",
+    "BladeCurveOptions",
     "CurveOptions",
     "DamperOptions",
+    "DiameterOptions",
     "Frame",
     "HistoryOptions",
     "LoopOptions",
     "MultiplierOptions",
     "PoincareOptions",
+    "SafeOptions",
     "SpectrumOptions",
+    "blade_bars",
+    "blade_curves",
     "contact_history",
     "curves",
     "damper",
@@ -38,8 +46,10 @@ __all__ = [
     "history",
     "hysteresis",
     "multipliers",
+    "nodal_diameters",
     "phase",
     "poincare",
+    "safe",
     "slip",
     "spectrum",
     "waveform",

@@ -40,7 +40,8 @@ def limit_model(model: Model, *, stuck: bool) -> Model:
     Returns
     -------
     Model
-        Without contacts; the stiffness of stuck ones is in its structure.
+        Without contacts, the stiffness of stuck ones being in its structure; of a `BladedDisk`, one
+        with contacts that never slip.
 
     Raises
     ------
@@ -49,6 +50,7 @@ def limit_model(model: Model, *, stuck: bool) -> Model:
     """
     structure = model.structure
     stiffness = structure.stiffness.copy()
+    sticking = []
     for contact, name in zip(model.contacts, model.contact_names, strict=True):
         parameters = contact.parameters()
         if "stiffness" not in parameters:
@@ -58,8 +60,13 @@ def limit_model(model: Model, *, stuck: bool) -> Model:
             )
         slip_force = parameters.get("slip_force", np.nan)
         if slip_force > 0.0 if stuck else np.isinf(slip_force):
-            rows = contact.rows(structure)
-            stiffness += parameters["stiffness"] * rows.T @ rows
+            sticking.append(contact)
+    if model.travels:
+        # A contact between sectors has no place in the matrices of one: it never slips instead.
+        return model.replaced(contacts=[contact.scaled(np.inf) for contact in sticking])
+    for contact in sticking:
+        rows = contact.rows(structure)
+        stiffness += contact.parameters()["stiffness"] * rows.T @ rows
     linear = Structure(structure.mass, stiffness, structure.damping, structure.dofs)
     return Model(linear, forces=model.forces)
 
@@ -115,7 +122,7 @@ def _linear(model: Model, *, stuck: bool, static: bool) -> tuple[Model, Float]:
         if not static:
             # They move the mean only, and a free structure may have no equilibrium under them.
             dynamic = [force for force in linear.forces if force.harmonic]
-            linear = Model(linear.structure, forces=dynamic)
+            linear = linear.replaced(forces=dynamic)
         known[stuck, static] = linear, natural_frequencies(linear)
     return known[stuck, static]
 

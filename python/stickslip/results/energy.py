@@ -73,9 +73,13 @@ def energy_of(result: ForcedResponse) -> Energy:
         if force.harmonic < order.size:
             motion = series[:, force.harmonic, structure.index(force.dof)]
             work += np.pi * force.harmonic * (force.coefficient * motion.conj()).imag
-    # Skew terms do no work.
-    taken = np.einsum("nki,ij,nkj->nk", series.conj(), structure.damping, series).real
-    viscous = np.pi * arrays.omega * (taken * order**2).sum(axis=1)
+    viscous = np.zeros(arrays.omega.size)
+    for harmonic in order[series.any(axis=(0, 2))]:
+        motion = series[:, harmonic]
+        _, damping, _ = result.model.matrices_at(int(harmonic))
+        # Skew terms do no work.
+        taken = np.einsum("ni,ij,nj->n", motion.conj(), damping, motion).real
+        viscous += np.pi * arrays.omega * harmonic**2 * taken
     # A model without contacts has no columns to sum, but unsolved points all the same.
     friction = arrays.dissipation.sum(axis=1)
     work, viscous, friction = (

@@ -12,6 +12,7 @@ import numpy as np
 from stickslip.checks import choice, text
 from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
+from stickslip.results.blades import BladeMotion
 from stickslip.results.energy import Energy, energy_of
 from stickslip.results.peaks import Peak, Summary, highest, refined, rows
 from stickslip.results.sensitivities import Sensitivities
@@ -29,7 +30,7 @@ __all__ = ["ForcedResponse", "Measure", "Peak", "Summary", "key_of"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class ForcedResponse(Sensitivities):
+class ForcedResponse(BladeMotion, Sensitivities):
     """Steady response to periodic forces over the excitation frequency.
 
     Amplitudes and all that derives from them are not-a-number at points that were not solved;

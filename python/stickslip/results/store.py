@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import secrets
 from collections.abc import Hashable, Iterator, Mapping
@@ -15,10 +14,7 @@ import numpy as np
 
 from stickslip.checks import file_path, listed
 from stickslip.errors import ModelError
-from stickslip.model import Model
-from stickslip.model.contact import contact_from_spec
-from stickslip.model.force import force_from_spec
-from stickslip.model.structure import Structure
+from stickslip.results.stored_model import model_of, model_variables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,12 +34,6 @@ KINDS: Mapping[str, tuple[str, str]] = {
 
 FORMAT = 1
 """Version of the layout of the file; it rises when an older reader could not read it."""
-
-_MATRICES = {
-    "mass": ("kg", "mass matrix"),
-    "damping": ("kg/s", "damping matrix"),
-    "stiffness": ("N/m", "stiffness matrix"),
-}
 
 
 def save(result: Result, path: str | os.PathLike[str]) -> None:
@@ -70,7 +60,7 @@ def save(result: Result, path: str | os.PathLike[str]) -> None:
         raise ModelError(f"{target}: is a folder; give the name of a file in it")
     if not target.parent.is_dir():
         raise ModelError(f"{target}: there is no folder {target.parent}; create it first")
-    dataset = _split(result.to_dataset(derived=False).assign(_model_variables(result.model)))
+    dataset = _split(result.to_dataset(derived=False).assign(model_variables(result.model)))
     dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": result.kind}
     try:
         with _whole(target) as temporary:
@@ -106,7 +96,7 @@ def load(path: str | os.PathLike[str]) -> Any:
     dataset = _read(source)
     kind = _required_kind(dataset, source)
     try:
-        return kind.from_dataset(_joined(dataset), _model(dataset))
+        return kind.from_dataset(_joined(dataset), model_of(dataset))
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise ModelError(
             f"{source}: not a complete stickslip result ({_line(error)}); compute and save it again"
@@ -144,43 +134,6 @@ def _required_kind(dataset: xr.Dataset, source: Path) -> type[Result]:
         )
     module, name = KINDS[kind]
     return cast("type[Result]", getattr(import_module(module), name))
-
-
-def _model_variables(model: Model) -> Mapping[Hashable, object]:
-    structure = model.structure
-    variables: dict[Hashable, object] = {
-        name: (("row", "column"), getattr(structure, name), {"units": unit, "long_name": meaning})
-        for name, (unit, meaning) in _MATRICES.items()
-    }
-    variables["row"] = (
-        "row",
-        np.array(structure.dofs, dtype=np.str_),
-        {"units": "1", "long_name": "degree of freedom of the structure"},
-    )
-    # Variables rather than attributes: HDF5 keeps no attribute above 64 kB.
-    specs = {
-        "contacts": [contact.to_spec() for contact in model.contacts],
-        "forces": [force.to_spec() for force in model.forces],
-    }
-    for name, entries in specs.items():
-        variables[name] = (
-            f"{name}_entry",
-            np.array([json.dumps(entry) for entry in entries], dtype=np.str_),
-            {"units": "1", "long_name": f"{name} of the model, one JSON text each"},
-        )
-    return variables
-
-
-def _model(dataset: xr.Dataset) -> Model:
-    structure = Structure(
-        **{name: dataset[name].values for name in _MATRICES},
-        dofs=list(map(str, dataset["row"].values)),
-    )
-    return Model(
-        structure,
-        [contact_from_spec(json.loads(text)) for text in dataset["contacts"].values],
-        [force_from_spec(json.loads(text)) for text in dataset["forces"].values],
-    )
 
 
 def _split(dataset: xr.Dataset) -> xr.Dataset:

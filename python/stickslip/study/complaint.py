@@ -30,6 +30,9 @@ _PHRASES = {
     "too_long": "has too many entries; give at most {max_length}",
 }
 
+_REPEATED = ("contact", "force", "coupling")
+_TABLES = (*_REPEATED, "structure", "disk", "output")
+
 
 def complaint(error: ValidationError) -> str:
     """Word the first finding of a validation, and count the others.
@@ -70,7 +73,7 @@ def _worded(finding: ErrorDetails) -> str:
             return f"{entry}: {_choice(value, context['key'], context['choices'].split())}"
         case "unknown_choice":
             return _brackets(entry, value)
-        case "tuple_type" | "model_type" if entry in ("contact", "force", "structure", "output"):
+        case "tuple_type" | "model_type" if entry in _TABLES:
             return _brackets(entry, value)
         case kind:
             phrase = _PHRASES[kind].format(**context) if kind in _PHRASES else finding["msg"]
@@ -85,7 +88,7 @@ def _choice(table: Mapping[str, object], key: str, choices: Sequence[str]) -> st
 
 def _brackets(entry: str, value: object) -> str:
     name = entry.split()[0]
-    header = f"[[{name}]]" if name in ("contact", "force") else f"[{name}]"
+    header = f"[[{name}]]" if name in _REPEATED else f"[{name}]"
     return f"{entry} = {brief(value)} is not written as a table; begin it with {header}"
 
 

@@ -15,18 +15,23 @@ import numpy as np
 from pydantic import ValidationError
 
 from stickslip.checks import brief, file_path
+from stickslip.disk import BladedDisk, Interface, cyclic_sector
+from stickslip.disk.arguments import NEXT
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure
 from stickslip.study.analysis_entries import level_name
 from stickslip.study.complaint import complaint
-from stickslip.study.tables import MatrixFile, ModalDampingTable, RayleighDamping, StudyTables
+from stickslip.study.structure_table import MatrixFile, ModalDampingTable, RayleighDamping
+from stickslip.study.tables import StudyTables
 
 if TYPE_CHECKING:
     from stickslip.checks import MatrixLike
     from stickslip.model.structure import DampingLaw
     from stickslip.results.result import Result
-    from stickslip.study.tables import ForceTable, JenkinsTable, Rows, StructureTable
+    from stickslip.study.disk_table import DiskTable, InterfaceTable
+    from stickslip.study.structure_table import Rows, StructureTable
+    from stickslip.study.tables import ForceTable, JenkinsTable
 
 __all__ = ["Case", "Study", "json_schema", "notable_dofs"]
 
@@ -81,8 +86,8 @@ class Study:
         Parameters
         ----------
         path : str or Path
-            TOML file with the tables ``[structure]``, ``[[contact]]``, ``[[force]]``,
-            ``[analysis]`` and ``[output]``; files named in it are relative to it.
+            TOML file with the tables ``[structure]``, ``[[contact]]``, ``[[force]]``, ``[disk]``,
+            ``[[coupling]]``, ``[analysis]`` and ``[output]``; files named in it are relative to it.
 
         Returns
         -------
@@ -249,6 +254,18 @@ def _read(text: str) -> StudyTables:
 def _model(tables: StudyTables, folder: Path) -> Model:
     with _named("structure"):
         structure = _structure(tables.structure, folder)
+    if tables.disk is not None:
+        return _disk(tables, tables.disk, structure, folder)
+    _check_parts(tables, structure)
+    return Model(
+        structure,
+        contacts=[contact.build() for contact in tables.contact],
+        forces=[force.build() for force in tables.force],
+    )
+
+
+def _check_parts(tables: StudyTables, structure: Structure) -> None:
+    """Say in which contact or force a DOF or a number is wrong."""
     parts: list[tuple[str, ForceTable | JenkinsTable]] = [
         *((f"contact {number}", contact) for number, contact in enumerate(tables.contact, 1)),
         *((f"force {number}", force) for number, force in enumerate(tables.force, 1)),
@@ -256,13 +273,46 @@ def _model(tables: StudyTables, folder: Path) -> Model:
     for entry, part in parts:
         with _named(entry):
             for dof in part.touched:
-                structure.index(dof)
+                sought = dof.removeprefix(NEXT) if entry.startswith("contact") else dof
+                structure.index(sought if tables.disk is not None else dof)
             part.build()
-    return Model(
-        structure,
-        contacts=[contact.build() for contact in tables.contact],
-        forces=[force.build() for force in tables.force],
-    )
+
+
+def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: Path) -> Model:
+    """Return the tuned disk of which the structure is a sector, or the mistuned one."""
+    interface = None
+    if table.boundary:
+        with _named("disk"):
+            structure, interface = cyclic_sector(structure, table.boundary)
+    if table.interface is not None:
+        with _named("disk: interface"):
+            interface = _interface(table.interface, folder)
+    _check_parts(tables, structure)
+    with _named("disk"):
+        disk = BladedDisk(
+            structure,
+            table.sectors,
+            [coupling.build() for coupling in tables.coupling],
+            [contact.build() for contact in tables.contact],
+            [force.build() for force in tables.force],
+            engine_order=table.engine_order,
+            engine_orders=table.engine_orders,
+            interface=interface,
+        )
+        if table.mistuning is None:
+            return disk
+        return disk.mistuned(table.mistuning.values(table.sectors))
+
+
+def _interface(table: InterfaceTable, folder: Path) -> Interface:
+    stiffness = _matrix(table.stiffness, folder, "stiffness")
+    mass = None if table.mass is None else _matrix(table.mass, folder, "mass")
+    damping = _damping(table, folder)
+    if isinstance(damping, ModalDamping):
+        raise ModelError(
+            "damping: modes belong to the whole disk; give a matrix or {rayleigh = ...}"
+        )
+    return Interface(stiffness, mass, damping)
 
 
 def _structure(table: StructureTable, folder: Path) -> Structure:
@@ -271,7 +321,9 @@ def _structure(table: StructureTable, folder: Path) -> Structure:
     return Structure(mass, stiffness, _damping(table, folder), table.dofs)
 
 
-def _damping(table: StructureTable, folder: Path) -> MatrixLike | DampingLaw | None:
+def _damping(
+    table: StructureTable | InterfaceTable, folder: Path
+) -> MatrixLike | DampingLaw | None:
     match table.damping:
         case None:
             return None

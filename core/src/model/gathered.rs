@@ -1,0 +1,51 @@
+//! Contacts gathered into the rows and the stiffness of a structure.
+
+use crate::contact::FrictionLaw;
+use crate::Error;
+use faer::Mat;
+use std::ops::Range;
+
+/// Contacts one after the other, their rows and their stiffness.
+pub(super) struct Gathered {
+    pub(super) laws: Vec<Box<dyn FrictionLaw>>,
+    pub(super) points: Vec<Range<usize>>,
+    /// Rows of B, one matrix per part of the structure that they act on.
+    pub(super) rows: [Mat<f64>; 2],
+    pub(super) stiffness: Mat<f64>,
+}
+
+impl Gathered {
+    pub(super) fn new(
+        dofs: usize,
+        contacts: impl Iterator<Item = (Box<dyn FrictionLaw>, Vec<Mat<f64>>)>,
+    ) -> Result<Self, Error> {
+        let contacts: Vec<_> = contacts.collect();
+        let total: usize = contacts.iter().map(|(law, _)| law.points()).sum();
+        let mut rows = [Mat::zeros(total, dofs), Mat::zeros(total, dofs)];
+        let mut stiffness = Mat::zeros(total, total);
+        let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
+        for (index, (law, parts)) in contacts.into_iter().enumerate() {
+            let size = law.points();
+            let entry = format!("contact {}", index + 1);
+            for (part, rows) in parts.iter().zip(&mut rows) {
+                if (part.nrows(), part.ncols()) != (size, dofs) {
+                    return Err(Error::shape(
+                        &entry,
+                        format!("rows of shape {size} x {dofs}"),
+                        format!("{} x {}", part.nrows(), part.ncols()),
+                    ));
+                }
+                if (0..size).any(|i| (0..dofs).any(|j| !part[(i, j)].is_finite())) {
+                    return Err(Error::value(entry, f64::NAN, "its rows must be finite"));
+                }
+                rows.get_mut(first..first + size, ..).copy_from(part);
+            }
+            let own = law.stiffness();
+            stiffness.get_mut(first..first + size, first..first + size).copy_from(&own);
+            points.push(first..first + size);
+            laws.push(law);
+            first += size;
+        }
+        Ok(Self { laws, points, rows, stiffness })
+    }
+}

@@ -1,0 +1,287 @@
+//! A structure with its contacts and loads: the problem, before any setting or solver.
+
+mod gathered;
+mod slipping;
+
+use crate::contact::{FrictionLaw, Marched};
+use crate::structure::{
+    compliance, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure, HarmonicLoad, Ports,
+    Ring, RingCoupling, RingSector, Structure,
+};
+use crate::Error;
+use faer::Mat;
+use gathered::Gathered;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// One contact: its law and the rows of B that give its relative displacements.
+#[derive(Debug)]
+pub struct Contact {
+    /// The friction law.
+    pub law: Box<dyn FrictionLaw>,
+    /// Rows of B, points × N.
+    pub rows: Mat<f64>,
+}
+
+/// One contact of a sector: its law and the rows of B on the sector itself and on the next one.
+#[derive(Debug)]
+pub struct SectorContact {
+    /// The friction law.
+    pub law: Box<dyn FrictionLaw>,
+    /// Rows on the sector itself, points × N.
+    pub own: Mat<f64>,
+    /// Rows on the next sector, points × N.
+    pub next: Mat<f64>,
+}
+
+/// Structure, contacts and loads, with the compliance of the stuck structure at hand.
+pub struct Model {
+    structure: Arc<Structure>,
+    ports: Arc<Ports>,
+    laws: Vec<Box<dyn FrictionLaw>>,
+    points: Vec<Range<usize>>,
+    compliance: Arc<dyn Compliance>,
+    modal_base: &'static str,
+    body: Body,
+}
+
+/// How the structure of a model is given.
+#[derive(Clone)]
+enum Body {
+    /// By its matrices.
+    Whole,
+    /// As one sector of a disk in a travelling wave, with the rows of B on the next sector.
+    Wave { cyclic: Arc<CyclicStructure>, next: Arc<Mat<f64>> },
+    /// As a ring of sectors that may differ.
+    Ring(Arc<Ring>),
+}
+
+impl Body {
+    /// The compliance of the body with contacts of the stiffness in `ports`, and its name.
+    fn compliance(
+        &self,
+        structure: &Structure,
+        ports: &Ports,
+    ) -> Result<(Arc<dyn Compliance>, &'static str), Error> {
+        match self {
+            Self::Whole => {
+                let (compliance, name) = compliance(structure, ports)?;
+                Ok((compliance.into(), name))
+            }
+            Self::Wave { cyclic, next } => {
+                let ports = CyclicPorts {
+                    own: ports.rows.clone(),
+                    next: Mat::clone(next),
+                    stiffness: ports.stiffness.clone(),
+                    loads: ports.loads.clone(),
+                };
+                Ok((
+                    Arc::new(CyclicCompliance::new(CyclicStructure::clone(cyclic), ports)?),
+                    "waves",
+                ))
+            }
+            Self::Ring(ring) => {
+                Ok((Arc::new(ring.with_contact_stiffness(ports.stiffness.as_ref())?), "sectors"))
+            }
+        }
+    }
+}
+
+impl Model {
+    /// Assembles the problem and decomposes the structure once.
+    ///
+    /// # Errors
+    /// Shapes that do not fit the structure, numbers that are not finite, an eigenvalue iteration
+    /// that fails.
+    pub fn new(
+        structure: Structure,
+        contacts: Vec<Contact>,
+        loads: Vec<HarmonicLoad>,
+    ) -> Result<Self, Error> {
+        let parts = contacts.into_iter().map(|c| (c.law, vec![c.rows]));
+        let Gathered { laws, points, rows: [rows, _], stiffness } =
+            Gathered::new(structure.dofs(), parts)?;
+        let ports = Ports { rows, stiffness, loads };
+        Self::of(Body::Whole, structure, ports, laws, points)
+    }
+
+    /// One sector of a tuned bladed disk in a travelling wave; `loads` are those on sector 0.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn travelling_wave(
+        cyclic: CyclicStructure,
+        contacts: Vec<SectorContact>,
+        loads: Vec<HarmonicLoad>,
+    ) -> Result<Self, Error> {
+        let parts = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
+        let Gathered { laws, points, rows: [own, next], stiffness } =
+            Gathered::new(cyclic.dofs(), parts)?;
+        let structure = cyclic.sector()?;
+        let ports = Ports { rows: own, stiffness, loads };
+        let body = Body::Wave { cyclic: Arc::new(cyclic), next: Arc::new(next) };
+        Self::of(body, structure, ports, laws, points)
+    }
+
+    /// A disk of sectors that may differ, each coupled to the next one and the last to the first;
+    /// contacts and loads are given sector by sector.
+    ///
+    /// # Errors
+    /// As [`Model::new`]; other numbers of contacts than in sector 0.
+    pub fn ring(
+        structures: Vec<Structure>,
+        coupling: RingCoupling,
+        contacts: Vec<Vec<SectorContact>>,
+        loads: Vec<Vec<HarmonicLoad>>,
+    ) -> Result<Self, Error> {
+        let count = structures.len();
+        if (contacts.len(), loads.len()) != (count, count) {
+            return Err(Error::shape(
+                "sectors",
+                format!("contacts and loads of {count} sectors"),
+                format!("{} and {}", contacts.len(), loads.len()),
+            ));
+        }
+        let mut parts = Vec::with_capacity(count);
+        let (mut laws, mut points) = (Vec::new(), Vec::new());
+        for ((structure, contacts), loads) in structures.into_iter().zip(contacts).zip(loads) {
+            let rows = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
+            let own = Gathered::new(structure.dofs(), rows)?;
+            let first = points.last().map_or(0, |last: &Range<usize>| last.end);
+            points.extend(own.points.iter().map(|r| first + r.start..first + r.end));
+            laws.extend(own.laws);
+            let [own_rows, next] = own.rows;
+            let stiffness = own.stiffness;
+            parts.push(RingSector { structure, own: own_rows, next, stiffness, loads });
+        }
+        let ring = Arc::new(Ring::new(parts, coupling)?);
+        let (structure, ports) = ring.assembled()?;
+        Ok(Self {
+            structure: Arc::new(structure),
+            ports: Arc::new(ports),
+            laws,
+            points,
+            compliance: Arc::clone(&ring) as Arc<dyn Compliance>,
+            modal_base: "sectors",
+            body: Body::Ring(ring),
+        })
+    }
+
+    fn of(
+        body: Body,
+        structure: Structure,
+        ports: Ports,
+        laws: Vec<Box<dyn FrictionLaw>>,
+        points: Vec<Range<usize>>,
+    ) -> Result<Self, Error> {
+        let (compliance, modal_base) = body.compliance(&structure, &ports)?;
+        let (structure, ports) = (Arc::new(structure), Arc::new(ports));
+        Ok(Self { structure, ports, laws, points, compliance, modal_base, body })
+    }
+
+    /// The same problem with every law evaluated by marching through `samples` instants per period
+    /// (see [`Marched`]), on the same decomposition.
+    ///
+    /// # Errors
+    /// An odd or too small number of samples.
+    pub fn marched(&self, samples: usize) -> Result<Self, Error> {
+        let mut laws: Vec<Box<dyn FrictionLaw>> = Vec::with_capacity(self.laws.len());
+        for law in &self.laws {
+            laws.push(Box::new(Marched::new(law.softened(1.0), samples)?));
+        }
+        self.with_laws(laws)
+    }
+
+    /// Highest harmonic that the evaluation of every law resolves.
+    #[must_use]
+    pub fn resolves(&self) -> usize {
+        self.laws.iter().map(|law| law.resolves()).min().unwrap_or(usize::MAX)
+    }
+
+    /// The same structure, contacts and loads under other laws. The decomposition is shared if the
+    /// stiffness of the contacts is the same.
+    ///
+    /// # Errors
+    /// Laws that do not fit the contacts, an eigenvalue iteration that fails.
+    pub fn with_laws(&self, laws: Vec<Box<dyn FrictionLaw>>) -> Result<Self, Error> {
+        let sizes = |laws: &[Box<dyn FrictionLaw>]| laws.iter().map(|l| l.points()).collect();
+        let (expected, got): (Vec<usize>, Vec<usize>) = (sizes(&self.laws), sizes(&laws));
+        if expected != got {
+            return Err(Error::shape("laws", format!("{expected:?} points"), format!("{got:?}")));
+        }
+        let mut stiffness = self.ports.stiffness.clone();
+        for (law, range) in laws.iter().zip(&self.points) {
+            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
+        }
+        let (structure, points) = (Arc::clone(&self.structure), self.points.clone());
+        let (mut ports, mut compliance) = (Arc::clone(&self.ports), Arc::clone(&self.compliance));
+        let (mut modal_base, body) = (self.modal_base, self.body.clone());
+        if stiffness != ports.stiffness {
+            ports = Arc::new(Ports { stiffness, ..Ports::clone(&ports) });
+            (compliance, modal_base) = body.compliance(&structure, &ports)?;
+        }
+        Ok(Self { structure, ports, laws, points, compliance, modal_base, body })
+    }
+
+    /// Whether this is one sector of a disk in a travelling wave.
+    #[must_use]
+    pub fn is_travelling_wave(&self) -> bool {
+        matches!(self.body, Body::Wave { .. })
+    }
+
+    /// The structure without its contacts; of a travelling wave, the sector by itself.
+    #[must_use]
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// Contacts and loads of the structure; of a travelling wave, without the next sector.
+    #[must_use]
+    pub fn ports(&self) -> &Ports {
+        &self.ports
+    }
+
+    /// The friction laws, in the order of the contacts.
+    #[must_use]
+    pub fn laws(&self) -> &[Box<dyn FrictionLaw>] {
+        &self.laws
+    }
+
+    /// Rows of B that belong to each contact.
+    #[must_use]
+    pub fn points(&self) -> &[Range<usize>] {
+        &self.points
+    }
+
+    /// Compliance of the stuck structure.
+    #[must_use]
+    pub fn compliance(&self) -> &dyn Compliance {
+        self.compliance.as_ref()
+    }
+
+    /// Which modes carry the compliance, in words.
+    #[must_use]
+    pub fn modal_base(&self) -> &'static str {
+        self.modal_base
+    }
+
+    /// Contact stiffness D of all points [N/m].
+    #[must_use]
+    pub fn contact_stiffness(&self) -> &Mat<f64> {
+        &self.ports.stiffness
+    }
+
+    /// Whether rigid-body motion remains with all contacts stuck.
+    #[must_use]
+    pub fn static_singular(&self) -> bool {
+        let mut receptance = crate::structure::Receptance::default();
+        self.compliance.receptance(0, 0.0, &mut receptance).is_err()
+    }
+
+    /// Whether the motion has half-wave symmetry: odd laws under odd harmonics alone.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        self.laws.iter().all(|law| law.is_odd())
+            && self.compliance.forced_harmonics().iter().all(|k| k % 2 == 1)
+    }
+}

@@ -1,0 +1,149 @@
+//! Block tridiagonal systems that close on themselves: rings of equal parts, each coupled to its
+//! two neighbours. The effort grows with the number of blocks, not with its cube.
+
+use super::small_dense::{Block, BlockFactors};
+
+/// One block row: `lower x_{i−1} + own x_i + upper x_{i+1}`, indices modulo the number of blocks.
+#[derive(Debug, Clone)]
+pub struct BlockRow {
+    /// Coupling to the block before.
+    pub lower: Block,
+    /// The block itself.
+    pub own: Block,
+    /// Coupling to the next block.
+    pub upper: Block,
+}
+
+/// Factors of a cyclic block tridiagonal matrix: the last block is a border of the others, which
+/// are eliminated one after the other without pivoting between blocks.
+#[derive(Debug, Clone, Default)]
+pub struct CyclicTridiagonal {
+    size: usize,
+    eliminated: Vec<Eliminated>,
+    border: BlockFactors,
+}
+
+/// An eliminated block: its pivot, pivot⁻¹ times its coupling to the next block and to the border,
+/// and the rows of the next block and of the border in its columns.
+#[derive(Debug, Clone)]
+struct Eliminated {
+    pivot: BlockFactors,
+    to_next: Option<Block>,
+    to_border: Block,
+    from_next: Block,
+    from_border: Block,
+}
+
+impl CyclicTridiagonal {
+    /// Factors the matrix of these block rows.
+    #[must_use]
+    pub fn new(rows: &[BlockRow]) -> Self {
+        let Some((last, inner)) = rows.split_last() else { return Self::default() };
+        let size = last.own.rows();
+        let mut border = last.own.clone();
+        let Some(first) = inner.first() else {
+            border.add(&last.lower);
+            border.add(&last.upper);
+            return Self { size, eliminated: Vec::new(), border: BlockFactors::new(border) };
+        };
+        // The block at hand, and what couples it to the border in either direction.
+        let (mut own, mut to_border) = (first.own.clone(), first.lower.clone());
+        let mut from_border = last.upper.clone();
+        let mut eliminated = Vec::with_capacity(inner.len());
+        for (index, row) in inner.iter().enumerate() {
+            let next = inner.get(index + 1);
+            if next.is_none() {
+                // Its next block is the border itself.
+                to_border.add(&row.upper);
+                from_border.add(&last.lower);
+            }
+            let pivot = BlockFactors::new(own);
+            pivot.solve(&mut to_border);
+            border.subtract_product(&from_border, &to_border);
+            let Some(next) = next else {
+                let (to_next, from_next) = (None, Block::default());
+                eliminated.push(Eliminated { pivot, to_next, to_border, from_next, from_border });
+                break;
+            };
+            let mut to_next = row.upper.clone();
+            pivot.solve(&mut to_next);
+            own = next.own.clone();
+            own.subtract_product(&next.lower, &to_next);
+            let next_to_border = Block::minus_product(&next.lower, &to_border);
+            let border_from_next = Block::minus_product(&from_border, &to_next);
+            let (to_next, from_next) = (Some(to_next), next.lower.clone());
+            eliminated.push(Eliminated { pivot, to_next, to_border, from_next, from_border });
+            (to_border, from_border) = (next_to_border, border_from_next);
+        }
+        Self { size, eliminated, border: BlockFactors::new(border) }
+    }
+
+    /// Solves for a right-hand side stacked block after block, in place.
+    pub fn solve(&self, right: &mut [f64]) {
+        let size = self.size;
+        let (inner, border) = right.split_at_mut(self.eliminated.len() * size);
+        for (index, part) in self.eliminated.iter().enumerate() {
+            let (own, rest) = inner[index * size..].split_at_mut(size);
+            part.pivot.solve_vector(own);
+            part.from_border.subtract_from(own, border);
+            if part.to_next.is_some() {
+                part.from_next.subtract_from(own, &mut rest[..size]);
+            }
+        }
+        self.border.solve_vector(border);
+        for (index, part) in self.eliminated.iter().enumerate().rev() {
+            let (own, rest) = inner[index * size..].split_at_mut(size);
+            if let Some(to_next) = &part.to_next {
+                to_next.subtract_from(&rest[..size], own);
+            }
+            part.to_border.subtract_from(border, own);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::linalg::solvers::Solve as _;
+    use faer::Mat;
+
+    #[test]
+    fn every_number_of_blocks_agrees_with_the_dense_solution() {
+        for count in 1..8 {
+            let size = 3;
+            let mut seed = 0.3_f64;
+            let mut random = |shift: f64| {
+                let mut block = Block::zeros(size, size);
+                for at in 0..size * size {
+                    seed = (seed * 997.0 + 0.123).fract();
+                    let diagonal = if at % (size + 1) == 0 { shift } else { 0.0 };
+                    block[(at / size, at % size)] = seed - 0.5 + diagonal;
+                }
+                block
+            };
+            let rows: Vec<BlockRow> = (0..count)
+                .map(|_| BlockRow { lower: random(0.0), own: random(4.0), upper: random(0.0) })
+                .collect();
+            let mut dense = Mat::<f64>::zeros(count * size, count * size);
+            for (i, row) in rows.iter().enumerate() {
+                let parts = [
+                    (&row.lower, (i + count - 1) % count),
+                    (&row.own, i),
+                    (&row.upper, (i + 1) % count),
+                ];
+                for (part, j) in parts {
+                    for (at, value) in part.values().iter().enumerate() {
+                        dense[(i * size + at / size, j * size + at % size)] += value;
+                    }
+                }
+            }
+            let right = Mat::from_fn(count * size, 1, |i, _| (1.0 + i as f64).sin());
+            let expected = dense.partial_piv_lu().solve(&right);
+            let mut found: Vec<f64> = (0..count * size).map(|i| right[(i, 0)]).collect();
+            CyclicTridiagonal::new(&rows).solve(&mut found);
+            for (i, found) in found.iter().enumerate() {
+                assert!((expected[(i, 0)] - found).abs() < 1e-12, "{count}");
+            }
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! A tuned bladed disk: one sector with the phases of a travelling wave.
+//!
+//! In a wave of engine order E the motion of sector i + 1 runs ahead of that of sector i by the
+//! angle 2πE/n, so that harmonic k has the phase `δ = 2πkE/n` from sector to sector: it sees the
+//! disk at nodal diameter kE mod n. That is exact, friction between the sectors included.
+
+use super::modal::Wave;
+use super::modes::hermitian_modes;
+use super::ports::{forced_harmonics, Ports};
+use super::{
+    compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Receptance, Structure,
+};
+use crate::Error;
+use faer::{c64, Mat, MatRef};
+use std::f64::consts::TAU;
+use std::sync::OnceLock;
+
+/// A matrix of one sector, and its coupling to the next one: `A_δ = A_0 + A_1 e^{iδ} + A_1ᵀ e^{−iδ}`.
+#[derive(Debug, Clone)]
+pub struct CyclicMatrix {
+    own: Mat<f64>,
+    next: Mat<f64>,
+}
+
+impl CyclicMatrix {
+    /// From the block of a sector itself and the block that couples it to the next sector.
+    #[must_use]
+    pub fn new(own: Mat<f64>, next: Mat<f64>) -> Self {
+        Self { own, next }
+    }
+
+    /// The matrix of a wave with the phase `delta` from sector to sector.
+    fn wave(&self, delta: f64) -> Mat<c64> {
+        let (sin, cos) = delta.sin_cos();
+        let (ahead, behind) = (c64::new(cos, sin), c64::new(cos, -sin));
+        Mat::from_fn(self.own.nrows(), self.own.ncols(), |i, j| {
+            self.own[(i, j)] + ahead * self.next[(i, j)] + behind * self.next[(j, i)]
+        })
+    }
+
+    /// The same where it is real, at nodal diameter 0 or half the number of sectors.
+    fn standing(&self, sign: f64) -> Mat<f64> {
+        Mat::from_fn(self.own.nrows(), self.own.ncols(), |i, j| {
+            self.own[(i, j)] + sign * (self.next[(i, j)] + self.next[(j, i)])
+        })
+    }
+}
+
+/// A cyclic structure under a travelling wave.
+#[derive(Debug, Clone)]
+pub struct CyclicStructure {
+    /// Mass [kg].
+    pub mass: CyclicMatrix,
+    /// Damping [kg/s].
+    pub damping: CyclicMatrix,
+    /// Stiffness [N/m].
+    pub stiffness: CyclicMatrix,
+    /// Number of sectors n.
+    pub sectors: usize,
+    /// Engine order E.
+    pub engine_order: usize,
+}
+
+/// Contacts and loads of a sector; rows act on the sector itself and on the next one.
+#[derive(Debug, Clone)]
+pub struct CyclicPorts {
+    /// Part of `u = b x_i + b' x_{i+1}` on the sector itself, contacts × N.
+    pub own: Mat<f64>,
+    /// Part on the next sector.
+    pub next: Mat<f64>,
+    /// Contact stiffness D [N/m].
+    pub stiffness: Mat<f64>,
+    /// Loads on sector 0, one entry per harmonic.
+    pub loads: Vec<HarmonicLoad>,
+}
+
+impl CyclicStructure {
+    /// Number of DOFs of a sector.
+    #[must_use]
+    pub fn dofs(&self) -> usize {
+        self.mass.own.nrows()
+    }
+
+    /// Nodal diameter that harmonic k sees, 0..n.
+    #[must_use]
+    pub fn diameter(&self, harmonic: usize) -> usize {
+        ((harmonic as u128 * self.engine_order as u128) % self.sectors as u128) as usize
+    }
+
+    /// The sector by itself.
+    ///
+    /// # Errors
+    /// As [`Structure::new`].
+    pub fn sector(&self) -> Result<Structure, Error> {
+        let [mass, damping, stiffness] =
+            [&self.mass, &self.damping, &self.stiffness].map(|matrix| matrix.own.as_ref());
+        Structure::new(mass, damping, stiffness)
+    }
+
+    fn phase(&self, diameter: usize) -> f64 {
+        TAU * diameter as f64 / self.sectors as f64
+    }
+
+    /// Natural frequencies at a nodal diameter, with contacts of stiffness `stiffness` [rad/s].
+    ///
+    /// # Errors
+    /// Mass not positive definite, or the eigenvalue iteration fails.
+    pub fn natural_frequencies(
+        &self,
+        diameter: usize,
+        own: MatRef<'_, f64>,
+        next: MatRef<'_, f64>,
+        stiffness: MatRef<'_, f64>,
+    ) -> Result<Vec<f64>, Error> {
+        let delta = self.phase(diameter);
+        let rows = wave_rows(own, next, delta);
+        let restrained = restrained(&self.stiffness.wave(delta), &rows, stiffness);
+        Ok(hermitian_modes(self.mass.wave(delta).as_ref(), restrained.as_ref())?.frequencies())
+    }
+}
+
+/// `b e^{0} + b' e^{iδ}`.
+fn wave_rows(own: MatRef<'_, f64>, next: MatRef<'_, f64>, delta: f64) -> Mat<c64> {
+    let (sin, cos) = delta.sin_cos();
+    Mat::from_fn(own.nrows(), own.ncols(), |i, j| own[(i, j)] + c64::new(cos, sin) * next[(i, j)])
+}
+
+/// `K + Bᴴ D B`.
+fn restrained(stiffness: &Mat<c64>, rows: &Mat<c64>, contacts: MatRef<'_, f64>) -> Mat<c64> {
+    stiffness + rows.adjoint() * (super::modal::complex(contacts) * rows)
+}
+
+/// The compliance of a sector in a travelling wave.
+pub struct CyclicCompliance {
+    structure: CyclicStructure,
+    ports: CyclicPorts,
+    /// One compliance per nodal diameter, decomposed when it is first needed.
+    waves: Vec<OnceLock<Result<Box<dyn Compliance>, Error>>>,
+    stuck_frequencies: Vec<f64>,
+    free_frequencies: Vec<f64>,
+    bandwidth: f64,
+    forced: Vec<usize>,
+}
+
+impl CyclicCompliance {
+    /// The compliance of a sector with its contacts and loads.
+    ///
+    /// # Errors
+    /// Shapes that do not fit, a number of sectors below 1, a failing decomposition.
+    pub fn new(structure: CyclicStructure, ports: CyclicPorts) -> Result<Self, Error> {
+        if structure.sectors == 0 {
+            return Err(Error::value("sectors", 0.0, "must be at least 1"));
+        }
+        let size = structure.dofs();
+        for (entry, matrix) in [
+            ("mass", &structure.mass),
+            ("damping", &structure.damping),
+            ("stiffness", &structure.stiffness),
+        ] {
+            for part in [&matrix.own, &matrix.next] {
+                if (part.nrows(), part.ncols()) != (size, size) {
+                    return Err(Error::shape(
+                        entry,
+                        format!("blocks of shape {size} x {size}"),
+                        format!("{} x {}", part.nrows(), part.ncols()),
+                    ));
+                }
+            }
+        }
+        let forced = forced_harmonics(&ports.loads);
+        let waves = (0..structure.sectors).map(|_| OnceLock::new()).collect();
+        let mut cyclic = Self {
+            structure,
+            ports,
+            waves,
+            stuck_frequencies: Vec::new(),
+            free_frequencies: Vec::new(),
+            bandwidth: f64::MAX,
+            forced,
+        };
+        let (mut stuck, mut free) = (Vec::new(), Vec::new());
+        let mut bandwidth = f64::MAX;
+        let first = if cyclic.forced.is_empty() { vec![1] } else { cyclic.forced.clone() };
+        for harmonic in first {
+            let wave = cyclic.wave(harmonic)?;
+            stuck.extend_from_slice(wave.stuck_frequencies());
+            free.extend_from_slice(wave.free_frequencies());
+            bandwidth = bandwidth.min(wave.narrowest_bandwidth());
+        }
+        for frequencies in [&mut stuck, &mut free] {
+            frequencies.sort_by(f64::total_cmp);
+            frequencies.dedup();
+        }
+        (cyclic.stuck_frequencies, cyclic.free_frequencies) = (stuck, free);
+        cyclic.bandwidth = bandwidth;
+        Ok(cyclic)
+    }
+
+    /// The compliance at the nodal diameter of a harmonic.
+    fn wave(&self, harmonic: usize) -> Result<&dyn Compliance, Error> {
+        let diameter = self.structure.diameter(harmonic);
+        let wave = self.waves[diameter].get_or_init(|| self.decompose(diameter));
+        match wave {
+            Ok(wave) => Ok(wave.as_ref()),
+            Err(error) => Err(error.clone()),
+        }
+    }
+
+    /// Loads of the harmonics that see a nodal diameter.
+    fn loads_at(&self, diameter: usize) -> Vec<HarmonicLoad> {
+        let sees = |load: &&HarmonicLoad| self.structure.diameter(load.harmonic) == diameter;
+        self.ports.loads.iter().filter(sees).cloned().collect()
+    }
+
+    fn decompose(&self, diameter: usize) -> Result<Box<dyn Compliance>, Error> {
+        let structure = &self.structure;
+        let standing = match diameter {
+            0 => Some(1.0),
+            d if 2 * d == structure.sectors => Some(-1.0),
+            _ => None,
+        };
+        if let Some(sign) = standing {
+            let (mass, damping, stiffness) = (
+                structure.mass.standing(sign),
+                structure.damping.standing(sign),
+                structure.stiffness.standing(sign),
+            );
+            let whole = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
+            let ports = Ports {
+                rows: &self.ports.own + faer::Scale(sign) * &self.ports.next,
+                stiffness: self.ports.stiffness.clone(),
+                loads: self.loads_at(diameter),
+            };
+            return Ok(compliance(&whole, &ports)?.0);
+        }
+        let delta = structure.phase(diameter);
+        let rows = wave_rows(self.ports.own.as_ref(), self.ports.next.as_ref(), delta);
+        let (mass, damping) = (structure.mass.wave(delta), structure.damping.wave(delta));
+        let free_stiffness = structure.stiffness.wave(delta);
+        let stuck_stiffness = restrained(&free_stiffness, &rows, self.ports.stiffness.as_ref());
+        let stuck = hermitian_modes(mass.as_ref(), stuck_stiffness.as_ref())?;
+        let free = hermitian_modes(mass.as_ref(), free_stiffness.as_ref())?;
+        let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
+        let loads = self.loads_at(diameter);
+        let modal = ModalCompliance::of_wave(Wave {
+            in_stuck: stuck.project(damping.as_ref()),
+            in_free: free.project(damping.as_ref()),
+            stuck,
+            free,
+            rows: rows.clone(),
+            stiffness: self.ports.stiffness.clone(),
+            loads: loads.clone(),
+        })?;
+        let matrices = [mass, damping, stuck_stiffness];
+        let direct = DirectCompliance::of_matrices(matrices, rows, loads)
+            .with_frequencies(stuck_frequencies, free_frequencies);
+        match modal {
+            Some(modal) if modal.reproduces(|| direct.clone()) => Ok(Box::new(modal)),
+            _ => Ok(Box::new(direct)),
+        }
+    }
+}
+
+impl Compliance for CyclicCompliance {
+    fn contacts(&self) -> usize {
+        self.ports.own.nrows()
+    }
+
+    fn dofs(&self) -> usize {
+        self.structure.dofs()
+    }
+
+    fn forced_harmonics(&self) -> Vec<usize> {
+        self.forced.clone()
+    }
+
+    fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
+        self.wave(harmonic)?.receptance(harmonic, omega, out)
+    }
+
+    fn displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        self.wave(harmonic)?.displacement(harmonic, omega, contact, slip_load, observe, out)
+    }
+
+    fn slip_displacement(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        self.wave(harmonic)?.slip_displacement(harmonic, omega, contact, slip_load, observe, out)
+    }
+
+    fn displacement_slope(
+        &self,
+        harmonic: usize,
+        omega: f64,
+        contact: &[c64],
+        slip_load: &[c64],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        self.wave(harmonic)?.displacement_slope(harmonic, omega, contact, slip_load, observe, out)
+    }
+
+    fn stuck_frequencies(&self) -> &[f64] {
+        &self.stuck_frequencies
+    }
+
+    fn free_frequencies(&self) -> &[f64] {
+        &self.free_frequencies
+    }
+
+    fn narrowest_bandwidth(&self) -> f64 {
+        self.bandwidth
+    }
+}

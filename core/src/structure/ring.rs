@@ -1,0 +1,321 @@
+//! A disk whose sectors differ: each sector by itself, and a ring of equations for what couples
+//! neighbours.
+//!
+//! The sectors' own compliances come from their modes. Neighbours see each other through the few
+//! DOFs of their coupling alone, so that a response of the whole disk takes one cyclic block
+//! tridiagonal solution in these DOFs: the effort grows with the number of sectors.
+
+use super::modes::real_modes;
+use super::ports::{forced_harmonics, HarmonicLoad, Ports};
+use super::ring_order::RingOrder;
+use super::{compliance, Compliance, Receptance, Structure};
+use crate::Error;
+use faer::{c64, Mat, MatRef};
+use std::sync::OnceLock;
+
+/// What couples a sector to the next one: the blocks `A_1` of mass, damping and stiffness; the
+/// force on sector i is `A_1 x_{i+1} + A_1ᵀ x_{i−1}`.
+#[derive(Debug, Clone)]
+pub struct RingCoupling {
+    /// Mass block [kg].
+    pub mass: Mat<f64>,
+    /// Damping block [kg/s].
+    pub damping: Mat<f64>,
+    /// Stiffness block [N/m].
+    pub stiffness: Mat<f64>,
+}
+
+/// A sector with the rows of its contacts on itself and on the next sector, and its loads.
+#[derive(Debug, Clone)]
+pub struct RingSector {
+    /// Mass, damping and stiffness, its own share of the couplings included.
+    pub structure: Structure,
+    /// Rows of B on the sector itself, contacts × N.
+    pub own: Mat<f64>,
+    /// Rows on the next sector, zero for contacts inside the sector and to ground.
+    pub next: Mat<f64>,
+    /// Contact stiffness D of the sector's contacts [N/m].
+    pub stiffness: Mat<f64>,
+    /// Loads of the sector.
+    pub loads: Vec<HarmonicLoad>,
+}
+
+/// The compliance of a ring of sectors.
+pub struct Ring {
+    parts: Vec<RingSector>,
+    /// Each sector by itself, seen from its ports: its own contacts, those of the sector before
+    /// that reach it, and the interface.
+    pub(super) sectors: Vec<Box<dyn Compliance>>,
+    coupling: RingCoupling,
+    pub(super) layout: RingLayout,
+    frequencies: OnceLock<[Vec<f64>; 2]>,
+    pub(super) highest: f64,
+    pub(super) bandwidth: f64,
+    pub(super) forced: Vec<usize>,
+}
+
+/// Sizes and port positions that all sectors of a ring share.
+#[derive(Debug, Clone)]
+pub struct RingLayout {
+    /// DOFs per sector.
+    pub dofs: usize,
+    /// Contacts per sector; they are the first ports of a sector.
+    pub contacts: usize,
+    /// Contacts with a part on the next sector, where they are the next ports.
+    pub between: Vec<usize>,
+    /// DOFs through which neighbours are coupled, the last ports.
+    pub interface: Vec<usize>,
+}
+
+impl RingLayout {
+    /// Number of ports of a sector.
+    #[must_use]
+    pub fn ports(&self) -> usize {
+        self.contacts + self.between.len() + self.interface.len()
+    }
+
+    /// First port of the interface.
+    #[must_use]
+    pub fn first_interface(&self) -> usize {
+        self.contacts + self.between.len()
+    }
+}
+
+impl Ring {
+    /// The ring of sectors that follow one another, the last one coupled to the first.
+    ///
+    /// # Errors
+    /// No sector, shapes that do not fit, or a failing decomposition.
+    pub fn new(parts: Vec<RingSector>, coupling: RingCoupling) -> Result<Self, Error> {
+        let Some(first) = parts.first() else {
+            return Err(Error::value("sectors", 0.0, "must be at least 1"));
+        };
+        let (dofs, contacts) = (first.structure.dofs(), first.own.nrows());
+        for (index, part) in parts.iter().enumerate() {
+            let expected = (dofs, contacts, dofs);
+            let fits = (part.structure.dofs(), part.own.nrows(), part.own.ncols()) == expected
+                && (part.next.nrows(), part.next.ncols()) == (contacts, dofs)
+                && (part.stiffness.nrows(), part.stiffness.ncols()) == (contacts, contacts);
+            if !fits {
+                return Err(Error::shape(
+                    &format!("sector {index}"),
+                    format!("{dofs} DOFs and {contacts} contacts, as sector 0"),
+                    format!("{} and {}", part.structure.dofs(), part.own.nrows()),
+                ));
+            }
+        }
+        let reaches =
+            |c: &usize| parts.iter().any(|part| (0..dofs).any(|j| part.next[(*c, j)] != 0.0));
+        let mut between: Vec<usize> = (0..contacts).filter(reaches).collect();
+        // Points that a contact couples belong together.
+        let coupled = |a: usize, b: usize| parts.iter().any(|part| part.stiffness[(a, b)] != 0.0);
+        while let Some(more) = (0..contacts)
+            .find(|c| !between.contains(c) && between.iter().any(|&other| coupled(*c, other)))
+        {
+            between.push(more);
+        }
+        between.sort_unstable();
+        let mut interface: Vec<usize> = (0..dofs)
+            .filter(|&i| {
+                [&coupling.mass, &coupling.damping, &coupling.stiffness]
+                    .iter()
+                    .any(|block| (0..dofs).any(|j| block[(i, j)] != 0.0 || block[(j, i)] != 0.0))
+            })
+            .collect();
+        // Stuck contacts between neighbours are couplings as well.
+        for &c in &between {
+            let touched = |j: &usize| {
+                parts.iter().any(|part| part.own[(c, *j)] != 0.0 || part.next[(c, *j)] != 0.0)
+            };
+            interface.extend((0..dofs).filter(touched));
+        }
+        interface.sort_unstable();
+        interface.dedup();
+        let layout = RingLayout { dofs, contacts, between, interface };
+        let all: Vec<HarmonicLoad> = parts.iter().flat_map(|part| part.loads.clone()).collect();
+        let mut forced = forced_harmonics(&all);
+        forced.dedup();
+        let mut sectors = Vec::with_capacity(parts.len());
+        let (mut bandwidth, mut highest) = (f64::MAX, 0.0_f64);
+        for index in 0..parts.len() {
+            let before = &parts[(index + parts.len() - 1) % parts.len()];
+            let sector = isolated(&parts[index], before, &layout)?;
+            bandwidth = bandwidth.min(sector.narrowest_bandwidth());
+            highest = sector.stuck_frequencies().iter().copied().fold(highest, f64::max);
+            sectors.push(sector);
+        }
+        let frequencies = OnceLock::new();
+        Ok(Self { parts, sectors, coupling, layout, frequencies, highest, bandwidth, forced })
+    }
+
+    /// Number of sectors.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.sectors.len()
+    }
+
+    /// Sizes and port positions.
+    #[must_use]
+    pub fn layout(&self) -> &RingLayout {
+        &self.layout
+    }
+
+    /// The equations of the ring for one harmonic of a motion at `omega` [rad/s], with
+    /// derivatives in ω if `slopes`.
+    ///
+    /// # Errors
+    /// A sector that nothing holds (harmonic 0), or one that resonates undamped.
+    pub fn order(&self, harmonic: usize, omega: f64, slopes: bool) -> Result<RingOrder, Error> {
+        let blank = Receptance { slope: slopes.then(Default::default), ..Receptance::default() };
+        let mut receptances = vec![blank; self.sectors.len()];
+        for (sector, receptance) in self.sectors.iter().zip(&mut receptances) {
+            sector.receptance(harmonic, omega, receptance)?;
+        }
+        let links =
+            (0..self.sectors.len()).map(|index| self.link(index, harmonic as f64, omega)).collect();
+        Ok(RingOrder::new(self.layout.clone(), receptances, links))
+    }
+
+    /// Coupling of a sector to the next one on the interface, and its derivative in ω.
+    fn link(&self, index: usize, order: f64, omega: f64) -> [Mat<c64>; 2] {
+        let RingLayout { between, interface, .. } = &self.layout;
+        let RingCoupling { mass, damping, stiffness } = &self.coupling;
+        let part = &self.parts[index];
+        let size = interface.len();
+        let value = Mat::from_fn(size, size, |i, j| {
+            let (row, column) = (interface[i], interface[j]);
+            let contacts: f64 = between
+                .iter()
+                .flat_map(|&a| between.iter().map(move |&b| (a, b)))
+                .map(|(a, b)| part.own[(a, row)] * part.stiffness[(a, b)] * part.next[(b, column)])
+                .sum();
+            let w = order * omega;
+            c64::new(
+                stiffness[(row, column)] + contacts - w * w * mass[(row, column)],
+                w * damping[(row, column)],
+            )
+        });
+        let slope = Mat::from_fn(size, size, |i, j| {
+            let at = (interface[i], interface[j]);
+            c64::new(-2.0 * order * order * omega * mass[at], order * damping[at])
+        });
+        [value, slope]
+    }
+
+    /// The same ring with another stiffness of its contacts, all of them in a row.
+    ///
+    /// # Errors
+    /// As [`Ring::new`].
+    pub fn with_contact_stiffness(&self, stiffness: MatRef<'_, f64>) -> Result<Self, Error> {
+        let contacts = self.layout.contacts;
+        let own = |index: usize| {
+            let at = index * contacts;
+            stiffness.get(at..at + contacts, at..at + contacts).to_owned()
+        };
+        let parts = self
+            .parts
+            .iter()
+            .enumerate()
+            .map(|(index, part)| RingSector { stiffness: own(index), ..part.clone() })
+            .collect();
+        Self::new(parts, self.coupling.clone())
+    }
+
+    /// The disk as one structure, with all contacts and loads.
+    ///
+    /// # Errors
+    /// As [`Structure::new`].
+    pub fn assembled(&self) -> Result<(Structure, Ports), Error> {
+        let (count, RingLayout { dofs, contacts, .. }) = (self.sectors.len(), &self.layout);
+        let blank = Mat::<f64>::zeros(count * dofs, count * dofs);
+        let [mut mass, mut damping, mut stiffness] = [blank.clone(), blank.clone(), blank];
+        let mut rows = Mat::<f64>::zeros(count * contacts, count * dofs);
+        let mut of_contacts = Mat::<f64>::zeros(count * contacts, count * contacts);
+        let mut loads: Vec<HarmonicLoad> = Vec::new();
+        for (index, part) in self.parts.iter().enumerate() {
+            let next = (index + 1) % count;
+            for (matrix, own, coupling) in [
+                (&mut mass, part.structure.mass(), &self.coupling.mass),
+                (&mut damping, part.structure.damping(), &self.coupling.damping),
+                (&mut stiffness, part.structure.stiffness(), &self.coupling.stiffness),
+            ] {
+                add(matrix, index, index, own);
+                add(matrix, index, next, coupling.as_ref());
+                add(matrix, next, index, coupling.transpose());
+            }
+            add(&mut rows, index, index, part.own.as_ref());
+            add(&mut rows, index, next, part.next.as_ref());
+            add(&mut of_contacts, index, index, part.stiffness.as_ref());
+            for load in &part.loads {
+                let at = loads.iter().position(|l| l.harmonic == load.harmonic);
+                let at = at.unwrap_or_else(|| {
+                    let amplitude = vec![c64::new(0.0, 0.0); count * dofs];
+                    loads.push(HarmonicLoad { harmonic: load.harmonic, amplitude });
+                    loads.len() - 1
+                });
+                for (j, p) in load.amplitude.iter().enumerate() {
+                    loads[at].amplitude[index * dofs + j] += p;
+                }
+            }
+        }
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
+        Ok((structure, Ports { rows, stiffness: of_contacts, loads }))
+    }
+
+    /// Natural frequencies of the disk, stuck and free.
+    pub(super) fn natural(&self) -> &[Vec<f64>; 2] {
+        self.frequencies.get_or_init(|| {
+            let frequencies = |stuck: bool| -> Result<Vec<f64>, Error> {
+                let (structure, ports) = self.assembled()?;
+                let stiffness = if stuck {
+                    let rows = ports.rows.as_ref();
+                    structure.restrained_stiffness(rows, ports.stiffness.as_ref())
+                } else {
+                    structure.stiffness().to_owned()
+                };
+                Ok(real_modes(structure.mass(), stiffness.as_ref())?.frequencies())
+            };
+            // The sectors have been decomposed; a disk that cannot be has no stops in a range.
+            [true, false].map(|stuck| frequencies(stuck).unwrap_or_default())
+        })
+    }
+}
+
+fn add(matrix: &mut Mat<f64>, row: usize, column: usize, block: MatRef<'_, f64>) {
+    let (rows, columns) = (block.nrows(), block.ncols());
+    let mut target =
+        matrix.get_mut(row * rows..(row + 1) * rows, column * columns..(column + 1) * columns);
+    target += block;
+}
+
+/// A sector with its neighbours held still, as its ports see it.
+fn isolated(
+    part: &RingSector,
+    before: &RingSector,
+    layout: &RingLayout,
+) -> Result<Box<dyn Compliance>, Error> {
+    let RingLayout { dofs, contacts, between, interface } = layout;
+    let ports = layout.ports();
+    // Contacts of the sector before stick to this one with their part on it.
+    let mut held = part.structure.stiffness().to_owned();
+    held += before.next.transpose() * (&before.stiffness * &before.next);
+    let structure = Structure::new(part.structure.mass(), part.structure.damping(), held.as_ref())?;
+    let rows = Mat::from_fn(ports, *dofs, |i, j| {
+        if i < *contacts {
+            part.own[(i, j)]
+        } else if i < contacts + between.len() {
+            before.next[(between[i - contacts], j)]
+        } else {
+            f64::from(u8::from(interface[i - contacts - between.len()] == j))
+        }
+    });
+    let stiffness = Mat::from_fn(ports, ports, |i, j| {
+        if i < *contacts && j < *contacts {
+            part.stiffness[(i, j)]
+        } else {
+            0.0
+        }
+    });
+    let ports = Ports { rows, stiffness, loads: part.loads.clone() };
+    Ok(compliance(&structure, &ports)?.0)
+}

@@ -1,0 +1,217 @@
+//! One harmonic of the motion of a ring of sectors.
+
+use super::ring::RingLayout;
+use super::Receptance;
+use crate::solve::{Block, BlockRow, CyclicTridiagonal};
+use faer::{c64, Mat, MatRef};
+
+/// The sectors' receptances at their ports and the couplings of neighbours, with the factors of
+/// the equations of the interface: `y_i + A_yy (Z y_{i+1} + Zᵀ y_{i−1}) = A_y f_i + a_y`.
+pub struct RingOrder {
+    layout: RingLayout,
+    receptances: Vec<Receptance>,
+    /// Z_i, which couples sector i to the next one, and its derivative in ω.
+    links: Vec<[Mat<c64>; 2]>,
+    interface: CyclicTridiagonal,
+}
+
+/// Motion and forces at the ports of all sectors, sector after sector, and contact displacements.
+#[derive(Debug, Clone)]
+pub struct RingMotion {
+    /// Port displacements.
+    pub port: Vec<c64>,
+    /// Forces on the ports.
+    pub force: Vec<c64>,
+    /// Relative displacements at the contacts.
+    pub contact: Vec<c64>,
+}
+
+impl RingOrder {
+    pub(super) fn new(
+        layout: RingLayout,
+        receptances: Vec<Receptance>,
+        links: Vec<[Mat<c64>; 2]>,
+    ) -> Self {
+        let (count, ports, first) = (links.len(), layout.ports(), layout.first_interface());
+        let size = layout.interface.len();
+        let rows: Vec<BlockRow> = (0..count)
+            .map(|i| {
+                let contact = &receptances[i].contact;
+                let own = Mat::from_fn(size, size, |a, b| contact[(first + b) * ports + first + a]);
+                let before = &links[(i + count - 1) % count][0];
+                BlockRow {
+                    lower: real((&own * before.transpose()).as_ref()),
+                    own: Block::identity(2 * size),
+                    upper: real((&own * &links[i][0]).as_ref()),
+                }
+            })
+            .collect();
+        let interface = CyclicTridiagonal::new(&rows);
+        Self { layout, receptances, links, interface }
+    }
+
+    /// Number of sectors.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.receptances.len()
+    }
+
+    /// Number of ports of a sector.
+    #[must_use]
+    pub fn ports(&self) -> usize {
+        self.layout.ports()
+    }
+
+    /// Receptance of the ports of a sector, column after column, and its response to its loads.
+    #[must_use]
+    pub fn sector(&self, index: usize) -> &Receptance {
+        &self.receptances[index]
+    }
+
+    /// Coupling of a sector to the next one on the interface.
+    #[must_use]
+    pub fn link(&self, index: usize) -> MatRef<'_, c64> {
+        self.links[index][0].as_ref()
+    }
+
+    /// Response to slip loads at the contacts and, if `loaded`, to the external loads.
+    #[must_use]
+    pub fn respond(&self, loaded: bool, slip_load: &[c64]) -> RingMotion {
+        let RingLayout { contacts, between, .. } = &self.layout;
+        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let zero = c64::new(0.0, 0.0);
+        let mut force = vec![zero; count * ports];
+        for i in 0..count {
+            let before = (i + count - 1) % count;
+            force[i * ports..i * ports + contacts]
+                .copy_from_slice(&slip_load[i * contacts..(i + 1) * contacts]);
+            for (at, &c) in between.iter().enumerate() {
+                force[i * ports + contacts + at] = slip_load[before * contacts + c];
+            }
+        }
+        let mut port = vec![zero; count * ports];
+        for i in 0..count {
+            if loaded {
+                port[i * ports..(i + 1) * ports].copy_from_slice(&self.receptances[i].stuck);
+            }
+            self.add_product(i, &force[i * ports..(i + 1) * ports], &mut port);
+        }
+        self.couple(port, force)
+    }
+
+    /// Derivative in ω of a response at fixed loads.
+    #[must_use]
+    pub fn respond_rate(&self, loaded: bool, motion: &RingMotion) -> RingMotion {
+        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let zero = c64::new(0.0, 0.0);
+        let mut port = vec![zero; count * ports];
+        let mut change = vec![zero; count * ports];
+        self.add_coupling(1, &motion.port, &mut change);
+        for i in 0..count {
+            let range = i * ports..(i + 1) * ports;
+            if let Some((contact, stuck)) = &self.receptances[i].slope {
+                for (column, f) in motion.force[range.clone()].iter().enumerate() {
+                    for row in 0..ports {
+                        port[i * ports + row] += contact[column * ports + row] * f;
+                    }
+                }
+                if loaded {
+                    port[range.clone()].iter_mut().zip(stuck).for_each(|(p, s)| *p += s);
+                }
+            }
+            self.add_product(i, &change[range], &mut port);
+        }
+        self.couple(port, change)
+    }
+
+    /// Lets the neighbours act on one another: `port` holds the motion without them, `force` the
+    /// forces that cause it.
+    fn couple(&self, mut port: Vec<c64>, mut force: Vec<c64>) -> RingMotion {
+        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let (first, size) = (self.layout.first_interface(), self.layout.interface.len());
+        let mut interface = Vec::with_capacity(count * 2 * size);
+        for i in 0..count {
+            for y in &port[i * ports + first..(i + 1) * ports] {
+                interface.extend([y.re, y.im]);
+            }
+        }
+        self.interface.solve(&mut interface);
+        for i in 0..count {
+            for local in 0..size {
+                let at = i * 2 * size + 2 * local;
+                port[i * ports + first + local] = c64::new(interface[at], interface[at + 1]);
+            }
+        }
+        let mut coupling = vec![c64::new(0.0, 0.0); count * ports];
+        self.add_coupling(0, &port, &mut coupling);
+        // The interface has been solved for; the other ports follow from it.
+        for i in 0..count {
+            let kept = port[i * ports + first..(i + 1) * ports].to_vec();
+            self.add_product(i, &coupling[i * ports..(i + 1) * ports], &mut port);
+            port[i * ports + first..(i + 1) * ports].copy_from_slice(&kept);
+        }
+        force.iter_mut().zip(&coupling).for_each(|(f, c)| *f += c);
+        let contact = self.contact_displacement(&port);
+        RingMotion { port, force, contact }
+    }
+
+    /// `u = o_i + w_{i+1}`: what a contact's own sector does, and the next one where it reaches it.
+    fn contact_displacement(&self, port: &[c64]) -> Vec<c64> {
+        let RingLayout { contacts, between, .. } = &self.layout;
+        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let mut contact = Vec::with_capacity(count * contacts);
+        for i in 0..count {
+            contact.extend_from_slice(&port[i * ports..i * ports + contacts]);
+            let next = (i + 1) % count;
+            for (at, &c) in between.iter().enumerate() {
+                contact[i * contacts + c] += port[next * ports + contacts + at];
+            }
+        }
+        contact
+    }
+
+    /// Adds the forces `−(Z y_{i+1} + Zᵀ y_{i−1})` of the neighbours, or of the change of Z.
+    fn add_coupling(&self, which: usize, port: &[c64], force: &mut [c64]) {
+        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let (first, size) = (self.layout.first_interface(), self.layout.interface.len());
+        for i in 0..count {
+            let (next, before) = ((i + 1) % count, (i + count - 1) % count);
+            let (ahead, behind) = (&self.links[i][which], &self.links[before][which]);
+            for a in 0..size {
+                for b in 0..size {
+                    force[i * ports + first + a] -= ahead[(a, b)] * port[next * ports + first + b]
+                        + behind[(b, a)] * port[before * ports + first + b];
+                }
+            }
+        }
+    }
+
+    /// Adds what forces on the ports of a sector move there.
+    fn add_product(&self, sector: usize, force: &[c64], port: &mut [c64]) {
+        let ports = self.layout.ports();
+        let contact = &self.receptances[sector].contact;
+        for (column, f) in force.iter().enumerate() {
+            if *f == c64::new(0.0, 0.0) {
+                continue;
+            }
+            for row in 0..ports {
+                port[sector * ports + row] += contact[column * ports + row] * f;
+            }
+        }
+    }
+}
+
+/// A complex matrix as a real one of pairs (real part, imaginary part).
+fn real(matrix: MatRef<'_, c64>) -> Block {
+    let mut real = Block::zeros(2 * matrix.nrows(), 2 * matrix.ncols());
+    for j in 0..matrix.ncols() {
+        for i in 0..matrix.nrows() {
+            let z = matrix[(i, j)];
+            real[(2 * i, 2 * j)] = z.re;
+            real[(2 * i + 1, 2 * j + 1)] = z.re;
+            real[(2 * i, 2 * j + 1)] = -z.im;
+            real[(2 * i + 1, 2 * j)] = z.im;
+        }
+    }
+    real
+}

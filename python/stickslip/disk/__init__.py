@@ -1,0 +1,20 @@
+"""Bladed disks: equal sectors in a travelling wave, and rings of sectors that differ."""
+
+from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.boundary import cyclic_sector
+from stickslip.disk.coupling import Coupling, Interface
+from stickslip.disk.mistuned import MistunedDisk
+from stickslip.disk.nodal_diameters import NodalDiameters
+from stickslip.disk.pattern import mistuning_pattern
+from stickslip.disk.ring import Ring
+
+__all__ = [
+    "BladedDisk",
+    "Coupling",
+    "Interface",
+    "MistunedDisk",
+    "NodalDiameters",
+    "Ring",
+    "cyclic_sector",
+    "mistuning_pattern",
+]

@@ -1,0 +1,65 @@
+"""Doors that the arguments of a disk pass."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NoReturn
+
+from stickslip.checks import brief, unknown, whole_number
+from stickslip.disk.coupling import Coupling, Interface
+from stickslip.errors import ModelError
+from stickslip.model.structure import Structure
+
+__all__ = ["NEXT", "orders_of", "require_couplings", "require_interface"]
+
+NEXT = "next."
+"""Prefix of the degrees of freedom of the next sector, in contacts between two sectors."""
+
+
+def orders_of(orders: Mapping[int, int] | None) -> dict[int, int]:
+    """Return engine orders by harmonic, checked."""
+    if orders is None:
+        return {}
+    if not isinstance(orders, Mapping):
+        raise ModelError(
+            f"engine_orders: {brief(orders)} is no mapping; write {{harmonic: engine order}}"
+        )
+    return {
+        whole_number(harmonic, "engine_orders: harmonic", smallest=1): whole_number(
+            order, f"engine_orders[{brief(harmonic)}]"
+        )
+        for harmonic, order in orders.items()
+    }
+
+
+def require_couplings(couplings: tuple[Coupling, ...], structure: Structure) -> None:
+    """Refuse couplings at degrees of freedom that the sector lacks."""
+    for number, coupling in enumerate(couplings, 1):
+        for dof in coupling.ends:
+            if dof not in structure.dofs:
+                _refuse_coupling(number, dof, structure)
+
+
+def _refuse_coupling(number: int, dof: str, structure: Structure) -> NoReturn:
+    bare = dof.removeprefix(NEXT)
+    if bare in structure.dofs:
+        raise ModelError(
+            f"coupling {number}: {brief(dof)}: its second end is in the next sector anyway; write "
+            f"{brief(bare)}"
+        )
+    raise ModelError(f"coupling {number}: {unknown('dof', dof, structure.dofs)}")
+
+
+def require_interface(interface: Interface | None, structure: Structure) -> None:
+    """Refuse an interface that does not fit the sector."""
+    if interface is None:
+        return
+    if not isinstance(interface, Interface):
+        raise ModelError(
+            f"interface: {brief(interface)} is no Interface; write ss.Interface(stiffness=K1)"
+        )
+    if len(interface) != len(structure):
+        raise ModelError(
+            f"interface: {len(interface)} x {len(interface)} for a sector of {len(structure)} "
+            "dofs; give blocks of the size of its matrices"
+        )

@@ -1,0 +1,75 @@
+"""The matrices of a sector with what couples it to the next one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import Matrix
+from stickslip.disk.coupling import Coupling, Interface
+from stickslip.model.structure import Structure
+
+__all__ = ["Blocks", "CyclicMatrices"]
+
+
+class Blocks(NamedTuple):
+    """A cyclic matrix by its blocks."""
+
+    own: Matrix
+    """(N, N) Block of a sector."""
+    next: Matrix
+    """(N, N) Block of a sector, by rows, and the next one, by columns."""
+
+    def wave(self, delta: float) -> NDArray[np.complex128]:
+        """Return the matrix that a wave meets which runs ahead by `delta` per sector [rad]."""
+        ahead = np.exp(1j * delta) * self.next
+        return np.asarray(self.own + ahead + ahead.conj().T, dtype=np.complex128)
+
+
+@dataclass(frozen=True)
+class CyclicMatrices:
+    """Mass, damping and stiffness of a sector and of its coupling to the next one."""
+
+    mass: Blocks
+    """[kg]"""
+    damping: Blocks
+    """[kg/s]"""
+    stiffness: Blocks
+    """[N/m]"""
+
+    @classmethod
+    def of(
+        cls, structure: Structure, couplings: Sequence[Coupling], interface: Interface | None
+    ) -> CyclicMatrices:
+        """Add couplings and interface blocks to the matrices of a sector.
+
+        Parameters
+        ----------
+        structure : Structure
+            The sector by itself.
+        couplings : sequence of Coupling
+            Springs to the next sector.
+        interface : Interface or None
+            Blocks of cyclic matrices.
+
+        Returns
+        -------
+        CyclicMatrices
+            Of a sector among its neighbours.
+        """
+        blocks = {}
+        for name in ("mass", "damping", "stiffness"):
+            own = getattr(structure, name).copy()
+            following = np.zeros_like(own) if interface is None else getattr(interface, name).copy()
+            for coupling in couplings:
+                factor = getattr(coupling, name, 0.0)
+                if factor:
+                    at_own, at_next = coupling.blocks(structure)
+                    own += factor * at_own
+                    following += factor * at_next
+            blocks[name] = Blocks(own, following)
+        return cls(**blocks)

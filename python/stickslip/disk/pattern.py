@@ -1,0 +1,59 @@
+"""Random mistuning patterns."""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import choice, real_number, whole_number
+from stickslip.errors import ModelError
+
+__all__ = ["DISTRIBUTIONS", "Distribution", "mistuning_pattern"]
+
+Distribution: TypeAlias = Literal["normal", "uniform"]
+DISTRIBUTIONS: tuple[str, ...] = get_args(Distribution)
+"""What deviations may be drawn from."""
+
+
+def mistuning_pattern(
+    sectors: int, deviation: float, distribution: Distribution = "normal", *, seed: int = 0
+) -> NDArray[np.float64]:
+    """Draw deviations of the sectors of a disk, for `BladedDisk.mistuned`.
+
+    Parameters
+    ----------
+    sectors : int
+        Number of sectors.
+    deviation : float
+        Standard deviation S.
+    distribution : {"normal", "uniform"}, optional
+        Distribution of zero mean and that deviation; "uniform" reaches to sqrt(3) S.
+    seed : int, optional
+        Seed of NumPy's default generator: the same seed, the same pattern.
+
+    Returns
+    -------
+    ndarray of float64, shape (sectors,)
+        Deviations S r_i; the sectors have the stiffness (1 + S r_i) K.
+
+    Raises
+    ------
+    ModelError
+        If a number is outside its range, or there is no such distribution.
+
+    References
+    ----------
+    Guillen (1999), section 4.5: E_i = (1 + S r_i) E_0.
+    """
+    count = whole_number(sectors, "sectors", smallest=1)
+    size = real_number(deviation, "deviation")
+    if size < 0.0:
+        raise ModelError(f"deviation: {size:g} is negative; give 0.05 for 5 %")
+    choice(distribution, "distribution", DISTRIBUTIONS)
+    generator = np.random.default_rng(whole_number(seed, "seed"))
+    if distribution == "normal":
+        return size * generator.standard_normal(count)
+    bound = 3.0**0.5
+    return size * generator.uniform(-bound, bound, count)

@@ -1,0 +1,249 @@
+"""How the sectors of a bladed disk move, one beside the other."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple, Self, cast
+
+import numpy as np
+
+from stickslip.checks import brief, text, unknown
+from stickslip.errors import ModelError
+from stickslip.results.arrays import Complex, Float, Measure, constant
+from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.peaks import RIVAL, Peak
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    from matplotlib.axes import Axes
+
+    from stickslip.disk import BladedDisk, MistunedDisk
+    from stickslip.plot import BladeBarOptions, BladeCurveOptions
+    from stickslip.results import ForcedResponse
+
+__all__ = ["Amplification", "BladeMotion"]
+
+
+class Amplification(NamedTuple):
+    """The highest peak of any blade of a mistuned disk, against that of the tuned one."""
+
+    factor: float
+    """Ratio of the two peak amplitudes."""
+    blade: int
+    """Blade of the highest peak, counted from 0."""
+    peak: Peak
+    """The highest peak of the mistuned disk."""
+    tuned: Peak
+    """The peak of the tuned disk."""
+
+
+class BladeMotion(ContactMotion):
+    """The part of a result that concerns the sectors of a disk."""
+
+    @abstractmethod
+    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitude of a displacement over frequency."""
+
+    @abstractmethod
+    def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
+        """Return the highest point of the response curve."""
+
+    def sector(self, number: int) -> Self:
+        """Return the motion of another sector of a tuned disk.
+
+        Parameters
+        ----------
+        number : int
+            The sector, from 0 to n-1.
+
+        Returns
+        -------
+        ForcedResponse
+            The same result seen from that sector: harmonic k of everything, contacts and forces
+            included, is ahead by 2 pi k E number / n.
+
+        Raises
+        ------
+        ModelError
+            If the result is not one of a `BladedDisk`, or there is no such sector.
+        """
+        disk = self._tuned_disk()
+        model = disk.seen_from(number)
+        if model is disk:
+            return self
+        orders = np.arange(self.arrays.displacement.shape[1])
+        # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
+        turns = orders * (disk.engine_order % disk.sectors) * number % disk.sectors
+        turn = np.exp(2j * np.pi * turns / disk.sectors)[:, np.newaxis]
+
+        def turned(series: Complex) -> Complex:
+            return np.asarray(series * turn, dtype=np.complex128)
+
+        arrays = replace(
+            self.arrays,
+            displacement=turned(self.arrays.displacement),
+            contact_displacement=turned(self.arrays.contact_displacement),
+            contact_force=turned(self.arrays.contact_force),
+        )
+        return replace(self, model=model, arrays=arrays)
+
+    def blades(self, dof: str) -> tuple[int, ...]:
+        """Return the blades of a mistuned disk at which a degree of freedom was observed.
+
+        Parameters
+        ----------
+        dof : str
+            Degree of freedom of a sector, without the number of the sector: "tip".
+
+        Returns
+        -------
+        tuple of int
+            Ascending, counted from 0.
+
+        Raises
+        ------
+        ModelError
+            If the result is not one of a `MistunedDisk`, there is no such degree of freedom, or it
+            was observed at no blade.
+        """
+        disk = self._mistuned_disk()
+        known = disk.disk.structure.dofs
+        if text(dof, "dof") not in known:
+            raise ModelError(unknown("dof of a sector", dof, known))
+        seen = tuple(n for n in range(disk.sectors) if f"{n}.{dof}" in self.dofs)
+        if not seen:
+            raise ModelError(
+                f"dof {dof!r}: it was observed at no blade; add f'{{i}}.{dof}' to observe and run "
+                "again"
+            )
+        return seen
+
+    def blade_amplitudes(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitudes of one degree of freedom at all blades of a mistuned disk.
+
+        Parameters
+        ----------
+        dof : str
+            Degree of freedom of a sector: "tip".
+        measure : {"half_range", "max", "fundamental"}, optional
+            As of `amplitude`.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, blades)
+            [m], of the blades that `blades` returns.
+
+        Raises
+        ------
+        ModelError
+            As `blades`; if there is no such measure.
+        """
+        columns = [self.amplitude(f"{blade}.{dof}", measure) for blade in self.blades(dof)]
+        return constant(np.stack(columns, axis=1))
+
+    def highest_blade(self, dof: str, measure: Measure = "half_range") -> tuple[int, Peak]:
+        """Return the blade with the highest peak, and the peak.
+
+        Blades whose largest computed amplitude is within 10 % of the largest of all are refined.
+
+        Parameters
+        ----------
+        dof : str
+            Degree of freedom of a sector: "tip".
+        measure : {"half_range", "max", "fundamental"}, optional
+            As of `amplitude`.
+
+        Returns
+        -------
+        blade : int
+            Counted from 0.
+        peak : Peak
+            Its peak, refined between the computed points.
+
+        Raises
+        ------
+        ModelError
+            As `blades`; if no point is solved.
+        """
+        if not self.arrays.solved.any():
+            raise ModelError(f"peak of {dof!r}: no point is solved; see status")
+        tops = np.nanmax(self.blade_amplitudes(dof, measure), axis=0)
+        rivals = [
+            (blade, self.peak(f"{blade}.{dof}", measure))
+            for blade, top in zip(self.blades(dof), tops, strict=True)
+            if top >= RIVAL * tops.max()
+        ]
+        return max(rivals, key=lambda one: one[1].amplitude)
+
+    def amplification(
+        self, tuned: BladeMotion, dof: str, measure: Measure = "half_range"
+    ) -> Amplification:
+        """Return the amplification factor of a mistuned disk.
+
+        The highest peak over the computed frequencies and the observed blades, over the peak of the
+        tuned disk.
+
+        Parameters
+        ----------
+        tuned : ForcedResponse
+            The response of the tuned disk.
+        dof : str
+            Degree of freedom of a sector: "tip".
+        measure : {"half_range", "max", "fundamental"}, optional
+            As of `amplitude`.
+
+        Returns
+        -------
+        Amplification
+            Factor, blade and both peaks.
+
+        Raises
+        ------
+        ModelError
+            As `highest_blade`; if `tuned` is not a result of a `BladedDisk`.
+        """
+        if not isinstance(tuned, BladeMotion) or not tuned.model.travels:
+            raise ModelError(
+                f"tuned: {brief(tuned)} is not the response of a BladedDisk; give "
+                "forced_response(disk, ...)"
+            )
+        blade, peak = self.highest_blade(dof, measure)
+        reference = tuned.peak(dof, measure)
+        return Amplification(peak.amplitude / reference.amplitude, blade, peak, reference)
+
+    def plot_blades(self, dof: str, **options: Unpack[BladeBarOptions]) -> Axes:
+        """Draw the amplitude of every blade as a bar; see `stickslip.plot.blade_bars`."""
+        from stickslip import plot
+
+        return plot.blade_bars(cast("ForcedResponse", self), dof, **options)
+
+    def plot_blade_curves(
+        self, dof: str, blades: Sequence[int] | None = None, **options: Unpack[BladeCurveOptions]
+    ) -> Axes:
+        """Draw the response curves of chosen blades; see `stickslip.plot.blade_curves`."""
+        from stickslip import plot
+
+        return plot.blade_curves(cast("ForcedResponse", self), dof, blades, **options)
+
+    def _tuned_disk(self) -> BladedDisk:
+        from stickslip.disk import BladedDisk
+
+        if not isinstance(self.model, BladedDisk):
+            raise ModelError(
+                "sector: the model has no equal sectors; a MistunedDisk has all its sectors among "
+                "the dofs, '3.tip'"
+            )
+        return self.model
+
+    def _mistuned_disk(self) -> MistunedDisk:
+        from stickslip.disk import MistunedDisk
+
+        if not isinstance(self.model, MistunedDisk):
+            raise ModelError(
+                "blades: the model is no MistunedDisk; the blades of a tuned disk are all alike, "
+                "see sector"
+            )
+        return self.model

@@ -1,0 +1,192 @@
+"""Models in NetCDF files: matrices as variables, everything else as JSON texts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Hashable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stickslip.model import Model
+from stickslip.model.contact import contact_from_spec
+from stickslip.model.damping import law_from_spec
+from stickslip.model.force import force_from_spec
+from stickslip.model.structure import Structure
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stickslip.disk import BladedDisk, MistunedDisk
+
+__all__ = ["model_of", "model_variables"]
+
+_MATRICES = {
+    "mass": ("kg", "mass matrix"),
+    "damping": ("kg/s", "damping matrix"),
+    "stiffness": ("N/m", "stiffness matrix"),
+}
+
+
+def model_variables(model: Model) -> Mapping[Hashable, object]:
+    """Return a model as variables of a dataset.
+
+    Parameters
+    ----------
+    model : Model
+        The model; of a `BladedDisk` the matrices are those of a sector, of a `MistunedDisk` those
+        of all sectors are added.
+
+    Returns
+    -------
+    mapping
+        Names with (dimensions, values, attributes).
+    """
+    kind = type(model).__name__
+    return {"model": ((), kind, {"long_name": "kind of model"}), **_WRITERS[kind](model)}
+
+
+def model_of(dataset: xr.Dataset) -> Model:
+    """Return the model that a dataset holds; see `model_variables`.
+
+    Raises
+    ------
+    KeyError, ValueError
+        If the dataset is incomplete, or of no kind of model that there is.
+    """
+    # The first files held no other kind and did not say so.
+    kind = str(dataset["model"].values) if "model" in dataset else "Model"
+    return _READERS[kind](dataset)
+
+
+def _model(model: Model) -> dict[Hashable, object]:
+    return {
+        **_structure_variables(model.structure),
+        **_texts("contacts", [contact.to_spec() for contact in model.contacts]),
+        **_texts("forces", [force.to_spec() for force in model.forces]),
+    }
+
+
+def _read_model(dataset: xr.Dataset) -> Model:
+    return Model(_structure(dataset), *_parts(dataset))
+
+
+def _bladed(model: Any) -> dict[Hashable, object]:
+    disk: BladedDisk = model
+    settings = {
+        "sectors": disk.sectors,
+        "engine_order": disk.engine_order,
+        "engine_orders": {str(k): order for k, order in disk.engine_orders.items()},
+    }
+    variables = {
+        **_model(disk),
+        **_texts("disk", [settings]),
+        **_texts("couplings", [coupling.to_spec() for coupling in disk.couplings]),
+    }
+    if disk.interface is not None:
+        for name, (unit, meaning) in _MATRICES.items():
+            said = {"units": unit, "long_name": f"block of the {meaning} to the next sector"}
+            block = getattr(disk.interface, name)
+            variables[f"interface_{name}"] = (("row", "column"), block, said)
+    return variables
+
+
+def _read_bladed(dataset: xr.Dataset, prefix: str = "") -> BladedDisk:
+    from stickslip.disk import BladedDisk, Interface
+    from stickslip.disk.coupling import coupling_from_spec
+
+    contacts, forces = _parts(dataset, prefix)
+    settings = _read_texts(dataset, "disk")[0]
+    interface = None
+    if "interface_stiffness" in dataset:
+        interface = Interface(**{name: dataset[f"interface_{name}"].values for name in _MATRICES})
+    return BladedDisk(
+        _structure(dataset),
+        settings["sectors"],
+        [coupling_from_spec(spec) for spec in _read_texts(dataset, "couplings")],
+        contacts,
+        forces,
+        engine_order=settings["engine_order"],
+        engine_orders={int(k): order for k, order in settings["engine_orders"].items()},
+        interface=interface,
+    )
+
+
+def _mistuned(model: Any) -> dict[Hashable, object]:
+    mistuned: MistunedDisk = model
+    disk = mistuned.disk
+    variables = _bladed(disk)
+    for name in ("contacts", "forces"):
+        variables |= _texts(f"sector_{name}", [one.to_spec() for one in getattr(disk, name)])
+        variables |= _texts(name, [one.to_spec() for one in getattr(mistuned, name)])
+    for name, (unit, meaning) in _MATRICES.items():
+        said = {"units": unit, "long_name": f"{meaning} of each sector by itself"}
+        stack = np.stack([getattr(blade, name) for blade in mistuned.blades])
+        variables[f"blade_{name}"] = (("blade", "row", "column"), stack, said)
+    return variables
+
+
+def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
+    from stickslip.disk.mistuned import rebuilt
+
+    disk = _read_bladed(dataset, "sector_")
+    stacks = [dataset[f"blade_{name}"].values for name in ("mass", "stiffness", "damping")]
+    blades = [Structure(m, k, c, disk.structure.dofs) for m, k, c in zip(*stacks, strict=True)]
+    return rebuilt(disk, blades, *_parts(dataset))
+
+
+_WRITERS: Mapping[str, Callable[[Any], Mapping[Hashable, object]]] = {
+    "Model": _model,
+    "BladedDisk": _bladed,
+    "MistunedDisk": _mistuned,
+}
+_READERS: Mapping[str, Callable[[xr.Dataset], Model]] = {
+    "Model": _read_model,
+    "BladedDisk": _read_bladed,
+    "MistunedDisk": _read_mistuned,
+}
+
+
+def _structure_variables(structure: Structure) -> dict[Hashable, object]:
+    variables: dict[Hashable, object] = {
+        name: (("row", "column"), getattr(structure, name), {"units": unit, "long_name": meaning})
+        for name, (unit, meaning) in _MATRICES.items()
+    }
+    variables["row"] = (
+        "row",
+        np.array(structure.dofs, dtype=np.str_),
+        {"units": "1", "long_name": "degree of freedom of the structure"},
+    )
+    law = structure.damping_law
+    return variables | _texts("damping_law", [] if law is None else [law.to_spec()])
+
+
+def _structure(dataset: xr.Dataset) -> Structure:
+    laws = _read_texts(dataset, "damping_law") if "damping_law" in dataset else []
+    return Structure.of_law(
+        dataset["mass"].values,
+        dataset["stiffness"].values,
+        dataset["damping"].values,
+        list(map(str, dataset["row"].values)),
+        law_from_spec(laws[0]) if laws else None,
+    )
+
+
+def _parts(dataset: xr.Dataset, prefix: str = "") -> tuple[list[Any], list[Any]]:
+    contacts = _read_texts(dataset, f"{prefix}contacts")
+    forces = _read_texts(dataset, f"{prefix}forces")
+    return [contact_from_spec(spec) for spec in contacts], [force_from_spec(s) for s in forces]
+
+
+def _texts(name: str, entries: Iterable[Mapping[str, object]]) -> dict[Hashable, object]:
+    """Return entries as one JSON text each.
+
+    They are variables rather than attributes: HDF5 keeps no attribute above 64 kB.
+    """
+    texts = np.array([json.dumps(entry) for entry in entries], dtype=np.str_)
+    meaning = f"{name.replace('_', ' ')} of the model, one JSON text each"
+    return {name: (f"{name}_entry", texts, {"units": "1", "long_name": meaning})}
+
+
+def _read_texts(dataset: xr.Dataset, name: str) -> list[Any]:
+    return [json.loads(text) for text in dataset[name].values]

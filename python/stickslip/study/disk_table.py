@@ -1,0 +1,128 @@
+"""The tables [disk] and [[coupling]] of a study file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, Strict, WithJsonSchema, model_validator
+
+from stickslip.checks import MAX_COUNT, brief
+from stickslip.disk import Coupling
+from stickslip.disk.pattern import DISTRIBUTIONS, mistuning_pattern
+from stickslip.errors import ModelError
+from stickslip.study.entries import HERE, Count, Dof, Ratio, StiffnessValue, Table
+from stickslip.study.structure_table import DampingSource, MatrixSource
+
+__all__ = ["CouplingTable", "DiskTable", "InterfaceTable", "MistuningTable"]
+
+
+def _harmonics(value: object) -> object:
+    # the keys of TOML tables are texts
+    if not isinstance(value, Mapping):
+        return value
+    for key in value:
+        if not (isinstance(key, int) or (isinstance(key, str) and key.isdecimal())):
+            raise ModelError(f"{HERE}: {brief(key)} is no harmonic; write {{3 = 6}}")
+    return {int(key): order for key, order in value.items()}
+
+
+_Order = Annotated[int, Field(ge=0, le=MAX_COUNT)]
+
+
+class CouplingTable(Table):
+    """A spring from each sector to the next one."""
+
+    dof: Dof = Field(description="DOF of a sector.", examples=["tip"])
+    other: Dof | None = Field(
+        default=None, description="DOF of the next sector; left out: the same."
+    )
+    stiffness: StiffnessValue = Field(description="Stiffness.")
+    damping: Annotated[float, Field(ge=0.0), WithJsonSchema({"type": "number"})] = Field(
+        default=0.0, strict=False, description="Viscous damping [kg/s]."
+    )
+
+    def build(self) -> Coupling:
+        """Return the coupling."""
+        return Coupling(self.dof, self.other, stiffness=self.stiffness, damping=self.damping)
+
+
+class InterfaceTable(Table):
+    """Blocks of cyclic matrices that couple each sector to the next."""
+
+    stiffness: MatrixSource = Field(description="Stiffness block K1.", examples=["K1.mtx"])
+    mass: MatrixSource | None = Field(default=None, description="Mass block M1; left out: none.")
+    damping: DampingSource | None = Field(
+        default=None, description="Damping block C1, or Rayleigh factors; left out: none."
+    )
+
+
+class MistuningTable(Table):
+    """Deviations of the sectors' stiffness: given, or drawn at random."""
+
+    pattern: Annotated[tuple[Ratio, ...], Strict(False), Field(min_length=1)] | None = Field(
+        default=None,
+        description="Deviation of each sector; left out: drawn at random.",
+        examples=[[0.02, "-3 %", 0.0]],
+    )
+    deviation: Ratio | None = Field(
+        default=None, description="Standard deviation of the random ones.", examples=["7 %"]
+    )
+    distribution: Annotated[
+        Literal["normal", "uniform"], WithJsonSchema({"enum": list(DISTRIBUTIONS)})
+    ] = Field(default="normal", description="Distribution of the random ones.")
+    seed: Annotated[int, Field(ge=0, le=MAX_COUNT)] = Field(
+        default=0, description="Seed of the random ones."
+    )
+
+    @model_validator(mode="after")
+    def _require_one_kind(self) -> Self:
+        if (self.pattern is None) == (self.deviation is None):
+            raise ValueError("give either 'pattern', the deviations, or 'deviation', their size")
+        return self
+
+    def values(self, sectors: int) -> NDArray[np.float64]:
+        """Return the deviations of all sectors."""
+        if self.deviation is None:
+            return np.array(self.pattern, dtype=np.float64)
+        return mistuning_pattern(sectors, self.deviation, self.distribution, seed=self.seed)
+
+
+class DiskTable(Table):
+    """Makes the structure a sector of a bladed disk."""
+
+    sectors: Count = Field(description="Number of sectors.", examples=[36])
+    engine_order: _Order = Field(description="Engine order of the forces.")
+    engine_orders: Annotated[
+        Mapping[int, _Order],
+        BeforeValidator(_harmonics),
+        WithJsonSchema({"type": "object", "additionalProperties": {"type": "integer"}}),
+    ] = Field(
+        default={},
+        description="Engine orders of forces of other harmonics; left out: multiples.",
+        examples=[{"3": 6}],
+    )
+    interface: InterfaceTable | None = Field(
+        default=None,
+        title="Interface",
+        description="Blocks that couple each sector to the next.",
+    )
+    boundary: Mapping[str, str] = Field(
+        default={},
+        description="DOFs at the right cut of the sector, each with the one at the left cut that "
+        "it is in the next sector.",
+        examples=[{"right": "left"}],
+    )
+    mistuning: MistuningTable | None = Field(
+        default=None,
+        title="Mistuning",
+        description="Deviations of the sectors; left out: all are equal.",
+    )
+
+    @model_validator(mode="after")
+    def _require_one_interface(self) -> Self:
+        if self.interface is not None and self.boundary:
+            raise ValueError("give either 'interface', the blocks, or 'boundary', the two cuts")
+        return self
