@@ -121,8 +121,8 @@ def run(
 ) -> None:
     """Compute a study: one result per level, saved as NetCDF, with a table and a picture."""
     from stickslip.cli import console
-    from stickslip.cli.kinds import view_of
     from stickslip.study import Study
+    from stickslip.views.kinds import view_of
 
     clock = Clock()
     with clock("reading the study"):
@@ -131,11 +131,13 @@ def run(
     curves = _compute(loaded, out, clock, quiet=quiet)
     if not quiet:
         with clock("refining peaks, printing"):
-            view_of([curve.result for curve in curves]).tables(
-                [(_level(curve.case), curve.result) for curve in curves],
-                "" if loaded.tables.analysis.levels is None else "level",
-                loaded.dofs,
-                loaded.tables.output.length_unit,
+            console.show_all(
+                view_of([curve.result for curve in curves]).tables(
+                    [(_level(curve.case), curve.result) for curve in curves],
+                    "" if loaded.tables.analysis.levels is None else "level",
+                    loaded.dofs,
+                    loaded.tables.output.length_unit,
+                )
             )
     picture = out / f"{loaded.name}.png"
     if not no_plot:
@@ -198,7 +200,7 @@ def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> 
 def _warn(results: Sequence[tuple[str, Result]]) -> None:
     """Name what did not converge, and end with the exit code that says so."""
     from stickslip.cli.console import complain
-    from stickslip.cli.kinds import view_of
+    from stickslip.views.kinds import view_of
 
     for name, result in results:
         for line in view_of([result]).cautions(name, result):
@@ -211,8 +213,8 @@ def _warn(results: Sequence[tuple[str, Result]]) -> None:
 
 
 def _draw_study(study: Study, curves: Sequence[Curve], picture: Path) -> None:
-    from stickslip.cli.kinds import view_of
-    from stickslip.cli.picture import draw
+    from stickslip.views.kinds import view_of
+    from stickslip.views.picture import draw
 
     results = [curve.result for curve in curves]
     draw(view_of(results).panels(results, study.dofs, study.tables.output), picture)
@@ -227,8 +229,8 @@ def show(results: Files) -> None:
     """Print what results hold: the model, the numbers, what was assumed, what did not converge."""
     from stickslip import load
     from stickslip.cli import console
-    from stickslip.cli.kinds import view_of
     from stickslip.study import notable_dofs
+    from stickslip.views.kinds import view_of
 
     for number, file in enumerate(results):
         result = load(file)
@@ -236,9 +238,10 @@ def show(results: Files) -> None:
             console.tell("")
         console.tell(str(file))
         view = view_of([result])
-        view.facts(result)
+        console.grid(view.facts(result))
         console.tell("")
-        view.tables([("", result)], "", notable_dofs(result.model, result.dofs), "m")
+        shown = notable_dofs(result.model, result.dofs)
+        console.show_all(view.tables([("", result)], "", shown, "m"))
         for line in view.failures(file.name, result):
             console.complain("warning", line)
 
@@ -293,7 +296,7 @@ def plot(
     from stickslip import load
     from stickslip.cli import console
     from stickslip.cli.drawing import Wanted, picture_of
-    from stickslip.cli.picture import draw
+    from stickslip.views.picture import draw
 
     wanted = Wanted(
         dofs=dof,
@@ -342,7 +345,7 @@ def certify(
     """Compare a curve with exact orbits, and put its true error into the file."""
     from stickslip import certify, load
     from stickslip.cli import console
-    from stickslip.cli.curves import certificates
+    from stickslip.views.curves import certificates
 
     wanted = _points(points)
     target = out or result
@@ -354,7 +357,7 @@ def certify(
         cast("ForcedResponse", stop.result).save(target)
         raise KeyboardInterrupt(f"{stop}, now in {target}") from None
     certified.save(target)
-    certificates([("", certified)], "", "m")
+    console.show_all(certificates([("", certified)], "", "m"))
     console.tell("")
     console.tell(f"certified: {target}")
     _warn([(result.stem, certified)])

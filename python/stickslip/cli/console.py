@@ -9,6 +9,7 @@ import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from copy import copy
 from typing import TYPE_CHECKING
 
 from rich.box import SIMPLE_HEAD
@@ -16,24 +17,20 @@ from rich.console import Console
 from rich.table import Table
 
 from stickslip.errors import ModelError
+from stickslip.views.tables import new_table
 
 if TYPE_CHECKING:
-    from stickslip.model import Model
     from stickslip.results.result import Result
 
 __all__ = [
     "complain",
     "grid",
-    "listed",
-    "model_rows",
-    "new_table",
     "progress",
     "show",
+    "show_all",
     "stages",
     "tell",
 ]
-
-_SHOWN_PARTS = 6
 
 _STAGES = {
     "compliance": "compliance",
@@ -112,36 +109,12 @@ def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | 
         bar.stop()
 
 
-def model_rows(model: Model) -> list[tuple[str, str]]:
-    """Return what a result is of, as rows of its facts."""
-    from stickslip.disk import BladedDisk, MistunedDisk
-
-    rows = [("dofs", f"{len(model.structure)}: {listed(model.structure.dofs)}")]
-    if isinstance(model, BladedDisk):
-        order = f"engine order {model.engine_order}"
-        rows.append(("disk", f"{model.sectors} equal sectors, {order}; of sector 0:"))
-    elif isinstance(model, MistunedDisk):
-        order = f"engine order {model.disk.engine_order}"
-        rows.append(("disk", f"{model.sectors} sectors of their own, {order}"))
-    for contact in model.contacts[:_SHOWN_PARTS]:
-        values = ", ".join(f"{name} {value:g}" for name, value in contact.parameters().items())
-        place = " - ".join(contact.dofs)
-        rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {values}"))
-    for force in model.forces[:_SHOWN_PARTS]:
-        values = f"amplitude {force.amplitude:g} N, phase {force.phase:g} rad"
-        rows.append(("force", f"{force.dof}: harmonic {force.harmonic}, {values}"))
-    for name, parts in (("contacts", model.contacts), ("forces", model.forces)):
-        if len(parts) > _SHOWN_PARTS:
-            rows.append((name, f"{len(parts)} in all"))
-    return rows
-
-
 def grid(rows: Iterable[tuple[str, str]]) -> None:
     """Print rows of two columns without headings."""
     table = Table.grid(padding=(0, 2))
     for row in rows:
         table.add_row(*row)
-    show(table)
+    _print(table)
 
 
 def stages(results: Iterable[Result], clock: dict[str, float]) -> None:
@@ -175,24 +148,35 @@ def stages(results: Iterable[Result], clock: dict[str, float]) -> None:
     tell(", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counts.items()))
 
 
-def listed(names: Sequence[str], most: int = 8) -> str:
-    """Return the first names, and dots if that is not all."""
-    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
-
-
-def new_table() -> Table:
-    """Return an empty table, framed where someone is watching."""
-    if _framed():
-        return Table(box=SIMPLE_HEAD, show_edge=False)
-    return Table(box=None, padding=(0, 2, 0, 0))
-
-
 def _framed() -> bool:
     return sys.stdout.isatty() and Console().width >= _NARROW
 
 
+def show_all(tables: Sequence[Table]) -> None:
+    """Print tables with a line between them."""
+    for number, table in enumerate(tables):
+        if number > 0:
+            tell("")
+        show(table)
+
+
 def show(table: Table) -> None:
-    """Print a table."""
+    """Print a table, its title above and its notes below it."""
+    # rich would break both at the width of the table
+    bare = copy(table)
+    bare.title = bare.caption = None
+    if _framed():
+        bare.box, bare.show_edge = SIMPLE_HEAD, False
+    else:
+        bare.box, bare.padding = None, (0, 2, 0, 0)
+    if table.title:
+        tell(str(table.title))
+    _print(bare)
+    if table.caption:
+        tell(str(table.caption))
+
+
+def _print(table: Table) -> None:
     if _framed():
         Console(highlight=False, markup=False).print(table)
         return

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Literal
 
-from stickslip.cli.kinds import view_of
-from stickslip.cli.picture import titled
 from stickslip.errors import ModelError
 from stickslip.results import ForcedResponse
 from stickslip.results.exact_response import ExactResponse
+from stickslip.views.kinds import view_of
+from stickslip.views.picture import titled
 
 if TYPE_CHECKING:
-    from stickslip.cli.picture import Panel
     from stickslip.results.result import Result
+    from stickslip.views.picture import Panel
 
 __all__ = ["Wanted", "picture_of"]
 

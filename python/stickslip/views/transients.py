@@ -1,4 +1,4 @@
-"""What the command line prints and draws of transients."""
+"""What is said and drawn of transients."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from stickslip.cli.console import grid, model_rows, new_table, show
 from stickslip.units import quantity
+from stickslip.views.tables import Row, Table, model_rows, new_table
 
 if TYPE_CHECKING:
-    from stickslip.cli.picture import Panel
     from stickslip.results.transient import Transient
     from stickslip.study.tables import OutputTable
+    from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "facts", "failures", "panels", "tables"]
+__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
     results: Sequence[tuple[str, Transient]], label: str, dofs: Iterable[str], length_unit: str
-) -> None:
-    """Print the amplitudes of the last period, per run and DOF."""
+) -> list[Table]:
+    """Tabulate the amplitudes of the last period, per run and DOF."""
     table = new_table()
     if label:
         table.add_column(label, overflow="fold")
@@ -43,11 +43,11 @@ def tables(
                     f"{result.omega:#.6g}",
                     str(result.status),
                 )
-    show(table)
+    return [table]
 
 
-def facts(result: Transient) -> None:
-    """Print what a result is of, how it was computed and what it took for granted."""
+def facts(result: Transient) -> list[Row]:
+    """Say what a result is of, how it was computed and what it took for granted."""
     settings = result.settings
     limit = "" if settings.tolerance is None else f", until the change is {settings.tolerance:g}"
     steps = f" of {settings.steps} steps" if settings.scheme == "rk4" else ""
@@ -61,7 +61,7 @@ def facts(result: Transient) -> None:
     ]
     if settings.scheme == "exact":
         rows.append(("events", f"{len(result.events)} in the periods kept"))
-    grid(rows + [("assumed", text) for text in result.assumptions])
+    return rows + [("assumed", text) for text in result.assumptions]
 
 
 def failures(name: str, result: Transient) -> list[str]:
@@ -92,3 +92,12 @@ def panels(results: Sequence[Transient], dofs: Sequence[str], output: OutputTabl
         if result.kept_periods:
             drawn.append(partial(plot.spectrum, result, dofs[0], omega_unit=output.omega_unit))
     return drawn
+
+
+def details(result: Transient, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
+    """Return the phase plane of the first DOF."""
+    from stickslip import plot
+
+    if not result.periods:
+        return []
+    return [partial(plot.phase, result, dofs[0], length_unit=output.length_unit)]

@@ -1,40 +1,46 @@
-"""What the command line prints and draws of response curves."""
+"""What is said and drawn of response curves."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.cli.console import grid, model_rows, new_table, show, tell
 from stickslip.results.exact_response import ExactResponse
 from stickslip.units import quantity
+from stickslip.views.tables import Row, Table, model_rows, new_table
 
 if TYPE_CHECKING:
-    from stickslip.cli.picture import Panel
+    from stickslip.disk import MistunedDisk
     from stickslip.results import Certificate, ForcedResponse, Summary
     from stickslip.study.tables import OutputTable
+    from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "certificates", "facts", "failures", "panels", "peaks", "tables"]
+__all__ = ["cautions", "certificates", "details", "facts", "failures", "panels", "peaks", "tables"]
+
+
+_SLIP_POINTS = 12
+_LOOPS = 2
 
 
 def tables(
     results: Sequence[tuple[str, ForcedResponse]], label: str, dofs: Iterable[str], length_unit: str
-) -> None:
-    """Print the peaks of curves, and their true errors where they have been compared."""
-    shown = list(dofs)
-    peaks(results, label, shown, length_unit)
-    certificates(results, label, length_unit)
+) -> list[Table]:
+    """Tabulate the peaks of curves, and their true errors where they have been compared."""
+    return [
+        *peaks(results, label, dofs, length_unit),
+        *certificates(results, label, length_unit),
+    ]
 
 
 def peaks(
     results: Sequence[tuple[str, ForcedResponse]], label: str, dofs: Iterable[str], length_unit: str
-) -> None:
-    """Print the peak of every curve and DOF.
+) -> list[Table]:
+    """Tabulate the peak of every curve and DOF.
 
     Parameters
     ----------
@@ -64,11 +70,13 @@ def peaks(
             table.add_row(*([name] if label else []), *cells)
             at_edge = at_edge or row.at_edge
             beside_gap = beside_gap or row.beside_gap
-    show(table)
+    notes = []
     if at_edge:
-        tell("* at an end of the computed frequencies: the true peak may lie outside")
+        notes.append("* at an end of the computed frequencies: the true peak may lie outside")
     if beside_gap:
-        tell("? beside points that are not solved: the true peak may be there, and higher")
+        notes.append("? beside points that are not solved: the true peak may be there, and higher")
+    table.caption = "\n".join(notes) or None
+    return [table]
 
 
 def _peak(result: ForcedResponse, row: Summary, length: float) -> tuple[str, ...]:
@@ -146,8 +154,8 @@ def _where(omega: list[float]) -> str:
     return f"at {low:.6g}" if low == high else f"between {low:.6g} and {high:.6g}"
 
 
-def facts(result: ForcedResponse) -> None:
-    """Print what a result is of, how it was computed and what it took for granted."""
+def facts(result: ForcedResponse) -> list[Row]:
+    """Say what a result is of, how it was computed and what it took for granted."""
     omega = result.omega
     span = f"from {omega.min():.6g} to {omega.max():.6g} rad/s"
     rows = [
@@ -157,7 +165,7 @@ def facts(result: ForcedResponse) -> None:
     ]
     if isinstance(result, ExactResponse):
         rows += _orbit_rows(result)
-    grid(rows + [("assumed", text) for text in result.assumptions])
+    return rows + [("assumed", text) for text in result.assumptions]
 
 
 def _orbit_rows(result: ExactResponse) -> list[tuple[str, str]]:
@@ -195,14 +203,52 @@ def panels(
     ]
 
 
+def details(result: ForcedResponse, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
+    """Return blades, slip, loops at the peak and multipliers, as far as a curve has them."""
+    if not result.arrays.solved.any():
+        return []
+    return list(_details(result, dofs, output))
+
+
+def _details(result: ForcedResponse, dofs: Sequence[str], output: OutputTable) -> Iterator[Panel]:
+    from stickslip import plot
+    from stickslip.disk import MistunedDisk
+
+    length, omega = output.length_unit, output.omega_unit
+    if isinstance(result.model, MistunedDisk):
+        for dof in _of_sectors(result.model, dofs):
+            yield partial(plot.blade_bars, result, dof, length_unit=length)
+            yield partial(plot.blade_curves, result, dof, omega_unit=omega, length_unit=length)
+    contacts = result.model.contacts
+    if contacts:
+        points = sum(contact.points for contact in contacts)
+        if points <= _SLIP_POINTS and result.omega.size > 1:
+            yield partial(plot.slip, result, omega_unit=omega)
+        at = int(np.nanargmax(result.amplitude(dofs[0])))
+        slipping = [
+            np.atleast_1d(result.slip_fraction(one)[at]).max() for one in range(len(contacts))
+        ]
+        # The contacts that slip most tell most.
+        for contact in sorted(np.argsort(shares)[::-1][:_LOOPS].tolist()):
+            yield partial(plot.hysteresis, result, contact, at, length_unit=length)
+    if isinstance(result, ExactResponse):
+        yield partial(plot.multipliers, result, omega_unit=omega)
+
+
+def _of_sectors(disk: MistunedDisk, dofs: Sequence[str]) -> list[str]:
+    """Return the DOFs of a sector to which DOFs of a mistuned disk belong."""
+    known = disk.disk.structure.dofs
+    return [one for one in dict.fromkeys(dof.partition(".")[2] for dof in dofs) if one in known]
+
+
 def certificates(
     results: Sequence[tuple[str, ForcedResponse]], label: str, length_unit: str
-) -> None:
-    """Print the true errors of the curves that were compared with exact orbits."""
+) -> list[Table]:
+    """Tabulate the true errors of the curves that were compared with exact orbits."""
     compared = [(name, one.certificate) for name, one in results if one.certificate is not None]
     if not compared:
-        return
-    table = new_table()
+        return []
+    table = new_table("largest true error, against exact orbits")
     if label:
         table.add_column(label, overflow="fold")
     table.add_column("dof", overflow="fold")
@@ -216,9 +262,7 @@ def certificates(
         for column, dof in enumerate(certificate.dofs):
             cells = _certificate(certificate, column, length)
             table.add_row(*([name] if label else []), dof, *cells[: 6 if promised else 5])
-    tell("")
-    tell("largest true error, against exact orbits")
-    show(table)
+    return [table]
 
 
 def _certificate(certificate: Certificate, column: int, length: float) -> tuple[str, ...]:

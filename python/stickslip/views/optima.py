@@ -1,26 +1,26 @@
-"""What the command line prints and draws of optimal dampers."""
+"""What is said and drawn of optimal dampers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from stickslip.cli import dampers
-from stickslip.cli.console import grid, new_table, show
 from stickslip.units import quantity
+from stickslip.views import dampers
+from stickslip.views.tables import Row, Table, new_table
 
 if TYPE_CHECKING:
-    from stickslip.cli.picture import Panel
     from stickslip.results.optimal_damper import OptimalDamper
     from stickslip.study.tables import OutputTable
+    from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "facts", "failures", "panels", "tables"]
+__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
     results: Sequence[tuple[str, OptimalDamper]], label: str, dofs: Iterable[str], length_unit: str
-) -> None:
-    """Print every local minimum, the least first."""
+) -> list[Table]:
+    """Tabulate every local minimum, the least first."""
     table = new_table()
     if label:
         table.add_column(label, overflow="fold")
@@ -40,15 +40,14 @@ def tables(
                 f"{minimum.amplitude / length:.6e}",
                 f"{minimum.omega:#.6g}",
             )
-    show(table)
+    return [table]
 
 
-def facts(result: OptimalDamper) -> None:
-    """Print what a result is of, how it was computed and what it took for granted."""
-    dampers.facts(result.curve)
+def facts(result: OptimalDamper) -> list[Row]:
+    """Say what a result is of, how it was computed and what it took for granted."""
     # The others are those of the curve.
     own = result.assumptions[: len(result.assumptions) - len(result.curve.assumptions)]
-    grid([("assumed", text) for text in own])
+    return dampers.facts(result.curve) + [("assumed", text) for text in own]
 
 
 def failures(name: str, result: OptimalDamper) -> list[str]:
@@ -69,3 +68,8 @@ def panels(
 ) -> list[Panel]:
     """Return the damper performance curves."""
     return dampers.panels([result.curve for result in results], dofs, output)
+
+
+def details(result: OptimalDamper, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
+    """Return what a damper curve has."""
+    return dampers.details(result.curve, dofs, output)

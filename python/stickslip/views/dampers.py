@@ -1,4 +1,4 @@
-"""What the command line prints and draws of damper curves."""
+"""What is said and drawn of damper curves."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from stickslip.cli.console import grid, model_rows, new_table, show
 from stickslip.results.status import Status
 from stickslip.units import quantity
+from stickslip.views.tables import Row, Table, model_rows, new_table
 
 if TYPE_CHECKING:
-    from stickslip.cli.picture import Panel
     from stickslip.results.damper_curve import DamperCurve
     from stickslip.study.tables import OutputTable
+    from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "facts", "failures", "panels", "tables"]
+__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
     results: Sequence[tuple[str, DamperCurve]], label: str, dofs: Iterable[str], length_unit: str
-) -> None:
-    """Print the ends of every curve and its lowest peak."""
+) -> list[Table]:
+    """Tabulate the ends of every curve and its lowest peak."""
     table = new_table()
     if label:
         table.add_column(label, overflow="fold")
@@ -44,7 +44,7 @@ def tables(
                 f"{result.error_estimate[index] / result.amplitude[index]:.1e}",
                 f"{result.harmonics[index]}",
             )
-    show(table)
+    return [table]
 
 
 def _rows(result: DamperCurve) -> list[tuple[str, int]]:
@@ -57,8 +57,8 @@ def _rows(result: DamperCurve) -> list[tuple[str, int]]:
     return [("first", solved[0]), ("lowest", lowest), ("last", solved[-1])]
 
 
-def facts(result: DamperCurve) -> None:
-    """Print what a result is of, how it was computed and what it took for granted."""
+def facts(result: DamperCurve) -> list[Row]:
+    """Say what a result is of, how it was computed and what it took for granted."""
     settings = result.settings
     values = result.values
     low, high = settings.span
@@ -74,7 +74,7 @@ def facts(result: DamperCurve) -> None:
         ("harmonics", f"{settings.harmonics}"),
         ("solutions", f"{result.counters['points']}"),
     ]
-    grid(rows + [("assumed", text) for text in result.assumptions])
+    return rows + [("assumed", text) for text in result.assumptions]
 
 
 def failures(name: str, result: DamperCurve) -> list[str]:
@@ -104,3 +104,8 @@ def panels(results: Sequence[DamperCurve], dofs: Sequence[str], output: OutputTa
     return [
         partial(plot.damper, result, length_unit=length, omega_unit=omega) for result in results
     ]
+
+
+def details(result: DamperCurve, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
+    """Return nothing more: the curve shows amplitude, frequency, limits and optimum."""
+    return []

@@ -1,0 +1,59 @@
+"""What views are made of: tables, and rows of facts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, TypeAlias
+
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from stickslip.model import Model
+
+__all__ = ["Row", "Table", "listed", "model_rows", "new_table"]
+
+Row: TypeAlias = tuple[str, str]
+"""A fact: what it is of, and what it is."""
+
+_SHOWN_PARTS = 6
+
+
+def new_table(title: str | None = None) -> Table:
+    """Return an empty table.
+
+    Parameters
+    ----------
+    title : str, optional
+        What stands over it; the attribute `caption` is for notes below. Needed where a view has
+        several tables.
+    """
+    return Table(title=title)
+
+
+def model_rows(model: Model) -> list[tuple[str, str]]:
+    """Return what a result is of, as rows of its facts."""
+    from stickslip.disk import BladedDisk, MistunedDisk
+
+    rows = [("dofs", f"{len(model.structure)}: {listed(model.structure.dofs)}")]
+    if isinstance(model, BladedDisk):
+        order = f"engine order {model.engine_order}"
+        rows.append(("disk", f"{model.sectors} equal sectors, {order}; of sector 0:"))
+    elif isinstance(model, MistunedDisk):
+        order = f"engine order {model.disk.engine_order}"
+        rows.append(("disk", f"{model.sectors} sectors of their own, {order}"))
+    for contact in model.contacts[:_SHOWN_PARTS]:
+        values = ", ".join(f"{name} {value:g}" for name, value in contact.parameters().items())
+        place = " - ".join(contact.dofs)
+        rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {values}"))
+    for force in model.forces[:_SHOWN_PARTS]:
+        values = f"amplitude {force.amplitude:g} N, phase {force.phase:g} rad"
+        rows.append(("force", f"{force.dof}: harmonic {force.harmonic}, {values}"))
+    for name, parts in (("contacts", model.contacts), ("forces", model.forces)):
+        if len(parts) > _SHOWN_PARTS:
+            rows.append((name, f"{len(parts)} in all"))
+    return rows
+
+
+def listed(names: Sequence[str], most: int = 8) -> str:
+    """Return the first names, and dots if that is not all."""
+    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
