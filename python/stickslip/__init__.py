@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         mistuning_pattern,
     )
     from stickslip.errors import Interrupted, ModelError
+    from stickslip.html.report import report
     from stickslip.io import read_matrix
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
     from stickslip.model.state import State
@@ -73,6 +74,7 @@ __all__ = [
     "plot",
     "read_matrix",
     "reference",
+    "report",
     "single_harmonic",
     "study",
     "transient",
@@ -110,6 +112,7 @@ _HOMES = {
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",
+    "report": "html.report",
     "single_harmonic": "analyses.single_harmonic",
     "transient": "analyses.transient",
 }

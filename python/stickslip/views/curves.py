@@ -225,9 +225,7 @@ def _details(result: ForcedResponse, dofs: Sequence[str], output: OutputTable) -
         if points <= _SLIP_POINTS and result.omega.size > 1:
             yield partial(plot.slip, result, omega_unit=omega)
         at = int(np.nanargmax(result.amplitude(dofs[0])))
-        slipping = [
-            np.atleast_1d(result.slip_fraction(one)[at]).max() for one in range(len(contacts))
-        ]
+        shares = [result.slip_fraction(contact)[at].max() for contact in range(len(contacts))]
         # The contacts that slip most tell most.
         for contact in sorted(np.argsort(shares)[::-1][:_LOOPS].tolist()):
             yield partial(plot.hysteresis, result, contact, at, length_unit=length)

@@ -1,0 +1,322 @@
+"""Interactive figures from the panels that make pictures: one drawing serves both."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, log10
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedFormatter, FixedLocator
+from matplotlib.transforms import Transform
+
+from stickslip.html.artists import Place, Trace, UndrawableError, traces
+from stickslip.html.labels import label, plain
+from stickslip.plot.style import RESPONSE, fit
+from stickslip.results.arrays import Float
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.text import Text
+
+    from stickslip.views.picture import Panel
+
+__all__ = ["Drawn", "drawn"]
+
+_SIZE = (7.4, 4.2)
+_INK = "#1f2933"
+_GRID = "#e3e6ea"
+_HEIGHT, _LEGEND_ROW, _LEGEND_WIDTH = 400, 22, 800
+_BUTTONS = 20
+_FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A figure of a page.
+
+    Attributes
+    ----------
+    caption : str
+        What it shows, in a line.
+    description : str
+        The same with the names of its curves, to be read aloud.
+    data : str
+        What plotly draws, as JSON; empty if the picture is a still one.
+    still : str
+        A picture as data URI, where there is no interactive one.
+    height : int
+        Of the figure, in pixels.
+    """
+
+    caption: str
+    description: str
+    data: str
+    still: str
+    height: int
+
+
+def drawn(panel: Panel) -> Drawn:
+    """Return a figure of what a panel draws.
+
+    Parameters
+    ----------
+    panel : Panel
+        Draws on Matplotlib axes.
+
+    Returns
+    -------
+    Drawn
+        Interactive; a still picture where the panel draws what plotly has no counterpart of.
+
+    Raises
+    ------
+    ModelError
+        If the panel refuses what it is to draw.
+    """
+    figure = Figure(figsize=_SIZE, layout="constrained")
+    ax = figure.add_subplot()
+    panel(ax=ax)
+    caption, description = _words(ax)
+    try:
+        data, layout = _plotly(figure, ax)
+    except UndrawableError:
+        return Drawn(caption, description, "", _still(figure), _HEIGHT)
+    return Drawn(caption, description, _json(data, layout), "", layout["height"])
+
+
+def _plotly(figure: Figure, ax: Axes) -> tuple[list[Trace], Trace]:
+    bars = {
+        id(mapped.colorbar.ax)
+        for one in figure.axes
+        for mapped in (*one.collections, *one.images)
+        if mapped.colorbar is not None
+    }
+    beside = [one for one in figure.axes if one is not ax and id(one) not in bars]
+    if len(beside) > 1 or not all(one.bbox.bounds == ax.bbox.bounds for one in beside):
+        raise UndrawableError("several frames")
+    data = list(traces(ax, Place("x", "y", "y3")))
+    layout = _layout(ax)
+    for one in beside:
+        data += traces(one, Place("x", "y2", "y3"))
+        side = {"overlaying": "y", "side": "right", "showgrid": False, "tickmode": "auto"}
+        layout["yaxis2"] = _axis(one, "y") | side
+    layout["annotations"] = [_annotation(text, ax) for text in ax.texts if text.get_text()]
+    names = [trace["name"] for trace in data if trace["showlegend"]]
+    _group(data)
+    layout["showlegend"] = ax.get_legend() is not None or len(names) > 1
+    if layout["showlegend"]:
+        rows = ceil(sum(7 * len(name) + 60 for name in names) / _LEGEND_WIDTH)
+        layout["height"] += _LEGEND_ROW * rows
+        layout["margin"]["b"] += _LEGEND_ROW * rows
+    layout["updatemenus"] = _scales(ax, data)
+    if layout["updatemenus"]:
+        # buttons stand between title and frame, below those of plotly
+        layout["margin"]["t"] += _BUTTONS
+        layout["height"] += _BUTTONS
+    return data, layout
+
+
+def _layout(ax: Axes) -> Trace:
+    layout: Trace = {
+        "template": {},
+        "height": _HEIGHT,
+        "margin": {"l": 74, "r": 24, "t": 48, "b": 56},
+        "font": {"family": _FONT, "size": 13, "color": _INK},
+        "paper_bgcolor": "#ffffff",
+        "plot_bgcolor": "#ffffff",
+        "hovermode": "closest",
+        "title": {
+            "text": label(ax.get_title()),
+            "x": 0.0,
+            "xref": "paper",
+            "y": 0.97,
+            "font": {"size": 14},
+        },
+        "xaxis": _axis(ax, "x"),
+        "yaxis": _axis(ax, "y"),
+        "yaxis3": {"overlaying": "y", "range": [0, 1], "visible": False, "fixedrange": True},
+        "legend": {
+            "orientation": "h",
+            "x": 0.0,
+            "xanchor": "left",
+            "yref": "container",
+            "y": 0.0,
+            "yanchor": "bottom",
+            "font": {"size": 12},
+        },
+    }
+    if ax.get_aspect() == 1.0:
+        layout["yaxis"] |= {"scaleanchor": "x", "scaleratio": 1.0}
+        layout["height"] += 80
+    return layout
+
+
+def _axis(ax: Axes, letter: str) -> Trace:
+    axis = ax.xaxis if letter == "x" else ax.yaxis
+    scale = axis.get_scale()
+    if scale not in ("linear", "log"):
+        raise UndrawableError(f"{scale} axis")
+    low, high = axis.get_view_interval() if letter == "x" else ax.get_ylim()
+    if letter == "x":
+        low, high = ax.get_xlim()
+    entry: Trace = {
+        "title": {"text": label(axis.get_label_text())},
+        "type": scale,
+        "range": _range(low, high, scale),
+        "automargin": True,
+        "gridcolor": _GRID,
+        "linecolor": "#8a94a0",
+        "showline": True,
+        "ticks": "outside",
+        "tickcolor": "#8a94a0",
+        "zeroline": False,
+        "hoverformat": ".6g",
+    }
+    if scale == "log":
+        few = abs(log10(high / low)) < 2.5
+        # exponents as on paper, and numbers between the decades where there are few of them
+        entry |= {"exponentformat": "power", "dtick": "D2" if few else 1}
+    else:
+        entry |= {"exponentformat": "power", "minexponent": 4}
+    locator, formatter = axis.get_major_locator(), axis.get_major_formatter()
+    if isinstance(locator, FixedLocator) and isinstance(formatter, FixedFormatter):
+        entry |= {
+            "tickvals": [float(one) for one in locator()],
+            "ticktext": [label(str(one)) for one in formatter.seq],
+        }
+    return entry
+
+
+def _range(low: float, high: float, scale: str) -> list[float]:
+    return [log10(low), log10(high)] if scale == "log" else [float(low), float(high)]
+
+
+def _scales(ax: Axes, data: Sequence[Trace]) -> list[Trace]:
+    """Return the buttons for a logarithmic and a linear axis, where both make sense."""
+    now = ax.get_yscale()
+    parts = [trace for trace in data if trace["yaxis"] == "y"]
+    if not parts or any(trace["type"] != "scatter" for trace in parts) or ax.get_aspect() == 1.0:
+        return []
+    heights: Float = np.concatenate([np.asarray(trace["y"], float) for trace in parts])
+    heights = heights[np.isfinite(heights)]
+    if not heights.size or heights.min() <= 0.0:
+        return []
+    spans = {now: ax.get_ylim()}
+    other = "linear" if now == "log" else "log"
+    if any(line.get_gid() == RESPONSE for line in ax.lines):
+        fit(ax, log=other == "log")
+        spans[other] = ax.get_ylim()
+    else:
+        low, high = float(heights.min()), float(heights.max())
+        spans[other] = (0.6 * low, 1.6 * high) if other == "log" else (0.0, 1.05 * high)
+    few = log10(spans["log"][1] / spans["log"][0]) < 2.5
+    buttons = [
+        {
+            "label": f"{name} scale",
+            "method": "relayout",
+            "args": [
+                {
+                    "yaxis.type": name,
+                    "yaxis.range": _range(*spans[name], name),
+                    "yaxis.dtick": ("D2" if few else 1) if name == "log" else None,
+                }
+            ],
+        }
+        for name in ("log", "linear")
+    ]
+    look = {"x": 0.0, "xanchor": "left", "y": 1.02, "yanchor": "bottom", "direction": "right"}
+    return [
+        {
+            "type": "buttons",
+            "buttons": buttons,
+            "active": int(now == "linear"),
+            "bgcolor": "#f3f5f7",
+            "bordercolor": "#b8c0c8",
+            "font": {"size": 12},
+            "pad": {"t": 0, "r": 0},
+        }
+        | look
+    ]
+
+
+def _group(data: Sequence[Trace]) -> None:
+    """Let what has no name of its own come and go with the first curve of its colour."""
+    owners: dict[str, Trace] = {}
+    for trace in data:
+        if trace["showlegend"]:
+            owners.setdefault(_shade(trace), trace)
+    for number, trace in enumerate(data):
+        owner = owners.get(_shade(trace))
+        if trace["showlegend"] or owner is None:
+            continue
+        trace["legendgroup"] = owner.setdefault("legendgroup", f"group{number}")
+        trace["name"] = owner["name"]
+
+
+def _shade(trace: Trace) -> str:
+    """Return the colour of a trace without its opacity."""
+    if trace["type"] != "scatter":
+        return ""
+    if "lines" in trace["mode"]:
+        colour = trace["line"]["color"]
+    else:
+        marker = trace["marker"]
+        colour = marker.get("line", {}).get("color") or marker["color"]
+    return str(colour).rpartition(",")[0]
+
+
+def _annotation(text: Text, ax: Axes) -> Trace:
+    place = getattr(text, "xy", text.get_position())
+    transform = getattr(text, "xycoords", None) or text.get_transform()
+    if transform == "data":
+        transform = ax.transData
+    if not isinstance(transform, Transform):
+        raise UndrawableError(f"text in {transform}")
+    in_data = transform.contains_branch_seperately(ax.transData)
+    entry: Trace = {
+        "text": label(text.get_text()),
+        "showarrow": False,
+        "xanchor": text.get_horizontalalignment(),
+        "yanchor": {"baseline": "bottom", "center": "middle"}.get(
+            text.get_verticalalignment(), text.get_verticalalignment()
+        ),
+        "font": {"size": 12, "color": "#5a6570"},
+    }
+    for letter, value, known in zip("xy", place, in_data, strict=True):
+        scale = ax.get_xscale() if letter == "x" else ax.get_yscale()
+        entry[f"{letter}ref"] = letter if known else f"{letter} domain"
+        entry[letter] = log10(value) if known and scale == "log" else float(value)
+    return entry
+
+
+def _words(ax: Axes) -> tuple[str, str]:
+    title, x, y = (plain(text) for text in (ax.get_title(), ax.get_xlabel(), ax.get_ylabel()))
+    what = f"{y} over {x}" if x and y else x or y
+    caption = f"{title}: {what}" if title and what else title or what
+    _, names = ax.get_legend_handles_labels()
+    curves = f". Drawn: {'; '.join(map(plain, names))}" if names else ""
+    return caption, caption + curves
+
+
+def _json(data: Sequence[Trace], layout: Trace) -> str:
+    from plotly.graph_objects import Figure as Interactive
+
+    # plotly checks every entry, and packs the numbers
+    figure = json.loads(Interactive(data=list(data), layout=layout).to_json())
+    text = json.dumps({"data": figure["data"], "layout": figure["layout"]})
+    # nothing in it may end the element of the page it stands in
+    for sign in "<>&":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return text
+
+
+def _still(figure: Figure) -> str:
+    picture = io.BytesIO()
+    figure.savefig(picture, format="png", dpi=150)
+    return "data:image/png;base64," + base64.b64encode(picture.getvalue()).decode()

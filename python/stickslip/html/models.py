@@ -1,0 +1,109 @@
+"""What a report says of a model: size, damping, natural frequencies, contacts, forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, pi
+
+import numpy as np
+
+from stickslip.disk import BladedDisk
+from stickslip.errors import ModelError
+from stickslip.model import Model, natural_frequencies
+from stickslip.model.structure import Rayleigh, Structure
+from stickslip.results.result import Result
+from stickslip.views.tables import Row, Table, model_rows, new_table
+
+__all__ = ["ModelSummary", "summaries"]
+
+_MODES = 12
+
+
+@dataclass(frozen=True)
+class ModelSummary:
+    """A model, and the results that are of it."""
+
+    names: list[str]
+    rows: list[Row]
+    frequencies: Table | str
+    """Natural frequencies, or why there are none."""
+
+
+def summaries(results: Sequence[tuple[str, Result]]) -> list[ModelSummary]:
+    """Return the models of results; those that differ in their forces only stand together."""
+    members: list[tuple[Model, list[tuple[str, Model]]]] = []
+    for name, result in results:
+        for model, named in members:
+            if _same(model, result.model):
+                named.append((name, result.model))
+                break
+        else:
+            members.append((result.model, [(name, result.model)]))
+    return [_summary(model, named) for model, named in members]
+
+
+def _summary(model: Model, named: Sequence[tuple[str, Model]]) -> ModelSummary:
+    rows = model_rows(model)
+    rows.insert(1, ("damping", _damping(model.structure)))
+    if any(other.forces != model.forces for _, other in named):
+        rows = [row for row in rows if row[0] not in ("force", "forces")]
+        rows.append(("forces", "those of each result"))
+    try:
+        frequencies: Table | str = _frequencies(model)
+    except ModelError as error:
+        frequencies = f"No natural frequencies: {error}"
+    return ModelSummary([name for name, _ in named], rows, frequencies)
+
+
+def _same(one: Model, other: Model) -> bool:
+    matrices = ("mass", "damping", "stiffness")
+    return (
+        type(one) is type(other)
+        and one.contacts == other.contacts
+        and one.structure.dofs == other.structure.dofs
+        and all(
+            np.array_equal(getattr(one.structure, name), getattr(other.structure, name))
+            for name in matrices
+        )
+    )
+
+
+def _damping(structure: Structure) -> str:
+    law = structure.damping_law
+    if isinstance(law, Rayleigh):
+        return f"Rayleigh, C = {law.mass:g}/s M + {law.stiffness:g} s K"
+    if law is not None:
+        ratios = np.unique(np.atleast_1d(law.ratio))
+        span = f"{ratios[0]:g}" if ratios.size == 1 else f"{ratios[0]:g} to {ratios[-1]:g}"
+        return f"modal, ratio {span}"
+    return "a matrix" if structure.damping.any() else "none"
+
+
+def _frequencies(model: Model) -> Table:
+    """Tabulate the lowest natural frequencies, all contacts stuck and all free to slip."""
+    slipping = [
+        (contact, point)
+        for contact, one in enumerate(model.contacts)
+        if one.parameters().get("slip_force") != inf
+        for point in range(one.points)
+    ]
+    stuck, free = natural_frequencies(model), natural_frequencies(model, slipping)
+    table = new_table("natural frequencies")
+    columns = [("stuck", stuck), ("free", free)] if slipping else [("", stuck)]
+    table.add_column("mode", justify="right")
+    for state, _ in columns:
+        for unit in ("rad/s", "Hz"):
+            table.add_column(f"{state} [{unit}]".strip(), justify="right")
+    for mode in range(min(stuck.size, _MODES)):
+        cells = [
+            f"{value:#.6g}" for _, omega in columns for value in (omega[mode], omega[mode] / 2 / pi)
+        ]
+        table.add_row(f"{mode}", *cells)
+    notes = ["all contacts stuck, and all slipping without friction"] if slipping else []
+    if stuck.size > _MODES:
+        notes.append(f"the lowest {_MODES} of {stuck.size}")
+    if isinstance(model, BladedDisk):
+        notes.append("of the nodal diameter that the engine order excites")
+    table.caption = "; ".join(notes) or None
+    return table

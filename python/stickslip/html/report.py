@@ -1,0 +1,152 @@
+"""The report: results of any kind on one page that needs nothing else to be read."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Literal, TypeAlias, Union
+
+from stickslip.checks import brief, choice, file_path, text
+from stickslip.errors import ModelError
+from stickslip.results.files import whole
+from stickslip.results.result import Result
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from stickslip.html.sections import Entry
+
+__all__ = ["report"]
+
+Reported: TypeAlias = Union[Result, str, "os.PathLike[str]"]
+
+
+def report(
+    results: Reported | Iterable[Reported] | Mapping[str, Reported],
+    path: str | os.PathLike[str],
+    *,
+    title: str | None = None,
+    dofs: Iterable[str] | str | None = None,
+    omega_unit: Literal["rad/s", "Hz"] = "rad/s",
+    length_unit: Literal["m", "mm", "um"] = "m",
+) -> None:
+    """Write results as a self-contained HTML page, whole or not at all.
+
+    The page has interactive figures, tables, the model, what was assumed, what is in doubt, how
+    long everything took and with which version. It asks nothing of a network: plotly.js (5 MB) is
+    part of it. Results of one kind and the same degrees of freedom are drawn together.
+
+    Parameters
+    ----------
+    results : Result, path-like, iterable or mapping of these
+        What to report. Files are those that `save` wrote; the keys of a mapping are the names that
+        the page uses.
+    path : path-like
+        The page, ending in .html; an existing one is replaced.
+    title : str, optional
+        Heading of the page. Default: the names of the results.
+    dofs : str or iterable of str, optional
+        Degrees of freedom to show. Default: those with a force or a contact.
+    omega_unit : {"rad/s", "Hz"}, optional
+        Unit of the frequency axes.
+    length_unit : {"m", "mm", "um"}, optional
+        Unit of the amplitudes.
+
+    Raises
+    ------
+    ModelError
+        If there is no result, a file is damaged or of an unknown kind, a degree of freedom belongs
+        to none of the results, there is no such unit, the page cannot be written, or plotly or
+        jinja2 is not installed: ``pip install 'stickslip[report]'``.
+    """
+    target = file_path(path, "path")
+    if target.suffix.lower() not in (".html", ".htm"):
+        raise ModelError(f"{target}: a report is a page of HTML; let its name end in .html")
+    choice(omega_unit, "omega_unit", ["rad/s", "Hz"])
+    choice(length_unit, "length_unit", ["m", "mm", "um"])
+    entries = _entries(results)
+    shown = _dofs(dofs, entries)
+    if title is not None:
+        text(title, "title")
+    page = _templates().get_template("report.html")
+    from stickslip.html.sections import content
+    from stickslip.study.tables import OutputTable
+
+    output = OutputTable(omega_unit=omega_unit, length_unit=length_unit)
+    html = page.render(content(entries, shown, output, title))
+    with whole(target) as temporary:
+        temporary.write_text(html, encoding="utf-8")
+
+
+def _templates() -> Environment:
+    """Return the templates, or say what is missing before anything is drawn."""
+    try:
+        import plotly  # noqa: F401
+        from jinja2 import Environment, PackageLoader, StrictUndefined
+    except ImportError as error:
+        raise ModelError(
+            f"report: {error.name} is not installed; install it with pip install "
+            "'stickslip[report]'"
+        ) from None
+    return Environment(
+        loader=PackageLoader("stickslip.html", "page"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def _entries(results: object) -> list[Entry]:
+    from stickslip.html.sections import Entry
+    from stickslip.results.store import load
+
+    named: list[tuple[str, object]]
+    if isinstance(results, Mapping):
+        named = [(text(name, "name of a result"), one) for name, one in results.items()]
+    elif isinstance(results, Result | str | os.PathLike):
+        named = [("", results)]
+    elif isinstance(results, Iterable):
+        named = [("", one) for one in results]
+    else:
+        raise ModelError(f"results: {brief(results)} is neither a result nor a file of one")
+    if not named:
+        raise ModelError("results: empty; give at least one result or file")
+    entries = []
+    for place, (name, one) in enumerate(named):
+        if isinstance(one, Result):
+            unnamed = "result" if len(named) == 1 else f"result {place + 1}"
+            entries.append(Entry(name or unnamed, one, None))
+        elif isinstance(one, str | os.PathLike):
+            source = file_path(one, f"results[{place}]")
+            entries.append(Entry(name or source.stem, load(source), source))
+        else:
+            raise ModelError(
+                f"results[{place}]: {brief(one)} is neither a result nor a file of one"
+            )
+    return _told_apart(entries)
+
+
+def _told_apart(entries: list[Entry]) -> list[Entry]:
+    """Give files of the same name the names of their folders too."""
+    names = [entry.name for entry in entries]
+    apart = []
+    for entry in entries:
+        if names.count(entry.name) > 1 and entry.source is not None:
+            folder = entry.source.resolve().parent.name
+            entry = entry._replace(name=f"{folder}{os.sep}{entry.name}")
+        apart.append(entry)
+    return apart
+
+
+def _dofs(dofs: Iterable[str] | str | None, entries: list[Entry]) -> tuple[str, ...] | None:
+    if dofs is None:
+        return None
+    wanted = (dofs,) if isinstance(dofs, str) else tuple(dofs)
+    if not wanted:
+        raise ModelError("dofs: empty; name at least one, or leave it out")
+    for dof in wanted:
+        if not any(dof in entry.result.dofs for entry in entries):
+            # its message says whether it is unknown or was not observed
+            entries[0].result._column(dof)
+    return wanted

@@ -1,0 +1,272 @@
+"""What stands in a report: groups of results that are drawn together, and each result by itself."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, is_dataclass
+from datetime import UTC, datetime
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stickslip.errors import ModelError
+from stickslip.html.figures import Drawn, drawn
+from stickslip.html.models import ModelSummary, summaries
+from stickslip.results.result import Result
+from stickslip.study import notable_dofs
+from stickslip.study.tables import OutputTable
+from stickslip.views.kinds import MODULES, View, view_of
+from stickslip.views.picture import Panel
+from stickslip.views.tables import Row, Table, new_table
+
+__all__ = ["Entry", "content"]
+
+
+class Entry(NamedTuple):
+    """A result of the report."""
+
+    name: str
+    result: Result
+    source: Path | None
+    """The file it was read from."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A result by itself."""
+
+    anchor: str
+    name: str
+    failures: list[str]
+    cautions: list[str]
+    facts: list[Row]
+    assumptions: tuple[str, ...]
+    figures: list[Drawn | str]
+    settings: list[Row]
+    effort: list[Row]
+    provenance: list[Row]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Results that are drawn and tabulated together."""
+
+    anchor: str
+    heading: str
+    figures: list[Drawn | str]
+    tables: list[Table]
+    models: list[ModelSummary]
+    sections: list[Section]
+
+
+def content(
+    entries: Sequence[Entry], dofs: Sequence[str] | None, output: OutputTable, title: str | None
+) -> dict[str, object]:
+    """Return what the template shows.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+        The results.
+    dofs : sequence of str or None
+        Degrees of freedom to show; None chooses.
+    output : OutputTable
+        Units.
+    title : str or None
+        Heading of the page; None makes one.
+
+    Returns
+    -------
+    dict
+        By the names of the template.
+
+    Raises
+    ------
+    ModelError
+        If a result is of a kind of which nothing is known to show.
+    """
+    from plotly.offline import get_plotlyjs
+
+    page = files("stickslip.html") / "page"
+    anchors = {id(entry): f"result-{number}" for number, entry in enumerate(entries, 1)}
+    groups = [
+        _group(f"group-{number}", members, anchors, dofs, output)
+        for number, members in enumerate(_grouped(entries), 1)
+    ]
+    names = [entry.name for entry in entries]
+    return {
+        "title": title or f"Report: {', '.join(names[:3])}{', ...' if len(names) > 3 else ''}",
+        "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        "overview": _overview(entries),
+        "links": [anchors[id(entry)] for entry in entries],
+        "groups": groups,
+        "versions": _versions(),
+        "plotly": get_plotlyjs(),
+        "style": (page / "report.css").read_text(encoding="utf-8"),
+        "script": (page / "report.js").read_text(encoding="utf-8"),
+    }
+
+
+def _grouped(entries: Iterable[Entry]) -> list[list[Entry]]:
+    """Put together what has a common view, the same kind of model and the same dofs."""
+    groups: dict[object, list[Entry]] = {}
+    for entry in entries:
+        view_of([entry.result])  # an unknown kind is refused before anything is drawn
+        model = entry.result.model
+        key = MODULES[entry.result.kind], type(model), model.structure.dofs, entry.result.dofs
+        groups.setdefault(key, []).append(entry)
+    return list(groups.values())
+
+
+def _group(
+    anchor: str,
+    members: Sequence[Entry],
+    anchors: dict[int, str],
+    dofs: Sequence[str] | None,
+    output: OutputTable,
+) -> Group:
+    results = [entry.result for entry in members]
+    view, first = view_of(results), results[0]
+    shown = [dof for dof in dofs or notable_dofs(first.model, first.dofs) if dof in first.dofs]
+    if not shown:
+        shown = list(notable_dofs(first.model, first.dofs))
+    named = [(entry.name, entry.result) for entry in members]
+    label = "result" if len(members) > 1 else ""
+    kinds = dict.fromkeys(_kind(result) for result in results)
+    models = summaries(named)
+    known = {row for model in models for row in model.rows}
+    return Group(
+        anchor,
+        " and ".join(kinds),
+        [_figure(panel) for panel in view.panels(results, shown, output)],
+        view.tables(named, label, shown, output.length_unit),
+        models,
+        [_section(anchors[id(entry)], entry, view, shown, output, known) for entry in members],
+    )
+
+
+def _section(
+    anchor: str,
+    entry: Entry,
+    view: View,
+    dofs: Sequence[str],
+    output: OutputTable,
+    known: set[Row],
+) -> Section:
+    result = entry.result
+    facts = [row for row in view.facts(result) if row[0] != "assumed" and row not in known]
+    return Section(
+        anchor,
+        entry.name,
+        _without(view.failures(entry.name, result), entry.name),
+        _without(view.cautions(entry.name, result), entry.name),
+        facts,
+        result.assumptions,
+        [_figure(panel) for panel in view.details(result, dofs, output)],
+        _settings(result),
+        _effort(result),
+        _provenance(entry),
+    )
+
+
+def _without(lines: Iterable[str], name: str) -> list[str]:
+    return [line.removeprefix(f"{name}: ") for line in lines]
+
+
+def _figure(panel: Panel) -> Drawn | str:
+    """Return a figure, or why there is none."""
+    try:
+        return drawn(panel)
+    except ModelError as error:
+        return str(error)
+
+
+def _overview(entries: Sequence[Entry]) -> Table:
+    table = new_table()
+    for heading in ("result", "kind", "status"):
+        table.add_column(heading)
+    for heading in ("assumptions", "computed in [s]"):
+        table.add_column(heading, justify="right")
+    for entry in entries:
+        result = entry.result
+        table.add_row(
+            entry.name,
+            _kind(result),
+            _status(result) + (", interrupted" if result.interrupted else ""),
+            f"{len(result.assumptions)}",
+            f"{result.timings['total']:.3g}" if "total" in result.timings else "",
+        )
+    return table
+
+
+def _kind(result: Result) -> str:
+    return result.kind.replace("_", " ").capitalize()
+
+
+def _status(result: Any) -> str:
+    """Count how the points ended, or say how the one computation did."""
+    status = getattr(result, "status", "")
+    if isinstance(status, str):
+        return str(status)
+    return ", ".join(f"{count} {name}" for name, count in Counter(map(str, status)).items())
+
+
+def _settings(result: Any) -> list[Row]:
+    settings = getattr(result, "settings", None)
+    if not is_dataclass(settings) or isinstance(settings, type):
+        return []
+    return [(name.replace("_", " "), _text(value)) for name, value in asdict(settings).items()]
+
+
+def _text(value: object) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_text(one)}" for name, one in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_text, value))
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return "none" if value is None else str(value)
+
+
+def _effort(result: Any) -> list[Row]:
+    rows = [(f"{stage.replace('_', ' ')} [s]", f"{s:.3g}") for stage, s in result.timings.items()]
+    rows += [(name.replace("_", " "), f"{count}") for name, count in result.counters.items()]
+    iterations = getattr(result, "iterations", None)
+    if isinstance(iterations, np.ndarray) and iterations.size:
+        told = f"{iterations.sum()} in all, at most {iterations.max()} at a point"
+        rows.append(("iterations", told))
+    return rows
+
+
+def _provenance(entry: Entry) -> list[Row]:
+    if entry.source is None:
+        return [("source", "computed in the session that wrote the report")]
+    import h5py
+
+    content = entry.source.read_bytes()
+    with h5py.File(entry.source) as stored:
+        writer = stored.attrs.get("stickslip_version", "unknown")
+    written = datetime.fromtimestamp(entry.source.stat().st_mtime, UTC)
+    return [
+        ("file", str(entry.source)),
+        ("written", f"{written:%Y-%m-%d %H:%M UTC}, by stickslip {writer}"),
+        ("size", f"{len(content)} bytes"),
+        ("SHA-256", hashlib.sha256(content).hexdigest()),
+    ]
+
+
+def _versions() -> list[Row]:
+    from stickslip._core import __version__
+
+    names = ("numpy", "scipy", "matplotlib", "plotly")
+    return [
+        ("stickslip", __version__),
+        ("Python", platform.python_version()),
+        *((name, version(name)) for name in names),
+    ]
