@@ -90,7 +90,7 @@ class Browser:
         os.close(self._read)
         self._folder.cleanup()
 
-    def open(self, file: Path, *, width: int = 1100, height: int = 900, dark: bool = False) -> None:
+    def open(self, file: Path) -> None:
         """Show a file, and wait until it is loaded."""
         self._session = None
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
@@ -98,15 +98,19 @@ class Browser:
         self._session = session["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
-        self.call("Emulation.setDeviceMetricsOverride", **size)
-        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        self.call("Emulation.setEmulatedMedia", features=[scheme])
+        self.shape()
         self._events.clear()
         self.complaints.clear()
         self.requests.clear()
         self.call("Page.navigate", url=file.resolve().as_uri())
         self._until(lambda: "Page.loadEventFired" in self._events)
+
+    def shape(self, *, width: int = 1100, height: int = 900, dark: bool = False) -> None:
+        """Give the window a size and a colour scheme."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.call("Emulation.setDeviceMetricsOverride", **size)
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self.call("Emulation.setEmulatedMedia", features=[scheme])
 
     def run(self, script: str) -> Any:
         """Return the value of an expression in the page."""

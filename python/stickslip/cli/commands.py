@@ -1,5 +1,7 @@
 """The command line: ``stickslip run STUDY.toml``, ``show``, ``plot``, ``certify``, ``schema``.
 
+The command ``report`` is added by `stickslip.cli.reporting`.
+
 Exit codes: 0 all is well, 1 some points did not converge, 2 the input is refused, 70 a defect of
 the program, 130 interrupted by Ctrl-C.
 """

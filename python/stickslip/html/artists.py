@@ -74,7 +74,8 @@ def traces(ax: Axes, place: Place) -> Iterator[Trace]:
     UndrawableError
         If something has no counterpart.
     """
-    bars = {id(bar): one for one in ax.containers for bar in _bars(one)}
+    rows = [one for one in ax.containers if isinstance(one, container.BarContainer)]
+    bars = {id(bar): one for one in rows for bar in one.patches}
     drawn = [*ax.lines, *ax.collections, *ax.patches, *ax.images]
     for artist in sorted(drawn, key=lambda one: one.get_zorder()):
         if not artist.get_visible():
@@ -114,6 +115,11 @@ def _trace(artist: Artist, ax: Axes, place: Place) -> Iterator[Trace]:
             raise UndrawableError(type(artist).__name__)
 
 
+def _numbers(values: Any) -> Float:
+    """Return an array in which what is masked out is not-a-number."""
+    return np.asarray(np.ma.filled(np.ma.asarray(values, float), np.nan), dtype=np.float64)
+
+
 def _name(artist: Artist | container.Container) -> Trace:
     text = str(artist.get_label())
     if not text or text.startswith("_"):
@@ -122,7 +128,7 @@ def _name(artist: Artist | container.Container) -> Trace:
 
 
 def _line(line: lines.Line2D, ax: Axes, place: Place) -> Iterator[Trace]:
-    x, y = (np.ma.filled(np.ma.asarray(data, float), np.nan) for data in line.get_data(orig=False))
+    x, y = (_numbers(data) for data in line.get_data(orig=False))
     in_x, in_y = line.get_transform().contains_branch_seperately(ax.transData)
     if not x.size:
         return
@@ -185,7 +191,7 @@ def _dash(line: lines.Line2D) -> str:
 def _segments(collection: collections.LineCollection) -> Trace:
     gap = np.full((1, 2), np.nan)
     parts = [part for one in collection.get_segments() for part in (np.asarray(one, float), gap)]
-    points = np.concatenate(parts) if parts else np.empty((0, 2))
+    points: Float = np.concatenate([*parts, gap])
     return {
         "type": "scatter",
         "mode": "lines",
@@ -193,14 +199,14 @@ def _segments(collection: collections.LineCollection) -> Trace:
         "y": points[:, 1],
         "line": {
             "color": colour_of(collection.get_colors()[0]),
-            "width": _PIXELS * float(np.atleast_1d(collection.get_linewidths())[0]),
+            "width": _PIXELS * float(np.atleast_1d(collection.get_linewidth())[0]),
         },
         "hoverinfo": "skip",
     } | _name(collection)
 
 
 def _cloud(cloud: collections.PathCollection) -> Trace:
-    points = np.ma.filled(np.ma.asarray(cloud.get_offsets(), float), np.nan)
+    points = _numbers(cloud.get_offsets())
     sizes = np.sqrt(np.asarray(cloud.get_sizes(), float))
     marker: Trace = {"size": _PIXELS * (float(sizes[0]) if sizes.size == 1 else sizes)}
     trace: Trace = {
@@ -213,10 +219,10 @@ def _cloud(cloud: collections.PathCollection) -> Trace:
     } | _name(cloud)
     values = cloud.get_array()
     if values is not None:
-        marker |= {"color": np.ma.filled(np.ma.asarray(values, float), np.nan)} | _scale(cloud)
+        marker |= {"color": _numbers(values)} | _scale(cloud)
         trace["hovertemplate"] = _HOVER + ": %{marker.color:.6g}"
         return trace
-    faces, edges = cloud.get_facecolors(), cloud.get_edgecolors()
+    faces, edges = cloud.get_facecolor(), cloud.get_edgecolor()
     hollow = not len(faces)
     shades = edges if hollow else faces
     marker["color"] = (
@@ -248,7 +254,7 @@ def _scale(mapped: Any) -> Trace:
 
 def _mesh(mesh: collections.QuadMesh) -> Trace:
     corners: Float = np.asarray(mesh.get_coordinates(), float)
-    values = np.ma.asarray(mesh.get_array(), float)
+    values = _numbers(mesh.get_array())
     x, y = corners[0, :, 0], corners[:, 0, 1]
     if not (np.allclose(corners[..., 0], x) and np.allclose(corners[..., 1].T, y)):
         raise UndrawableError("a mesh that is not rectangular")
@@ -258,7 +264,7 @@ def _mesh(mesh: collections.QuadMesh) -> Trace:
 
 
 def _image(shown: image.AxesImage) -> Trace:
-    values: Any = np.ma.asarray(shown.get_array())
+    values = _numbers(shown.get_array())
     if values.ndim != 2:
         raise UndrawableError("an image of true colours")
     left, right, bottom, top = shown.get_extent()
@@ -269,13 +275,13 @@ def _image(shown: image.AxesImage) -> Trace:
     return _heat(shown, x, y, values)
 
 
-def _heat(mapped: Any, x: Float, y: Float, values: Any) -> Trace:
+def _heat(mapped: Any, x: Float, y: Float, values: Float) -> Trace:
     scale = _scale(mapped)
     return {
         "type": "heatmap",
         "x": x,
         "y": y,
-        "z": np.ma.filled(np.ma.asarray(values, float), np.nan),
+        "z": values,
         "zmin": scale.pop("cmin"),
         "zmax": scale.pop("cmax"),
         "hovertemplate": "%{x:.5g}, %{y:.5g}: %{z:.5g}<extra></extra>",
@@ -313,10 +319,6 @@ def _area(points: Float, colour: object) -> Trace:
     }
 
 
-def _bars(one: container.Container) -> list[patches.Rectangle]:
-    return list(one.patches) if isinstance(one, container.BarContainer) else []
-
-
 def _bar(bars: container.BarContainer) -> Trace:
     across = bars.orientation == "horizontal"
     places, heights, widths, bases = [], [], [], []
@@ -347,7 +349,7 @@ def _bar(bars: container.BarContainer) -> Trace:
             },
         },
         "hovertemplate": _HOVER,
-    } | _name(bars)
+    } | _name(first if str(bars.get_label()).startswith("_") else bars)
 
 
 def _thinned(x: Float, y: Float) -> tuple[Float, Float]:

@@ -183,7 +183,7 @@ def _axis(ax: Axes, letter: str) -> Trace:
         # exponents as on paper, and numbers between the decades where there are few of them
         entry |= {"exponentformat": "power", "dtick": "D2" if few else 1}
     else:
-        entry |= {"exponentformat": "power", "minexponent": 4}
+        entry |= {"exponentformat": "power", "minexponent": 3}
     locator, formatter = axis.get_major_locator(), axis.get_major_formatter()
     if isinstance(locator, FixedLocator) and isinstance(formatter, FixedFormatter):
         entry |= {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Literal, TypeAlias, Union
 
@@ -73,7 +74,10 @@ def report(
     from stickslip.study.tables import OutputTable
 
     output = OutputTable(omega_unit=omega_unit, length_unit=length_unit)
-    html = page.render(content(entries, shown, output, title))
+    with warnings.catch_warnings():
+        # the page marks these peaks
+        warnings.filterwarnings("ignore", message="peak of ", category=UserWarning)
+        html = page.render(content(entries, shown, output, title))
     with whole(target) as temporary:
         temporary.write_text(html, encoding="utf-8")
 
