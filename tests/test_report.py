@@ -12,13 +12,11 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 from typer.testing import CliRunner
 
 import stickslip as ss
+from packed import numbers
 from stickslip.cli import app
-from stickslip.html.figures import drawn
-from stickslip.html.labels import label
 from stickslip.results.result import Result
 from stickslip.views import kinds
 from stickslip.views.tables import new_table
@@ -183,15 +181,6 @@ def test_curves_are_those_of_the_picture(results, tmp_path):
     assert len({"solid", curve["line"]["dash"], *dashes.values()}) == 3
 
 
-def numbers(values):
-    """Undo how plotly packs arrays."""
-    import base64
-
-    if isinstance(values, dict):
-        return np.frombuffer(base64.b64decode(values["bdata"]), dtype=values["dtype"])
-    return np.array(values, float)
-
-
 def test_marks_go_with_the_curve_of_their_colour(results, tmp_path):
     pair = {name: results[name] for name in ("low", "griffin")}
     ss.report(pair, tmp_path / "a.html", dofs=["tip"])
@@ -349,90 +338,6 @@ def test_names_are_texts_only(hostile, tmp_path):
     labels = json.dumps(page.figures)
     assert "<script" not in labels
     assert "&lt;script&gt;" in labels
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("slip force $F_d$ [N]", "slip force F<sub>d</sub> [N]"),
-        ("$P/F_d$", "P/F<sub>d</sub>"),
-        (r"$\omega_{max}^2$ & <b>", "ω<sub>max</sub><sup>2</sup> &amp; &lt;b&gt;"),
-        ("5 $ only", "5 $ only"),
-        ("$<x>_<$", "&lt;x&gt;_&lt;"),
-    ],
-)
-def test_labels(text, expected):
-    assert label(text).replace("<sub>&</sub>", "_&") == expected
-
-
-# ---------------------------------------------------------------------------------- drawing
-
-
-def figure_of(draw):
-    found = drawn(lambda *, ax: draw(ax))
-    return json.loads(found.data) if found.data else found
-
-
-def test_maps_bars_and_histograms_are_drawn():
-    def draw(ax: Axes) -> None:
-        mesh = ax.pcolormesh([0, 1, 3], [0, 2, 3], [[1.0, 2.0], [3.0, np.nan]])
-        ax.figure.colorbar(mesh, ax=ax, label="basin")
-
-    (heat,) = figure_of(draw)["data"]
-    assert heat["type"] == "heatmap"
-    assert numbers(heat["x"]).tolist() == [0, 1, 3]
-    assert heat["colorbar"]["title"]["text"] == "basin"
-    (heat,) = figure_of(lambda ax: ax.imshow([[0, 1], [2, 3]], extent=(0, 4, 0, 2)))["data"]
-    assert numbers(heat["y"]).tolist() == [2, 1, 0]
-    (bars,) = figure_of(lambda ax: ax.hist([1.0, 1.1, 2.0], bins=2, label="share"))["data"]
-    assert (bars["type"], bars["name"]) == ("bar", "share")
-    assert numbers(bars["y"]).tolist() == [2, 1]
-
-
-def test_stable_and_unstable_branches_keep_their_lines():
-    def draw(ax: Axes) -> None:
-        ax.plot([1, 2], [1, 2], "-", label="stable")
-        ax.plot([2, 1], [2, 3], "--", label="unstable")
-        ax.set_yscale("log")
-
-    stable, unstable = figure_of(draw)["data"]
-    assert stable["line"]["dash"] == "solid"
-    assert "px" in unstable["line"]["dash"]
-
-
-def test_a_second_axis_and_levels():
-    def draw(ax: Axes) -> None:
-        ax.plot([0, 10], [1, 2])
-        ax.axvline(5.0)
-        beside = ax.twinx()
-        beside.plot([0, 10], [100, 200])
-        beside.set_ylabel("Hz")
-
-    figure = figure_of(draw)
-    assert [trace["yaxis"] for trace in figure["data"]] == ["y", "y3", "y2"]
-    assert figure["layout"]["yaxis2"]["title"]["text"] == "Hz"
-    assert figure["layout"]["yaxis2"]["side"] == "right"
-
-
-def test_long_histories_keep_their_extremes():
-    time = np.linspace(0.0, 1.0, 100_001)
-    wave = np.sin(2 * np.pi * 5 * time)
-    wave[33_333] = 7.0
-    (line,) = figure_of(lambda ax: ax.plot(time, wave))["data"]
-    assert numbers(line["y"]).size <= 20_002
-    assert numbers(line["y"]).max() == 7.0
-    assert numbers(line["x"])[[0, -1]].tolist() == [0.0, 1.0]
-
-
-def test_what_plotly_cannot_draw_is_a_still_picture():
-    def draw(ax: Axes) -> None:
-        ax.contourf([[1, 2], [3, 4]])
-        ax.set_ylabel("height")
-
-    found = figure_of(draw)
-    assert found.data == ""
-    assert found.still.startswith("data:image/png;base64,")
-    assert found.caption == "height"
 
 
 # ---------------------------------------------------------------------------------- a new kind
