@@ -29,7 +29,7 @@ class Browser:
     complaints : list of str
         Everything the page wrote to the console or failed with.
     requests : list of str
-        Every address it asked for.
+        Every address it asked for, those that are their own content left out.
     """
 
     def __init__(self) -> None:
@@ -189,4 +189,6 @@ class Browser:
         elif method == "Log.entryAdded":
             self.complaints.append(str(parameters["entry"]["text"]))
         elif method == "Network.requestWillBeSent":
-            self.requests.append(str(parameters["request"]["url"]))
+            address = str(parameters["request"]["url"])
+            if not address.startswith("data:"):
+                self.requests.append(address)

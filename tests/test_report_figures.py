@@ -5,6 +5,9 @@ import json
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from packed import numbers
 from stickslip.html.figures import drawn
@@ -44,6 +47,43 @@ def test_maps_bars_and_histograms_are_drawn():
     (bars,) = figure_of(lambda ax: ax.hist([1.0, 1.1, 2.0], bins=2, label="share"))["data"]
     assert (bars["type"], bars["name"]) == ("bar", "share")
     assert numbers(bars["y"]).tolist() == [2, 1]
+
+
+def test_cases_have_their_own_colours_and_names():
+    def draw(ax: Axes) -> None:
+        cases = ListedColormap(["red", "green", "blue"])
+        norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
+        mesh = ax.pcolormesh([0, 1, 2, 3], [0, 1], [[0.0, 1.0, 2.0]], cmap=cases, norm=norm)
+        bar = ax.figure.colorbar(mesh, ax=ax, ticks=[0, 1, 2])
+        bar.ax.set_yticklabels(["<stuck>", "slips", "lost"])
+
+    (heat,) = figure_of(draw)["data"]
+    assert numbers(heat["z"]).ravel() == pytest.approx([1 / 6, 3 / 6, 5 / 6])
+    assert heat["colorscale"][2:4] == [[1 / 3, "rgba(0,128,0,1)"], [2 / 3, "rgba(0,128,0,1)"]]
+    assert heat["colorbar"]["ticktext"] == ["&lt;stuck&gt;", "slips", "lost"]
+
+
+def test_a_logarithmic_map_tells_its_values():
+    def draw(ax: Axes) -> None:
+        ax.scatter([0, 1, 2], [0, 1, 2], c=[1.0, 10.0, 100.0], norm=LogNorm())
+
+    (cloud,) = figure_of(draw)["data"]
+    assert numbers(cloud["marker"]["color"]) == pytest.approx([0.0, 0.5, 1.0])
+    assert numbers(cloud["customdata"]).tolist() == [1.0, 10.0, 100.0]
+
+
+def test_a_legend_of_its_own_switches_what_looks_like_it():
+    def draw(ax: Axes) -> None:
+        (solid,) = ax.plot([1, 2], [1, 2], "-", color="k")
+        ax.plot([2, 1], [2, 3], "--", color="k")
+        dashed = Line2D([], [], color="k", ls="--")
+        ax.legend([solid, dashed, Patch(color="red")], ["stable", "unstable", "area"])
+
+    stable, unstable, *entries = figure_of(draw)["data"]
+    assert [entry["name"] for entry in entries] == ["stable", "unstable", "area"]
+    assert stable["legendgroup"] == entries[0]["legendgroup"]
+    assert unstable["legendgroup"] == entries[1]["legendgroup"]
+    assert stable["legendgroup"] != unstable["legendgroup"]
 
 
 def test_stable_and_unstable_branches_keep_their_lines():

@@ -11,10 +11,11 @@ from matplotlib import collections, colors, container, image, lines, patches
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
+from stickslip.html.colours import colour_of, scaled
 from stickslip.html.labels import label
 from stickslip.results.arrays import Float
 
-__all__ = ["Trace", "UndrawableError", "colour_of", "traces"]
+__all__ = ["Trace", "UndrawableError", "proxy", "traces"]
 
 Trace: TypeAlias = dict[str, Any]
 
@@ -88,13 +89,6 @@ def traces(ax: Axes, place: Place) -> Iterator[Trace]:
         yield from _trace(artist, ax, place)
 
 
-def colour_of(value: object, alpha: float | None = None) -> str:
-    """Return a colour as CSS writes it."""
-    red, green, blue, opacity = colors.to_rgba(value)  # type: ignore[arg-type]
-    opacity = opacity if alpha is None else alpha
-    return f"rgba({255 * red:.0f},{255 * green:.0f},{255 * blue:.0f},{opacity:.3g})"
-
-
 def _trace(artist: Artist, ax: Axes, place: Place) -> Iterator[Trace]:
     match artist:
         case lines.Line2D():
@@ -113,6 +107,24 @@ def _trace(artist: Artist, ax: Axes, place: Place) -> Iterator[Trace]:
             yield _polygon(artist) | place.on()
         case _:
             raise UndrawableError(type(artist).__name__)
+
+
+def proxy(handle: Artist, name: str) -> Trace:
+    """Return the entry of a legend that belongs to no artist on the axes."""
+    entry: Trace = {"type": "scatter", "x": [None], "y": [None], "name": label(name)}
+    entry |= {"showlegend": True, "xaxis": "x", "yaxis": "y"}
+    match handle:
+        case lines.Line2D() if handle.get_linestyle() not in ("None", "", " "):
+            line = {"color": colour_of(handle.get_color()), "dash": _dash(handle)}
+            return entry | {"mode": "lines", "line": line}
+        case lines.Line2D():
+            return entry | {"mode": "markers", "marker": _marker(handle, str(handle.get_marker()))}
+        case patches.Patch():
+            shade = colour_of(handle.get_facecolor())
+            marker = {"symbol": "square", "size": 12, "color": shade, "line": {"color": shade}}
+            return entry | {"mode": "markers", "marker": marker}
+        case _:
+            raise UndrawableError(f"{type(handle).__name__} in a legend")
 
 
 def _numbers(values: Any) -> Float:
@@ -219,9 +231,10 @@ def _cloud(cloud: collections.PathCollection) -> Trace:
     } | _name(cloud)
     values = cloud.get_array()
     if values is not None:
-        marker |= {"color": _numbers(values)} | _scale(cloud)
-        trace["hovertemplate"] = _HOVER + ": %{marker.color:.6g}"
-        return trace
+        known = _numbers(values)
+        shown, scale = scaled(cloud, known)
+        marker |= {"color": shown} | scale
+        return trace | {"customdata": known, "hovertemplate": _HOVER + ": %{customdata:.6g}"}
     faces, edges = cloud.get_facecolor(), cloud.get_edgecolor()
     hollow = not len(faces)
     shades = edges if hollow else faces
@@ -230,26 +243,6 @@ def _cloud(cloud: collections.PathCollection) -> Trace:
     )
     marker["symbol"] = "circle-open" if hollow else "circle"
     return trace
-
-
-def _scale(mapped: Any) -> Trace:
-    """Return colours by value, with the bar that tells them."""
-    low, high = mapped.get_clim()
-    positions = np.linspace(0.0, 1.0, 16)
-    scale = [[float(at), colour_of(mapped.cmap(float(at)))] for at in positions]
-    key: Trace = {"colorscale": scale, "cmin": low, "cmax": high}
-    if isinstance(mapped.norm, colors.LogNorm | colors.BoundaryNorm):
-        raise UndrawableError("colours that are not linear in the value")
-    bar = mapped.colorbar
-    if bar is None:
-        return key | {"showscale": False}
-    text = bar.ax.get_ylabel() or bar.ax.get_xlabel()
-    key["colorbar"] = {
-        "title": {"text": label(text), "side": "right"},
-        "thickness": 14,
-        "outlinewidth": 0,
-    }
-    return key | {"showscale": True}
 
 
 def _mesh(mesh: collections.QuadMesh) -> Trace:
@@ -276,15 +269,16 @@ def _image(shown: image.AxesImage) -> Trace:
 
 
 def _heat(mapped: Any, x: Float, y: Float, values: Float) -> Trace:
-    scale = _scale(mapped)
+    shown, scale = scaled(mapped, values)
     return {
         "type": "heatmap",
         "x": x,
         "y": y,
-        "z": values,
+        "z": shown,
         "zmin": scale.pop("cmin"),
         "zmax": scale.pop("cmax"),
-        "hovertemplate": "%{x:.5g}, %{y:.5g}: %{z:.5g}<extra></extra>",
+        "customdata": values,
+        "hovertemplate": "%{x:.5g}, %{y:.5g}: %{customdata:.5g}<extra></extra>",
         "showlegend": False,
     } | scale
 

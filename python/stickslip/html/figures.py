@@ -15,13 +15,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter, FixedLocator
 from matplotlib.transforms import Transform
 
-from stickslip.html.artists import Place, Trace, UndrawableError, traces
+from stickslip.html.artists import Place, Trace, UndrawableError, proxy, traces
 from stickslip.html.labels import label, plain
 from stickslip.plot.style import RESPONSE, fit
 from stickslip.results.arrays import Float
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.legend import Legend
     from matplotlib.text import Text
 
     from stickslip.views.picture import Panel
@@ -108,8 +110,13 @@ def _plotly(figure: Figure, ax: Axes) -> tuple[list[Trace], Trace]:
         layout["yaxis2"] = _axis(one, "y") | side
     layout["annotations"] = [_annotation(text, ax) for text in ax.texts if text.get_text()]
     names = [trace["name"] for trace in data if trace["showlegend"]]
+    legend = ax.get_legend()
+    for handle, text in zip(*_legend(legend), strict=True) if legend else ():
+        if label(text) not in names:
+            data.append(proxy(handle, text))
+            names.append(label(text))
     _group(data)
-    layout["showlegend"] = ax.get_legend() is not None or len(names) > 1
+    layout["showlegend"] = legend is not None or len(names) > 1
     if layout["showlegend"]:
         rows = ceil(sum(7 * len(name) + 60 for name in names) / _LEGEND_WIDTH)
         layout["height"] += _LEGEND_ROW * rows
@@ -245,30 +252,34 @@ def _scales(ax: Axes, data: Sequence[Trace]) -> list[Trace]:
     ]
 
 
+def _legend(legend: Legend) -> tuple[list[Artist], list[str]]:
+    handles = [handle for handle in legend.legend_handles if handle is not None]
+    return handles, [text.get_text() for text in legend.get_texts()]
+
+
 def _group(data: Sequence[Trace]) -> None:
-    """Let what has no name of its own come and go with the first curve of its colour."""
-    owners: dict[str, Trace] = {}
-    for trace in data:
-        if trace["showlegend"]:
-            owners.setdefault(_shade(trace), trace)
+    """Let what has no name of its own come and go with what looks like it and has one."""
+    named = [trace for trace in data if trace["showlegend"]]
+    owners = {key: trace for trace in reversed(named) for key in _looks(trace)}
     for number, trace in enumerate(data):
-        owner = owners.get(_shade(trace))
+        owner = next((owners[key] for key in _looks(trace) if key in owners), None)
         if trace["showlegend"] or owner is None:
             continue
         trace["legendgroup"] = owner.setdefault("legendgroup", f"group{number}")
         trace["name"] = owner["name"]
 
 
-def _shade(trace: Trace) -> str:
-    """Return the colour of a trace without its opacity."""
+def _looks(trace: Trace) -> list[tuple[str, str]]:
+    """Return colour and dashes of a trace, then its colour only, both without opacity."""
     if trace["type"] != "scatter":
-        return ""
+        return []
     if "lines" in trace["mode"]:
-        colour = trace["line"]["color"]
+        colour, dash = trace["line"]["color"], str(trace["line"].get("dash", ""))
     else:
         marker = trace["marker"]
-        colour = marker.get("line", {}).get("color") or marker["color"]
-    return str(colour).rpartition(",")[0]
+        colour, dash = marker.get("line", {}).get("color") or marker["color"], ""
+    shade = str(colour).rpartition(",")[0]
+    return [(shade, dash), (shade, "")] if dash else [(shade, "")]
 
 
 def _annotation(text: Text, ax: Axes) -> Trace:

@@ -246,7 +246,7 @@ def _effort(result: Any) -> list[Row]:
 
 def _provenance(entry: Entry) -> list[Row]:
     if entry.source is None:
-        return [("source", "computed in the session that wrote the report")]
+        return [("source", "computed by the program that wrote the report")]
     import h5py
 
     content = entry.source.read_bytes()
