@@ -67,7 +67,7 @@ def test_every_figure_is_drawn(page):
     # every curve that is to be seen has its path
     wanted = page.run("document.querySelector('.plot').data.length")
     assert page.run("document.querySelector('.plot').querySelectorAll('.trace').length") == wanted
-    bars = page.run("[...document.querySelectorAll('.modebar-btn')].map(one => one.ariaLabel)")
+    bars = page.run("[...document.querySelectorAll('.modebar-btn')].map(one => one.dataset.title)")
     assert not any("share" in title.lower() or "cloud" in title.lower() for title in bars)
 
 

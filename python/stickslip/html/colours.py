@@ -55,6 +55,7 @@ def scaled(mapped: Any, values: Float) -> tuple[Float, dict[str, Any]]:
         "outlinewidth": 0,
     }
     ticks = np.array([tick for tick in bar.get_ticks() if low <= tick <= high], float)
+    # steps stand for cases, whose names only the ticks of the picture know
     if not straight or entries["colorscale"][0][1] == entries["colorscale"][1][1]:
         entries["colorbar"] |= {
             "tickvals": ticks if straight else _normed(mapped, ticks),

@@ -8,7 +8,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, log10
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -164,14 +164,12 @@ def _layout(ax: Axes) -> Trace:
     return layout
 
 
-def _axis(ax: Axes, letter: str) -> Trace:
+def _axis(ax: Axes, letter: Literal["x", "y"]) -> Trace:
     axis = ax.xaxis if letter == "x" else ax.yaxis
     scale = axis.get_scale()
     if scale not in ("linear", "log"):
         raise UndrawableError(f"{scale} axis")
-    low, high = axis.get_view_interval() if letter == "x" else ax.get_ylim()
-    if letter == "x":
-        low, high = ax.get_xlim()
+    low, high = ax.get_xlim() if letter == "x" else ax.get_ylim()
     entry: Trace = {
         "title": {"text": label(axis.get_label_text())},
         "type": scale,
