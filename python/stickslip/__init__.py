@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from stickslip import plot, reference, study
     from stickslip._core import __version__
+    from stickslip.analyses.basin_map import basin_map
     from stickslip.analyses.certify import certify
+    from stickslip.analyses.classify import classify
     from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
@@ -29,17 +31,22 @@ if TYPE_CHECKING:
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
+    from stickslip.model.damping import modal_damping
+    from stickslip.model.destabilised import destabilised
     from stickslip.model.state import State
     from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
     from stickslip.results import ForcedResponse
+    from stickslip.results.basin_map import BasinMap
     from stickslip.results.damper_curve import DamperCurve
     from stickslip.results.exact_response import ExactResponse
+    from stickslip.results.motion_class import MotionClass
     from stickslip.results.optimal_damper import OptimalDamper
     from stickslip.results.status import Status
     from stickslip.results.store import load
     from stickslip.results.transient import Transient
 
 __all__ = [
+    "BasinMap",
     "BladedDisk",
     "Coupling",
     "DamperCurve",
@@ -53,6 +60,7 @@ __all__ = [
     "ModalDamping",
     "Model",
     "ModelError",
+    "MotionClass",
     "OptimalDamper",
     "Rayleigh",
     "State",
@@ -60,14 +68,18 @@ __all__ = [
     "Structure",
     "Transient",
     "__version__",
+    "basin_map",
     "certify",
+    "classify",
     "cyclic_sector",
     "damper_curve",
+    "destabilised",
     "exact_response",
     "forced_response",
     "join",
     "load",
     "mistuning_pattern",
+    "modal_damping",
     "natural_frequencies",
     "optimal_damper",
     "plot",
@@ -79,6 +91,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "BasinMap": "results.basin_map",
     "BladedDisk": "disk",
     "Coupling": "disk",
     "DamperCurve": "results.damper_curve",
@@ -92,6 +105,7 @@ _HOMES = {
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",
+    "MotionClass": "results.motion_class",
     "OptimalDamper": "results.optimal_damper",
     "Rayleigh": "model",
     "State": "model.state",
@@ -99,14 +113,18 @@ _HOMES = {
     "Structure": "model",
     "Transient": "results.transient",
     "__version__": "_core",
+    "basin_map": "analyses.basin_map",
     "certify": "analyses.certify",
+    "classify": "analyses.classify",
     "cyclic_sector": "disk",
     "damper_curve": "analyses.damper_curve",
+    "destabilised": "model.destabilised",
     "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",
     "load": "results.store",
     "mistuning_pattern": "disk",
+    "modal_damping": "model.damping",
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",
