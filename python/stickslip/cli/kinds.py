@@ -21,6 +21,8 @@ MODULES: Mapping[str, str] = {
     "transient": "stickslip.cli.transients",
     "damper_curve": "stickslip.cli.dampers",
     "optimal_damper": "stickslip.cli.optima",
+    "motion_class": "stickslip.cli.motions",
+    "basin_map": "stickslip.cli.basins",
 }
 """The module of every kind of result; results of one module are drawn together."""
 

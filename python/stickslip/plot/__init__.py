@@ -24,6 +24,7 @@ from stickslip.plot.transients import (
     poincare,
     spectrum,
 )
+from stickslip.plot.waves import WaveOptions, aerodynamic
 
 __all__ = [
     "BasinOptions",
@@ -40,6 +41,8 @@ __all__ = [
     "PoincareOptions",
     "SafeOptions",
     "SpectrumOptions",
+    "WaveOptions",
+    "aerodynamic",
     "basins",
     "blade_bars",
     "blade_curves",

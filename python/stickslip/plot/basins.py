@@ -36,6 +36,7 @@ _COLOURS = {
 # Modes are told apart by hue, aperiodic motions about them by a lighter shade of it.
 _SHADES = (Motion.SETTLED, Motion.APERIODIC)
 _HUES = 10
+_CLOSE = 0.07
 
 
 class BasinOptions(TypedDict, total=False):
@@ -173,8 +174,13 @@ def lines(
             mec="crimson",
             label="lines",
         )
+        told: list[float] = []
         for line, top in zip(found, height, strict=True):
             at = scale * line.frequency
+            # Numbers of close lines would cover each other: the strongest keeps its own.
+            if any(abs(at - other) < _CLOSE * scale * where.max() for other in told):
+                continue
+            told.append(at)
             ax.annotate(
                 f"{at:.4g}",
                 (at, top),
