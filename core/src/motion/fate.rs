@@ -325,12 +325,12 @@ impl Trend {
         }
         let size = fourth.1 / fourth.0 - third.1 / third.0;
         let error = fourth.2 / fourth.0 - third.2 / third.0;
-        if error < SETTLING.ln() {
-            Reason::Settling
-        } else if size > (1.0 + DRIFT).ln() {
+        if size > (1.0 + DRIFT).ln() {
             Reason::Growing
         } else if size < -(1.0 + DRIFT).ln() {
             Reason::Falling
+        } else if error < SETTLING.ln() {
+            Reason::Settling
         } else {
             Reason::Wanders
         }

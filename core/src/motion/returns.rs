@@ -17,6 +17,8 @@ const MOST: usize = 12;
 const PERIODS: usize = 32;
 /// Fall of the logarithm of a closing error over the periods that counts as none.
 const STEADY: f64 = 1e-2;
+/// Time, in units of the fastest rate, within which turning points are one.
+const TURN: f64 = 1e-7;
 /// Closing error that is rounding.
 const ROUNDING: f64 = 1e-11;
 
@@ -32,6 +34,8 @@ pub(super) struct Returns {
     /// Displacement of the section's coordinate per η.
     shape: Vec<f64>,
     tolerance: f64,
+    /// Whether the coordinate rises.
+    rises: bool,
     /// Time [s] and coordinates of the last returns.
     last: VecDeque<(f64, Vec<f64>)>,
     /// Closing errors over the last periods, per number of returns in a period.
@@ -46,6 +50,7 @@ impl Returns {
         Self {
             shape,
             tolerance,
+            rises: false,
             last: VecDeque::new(),
             errors: vec![VecDeque::new(); MOST],
             series: Vec::new(),
@@ -69,22 +74,27 @@ impl Returns {
         self.slope.extend(self.series[1..].iter().enumerate().map(|(n, a)| (n + 1) as f64 * a));
         let mut zeros = std::mem::take(&mut self.zeros);
         sign_changes(&self.slope, &mut zeros);
-        let mut rising = value(&self.slope, 0.0) > 0.0;
-        for &x in &zeros {
-            if rising {
-                let tau = x * arc.length;
-                let mut state = State::rest(system);
-                arc.series.motion_at(tau, &mut state.displacement, &mut state.velocity);
-                for (point, f) in state.force.iter_mut().enumerate() {
-                    let limit = system.limits()[point];
-                    *f = arc.series.force_at(point, tau).clamp(-limit, limit);
+        let mut from = 0.0;
+        for &to in zeros.iter().chain(&[1.0]) {
+            // A contact sticks where it turns: the maximum may be an event, and the slope of the
+            // arcs on either side is rounding there.
+            if (to - from) * arc.length > TURN {
+                let rises = value(&self.slope, 0.5 * (from + to)) > 0.0;
+                if self.rises && !rises {
+                    let tau = from * arc.length;
+                    let mut state = State::rest(system);
+                    arc.series.motion_at(tau, &mut state.displacement, &mut state.velocity);
+                    for (point, f) in state.force.iter_mut().enumerate() {
+                        let limit = system.limits()[point];
+                        *f = arc.series.force_at(point, tau).clamp(-limit, limit);
+                    }
+                    let time = begin + arc.start + tau / arc.series.rate();
+                    let (size, error) = self.add(time, coordinates.coordinates(&state));
+                    told(size, error);
                 }
-                let time = begin + arc.start + tau / arc.series.rate();
-                let y = coordinates.coordinates(&state);
-                let (size, error) = self.add(time, y);
-                told(size, error);
+                self.rises = rises;
             }
-            rising = !rising;
+            from = to;
         }
         self.zeros = zeros;
     }
