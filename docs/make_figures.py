@@ -178,10 +178,10 @@ def starts(folder: Path = ASSETS) -> Path:
     own = model.structure
     bare = ss.Model(ss.Structure(own.mass, own.stiffness, None, own.dofs), model.contacts)
     driven = ss.destabilised(bare, ss.Rayleigh(mass=-7.49, stiffness=-2.6e-5), 0.15)
-    axes = {2: np.linspace(0.0, 4e-4, 61), 0: np.linspace(0.0, 2.4e-3, 61)}
+    axes = {2: np.linspace(0.0, 4e-4, 31), 0: np.linspace(0.0, 2.4e-3, 31)}
     figure = Figure(figsize=(7.5, 4.6), layout="constrained")
     ax = figure.add_subplot()
-    ss.basin_map(driven, axes, periods=1500).plot(length_unit="mm", ax=ax)
+    ss.basin_map(driven, axes, periods=1000).plot(length_unit="mm", ax=ax)
     return _save(figure, folder / "starts.png")
 
 

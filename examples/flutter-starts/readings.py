@@ -23,6 +23,7 @@ READINGS = {
 }
 for name, coefficients in READINGS.items():
     for r in (1.0, 3.0, 8.0):
-        driven = ss.destabilised(bare, ss.modal_damping(list(np.multiply(coefficients(r), to_ratio))))
+        aero = ss.modal_damping(list(to_ratio * coefficients(r)))
+        driven = ss.destabilised(bare, aero)
         motion = ss.classify(driven, {"tip": 1e-4})
         print(f"{name}, r = {r:g}: {motion.motion}, mode {motion.mode}, {motion.omega:.2f} rad/s")
