@@ -21,15 +21,12 @@ pub struct Fates {
 }
 
 impl Fates {
-    fn column<'py, T: numpy::Element>(
+    fn column<'py, T: numpy::Element + Clone>(
         &self,
         py: Python<'py>,
         missing: T,
         of: impl Fn(&Fate) -> T,
-    ) -> Bound<'py, PyArray1<T>>
-    where
-        T: Clone,
-    {
+    ) -> Bound<'py, PyArray1<T>> {
         let values: Vec<T> =
             self.inner.iter().map(|fate| fate.as_ref().map_or(missing.clone(), &of)).collect();
         vector(py, values)

@@ -101,8 +101,8 @@ impl Phase {
         (0..2 * n)
             .map(|k| {
                 let mut z = c64::new(0.0, 0.0);
-                for j in 0..n {
-                    z += self.left[(k, j)] * (self.scale[j] * (state.displacement[j] - about[j]))
+                for (j, about) in about.iter().enumerate() {
+                    z += self.left[(k, j)] * (self.scale[j] * (state.displacement[j] - about))
                         + self.left[(k, n + j)] * state.velocity[j];
                 }
                 z
@@ -150,8 +150,8 @@ impl Slipping {
                 let per_point = |point: usize| {
                     let shape = system.contact_shape(point);
                     let mut sum = c64::new(0.0, 0.0);
-                    for j in 0..n {
-                        sum += phase.left[(k, n + j)] * shape[j];
+                    for (j, b) in shape.iter().enumerate() {
+                        sum += phase.left[(k, n + j)] * b;
                     }
                     sum.norm()
                 };

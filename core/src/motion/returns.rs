@@ -126,7 +126,7 @@ impl Returns {
     /// unstable orbit it grows instead.
     pub(super) fn closed(&self) -> Option<Closed> {
         for count in 1..=MOST {
-            let Some(fall) = self.fall(count) else { return None };
+            let fall = self.fall(count)?;
             let (last, rate) = (fall.last, fall.per_return * count as f64);
             let left = if last > ROUNDING { last / -(-rate).exp_m1() } else { 0.0 };
             if fall.most > self.tolerance || !(0.0..=self.tolerance).contains(&left) {
