@@ -94,7 +94,7 @@ def test_the_starts_of_the_driven_beam_lead_to_its_modes():
     settled = {outcome.mode for outcome in chart.outcomes if outcome.motion == "settled"}
     assert settled == {0, 1, 2}
     assert chart.motion[0] == "decaying"
-    # without mode 2 the small starts go to it all the same, the large ones to mode 0
+    # large starts in mode 0 alone stay in it
     assert (chart.mode[0, 4:] == 0).all()
 
 

@@ -158,7 +158,9 @@ def classify(
         assumptions=fate_assumptions(model, settings),
     )
     if interrupted:
-        raise Interrupted("classification interrupted; the result of this exception", result)
+        raise Interrupted(
+            "classification interrupted; the result of this exception is undecided", result
+        )
     if progress is not None:
         progress(1.0)
     return result
