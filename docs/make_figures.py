@@ -172,6 +172,19 @@ def transient(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "transient.png")
 
 
+def starts(folder: Path = ASSETS) -> Path:
+    """Draw what the amplitudes of two modes at the start lead to."""
+    model = ss.reference.snecma_beam()
+    own = model.structure
+    bare = ss.Model(ss.Structure(own.mass, own.stiffness, None, own.dofs), model.contacts)
+    driven = ss.destabilised(bare, ss.Rayleigh(mass=-7.49, stiffness=-2.6e-5), 0.15)
+    axes = {2: np.linspace(0.0, 4e-4, 31), 0: np.linspace(0.0, 2.4e-3, 31)}
+    figure = Figure(figsize=(7.5, 4.6), layout="constrained")
+    ax = figure.add_subplot()
+    ss.basin_map(driven, axes, periods=1000).plot(length_unit="mm", ax=ax)
+    return _save(figure, folder / "starts.png")
+
+
 def certificate(folder: Path = ASSETS) -> Path:
     """Draw a coarse curve with its error band and exact orbits."""
     curve = ss.forced_response(ss.reference.snecma_beam(25.0), np.linspace(140, 230, 181), 3)
@@ -259,6 +272,7 @@ if __name__ == "__main__":
     print(*harmonics_errors())
     print(exact_orbits())
     print(transient())
+    print(starts())
     print(certificate())
     print(bladed_disks())
     print(amplification())

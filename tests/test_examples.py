@@ -86,3 +86,23 @@ def test_the_blisk_goes_from_stuck_to_slipping_tips():
     assert low.peak("tip").omega == pytest.approx(stuck, rel=1e-4)
     assert high.peak("tip").omega == pytest.approx(slipping, rel=1e-4)
     assert slipping / (2.0 * 3.141592653589793) == pytest.approx(189.3018526, rel=1e-8)
+
+
+def test_the_starts_of_the_driven_beam_lead_to_its_modes():
+    (chart,) = Study.load(EXAMPLES / "flutter-starts" / "study.toml").run()
+    assert chart.shape == (9, 9)
+    settled = {outcome.mode for outcome in chart.outcomes if outcome.motion == "settled"}
+    assert settled == {0, 1, 2}
+    assert chart.motion[0] == "decaying"
+    # large starts in mode 0 alone stay in it
+    assert (chart.mode[0, 4:] == 0).all()
+
+
+def test_the_readings_of_one_driven_mode(capsys):
+    runpy.run_path(os.fspath(EXAMPLES / "flutter-starts" / "readings.py"), run_name="__main__")
+    first, *lines = capsys.readouterr().out.splitlines()
+    assert first == "c = 12.0954 27.6267 5.7892"
+    for begin, mode in ((0, 2), (3, 0), (6, 2)):
+        for line in lines[begin : begin + 2]:
+            assert f"settled, mode {mode}" in line
+        assert "unbounded, mode None" in lines[begin + 2]

@@ -22,6 +22,7 @@ from stickslip.views import kinds
 from stickslip.views.tables import new_table
 
 BEAM = ss.reference.snecma_beam(20.313)
+FLUTTER = ss.destabilised(ss.reference.single_dof(), ss.Rayleigh(mass=-20.0))
 VOID = {"meta", "img", "br", "link"}
 
 
@@ -88,6 +89,8 @@ def results():
         "optimum": ss.optimal_damper(BEAM, dof="tip", bounds=(50.0, 1e3)),
         "tuned": ss.forced_response(disk, grid, 3),
         "mistuned": ss.forced_response(mistuned, grid[::4], 3),
+        "settled": ss.classify(FLUTTER, {"mass": 5e-5}),
+        "starts": ss.basin_map(FLUTTER, {"mass": [1e-5, 1e-4]}),
     }
 
 

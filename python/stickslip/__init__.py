@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from stickslip import plot, reference, study
     from stickslip._core import __version__
+    from stickslip.analyses.basin_map import basin_map
     from stickslip.analyses.certify import certify
+    from stickslip.analyses.classify import classify
     from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
@@ -21,8 +23,10 @@ if TYPE_CHECKING:
     from stickslip.disk import (
         BladedDisk,
         Coupling,
+        InfluenceCoefficients,
         Interface,
         MistunedDisk,
+        aerodynamic_waves,
         cyclic_sector,
         mistuning_pattern,
     )
@@ -30,23 +34,29 @@ if TYPE_CHECKING:
     from stickslip.html.report import report
     from stickslip.io import read_matrix
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
+    from stickslip.model.damping import modal_damping
+    from stickslip.model.destabilised import destabilised
     from stickslip.model.state import State
     from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
     from stickslip.results import ForcedResponse
+    from stickslip.results.basin_map import BasinMap
     from stickslip.results.damper_curve import DamperCurve
     from stickslip.results.exact_response import ExactResponse
+    from stickslip.results.motion_class import MotionClass
     from stickslip.results.optimal_damper import OptimalDamper
     from stickslip.results.status import Status
     from stickslip.results.store import load
     from stickslip.results.transient import Transient
 
 __all__ = [
+    "BasinMap",
     "BladedDisk",
     "Coupling",
     "DamperCurve",
     "ExactResponse",
     "Force",
     "ForcedResponse",
+    "InfluenceCoefficients",
     "Interface",
     "Interrupted",
     "Jenkins",
@@ -54,6 +64,7 @@ __all__ = [
     "ModalDamping",
     "Model",
     "ModelError",
+    "MotionClass",
     "OptimalDamper",
     "Rayleigh",
     "State",
@@ -61,14 +72,19 @@ __all__ = [
     "Structure",
     "Transient",
     "__version__",
+    "aerodynamic_waves",
+    "basin_map",
     "certify",
+    "classify",
     "cyclic_sector",
     "damper_curve",
+    "destabilised",
     "exact_response",
     "forced_response",
     "join",
     "load",
     "mistuning_pattern",
+    "modal_damping",
     "natural_frequencies",
     "optimal_damper",
     "plot",
@@ -81,12 +97,14 @@ __all__ = [
 ]
 
 _HOMES = {
+    "BasinMap": "results.basin_map",
     "BladedDisk": "disk",
     "Coupling": "disk",
     "DamperCurve": "results.damper_curve",
     "ExactResponse": "results.exact_response",
     "Force": "model",
     "ForcedResponse": "results",
+    "InfluenceCoefficients": "disk",
     "Interrupted": "errors",
     "Interface": "disk",
     "Jenkins": "model",
@@ -94,6 +112,7 @@ _HOMES = {
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",
+    "MotionClass": "results.motion_class",
     "OptimalDamper": "results.optimal_damper",
     "Rayleigh": "model",
     "State": "model.state",
@@ -101,14 +120,19 @@ _HOMES = {
     "Structure": "model",
     "Transient": "results.transient",
     "__version__": "_core",
+    "aerodynamic_waves": "disk",
+    "basin_map": "analyses.basin_map",
     "certify": "analyses.certify",
+    "classify": "analyses.classify",
     "cyclic_sector": "disk",
     "damper_curve": "analyses.damper_curve",
+    "destabilised": "model.destabilised",
     "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",
     "load": "results.store",
     "mistuning_pattern": "disk",
+    "modal_damping": "model.damping",
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",

@@ -170,6 +170,29 @@ def orbit_history(
     problem: Problem, omega: float, state: Float, observe: NDArray[np.int64], samples: int
 ) -> tuple[Float, Float, Float, Float]: ...
 
+class Fates:
+    """What becomes of n free motions; rows left out by an interruption are not-a-number."""
+
+    reason: NDArray[np.uint8]  # (n,) codes of `Reason`
+    mode: NDArray[np.int64]  # (n,) stuck mode with the most kinetic energy at the end, -1 for none
+    share: Float  # (n,) its share of the kinetic energy
+    omega: Float  # (n,) frequency of settled motions [rad/s]
+    time: Float  # (n,) when it was decided [s]
+    events: NDArray[np.int64]  # (n,) events met
+    amplitude: Float  # (n, N) half the range of every DOF at the end [m]
+    state: Float  # (n, 2N + n_p) state then
+    interrupted: bool
+    seconds: float
+
+def fates(
+    problem: Problem,
+    starts: Float,
+    periods: int,
+    tolerance: float,
+    threads: int,
+    progress: Callable[[float], None] | None,
+) -> Fates: ...
+
 class History:
     @property
     def time(self) -> Float: ...

@@ -1,15 +1,22 @@
-//! Motion in time: the exact flow from event to event, and Runge-Kutta for comparison.
+//! Motion in time: the exact flow from event to event, Runge-Kutta for comparison, and what becomes
+//! of free motions.
 
+mod basin;
+mod fate;
 mod flow;
 mod modal_system;
 mod output;
+mod phase;
 mod polynomial;
 mod power_series;
+mod returns;
 mod runge_kutta;
 mod state;
 mod transient;
 mod transition;
 
+pub use basin::fates;
+pub use fate::{Fate, FateSettings, Fates, Reason};
 pub use flow::{Arc, Event, Flow, Halt, Passage};
 pub use modal_system::{ModalSystem, Regime};
 pub(crate) use output::Extremes;

@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.analyses.uniqueness import damping_assumption
 from stickslip.model import Model, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
 from stickslip.results.status import Status
@@ -103,7 +103,7 @@ def assumptions_of(
             _BASES.get(base, f"The compliance is evaluated by {base}."),
             _frequencies(settings, arrays, missing, interrupted=interrupted),
             _observed(model, dofs),
-            _damping(model.structure.damping),
+            damping_assumption(model.structure.damping),
             _truncation(dofs, arrays, _OTHER_METHOD if single else "keep more harmonics there"),
             _failures(arrays),
         )
@@ -153,7 +153,7 @@ def orbit_assumptions(
             chosen,
             _frequencies(without_span, arrays, missing, interrupted=missing > 0),
             _observed(model, dofs),
-            _damping(model.structure.damping),
+            damping_assumption(model.structure.damping),
             _failures(arrays),
         )
     return tuple(text for text in texts if text)
@@ -212,7 +212,7 @@ def transient_assumptions(
             open_end,
             _kept(settings),
             _observed(model, dofs),
-            _damping(model.structure.damping),
+            damping_assumption(model.structure.damping),
         )
     return tuple(text for text in texts if text)
 
@@ -334,34 +334,6 @@ def _observed(model: Model, dofs: tuple[str, ...]) -> str:
         return ""
     listed = ", ".join(dofs[:_SHOWN]) + (", ..." if len(dofs) > _SHOWN else "")
     return f"Only {len(dofs)} of {total} dofs are kept in the result: {listed}."
-
-
-def _damping(damping: NDArray[np.float64]) -> str:
-    # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
-    symmetric = 0.5 * (damping + damping.T)
-    diagonal = np.abs(np.diag(symmetric))
-    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-    scaled = symmetric * scale * scale[:, None]
-    # Rounding may put the zero eigenvalue of an undamped motion on either side.
-    identity = np.eye(len(scaled))
-    if _is_positive(scaled - 1e-13 * identity):
-        return ""
-    if _is_positive(scaled + 1e-9 * identity):
-        return (
-            "The damping leaves some motion undamped: a steady state that friction does not damp "
-            "either may not be the only one."
-        )
-    return (
-        "The damping is negative for some motion: the solution may be unstable or not the only one."
-    )
-
-
-def _is_positive(matrix: NDArray[np.float64]) -> bool:
-    try:
-        np.linalg.cholesky(matrix)
-    except np.linalg.LinAlgError:
-        return False
-    return True
 
 
 def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> str:

@@ -8,7 +8,9 @@ import numpy as np
 
 from stickslip.analyses.assumptions import LARGE_ERROR
 from stickslip.analyses.damper_settings import DamperSettings
+from stickslip.analyses.uniqueness import damping_assumption
 from stickslip.checks import listed
+from stickslip.model import Model
 from stickslip.results.damper_curve import DamperArrays
 from stickslip.results.status import Status
 
@@ -16,14 +18,16 @@ __all__ = ["damper_assumptions"]
 
 
 def damper_assumptions(
-    settings: DamperSettings, arrays: DamperArrays, rigid: float | None
+    model: Model, settings: DamperSettings, arrays: DamperArrays, rigid: float | None
 ) -> tuple[str, ...]:
     """Say what a damper curve took for granted, one text per assumption.
 
     Parameters
     ----------
+    model : Model
+        What was computed.
     settings : DamperSettings
-        How it was computed.
+        How.
     arrays : DamperArrays
         What came out.
     rigid : float or None
@@ -41,6 +45,7 @@ def damper_assumptions(
         _harmonics(settings, arrays),
         f"A contact that never slips was taken to hold residual={settings.residual!r}.",
         _truncation(settings, arrays),
+        damping_assumption(model.structure.damping),
         _failures(arrays),
     )
     return tuple(text for text in texts if text)

@@ -213,7 +213,7 @@ def curve_of(
         interrupted=solution.interrupted,
         timings=dict(solution.timings),
         counters=dict(solution.counters),
-        assumptions=damper_assumptions(settings, arrays, rigid),
+        assumptions=damper_assumptions(model, settings, arrays, rigid),
     )
 
 

@@ -3,18 +3,22 @@
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.boundary import cyclic_sector
 from stickslip.disk.coupling import Coupling, Interface
+from stickslip.disk.influence import AerodynamicWaves, InfluenceCoefficients, aerodynamic_waves
 from stickslip.disk.mistuned import MistunedDisk
 from stickslip.disk.nodal_diameters import NodalDiameters
 from stickslip.disk.pattern import mistuning_pattern
 from stickslip.disk.ring import Ring
 
 __all__ = [
+    "AerodynamicWaves",
     "BladedDisk",
     "Coupling",
+    "InfluenceCoefficients",
     "Interface",
     "MistunedDisk",
     "NodalDiameters",
     "Ring",
+    "aerodynamic_waves",
     "cyclic_sector",
     "mistuning_pattern",
 ]

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from stickslip.checks import Matrix, brief, real_number
+from stickslip.checks import Matrix, brief, members, real_number
 from stickslip.errors import ModelError
 
-__all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "law_from_spec"]
+if TYPE_CHECKING:
+    from stickslip.model.contact import Contact
+    from stickslip.model.model import Model
+    from stickslip.model.structure import Structure
+
+__all__ = [
+    "DampingLaw",
+    "ModalDamping",
+    "Rayleigh",
+    "held_stiffness",
+    "law_from_spec",
+    "modal_damping",
+]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,13 +55,15 @@ class Rayleigh:
         """Return the law in plain values; see `law_from_spec`."""
         return {"law": "rayleigh", "mass": self.mass, "stiffness": self.stiffness}
 
-    def matrix(self, mass: Matrix, stiffness: Matrix) -> Matrix:
+    def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
         """Return the damping matrix.
 
         Parameters
         ----------
         mass, stiffness : ndarray of float64, shape (N, N)
             The structure's matrices [kg], [N/m].
+        dofs : sequence of str, optional
+            Its degrees of freedom, by which stuck contacts find their places.
 
         Returns
         -------
@@ -67,7 +81,7 @@ class Rayleigh:
 
 @dataclass(frozen=True)
 class ModalDamping:
-    """Damping ratios of the structure's own modes, its contacts being free.
+    """Damping ratios of modes, as `modal_damping` gives them.
 
     With mass-normalised modes Phi, C = M Phi diag(2 zeta omega) Phi^T M. Rigid-body modes stay
     undamped.
@@ -76,6 +90,9 @@ class ModalDamping:
     ----------
     ratio : float or sequence of float
         Fraction of critical damping: one for all modes, or one per mode in ascending frequency.
+        Negative ratios feed energy into a mode.
+    stuck : iterable of Contact, optional
+        Contacts that stick in these modes. Default: none, the modes of the structure by itself.
 
     Raises
     ------
@@ -85,6 +102,7 @@ class ModalDamping:
     """
 
     ratio: float | Sequence[float]
+    stuck: Iterable[Contact] = ()
 
     def __post_init__(self) -> None:
         given = self.ratio.tolist() if isinstance(self.ratio, np.ndarray) else self.ratio
@@ -97,19 +115,23 @@ class ModalDamping:
         else:
             ratio = real_number(given, "damping ratio")
         object.__setattr__(self, "ratio", ratio)
+        object.__setattr__(self, "stuck", _contacts(self.stuck))
 
     def to_spec(self) -> dict[str, object]:
         """Return the law in plain values; see `law_from_spec`."""
         ratio = list(self.ratio) if isinstance(self.ratio, Sequence) else self.ratio
-        return {"law": "modal", "ratio": ratio}
+        stuck = [contact.to_spec() for contact in self.stuck]
+        return {"law": "modal", "ratio": ratio, **({"stuck": stuck} if stuck else {})}
 
-    def matrix(self, mass: Matrix, stiffness: Matrix) -> Matrix:
+    def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
         """Return the damping matrix.
 
         Parameters
         ----------
         mass, stiffness : ndarray of float64, shape (N, N)
             The structure's matrices [kg], [N/m].
+        dofs : sequence of str, optional
+            Its degrees of freedom, by which stuck contacts find their places.
 
         Returns
         -------
@@ -119,9 +141,12 @@ class ModalDamping:
         Raises
         ------
         ModelError
-            If there are not N ratios, an eigenvalue is negative, or the damping is not finite.
+            If there are not N ratios, an eigenvalue is negative, the damping is not finite, or a
+            stuck contact does not find its degrees of freedom.
         """
         from scipy.linalg import eigh
+
+        from stickslip.model.structure import Structure
 
         size = len(mass)
         ratios = np.asarray(self.ratio, dtype=np.float64)
@@ -129,7 +154,10 @@ class ModalDamping:
             raise ModelError(
                 f"damping: {ratios.size} ratios for {size} modes; give one per mode, or one for all"
             )
-        squares, modes = eigh(stiffness, mass)
+        held = stiffness
+        if self.stuck:
+            held = held_stiffness(Structure(mass, stiffness, dofs=dofs), self.stuck)
+        squares, modes = eigh(held, mass)
         if squares[0] < -1e-8 * np.abs(squares).max():
             raise ModelError(
                 f"damping: the lowest mode has omega^2 = {squares[0]:.6g} < 0, a ratio means "
@@ -143,6 +171,77 @@ class ModalDamping:
         return _finite(np.asarray(damping, dtype=np.float64), self)
 
 
+def held_stiffness(structure: Structure, contacts: Iterable[Contact]) -> Matrix:
+    """Return the stiffness of a structure with contacts stuck, shape (N, N) [N/m]."""
+    held = structure.stiffness
+    for contact in contacts:
+        rows = contact.rows(structure)
+        own = np.asarray(contact.parameters()["stiffness"], dtype=np.float64)
+        # One number for every point, or the matrix of a damper that is a structure.
+        spring = np.diag(np.full(len(rows), own)) if own.ndim == 0 else own
+        held = held + rows.T @ spring.reshape(len(rows), len(rows)) @ rows
+    return held
+
+
+def modal_damping(
+    ratio: float | Sequence[float], *, stuck: Model | Iterable[Contact] = ()
+) -> ModalDamping:
+    """Damping given by ratios of critical damping, mode by mode.
+
+    The aerodynamic input of a flutter analysis: negative ratios of the modes that the flow drives.
+    It serves wherever a damping matrix does: as `damping` of a `Structure`, and as the
+    `negative_damping` that `destabilised` adds.
+
+    Parameters
+    ----------
+    ratio : float or sequence of float, shape (N,)
+        Fraction of critical damping: one for all modes, or one per mode in ascending frequency.
+        0 leaves a mode alone, a negative ratio feeds energy into it.
+    stuck : Model or iterable of Contact, optional
+        Whose modes: with these contacts stuck, of a model all of them. Default: none, the modes of
+        the structure by itself, in which all contacts slip without friction. The former are those
+        that flutter sets in with, the latter those of a structure computed without its dampers.
+
+    Returns
+    -------
+    ModalDamping
+        The law, C = M Phi diag(2 zeta omega) Phi^T M with mass-normalised modes Phi.
+
+    Raises
+    ------
+    ModelError
+        As `ModalDamping`.
+
+    References
+    ----------
+    Guillen (1999), eq. (5.29), corrected: T^T M T = diag(m) and C = T^-T diag(c) T^-1, of which
+    this is the form with m = 1 and c = 2 zeta omega.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> beam = ss.reference.snecma_beam()
+    >>> aero = ss.modal_damping([-0.01, 0.0, 0.002], stuck=beam)
+    >>> ss.destabilised(beam, aero, ratio=0.5).structure.damping.shape
+    (3, 3)
+    """
+    from stickslip.model.model import Model
+
+    return ModalDamping(ratio, stuck.contacts if isinstance(stuck, Model) else stuck)
+
+
+def _contacts(stuck: object) -> tuple[Contact, ...]:
+    from stickslip.model.contact import Contact
+
+    given = members(stuck, "stuck", "stuck=[...]") if isinstance(stuck, Iterable) else (stuck,)
+    for contact in given:
+        if not isinstance(contact, Contact):
+            raise ModelError(
+                f"stuck: {brief(contact)} is no contact; give a model, or its contacts"
+            )
+    return tuple(given)
+
+
 def _finite(damping: Matrix, law: Rayleigh | ModalDamping) -> Matrix:
     if not np.isfinite(damping).all():
         raise ModelError(f"damping: {brief(law)} makes entries beyond 1e308; give smaller numbers")
@@ -153,7 +252,7 @@ DampingLaw: TypeAlias = Rayleigh | ModalDamping
 """What makes a damping matrix of mass and stiffness."""
 
 
-def law_from_spec(spec: Mapping[str, object]) -> DampingLaw:
+def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:
     """Build a damping law from the plain values of its `to_spec`.
 
     Parameters
@@ -171,7 +270,11 @@ def law_from_spec(spec: Mapping[str, object]) -> DampingLaw:
     ModelError
         If there is no such law, or it refuses a number.
     """
+    from stickslip.model.contact import contact_from_spec
+
     values = {key: value for key, value in spec.items() if key != "law"}
+    if isinstance(values.get("stuck"), list):
+        values["stuck"] = [contact_from_spec(one) for one in values["stuck"]]
     laws = {"rayleigh": Rayleigh, "modal": ModalDamping}
     if spec.get("law") not in laws:
         raise ModelError(f"damping: unknown law {brief(spec.get('law'))}; known: {list(laws)}")

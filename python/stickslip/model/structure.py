@@ -290,7 +290,7 @@ def _damping(
     if damping is None:
         return np.zeros_like(mass)
     if isinstance(damping, DampingLaw):
-        return damping.matrix(mass, stiffness)
+        return damping.matrix(mass, stiffness, names)
     if isinstance(damping, Real):
         raise ModelError(
             f"damping: {brief(damping)} is not a matrix; write ModalDamping({brief(damping)})"

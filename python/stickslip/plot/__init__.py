@@ -1,5 +1,6 @@
 """Plots of results on Matplotlib axes."""
 
+from stickslip.plot.basins import BasinOptions, LineOptions, basins, lines
 from stickslip.plot.blades import BladeBarOptions, BladeCurveOptions, blade_bars, blade_curves
 from stickslip.plot.charts import (
     CurveOptions,
@@ -23,8 +24,10 @@ from stickslip.plot.transients import (
     poincare,
     spectrum,
 )
+from stickslip.plot.waves import WaveOptions, aerodynamic
 
 __all__ = [
+    "BasinOptions",
     "BladeBarOptions",
     "BladeCurveOptions",
     "CurveOptions",
@@ -32,11 +35,15 @@ __all__ = [
     "DiameterOptions",
     "Frame",
     "HistoryOptions",
+    "LineOptions",
     "LoopOptions",
     "MultiplierOptions",
     "PoincareOptions",
     "SafeOptions",
     "SpectrumOptions",
+    "WaveOptions",
+    "aerodynamic",
+    "basins",
     "blade_bars",
     "blade_curves",
     "contact_history",
@@ -45,6 +52,7 @@ __all__ = [
     "events",
     "history",
     "hysteresis",
+    "lines",
     "multipliers",
     "nodal_diameters",
     "phase",

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Tag
 
 from stickslip.study.analysis_tables import ForcedResponseTable
+from stickslip.study.basin_map_table import BasinMapTable
 from stickslip.study.certify_table import CertifyTable
 from stickslip.study.damper_curve_table import DamperCurveTable
 from stickslip.study.entries import chosen_by
@@ -22,7 +23,8 @@ AnalysisTable = Annotated[
     | Annotated[TransientTable, Tag("<transient>")]
     | Annotated[CertifyTable, Tag("<certify>")]
     | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")]
-    | Annotated[DamperCurveTable, Tag("<damper-curve>")],
+    | Annotated[DamperCurveTable, Tag("<damper-curve>")]
+    | Annotated[BasinMapTable, Tag("<basin-map>")],
     chosen_by(
         "kind",
         "forced-response",
@@ -31,6 +33,7 @@ AnalysisTable = Annotated[
         "certify",
         "single-harmonic",
         "damper-curve",
+        "basin-map",
         default="forced-response",
     ),
 ]

@@ -88,7 +88,7 @@ def failures(name: str, result: DamperCurve) -> list[str]:
 
 def cautions(name: str, result: DamperCurve) -> list[str]:
     """Return the assumptions that put the numbers in doubt, one line each."""
-    doubtful = ("The discarded", "lies at an end")
+    doubtful = ("The discarded", "lies at an end", "The damping leaves", "The damping is negative")
     lines = [f"{name}: {one}" for one in result.assumptions if any(d in one for d in doubtful)]
     limited = sum(status == Status.HARMONICS_LIMIT for status in result.status)
     if limited:

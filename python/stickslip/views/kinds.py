@@ -22,6 +22,8 @@ MODULES: Mapping[str, str] = {
     "transient": "stickslip.views.transients",
     "damper_curve": "stickslip.views.dampers",
     "optimal_damper": "stickslip.views.optima",
+    "motion_class": "stickslip.views.motions",
+    "basin_map": "stickslip.views.basins",
 }
 """The module of every kind of result; results of one module are drawn together."""
 

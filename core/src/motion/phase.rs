@@ -1,0 +1,295 @@
+//! The linear equations of free motion while all contacts stick, or all slip, in their own modes.
+//!
+//! Both judge a motion for all time to come. Friction forces are bounded: beyond some amplitude no
+//! force within the slip limits keeps an unstable mode of the slipping structure from growing. And
+//! a motion that the stuck structure damps, below the onset of slip, stays below it.
+
+use super::modal_system::{dot, Damping, ModalSystem, Regime};
+use super::state::State;
+use crate::contact::PointState;
+use crate::model::Model;
+use crate::Error;
+use faer::linalg::solvers::{DenseSolveCore as _, Solve as _};
+use faer::{c64, Mat};
+
+/// Rate of growth, relative to the fastest rate, that counts as zero.
+const NEUTRAL: f64 = 1e-12;
+
+/// One linear phase `η'' + C η' + K η + (B Φ)ᵀ (f − T u) = 0`, T being the contact stiffness left.
+pub(super) struct Phase {
+    /// K, modes × modes.
+    stiffness: Mat<f64>,
+    /// T, points × points [N/m].
+    tangent: Mat<f64>,
+    /// Scales S of the displacements in the state `(S η, η')`.
+    scale: Vec<f64>,
+    /// Poles λ [1/s].
+    poles: Vec<c64>,
+    /// Rows that take a state to its modal coordinates z, with `z' = λ z`.
+    left: Mat<c64>,
+    /// Displacements η per z.
+    right: Mat<c64>,
+}
+
+impl Phase {
+    /// The phase in which the given points slip, the others stick.
+    pub(super) fn new(
+        model: &Model,
+        system: &ModalSystem,
+        points: &[PointState],
+    ) -> Result<Self, Error> {
+        let n = system.modes();
+        let tangent = Regime::new(model, points).tangent;
+        let mut stiffness =
+            Mat::from_fn(n, n, |i, j| if i == j { system.omega_squared()[i] } else { 0.0 });
+        for a in 0..system.points() {
+            for b in 0..system.points() {
+                let t = tangent[(a, b)];
+                if t == 0.0 {
+                    continue;
+                }
+                let (left, right) = (system.contact_shape(a), system.contact_shape(b));
+                for i in 0..n {
+                    for j in 0..n {
+                        stiffness[(i, j)] += left[i] * t * right[j];
+                    }
+                }
+            }
+        }
+        let highest = (0..n).map(|i| stiffness[(i, i)].abs()).fold(0.0, f64::max).sqrt();
+        let scale: Vec<f64> = (0..n)
+            .map(|i| stiffness[(i, i)].abs().sqrt().max(1e-4 * highest).max(f64::MIN_POSITIVE))
+            .collect();
+        let damping = |i: usize, j: usize| match &system.damping {
+            Damping::Diagonal(c) => {
+                if i == j {
+                    c[i]
+                } else {
+                    0.0
+                }
+            }
+            Damping::Full(c) => c[(i, j)],
+        };
+        let state = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+            (true, true) => 0.0,
+            (true, false) => scale[i] * f64::from(u8::from(i == j - n)),
+            (false, true) => -stiffness[(i - n, j)] / scale[j],
+            (false, false) => -damping(i - n, j - n),
+        });
+        let failed = || Error::Eigenvalues("damping".to_owned());
+        let eigen = state.eigen().map_err(|_| failed())?;
+        let vectors = eigen.U().to_owned();
+        let left = vectors.partial_piv_lu().inverse();
+        let poles: Vec<c64> = (0..2 * n).map(|j| eigen.S()[j]).collect();
+        let finite = |z: &c64| z.re.is_finite() && z.im.is_finite();
+        let spans = (0..2 * n).all(|i| (0..2 * n).all(|j| finite(&left[(i, j)])));
+        if !spans || !poles.iter().all(finite) {
+            return Err(failed());
+        }
+        let right = Mat::from_fn(n, 2 * n, |i, j| vectors[(i, j)] / scale[i]);
+        Ok(Self { stiffness, tangent, scale, poles, left, right })
+    }
+
+    /// Rate of growth that counts as zero [1/s].
+    fn neutral(&self) -> f64 {
+        NEUTRAL * self.poles.iter().map(|p| p.norm()).fold(0.0, f64::max)
+    }
+
+    /// Modal coordinates of a motion about a displacement.
+    fn coordinates(&self, about: &[f64], state: &State) -> Vec<c64> {
+        let n = self.scale.len();
+        (0..2 * n)
+            .map(|k| {
+                let mut z = c64::new(0.0, 0.0);
+                for (j, about) in about.iter().enumerate() {
+                    z += self.left[(k, j)] * (self.scale[j] * (state.displacement[j] - about))
+                        + self.left[(k, n + j)] * state.velocity[j];
+                }
+                z
+            })
+            .collect()
+    }
+
+    /// What of the contact forces is not linear in the displacements now, `f − T u`.
+    fn rest(&self, system: &ModalSystem, state: &State) -> Vec<f64> {
+        let u = system.contact_displacement(&state.displacement);
+        (0..u.len())
+            .map(|i| {
+                let linear: f64 = (0..u.len()).map(|j| self.tangent[(i, j)] * u[j]).sum();
+                state.force[i] - linear
+            })
+            .collect()
+    }
+}
+
+/// What friction can hold at most: thresholds of growth of the slipping structure.
+pub(super) struct Slipping {
+    phase: Phase,
+    /// Forces of points that never slip per force of those that do, points × points: what these
+    /// leave of the former beside their springs.
+    passed: Mat<f64>,
+    /// Points that never slip.
+    held: Vec<bool>,
+    /// `|Lᵀ b|` per unstable pole and point.
+    grip: Vec<(usize, Vec<f64>)>,
+}
+
+impl Slipping {
+    pub(super) fn new(model: &Model, system: &ModalSystem) -> Result<Self, Error> {
+        let held: Vec<bool> = system.limits().iter().map(|limit| limit.is_infinite()).collect();
+        let states: Vec<PointState> = held
+            .iter()
+            .map(|held| if *held { PointState::Stuck } else { PointState::Forward })
+            .collect();
+        let phase = Phase::new(model, system, &states)?;
+        let n = system.modes();
+        let neutral = phase.neutral();
+        let grip = (0..2 * n)
+            .filter(|&k| phase.poles[k].re > neutral)
+            .map(|k| {
+                let per_point = |point: usize| {
+                    let shape = system.contact_shape(point);
+                    let mut sum = c64::new(0.0, 0.0);
+                    for (j, b) in shape.iter().enumerate() {
+                        sum += phase.left[(k, n + j)] * b;
+                    }
+                    sum.norm()
+                };
+                (k, (0..system.points()).map(per_point).collect())
+            })
+            .collect();
+        Ok(Self { passed: passed_on(model, &held), phase, held, grip })
+    }
+
+    /// Whether the motion grows for ever, whatever friction does: with `z' = λ z + g` and
+    /// `|g| ≤ γ`, |z| grows once `|z| Re λ > γ`.
+    pub(super) fn outgrows(&self, system: &ModalSystem, state: &State) -> bool {
+        if self.grip.is_empty() {
+            return false;
+        }
+        let rest = self.phase.rest(system, state);
+        let points = rest.len();
+        let bound: Vec<f64> = (0..points)
+            .map(|i| {
+                if !self.held[i] {
+                    return system.limits()[i];
+                }
+                let slipping =
+                    |j: usize| self.passed[(i, j)] * if self.held[j] { 0.0 } else { 1.0 };
+                let now: f64 = (0..points).map(|j| slipping(j) * rest[j]).sum();
+                let most: f64 = (0..points)
+                    .filter(|&j| !self.held[j])
+                    .map(|j| slipping(j).abs() * system.limits()[j])
+                    .sum();
+                (rest[i] - now).abs() + most
+            })
+            .collect();
+        let z = self.phase.coordinates(&vec![0.0; system.modes()], state);
+        self.grip.iter().any(|(k, grip)| {
+            let most = dot(grip, &bound);
+            z[*k].norm() * self.phase.poles[*k].re > most && z[*k].norm() > 0.0
+        })
+    }
+}
+
+/// `D_HF D_FF⁻¹` of each law, from points F that slip to points H that never do.
+fn passed_on(model: &Model, held: &[bool]) -> Mat<f64> {
+    let stiffness = model.contact_stiffness();
+    let mut passed = Mat::zeros(held.len(), held.len());
+    for range in model.points() {
+        let (holds, slips): (Vec<usize>, Vec<usize>) = range.clone().partition(|&i| held[i]);
+        if holds.is_empty() || slips.is_empty() {
+            continue;
+        }
+        let own = Mat::from_fn(slips.len(), slips.len(), |a, b| stiffness[(slips[a], slips[b])]);
+        let cross = Mat::from_fn(slips.len(), holds.len(), |a, b| stiffness[(slips[a], holds[b])]);
+        let solved = own.partial_piv_lu().solve(&cross);
+        for (a, &slip) in slips.iter().enumerate() {
+            for (b, &hold) in holds.iter().enumerate() {
+                passed[(hold, slip)] = solved[(a, b)];
+            }
+        }
+    }
+    passed
+}
+
+/// Whether a motion stays below the onset of slip, and dies away there.
+pub(super) struct Sticking {
+    phase: Phase,
+    /// `|T B Φ R|`: force of a point per modal coordinate, point after point.
+    force: Vec<Vec<f64>>,
+    /// Whether all poles decay.
+    pub(super) damped: bool,
+}
+
+impl Sticking {
+    pub(super) fn new(model: &Model, system: &ModalSystem) -> Result<Self, Error> {
+        // A point without friction slips from the start.
+        let states: Vec<PointState> = system
+            .limits()
+            .iter()
+            .map(|limit| if *limit > 0.0 { PointState::Stuck } else { PointState::Forward })
+            .collect();
+        let phase = Phase::new(model, system, &states)?;
+        let (n, points) = (system.modes(), system.points());
+        let per_pole = |point: usize, pole: usize| {
+            let mut sum = c64::new(0.0, 0.0);
+            for other in 0..points {
+                let t = phase.tangent[(point, other)];
+                for (j, b) in system.contact_shape(other).iter().enumerate() {
+                    sum += phase.right[(j, pole)] * (t * b);
+                }
+            }
+            sum.norm()
+        };
+        let force = (0..points)
+            .map(|point| (0..2 * n).map(|pole| per_pole(point, pole)).collect())
+            .collect();
+        let neutral = phase.neutral();
+        Ok(Self { force, damped: phase.poles.iter().all(|p| p.re < -neutral), phase })
+    }
+
+    /// Whether no contact slips from now on, and all motion is damped. Rest is, too.
+    pub(super) fn keeps(&self, system: &ModalSystem, state: &State) -> bool {
+        let still = |values: &[f64]| values.iter().all(|v| *v == 0.0);
+        if still(&state.displacement) && still(&state.velocity) && still(&state.force) {
+            return true;
+        }
+        if !self.damped {
+            return false;
+        }
+        let rest = self.phase.rest(system, state);
+        let n = system.modes();
+        let mut right = Mat::<f64>::zeros(n, 1);
+        for (point, f) in rest.iter().enumerate() {
+            for (j, b) in system.contact_shape(point).iter().enumerate() {
+                right[(j, 0)] -= b * f;
+            }
+        }
+        let solved = self.phase.stiffness.partial_piv_lu().solve(&right);
+        let about: Vec<f64> = (0..n).map(|j| solved[(j, 0)]).collect();
+        if about.iter().any(|x| !x.is_finite()) {
+            return false;
+        }
+        let z = self.phase.coordinates(&about, state);
+        let u = system.contact_displacement(&about);
+        (0..rest.len()).all(|i| {
+            let limit = system.limits()[i];
+            let mean: f64 =
+                rest[i] + (0..u.len()).map(|j| self.phase.tangent[(i, j)] * u[j]).sum::<f64>();
+            let swing: f64 = self.force[i].iter().zip(&z).map(|(c, z)| c * z.norm()).sum();
+            limit == 0.0 || mean.abs() + swing < limit
+        })
+    }
+
+    /// Undamped modes of the stuck structure, in coordinates η: squared frequencies and shapes.
+    pub(super) fn modes(&self) -> Result<(Vec<f64>, Mat<f64>), Error> {
+        let eigen = self
+            .phase
+            .stiffness
+            .self_adjoint_eigen(faer::Side::Lower)
+            .map_err(|_| Error::Eigenvalues("stiffness".to_owned()))?;
+        let squares = (0..self.phase.scale.len()).map(|j| eigen.S()[j]).collect();
+        Ok((squares, eigen.U().to_owned()))
+    }
+}

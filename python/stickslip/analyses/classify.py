@@ -1,0 +1,270 @@
+"""What becomes of a free motion from a given start."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.analyses.arguments import (
+    Progress,
+    observed_dofs,
+    require_model,
+    require_progress,
+    require_time,
+)
+from stickslip.analyses.memory import require_numbers
+from stickslip.checks import brief, real_number, whole_number
+from stickslip.errors import Interrupted, ModelError
+from stickslip.model import Model, natural_frequencies
+from stickslip.model.state import State
+from stickslip.results.arrays import Float
+from stickslip.results.fate_arrays import FateArrays, Motion, Reason
+from stickslip.results.motion_class import MotionClass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from stickslip import _core
+
+__all__ = [
+    "PERIODS",
+    "TOLERANCE",
+    "ClassifySettings",
+    "classify",
+    "fate_assumptions",
+    "fates_of",
+    "free",
+    "start_of",
+]
+
+PERIODS, TOLERANCE = 3000, 1e-6
+
+TAIL = 512
+"""Slow periods of the motion that are kept for its spectrum."""
+
+SAMPLES = 8
+"""Instants per period of the highest stuck mode, twice what its third harmonic would need."""
+
+RIGID = 1e-5
+"""Natural frequencies below this share of the highest are rigid-body motion."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClassifySettings:
+    """How it is found out what becomes of a motion.
+
+    Parameters
+    ----------
+    periods : int, optional
+        Longest motion, in periods of the lowest stuck mode.
+    tolerance : float, optional
+        Closing error of a settled motion, relative to its size.
+
+    Raises
+    ------
+    ModelError
+        If a value is of the wrong type or outside its range.
+    """
+
+    periods: int = PERIODS
+    tolerance: float = TOLERANCE
+
+    def __post_init__(self) -> None:
+        periods = whole_number(self.periods, "periods", smallest=4)
+        tolerance = real_number(self.tolerance, "tolerance")
+        if not 1e-10 <= tolerance <= 0.1:
+            raise ModelError(f"tolerance: {tolerance:g}; give a fraction from 1e-10 to 0.1")
+        object.__setattr__(self, "periods", periods)
+        object.__setattr__(self, "tolerance", tolerance)
+
+
+def classify(
+    model: Model,
+    start: State | Mapping[str, float],
+    *,
+    periods: int = PERIODS,
+    tolerance: float = TOLERANCE,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> MotionClass:
+    """Find out what becomes of a free motion from a start.
+
+    It decays if no contact slips any more and the stuck structure is damped; it is unbounded once
+    negative damping does more work than friction, which is bounded by the slip forces, could take
+    at that size; it has settled if it repeats itself over 32 periods to the tolerance and the
+    closing error is falling; it is aperiodic if it does none of this to the end of the span while
+    its size stays as it is. What is still changing there is undecided, with the cause. The first
+    two hold for ever: they are bounds, not observations.
+
+    Parameters
+    ----------
+    model : Model
+        Structure and contacts, its damping as it is at the ratio in question; see `destabilised`.
+        Its forces play no part.
+    start : State or mapping of str to float
+        State at t = 0, or displacements of some degrees of freedom [m], the others, velocities and
+        contact forces zero.
+    periods : int, optional
+        Longest motion, in periods of the lowest stuck mode.
+    tolerance : float, optional
+        Closing error of a settled motion, relative to its size in the norm of energy.
+    observe : iterable of str, optional
+        Degrees of freedom whose motion is kept. Default: all.
+    progress : callable, optional
+        Called about ten times per second with the fraction of the work that is done.
+
+    Returns
+    -------
+    MotionClass
+        The class, the mode, and the spectrum of what the motion has come to.
+
+    Raises
+    ------
+    ModelError
+        If an argument is of the wrong type or outside its range, the model is a travelling wave,
+        or nothing in it oscillates.
+    Interrupted
+        On Ctrl-C; its `result` is undecided.
+
+    References
+    ----------
+    Guillen (1999), section 5.4.1, there by Runge-Kutta steps from eight starts, and growth or
+    change of amplitude judged by eye. Ferri and Dowell (1985) on free motions of several modes.
+    """
+    settings = ClassifySettings(periods=periods, tolerance=tolerance)
+    alone = free(model)
+    dofs = observed_dofs(observe, alone)
+    require_progress(progress)
+    first = start_of(alone, start, "start")
+    omega, samples = _tail_grid(alone, len(dofs))
+    columns = [alone.structure.index(dof) for dof in dofs]
+    fates = fates_of(alone, first.vector[None], settings, 1, progress)
+    arrays = FateArrays.of(fates, first.vector[None], columns)
+    tail, interrupted = _tail(alone, arrays, omega, samples, columns, interrupted=fates.interrupted)
+    result = MotionClass(
+        model=alone,
+        dofs=dofs,
+        settings=settings,
+        arrays=arrays,
+        step=2.0 * np.pi / omega / samples,
+        tail=tail,
+        interrupted=interrupted,
+        timings={"total": fates.seconds},
+        counters={"events": int(arrays.events.sum())},
+        assumptions=fate_assumptions(model, settings),
+    )
+    if interrupted:
+        raise Interrupted(
+            "classification interrupted; the result of this exception is undecided", result
+        )
+    if progress is not None:
+        progress(1.0)
+    return result
+
+
+def free(model: Model) -> Model:
+    """Return a model without its forces, if its motion in time can be followed."""
+    require_model(model)
+    require_time(model)
+    # The whole of a mistuned disk has the same matrices, and a motion in time needs no ring.
+    return Model(model.structure, model.contacts)
+
+
+def start_of(model: Model, start: object, entry: str) -> State:
+    """Return a start as a state of the model."""
+    if isinstance(start, Mapping):
+        return State(model, displacement=start)
+    if not isinstance(start, State):
+        raise ModelError(
+            f"{entry}: {brief(start)} is no state; give ss.State(model, ...), or "
+            "{dof: displacement}"
+        )
+    start.require_fit(model, entry)
+    return start
+
+
+def fates_of(
+    model: Model, starts: Float, settings: ClassifySettings, threads: int, progress: Progress
+) -> _core.Fates:
+    """Let the core follow motions from starts, shape (n, 2 N + n_p)."""
+    from stickslip import _core
+
+    try:
+        return _core.fates(
+            model.problem, starts, settings.periods, settings.tolerance, threads, progress
+        )
+    except ModelError:
+        raise
+    except ValueError as error:
+        raise ModelError(str(error)) from error
+
+
+def fate_assumptions(model: Model, settings: ClassifySettings) -> tuple[str, ...]:
+    """Say what a classification took for granted, one text per assumption."""
+    left_out = (
+        f"The {len(model.forces)} force(s) of the model were left out: the motion is free."
+        if model.forces
+        else ""
+    )
+    texts = (
+        "The motion was followed exactly between the instants of stick and slip; decaying and "
+        "unbounded are bounds that hold for ever, settled and aperiodic what was seen of it.",
+        left_out,
+        f"A motion counts as settled at a closing error of {settings.tolerance:g} that is falling, "
+        f"over 32 periods, and was followed over {settings.periods} periods of the lowest stuck "
+        "mode at most.",
+        "Modes are those of the structure with all contacts stuck, told apart by kinetic energy.",
+    )
+    return tuple(text for text in texts if text)
+
+
+def _tail_grid(model: Model, observed: int) -> tuple[float, int]:
+    """Return the lowest stuck frequency and the samples per period of it, if they fit."""
+    stuck = natural_frequencies(model)
+    swinging = stuck[stuck > RIGID * stuck[-1]]
+    if not swinging.size:
+        raise ModelError("model: no motion of the stuck structure oscillates; ground the structure")
+    samples = max(64, math.ceil(SAMPLES * float(stuck[-1] / swinging[0])))
+    require_numbers(
+        TAIL * samples * (2 * observed + 2 * sum(contact.points for contact in model.contacts)),
+        f"the motion of {TAIL * samples} instants and {observed} dofs",
+        "name fewer dofs with observe=[...]",
+    )
+    return float(swinging[0]), samples
+
+
+def _tail(
+    model: Model,
+    arrays: FateArrays,
+    omega: float,
+    samples: int,
+    columns: list[int],
+    *,
+    interrupted: bool,
+) -> tuple[Float, bool]:
+    """Return the motion from its last state on, and whether the run was interrupted."""
+    from stickslip import _core
+
+    reason = list(Reason)[int(arrays.reason[0])]
+    unknown = reason in (Reason.CONTRADICTION, Reason.INTERRUPTED)
+    if interrupted or unknown or reason.motion in (Motion.UNBOUNDED, Motion.DECAYING):
+        return np.zeros((0, len(columns))), interrupted
+    observe = np.array(columns, dtype=np.int64)
+    history = _core.transient(
+        model.problem,
+        omega,
+        "exact",
+        TAIL,
+        None,
+        1,
+        arrays.final[0],
+        observe,
+        samples,
+        None,
+        None,
+    )
+    return history.displacement[1:], history.interrupted

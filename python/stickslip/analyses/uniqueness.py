@@ -1,0 +1,37 @@
+"""Whether a steady state is the only one, as far as the damping tells."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["damping_assumption"]
+
+
+def damping_assumption(damping: NDArray[np.float64]) -> str:
+    """Say that a solution need not be the only one, if the damping leaves that open."""
+    # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
+    symmetric = 0.5 * (damping + damping.T)
+    diagonal = np.abs(np.diag(symmetric))
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    scaled = symmetric * scale * scale[:, None]
+    # Rounding may put the zero eigenvalue of an undamped motion on either side.
+    identity = np.eye(len(scaled))
+    if _is_positive(scaled - 1e-13 * identity):
+        return ""
+    if _is_positive(scaled + 1e-9 * identity):
+        return (
+            "The damping leaves some motion undamped: a steady state that friction does not damp "
+            "either may not be the only one."
+        )
+    return (
+        "The damping is negative for some motion: the solution may be unstable or not the only one."
+    )
+
+
+def _is_positive(matrix: NDArray[np.float64]) -> bool:
+    try:
+        np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return False
+    return True

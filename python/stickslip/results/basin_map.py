@@ -1,0 +1,221 @@
+"""What becomes of many free motions: the basins of their steady states."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from stickslip.checks import whole_number
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.model.state import State
+from stickslip.results.arrays import Float, Int, constant
+from stickslip.results.fate_arrays import (
+    FATE_VARIABLES,
+    FateArrays,
+    Motion,
+    Reason,
+    require_codes,
+)
+from stickslip.results.result import Result
+from stickslip.results.variables import (
+    attributes,
+    dof_coordinate,
+    names,
+    parts,
+    read,
+    settings_of,
+    state_names,
+    written,
+)
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+    from stickslip.analyses.basin_map import BasinSettings
+    from stickslip.plot.basins import BasinOptions
+
+__all__ = ["BasinMap", "Outcome"]
+
+
+class Outcome(NamedTuple):
+    """What some starts lead to."""
+
+    motion: Motion
+    """Class of the motion."""
+    mode: int | None
+    """Stuck mode with the most kinetic energy, counted from 0; None where there is none."""
+
+    def __str__(self) -> str:
+        return f"{self.motion}" if self.mode is None else f"{self.motion}, mode {self.mode}"
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class BasinMap(Result):
+    """What becomes of many starts.
+
+    Attributes
+    ----------
+    settings : BasinSettings
+        Which starts, and how it was found out.
+    arrays : FateArrays
+        Every number by its name; a map of two axes runs through the second axis first.
+    """
+
+    kind: ClassVar[str] = "basin_map"
+
+    settings: BasinSettings
+    arrays: FateArrays
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{count} {outcome}" for outcome, count in self.outcomes.items())
+        return f"BasinMap({len(self)} starts: {counts})"
+
+    def __len__(self) -> int:
+        return self.arrays.reason.size
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(n_1, n_2) of a map over two axes, (n,) of a list of starts."""
+        return tuple(len(values) for _, values in self.settings.axes) or (len(self),)
+
+    @cached_property
+    def reason(self) -> tuple[Reason, ...]:
+        """Why each motion has its class, start by start."""
+        known = list(Reason)
+        return tuple(known[code] for code in self.arrays.reason)
+
+    @cached_property
+    def motion(self) -> tuple[Motion, ...]:
+        """The class of each motion, start by start."""
+        return tuple(reason.motion for reason in self.reason)
+
+    @property
+    def mode(self) -> Int:
+        """Stuck mode with the most kinetic energy, shape `shape`; -1 where there is none."""
+        return self.arrays.mode.reshape(self.shape)
+
+    @property
+    def omega(self) -> Float:
+        """Angular frequency of settled motions, shape `shape` [rad/s]."""
+        return self.arrays.omega.reshape(self.shape)
+
+    @cached_property
+    def outcomes(self) -> dict[Outcome, int]:
+        """What the starts lead to, and how many of them, the most frequent first."""
+        counts = Counter(self._outcomes)
+        return dict(counts.most_common())
+
+    @cached_property
+    def codes(self) -> Int:
+        """Position in `outcomes` of what each start leads to, shape `shape`."""
+        places = {outcome: place for place, outcome in enumerate(self.outcomes)}
+        codes = np.array([places[one] for one in self._outcomes], dtype=np.int64)
+        return constant(codes.reshape(self.shape))
+
+    @property
+    def _outcomes(self) -> list[Outcome]:
+        modes = self.arrays.mode
+        return [
+            Outcome(motion, int(mode) if mode >= 0 else None)
+            for motion, mode in zip(self.motion, modes, strict=True)
+        ]
+
+    def amplitude(self, dof: str) -> Float:
+        """Return half the range of a displacement at the end.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+
+        Returns
+        -------
+        ndarray of float64, shape `shape`
+            [m]; not-a-number of unbounded motions.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, or it was not observed.
+        """
+        return self.arrays.amplitude[:, self._column(dof)].reshape(self.shape)
+
+    def start(self, *index: int) -> State:
+        """Return a start, ``classify(map.model, map.start(i, j))`` looks at it closely.
+
+        Parameters
+        ----------
+        *index : int
+            Its position: one number in a list, two in a map.
+
+        Returns
+        -------
+        State
+            The state at the start.
+
+        Raises
+        ------
+        ModelError
+            If there is no such start.
+        """
+        if len(index) != len(self.shape):
+            raise ModelError(f"start: {len(index)} positions; the map has {len(self.shape)} axes")
+        for place, size in zip(index, self.shape, strict=True):
+            if whole_number(place, "start") >= size:
+                raise ModelError(f"start: {place}; there are {size} values, 0 to {size - 1}")
+        row = int(np.ravel_multi_index(index, self.shape))
+        return State.of_vector(self.model, self.arrays.start[row])
+
+    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+        """Return everything as an xarray dataset with units on every variable.
+
+        Parameters
+        ----------
+        derived : bool, optional
+            Whether to add the classes in words, which follow from the reasons.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions start_number, state_entry and dof.
+        """
+        import xarray as xr
+
+        dataset = xr.Dataset(
+            written(FATE_VARIABLES, self.arrays),
+            coords={
+                "dof": dof_coordinate(self),
+                "state_entry": names("state_entry", state_names(self.model), "entry of the state"),
+            },
+            attrs=attributes(self, self.settings, "What becomes of free motions with dry friction"),
+        )
+        if derived:
+            dataset["motion"] = names("start_number", list(self.motion), "class of the motion")
+        return dataset
+
+    @classmethod
+    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+        """Return the map that a dataset holds; see `Result.from_dataset`."""
+        from stickslip.analyses.basin_map import BasinSettings
+
+        values = settings_of(dataset)
+        axes = tuple((name, tuple(numbers)) for name, numbers in values["axes"])
+        arrays = require_codes(FateArrays(**read(FATE_VARIABLES, dataset)))
+        settings = BasinSettings(**{**values, "axes": axes})
+        if axes and np.prod([len(numbers) for _, numbers in axes]) != arrays.reason.size:
+            raise ValueError(f"{arrays.reason.size} starts do not fill the axes")
+        return cls(**parts(dataset, model), settings=settings, arrays=arrays)
+
+    def plot(self, **options: Unpack[BasinOptions]) -> Axes:
+        """Draw the basins over the two axes; see `stickslip.plot.basins`."""
+        from stickslip import plot
+
+        return plot.basins(self, **options)

@@ -1,0 +1,293 @@
+"""What becomes of one free motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from stickslip.checks import real_number, whole_number
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.model.state import State
+from stickslip.results.arrays import Float, constant
+from stickslip.results.fate_arrays import (
+    FATE_VARIABLES,
+    FateArrays,
+    Motion,
+    Reason,
+    require_codes,
+)
+from stickslip.results.result import Result
+from stickslip.results.spectrum import Spectrum, spectrum_of
+from stickslip.results.variables import (
+    attributes,
+    dof_coordinate,
+    names,
+    parts,
+    read,
+    settings_of,
+    state_names,
+    written,
+)
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+    from stickslip.analyses.classify import ClassifySettings
+    from stickslip.plot.basins import LineOptions
+
+__all__ = ["Line", "MotionClass"]
+
+SEGMENTS = 8
+"""Windows over which a spectrum is averaged, so that what is noise in one is level in the mean."""
+
+
+class Line(NamedTuple):
+    """One line of a spectrum."""
+
+    frequency: float
+    """[Hz]"""
+    omega: float
+    """Angular frequency [rad/s]."""
+    amplitude: float
+    """Amplitude of a harmonic motion of the same power [m]."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class MotionClass(Result):
+    """What becomes of a free motion from one start.
+
+    Attributes
+    ----------
+    settings : ClassifySettings
+        How it was found out.
+    arrays : FateArrays
+        Every number by its name, of one start.
+    step : float
+        Time between the instants of `tail` [s].
+    tail : ndarray of float64, shape (n, n_o)
+        Displacements of the observed degrees of freedom once it was decided [m]; none of a motion
+        that is unbounded or was interrupted.
+    """
+
+    kind: ClassVar[str] = "motion_class"
+
+    settings: ClassifySettings
+    arrays: FateArrays
+    step: float
+    tail: Float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "tail", constant(np.ascontiguousarray(self.tail)))
+
+    def __repr__(self) -> str:
+        where = "" if self.mode is None else f" on mode {self.mode}"
+        about = f" at {self.omega:.6g} rad/s" if self.motion == Motion.SETTLED else ""
+        return f"MotionClass({self.motion}{where}{about}, decided after {self.time:.3g} s)"
+
+    @property
+    def motion(self) -> Motion:
+        """What becomes of it: decaying, settled, aperiodic, unbounded or undecided."""
+        return self.reason.motion
+
+    @property
+    def reason(self) -> Reason:
+        """Why; ``reason.advice`` says what to do about it."""
+        return list(Reason)[int(self.arrays.reason[0])]
+
+    @property
+    def mode(self) -> int | None:
+        """Stuck mode, counted from 0, with the most kinetic energy at the end.
+
+        None of a motion that decays or is not bounded.
+        """
+        mode = int(self.arrays.mode[0])
+        return None if mode < 0 else mode
+
+    @property
+    def share(self) -> float:
+        """Share of the kinetic energy of that mode."""
+        return float(self.arrays.share[0])
+
+    @property
+    def omega(self) -> float:
+        """Angular frequency of a settled motion [rad/s]; not-a-number of others."""
+        return float(self.arrays.omega[0])
+
+    @property
+    def time(self) -> float:
+        """How long a motion it took to decide [s]."""
+        return float(self.arrays.time[0])
+
+    @cached_property
+    def start(self) -> State:
+        """The state at the start."""
+        return State.of_vector(self.model, self.arrays.start[0])
+
+    @cached_property
+    def final(self) -> State:
+        """The state once it was decided; ``classify(model, result.final)`` goes on.
+
+        Raises
+        ------
+        ModelError
+            If the motion has overflowed, and has no finite state.
+        """
+        return State.of_vector(self.model, self.arrays.final[0])
+
+    def amplitude(self, dof: str) -> float:
+        """Return half the range of a displacement at the end.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+
+        Returns
+        -------
+        float
+            [m]; of a settled motion over a period, not-a-number if it is unbounded.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, or it was not observed.
+        """
+        return float(self.arrays.amplitude[0, self._column(dof)])
+
+    def spectrum(self, dof: str) -> Spectrum:
+        """Return the power spectral density of a displacement once it was decided.
+
+        By Welch's method in Hann windows, which hold the leakage of a motion without period down.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+
+        Returns
+        -------
+        Spectrum
+            `frequency` [Hz] and `density` [m^2/Hz].
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, or no such motion.
+        """
+        column = self._column(dof)
+        if not len(self.tail):
+            raise ModelError(f"spectrum: the motion is {self.motion}; it has no spectrum")
+        window = len(self.tail) * 2 // (SEGMENTS + 1)
+        window -= window % 2
+        return spectrum_of(
+            self.tail[:, column],
+            samples=2,
+            rate=1.0 / self.step,
+            segment=window // 2,
+            window="hann",
+        )
+
+    def lines(self, dof: str, most: int = 8, least: float = 1e-3) -> list[Line]:
+        """Return the lines of the spectrum of a displacement, the strongest first.
+
+        A line is a peak of the density that stands out tenfold from what is around it; its power
+        is that of the main lobe of the window, four steps of frequency to either side.
+
+        Parameters
+        ----------
+        dof : str
+            An observed degree of freedom.
+        most : int, optional
+            How many at most.
+        least : float, optional
+            Least amplitude relative to the strongest.
+
+        Returns
+        -------
+        list of Line
+            Frequencies interpolated between the steps of the spectrum.
+
+        Raises
+        ------
+        ModelError
+            As `spectrum`; if a number is outside its range.
+        """
+        from scipy.signal import find_peaks
+
+        count = whole_number(most, "most", smallest=1)
+        floor = real_number(least, "least")
+        frequency, density = self.spectrum(dof)
+        if not density.max() > 0.0:
+            return []
+        level = np.log10(np.maximum(density, 1e-30 * density.max()))
+        peaks, _ = find_peaks(level, prominence=1.0)
+        step = frequency[1]
+        lines = []
+        for place in peaks:
+            low, mid, high = level[place - 1 : place + 2]
+            bend = low - 2.0 * mid + high
+            shift = 0.5 * (low - high) / bend if bend < 0.0 else 0.0
+            power = step * density[max(place - 4, 0) : place + 5].sum()
+            where = float(frequency[place] + shift * step)
+            lines.append(Line(where, 2.0 * np.pi * where, float(np.sqrt(2.0 * power))))
+        lines.sort(key=lambda line: line.amplitude, reverse=True)
+        return [line for line in lines[:count] if line.amplitude >= floor * lines[0].amplitude]
+
+    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+        """Return everything as an xarray dataset with units on every variable.
+
+        Parameters
+        ----------
+        derived : bool, optional
+            Whether to add what follows from the other variables: nothing here.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions start_number, state_entry, dof and time.
+        """
+        import xarray as xr
+
+        return xr.Dataset(
+            {
+                **written(FATE_VARIABLES, self.arrays),
+                "tail": (
+                    ("time", "dof"),
+                    self.tail.copy(),
+                    {"units": "m", "long_name": "displacement once the motion was decided"},
+                ),
+            },
+            coords={
+                "dof": dof_coordinate(self),
+                "state_entry": names("state_entry", state_names(self.model), "entry of the state"),
+            },
+            attrs=attributes(self, self.settings, "What becomes of a free motion with dry friction")
+            | {"step": self.step},
+        )
+
+    @classmethod
+    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+        """Return the result that a dataset holds; see `Result.from_dataset`."""
+        from stickslip.analyses.classify import ClassifySettings
+
+        return cls(
+            **parts(dataset, model),
+            settings=ClassifySettings(**settings_of(dataset)),
+            arrays=require_codes(FateArrays(**read(FATE_VARIABLES, dataset))),
+            step=float(dataset.attrs["step"]),
+            tail=dataset["tail"].values,
+        )
+
+    def plot(self, dof: str, **options: Unpack[LineOptions]) -> Axes:
+        """Draw the spectrum with its lines; see `stickslip.plot.lines`."""
+        from stickslip import plot
+
+        return plot.lines(self, dof, **options)

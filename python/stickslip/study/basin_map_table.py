@@ -1,0 +1,114 @@
+"""The table [analysis] of a basin map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, Strict, model_validator
+
+from stickslip.analyses.basin_map import Axis, basin_map
+from stickslip.analyses.classify import PERIODS, TOLERANCE, ClassifySettings
+from stickslip.model import Model
+from stickslip.results.arrays import Float
+from stickslip.study.entries import Count, Dof, Length, Table, Tolerance
+
+if TYPE_CHECKING:
+    from stickslip.results.basin_map import BasinMap
+
+__all__ = ["BasinMapTable"]
+
+
+class AxisTable(Table):
+    """An axis of the map: a displacement or the amplitude of a mode at the start."""
+
+    dof: Dof | None = Field(default=None, description="DOF whose displacement it is.")
+    mode: Annotated[int, Field(ge=0)] | None = Field(
+        default=None, description="Instead: stuck mode, counted from 0, whose amplitude it is."
+    )
+    begin: Length = Field(alias="from", description="First value.", examples=["-1 mm"])
+    end: Length = Field(alias="to", description="Last value.", examples=["1 mm"])
+    points: Annotated[int, Field(ge=1, le=100_000)] = Field(description="Number of values.")
+
+    @model_validator(mode="after")
+    def _require_one(self) -> Self:
+        if (self.dof is None) == (self.mode is None):
+            raise ValueError("give exactly one of dof and mode")
+        return self
+
+    @property
+    def axis(self) -> Axis:
+        """What the analysis calls it."""
+        if self.dof is not None:
+            return self.dof
+        return 0 if self.mode is None else self.mode
+
+    def values(self) -> Float:
+        """Return its values."""
+        return np.linspace(self.begin, self.end, self.points)
+
+
+class BasinMapTable(Table):
+    """What becomes of free motions from many starts."""
+
+    kind: Literal["basin-map"] = Field(description="The analysis.")
+    axes: Annotated[tuple[AxisTable, ...], Strict(False)] = Field(
+        min_length=2,
+        max_length=2,
+        description="The two axes of the map, the first drawn upwards.",
+        examples=[[{"mode": 2, "from": "0 mm", "to": "0.4 mm", "points": 31}]],
+    )
+    base: Mapping[str, Length] = Field(
+        default={},
+        description="Displacements by DOF that the axes are added to; left out: none.",
+    )
+    periods: Count = Field(
+        default=PERIODS,
+        description="Longest motion, in periods of the lowest stuck mode; at least 4.",
+    )
+    tolerance: Tolerance = Field(
+        default=TOLERANCE, description="Relative closing error of a settled motion."
+    )
+    observe: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
+        default=None, description="DOFs to keep in the results; left out: all.", examples=[["tip"]]
+    )
+    threads: Count | None = Field(
+        default=None, description="Number of processors to use; left out: all."
+    )
+
+    @model_validator(mode="after")
+    def _require_distinct_axes(self) -> Self:
+        if self.axes[0].axis == self.axes[1].axis:
+            raise ValueError("axes holds the same axis twice; give two of them")
+        return self
+
+    @model_validator(mode="after")
+    def _require_settings(self) -> Self:
+        # what the analysis would refuse is refused while the file is read, before any computing
+        ClassifySettings(periods=self.periods, tolerance=self.tolerance)
+        return self
+
+    @property
+    def levels(self) -> None:
+        """Free motions have no forces."""
+        return None
+
+    @property
+    def named_dofs(self) -> Mapping[str, Sequence[str]]:
+        """The DOFs that each key names."""
+        drawn = tuple(axis.dof for axis in self.axes if axis.dof is not None)
+        return {"observe": self.observe or (), "axes": drawn, "base": tuple(self.base)}
+
+    def run(self, model: Model, progress: Callable[[float], None] | None) -> BasinMap:
+        """Compute the map."""
+        return basin_map(
+            model,
+            {axis.axis: axis.values() for axis in self.axes},
+            base=self.base or None,
+            periods=self.periods,
+            tolerance=self.tolerance,
+            observe=self.observe,
+            threads=self.threads,
+            progress=progress,
+        )
