@@ -6,6 +6,7 @@
 use super::condensed::{Condensed, Path};
 use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
+use super::ring_series::RingSeries;
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
@@ -68,8 +69,7 @@ impl Condensed<'_> {
         }
         self.factor = Some(match (&self.linear, self.model.compliance().ring()) {
             (Linear::Ring { orders, .. }, Some(ring)) => Factor::Ring(RingNewton::new(
-                orders,
-                self.table.harmonics(),
+                RingSeries::new(orders, self.table.harmonics()),
                 ring.layout(),
                 &self.loads,
                 self.model.points(),
@@ -191,7 +191,8 @@ impl System for Condensed<'_> {
         let factor = match &self.factor {
             Some(Factor::Dense(factor)) => factor,
             Some(Factor::Ring(factor)) => {
-                factor.solve(rhs, step);
+                let Linear::Ring { orders, .. } = &self.linear else { return false };
+                factor.solve(RingSeries::new(orders, self.table.harmonics()), rhs, step);
                 self.profile.linear_solve += start.elapsed();
                 return step.iter().all(|s| s.is_finite());
             }

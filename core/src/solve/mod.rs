@@ -3,6 +3,7 @@
 mod broyden;
 mod cyclic_tridiagonal;
 mod homotopy;
+mod kernels;
 mod line_search;
 mod newton;
 mod qr;

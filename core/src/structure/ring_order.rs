@@ -46,7 +46,7 @@ impl RingOrder {
                 }
             })
             .collect();
-        let interface = CyclicTridiagonal::new(&rows);
+        let interface = CyclicTridiagonal::new(rows);
         Self { layout, receptances, links, interface }
     }
 
