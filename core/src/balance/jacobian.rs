@@ -20,7 +20,7 @@ const CARRIES_NOTHING: f64 = 1e-3;
 impl Condensed<'_> {
     /// Residual, with the tangents of the laws or without.
     fn evaluate(&mut self, x: &[f64], tangent: bool, out: &mut [f64]) {
-        let mut loads = std::mem::take(&mut self.loads);
+        let mut loads = std::mem::take(if tangent { &mut self.loads } else { &mut self.values });
         let mut law_time = std::time::Duration::ZERO;
         Profile::time(&mut law_time, || {
             for (index, load) in loads.iter_mut().enumerate() {
@@ -36,8 +36,13 @@ impl Condensed<'_> {
         });
         self.profile.law += law_time;
         self.profile.evaluations += 1;
-        self.loads = loads;
-        self.factor = None;
+        if tangent {
+            self.loads = loads;
+            self.factor = None;
+        } else {
+            self.values = loads;
+        }
+        self.moved_on = !tangent;
         out.fill(0.0);
         self.add_response(&self.slip_load(), out);
         for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
@@ -179,10 +184,6 @@ impl System for Condensed<'_> {
         step.copy_from_slice(rhs);
         if self.is_linear() {
             return true;
-        }
-        // Nothing can be solved after an evaluation without tangents.
-        if self.loads.iter().any(|load| load.active && load.tangent.is_empty()) {
-            return false;
         }
         if self.factor.is_none() {
             self.factorise();

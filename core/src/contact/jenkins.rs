@@ -285,14 +285,13 @@ impl Jenkins {
 
 /// Basis integrals over intervals, from the antiderivatives at their two ends.
 pub(super) struct Bounds {
-    start: Vec<f64>,
-    end: Vec<f64>,
+    /// Antiderivatives at the start and, behind them, at the end.
+    ends: Vec<f64>,
 }
 
 impl Bounds {
     pub(super) fn new(harmonics: &Harmonics) -> Self {
-        let size = harmonics.slots();
-        Self { start: vec![0.0; size], end: vec![0.0; size] }
+        Self { ends: vec![0.0; 2 * harmonics.slots()] }
     }
 
     /// Adds `factor ∫ basis dθ` to `out`.
@@ -304,9 +303,10 @@ impl Bounds {
         factor: f64,
         out: &mut [f64],
     ) {
-        harmonics.antiderivative(start, &mut self.start);
-        harmonics.antiderivative(end, &mut self.end);
-        for ((out, start), end) in out.iter_mut().zip(&self.start).zip(&self.end) {
+        let (from, to) = self.ends.split_at_mut(harmonics.slots());
+        harmonics.antiderivative(start, from);
+        harmonics.antiderivative(end, to);
+        for ((out, start), end) in out.iter_mut().zip(&*from).zip(&*to) {
             *out += factor * (end - start);
         }
     }
