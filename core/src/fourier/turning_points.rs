@@ -6,6 +6,9 @@ use super::Harmonics;
 /// H has at most 2H turning points, so that 16H samples keep them apart by eight on average.
 const SAMPLES_PER_HARMONIC: usize = 64;
 
+/// Samples that are looked at together.
+const BLOCK: usize = 32;
+
 /// Angles closer than this are the same.
 const ROUNDING: f64 = 1e-12;
 
@@ -58,17 +61,21 @@ impl SampleTable {
         let mirrored = self.harmonics.half_wave();
         let slope = self.sample_slope(series);
         let step = std::f64::consts::FRAC_PI_2 / self.quarter as f64;
-        for (i, triple) in slope.windows(3).enumerate() {
-            let [here, next, after] = [triple[0], triple[1], triple[2]];
-            let (left, right) = (i as f64 * step, (i + 1) as f64 * step);
-            if (here > 0.0) != (next > 0.0) {
-                let guess = left + step * zero_between(triple);
-                points.push(self.locate(series, left, right, here > 0.0, guess));
-            } else if next.abs() < here.abs()
-                && next.abs() <= after.abs()
-                && (after > 0.0) == (next > 0.0)
-            {
-                self.push_hidden_pair(series, [here, next, after], [left, right + step], points);
+        let last = slope.len() - 2;
+        for block in (0..last).step_by(BLOCK) {
+            if !may_turn(&slope[block..(block + BLOCK + 2).min(slope.len())]) {
+                continue;
+            }
+            for i in block..(block + BLOCK).min(last) {
+                let [here, next, after] = [slope[i], slope[i + 1], slope[i + 2]];
+                let (left, right) = (i as f64 * step, (i + 1) as f64 * step);
+                if (here > 0.0) != (next > 0.0) {
+                    let guess = left + step * zero_between([here, next, after]);
+                    points.push(self.locate(series, left, right, here > 0.0, guess));
+                } else if dips(here, next, after) {
+                    let bracket = [left, right + step];
+                    self.push_hidden_pair(series, [here, next, after], bracket, points);
+                }
             }
         }
         let span = self.harmonics.span();
@@ -228,10 +235,26 @@ impl SampleTable {
     }
 }
 
+/// Whether the second of three values of equal sign is closest to zero.
+fn dips(here: f64, next: f64, after: f64) -> bool {
+    (next.abs() < here.abs()) & (next.abs() <= after.abs()) & ((after > 0.0) == (next > 0.0))
+}
+
+/// Whether the slope changes its sign or comes closest to zero somewhere in a block of samples.
+fn may_turn(slope: &[f64]) -> bool {
+    pulp::Arch::new().dispatch(|| {
+        let mut found = false;
+        for ((here, next), after) in slope.iter().zip(&slope[1..]).zip(&slope[2..]) {
+            found |= (*here > 0.0) != (*next > 0.0);
+            found |= (next.abs() < here.abs()) & (next.abs() <= after.abs());
+        }
+        found
+    })
+}
+
 /// Where the parabola through three equidistant values of which the first two differ in sign
 /// crosses zero, as a share of the first interval.
-fn zero_between(values: &[f64]) -> f64 {
-    let [here, next, after] = [values[0], values[1], values[2]];
+fn zero_between([here, next, after]: [f64; 3]) -> f64 {
     let chord = (here / (here - next)).clamp(0.0, 1.0);
     // One step of Newton's method on the parabola, from where its chord crosses.
     let bend = 0.5 * (after - 2.0 * next + here);
