@@ -74,6 +74,16 @@ impl<'a> Condensed<'a> {
     /// # Errors
     /// Singular static stiffness or an undamped resonance, with the harmonic concerned.
     pub fn set_omega(&mut self, omega: f64) -> Result<(), (usize, Error)> {
+        self.set_omega_beside(omega, None)
+    }
+
+    /// [`Condensed::set_omega`] with the equations in other harmonics at the same frequency, whose
+    /// compliances need no second evaluation.
+    pub(super) fn set_omega_beside(
+        &mut self,
+        omega: f64,
+        other: Option<&Self>,
+    ) -> Result<(), (usize, Error)> {
         let harmonics = self.table.harmonics();
         let contacts = self.model.compliance().contacts();
         let slots = harmonics.slots();
@@ -83,7 +93,8 @@ impl<'a> Condensed<'a> {
         self.omega = omega;
         let (linear, stuck, model) = (&mut self.linear, &mut self.stuck, self.model);
         Profile::time(&mut self.profile.compliance, || {
-            linear.evaluate(model.compliance(), harmonics, omega, stuck)
+            let known = other.map(|other| (&other.linear, other.harmonics()));
+            linear.evaluate(model.compliance(), harmonics, omega, known, stuck)
         })
     }
 

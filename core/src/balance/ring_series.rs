@@ -5,11 +5,12 @@ use crate::fourier::Harmonics;
 use crate::solve::Block;
 use crate::structure::RingOrder;
 use faer::c64;
+use std::sync::Arc;
 
 /// The harmonics of a ring.
 #[derive(Clone, Copy)]
 pub(super) struct RingSeries<'a> {
-    orders: &'a [RingOrder],
+    orders: &'a [Arc<RingOrder>],
     harmonics: &'a Harmonics,
 }
 
@@ -22,7 +23,7 @@ pub(super) struct Part<'a> {
 }
 
 impl<'a> RingSeries<'a> {
-    pub(super) fn new(orders: &'a [RingOrder], harmonics: &'a Harmonics) -> Self {
+    pub(super) fn new(orders: &'a [Arc<RingOrder>], harmonics: &'a Harmonics) -> Self {
         Self { orders, harmonics }
     }
 
@@ -31,7 +32,7 @@ impl<'a> RingSeries<'a> {
     }
 
     pub(super) fn sectors(&self) -> usize {
-        self.orders.first().map_or(0, RingOrder::sectors)
+        self.orders.first().map_or(0, |order| order.sectors())
     }
 
     /// Every kept harmonic with the position of its first coefficient, and whether it has two.
@@ -39,7 +40,7 @@ impl<'a> RingSeries<'a> {
         let offset = self.harmonics.offset();
         self.orders.iter().enumerate().map(move |(index, order)| {
             let slot = if offset == 0 { 2 * index } else { (2 * index).saturating_sub(1) };
-            (order, slot, index >= offset)
+            (order.as_ref(), slot, index >= offset)
         })
     }
 
