@@ -94,7 +94,12 @@ def install_peer(folder: Path) -> Path:
 
 def peer(folder: Path, samples: int) -> dict[str, object]:
     """Run the same study with pyHarm-os."""
-    command = [str(install_peer(folder)), str(HERE / "peers" / "pyharm_beam.py"), "--harmonics", "15"]
+    command = [
+        str(install_peer(folder)),
+        str(HERE / "peers" / "pyharm_beam.py"),
+        "--harmonics",
+        "15",
+    ]
     command += ["--samples", str(samples), "--points", str(POINTS), "--repeat", "3"]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     return dict(json.loads(done.stdout.strip().splitlines()[-1]))
