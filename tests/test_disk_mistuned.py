@@ -193,7 +193,9 @@ def test_results_of_disks_come_back_from_files(tmp_path, mistuned):
     assert dict(back.model.engine_orders) == {3: 3}
     assert back.model.structure.damping_law == disk.structure.damping_law
     assert np.array_equal(back.model.matrices.stiffness.next, disk.matrices.stiffness.next)
-    assert back.sector(2).peak("tip").amplitude == frf.peak("tip").amplitude
+    # Seen from another sector all phases differ, and with them the rounding.
+    top = frf.peak("tip").amplitude
+    assert back.sector(2).peak("tip").amplitude == pytest.approx(top, rel=1e-12)
     mistuned.save(tmp_path / "mistuned.nc")
     back = ss.load(tmp_path / "mistuned.nc")
     model = back.model
