@@ -148,7 +148,8 @@ def automatic() -> None:
 def against_peer(folder: Path) -> None:
     """Print what pyHarm-os takes for the same ring at H = 3."""
     disk, observe, points = mistuned(), dampers(36), 12
-    omega = np.linspace(190.0, 201.0, points)
+    # From where all dampers stick: pyHarm finds no solution from scratch where they slip.
+    omega = np.linspace(164.0, 175.0, points)
     force = np.zeros(108, complex)
     for one in disk.forces:
         force[disk.structure.dofs.index(one.dof)] = one.amplitude * np.exp(1j * one.phase)

@@ -149,7 +149,9 @@ def main() -> None:
     with peer_surroundings(fresh_cache=False):
         from pyHarm.Maestro import Maestro
 
-        solve(Maestro, Ring(arrays, options.harmonics, options.samples, 2))
+        first = arrays["omega"][0]
+        short = {**arrays, "omega": np.array([first, first + ring.step])}
+        solve(Maestro, Ring(short, options.harmonics, options.samples, 2))
         result = solve(Maestro, ring)
     print(json.dumps(result), file=sys.stdout)
 
