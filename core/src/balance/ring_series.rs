@@ -164,13 +164,7 @@ fn link(order: &RingOrder, sector: usize, transposed: bool, a: usize, b: usize) 
 
 /// Adds the columns of `matrix` at the first position times one entry of a harmonic to those of
 /// `out` at the second one.
-fn add_columns(
-    matrix: &Block,
-    g: c64,
-    [from, to]: [usize; 2],
-    oscillates: bool,
-    out: &mut Block,
-) {
+fn add_columns(matrix: &Block, g: c64, [from, to]: [usize; 2], oscillates: bool, out: &mut Block) {
     for i in 0..matrix.rows() {
         let row = matrix.row(i);
         let target = out.row_mut(i);

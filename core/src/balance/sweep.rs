@@ -87,9 +87,9 @@ fn predict(points: &[Point], omega: f64) -> Option<Unknowns> {
         .take_while(usable)
         .map_while(|p| Some((p.omega, p.unknowns.as_ref()?.recast(&last.harmonics))))
         .collect();
-    let ratio = known.get(1).map_or(f64::NAN, |before| {
-        ((omega - known[0].0) / (known[0].0 - before.0)).abs()
-    });
+    let ratio = known
+        .get(1)
+        .map_or(f64::NAN, |before| ((omega - known[0].0) / (known[0].0 - before.0)).abs());
     // On a repeated frequency there is no line either.
     if !ratio.is_finite() || ratio > REACH[0] {
         return Some(last.clone());

@@ -142,10 +142,10 @@ impl SampleTable {
             if order % 2 == parity {
                 let (slot, k) = (offset + 2 * index, order as f64);
                 let row = index * length..(index + 1) * length;
-                add_multiples(
-                    [(k * series[slot + 1], &self.cos[row.clone()], &mut *of_sines),
-                     (-k * series[slot], &self.sin[row], &mut *of_cosines)],
-                );
+                add_multiples([
+                    (k * series[slot + 1], &self.cos[row.clone()], &mut *of_sines),
+                    (-k * series[slot], &self.sin[row], &mut *of_cosines),
+                ]);
             }
         }
     }
@@ -260,7 +260,11 @@ fn zero_between([here, next, after]: [f64; 3]) -> f64 {
     let bend = 0.5 * (after - 2.0 * next + here);
     let slope = next - here + bend * (2.0 * chord - 1.0);
     let share = chord - bend * chord * (chord - 1.0) / slope;
-    if share.is_finite() { share.clamp(0.0, 1.0) } else { chord }
+    if share.is_finite() {
+        share.clamp(0.0, 1.0)
+    } else {
+        chord
+    }
 }
 
 /// Length of a row of the table: whole vectors.

@@ -173,8 +173,7 @@ impl Ring {
         }
         // Couplings are the same all around, contacts between neighbours need not be.
         let different = if self.layout.between.is_empty() { 1 } else { self.sectors.len() };
-        let links =
-            (0..different).map(|index| self.link(index, harmonic as f64, omega)).collect();
+        let links = (0..different).map(|index| self.link(index, harmonic as f64, omega)).collect();
         Ok(RingOrder::new(self.layout.clone(), receptances, links))
     }
 
