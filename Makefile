@@ -64,9 +64,11 @@ bench: $(VENV)/.developed
 	cargo bench -p stickslip-core
 	$(BIN)/python benchmarks/speed.py
 	$(BIN)/python benchmarks/table_4_1.py
+	$(BIN)/python benchmarks/rings.py
 
 peers: $(VENV)/.developed
 	$(BIN)/python benchmarks/speed.py --peers
+	$(BIN)/python benchmarks/rings.py --peers
 
 clean:
 	rm -rf $(VENV) .peers target site results

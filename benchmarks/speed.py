@@ -80,8 +80,8 @@ def cold_process() -> float:
     return median(times)
 
 
-def peer(folder: Path, samples: int) -> dict[str, object]:
-    """Run the same study with pyHarm-os, installed into an environment of its own if needed."""
+def install_peer(folder: Path) -> Path:
+    """Install pyHarm-os into an environment of its own if needed; return its interpreter."""
     python = folder / "bin" / "python"
     if not python.exists():
         print(f"installing pyHarm-os into {folder} ...", flush=True)
@@ -89,7 +89,17 @@ def peer(folder: Path, samples: int) -> dict[str, object]:
         requirements = HERE / "peers" / "requirements.txt"
         install = [str(python), "-m", "pip", "install", "--quiet", "-r", str(requirements)]
         subprocess.run(install, check=True)
-    command = [str(python), str(HERE / "peers" / "pyharm_beam.py"), "--harmonics", "15"]
+    return python
+
+
+def peer(folder: Path, samples: int) -> dict[str, object]:
+    """Run the same study with pyHarm-os."""
+    command = [
+        str(install_peer(folder)),
+        str(HERE / "peers" / "pyharm_beam.py"),
+        "--harmonics",
+        "15",
+    ]
     command += ["--samples", str(samples), "--points", str(POINTS), "--repeat", "3"]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     return dict(json.loads(done.stdout.strip().splitlines()[-1]))

@@ -217,6 +217,34 @@ def bladed_disks(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "bladed-disks.png")
 
 
+def ring_histories(folder: Path = ASSETS) -> Path:
+    """Draw one period of three blades of the mistuned ring by harmonic balance and in time."""
+    ring = ss.reference.beam_ring(coupling=7e3, engine_order=3)
+    disk = ring.mistuned(ss.mistuning_pattern(36, 0.07, "uniform", seed=0))
+    blades = (8, 11, 22)
+    observe = [f"{blade}.damper" for blade in blades]
+    run = ss.transient(disk, 200.0, 60, tolerance=1e-6, observe=observe, keep=1, samples=512)
+    phase = (run.time - run.time[0]) / run.period
+    figure = Figure(figsize=(13.0, 4.0), layout="constrained")
+    axes = figure.subplots(1, 3, sharey=True)
+    for ax, harmonics in zip(axes, (1, 9, 25), strict=True):
+        # Come to from where all blades stick, which takes fewer iterations than from scratch.
+        omega = np.linspace(170.0, 200.0, 13)
+        frf = ss.forced_response(disk, omega, harmonics, observe=observe)
+        for blade, name in zip(blades, observe, strict=True):
+            series = frf.coefficients(name)[-1]
+            turns = np.exp(1j * run.omega * np.outer(run.time, np.arange(series.size)))
+            line = ax.plot(phase, 1e6 * (turns @ series).real, label=f"blade {blade}")[0]
+            exact = 1e6 * run.displacement(name)
+            ax.plot(phase[::16], exact[::16], "o", ms=3.5, mfc="none", color=line.get_color())
+        ax.set_title(f"H = {harmonics}", fontsize="medium")
+        ax.set_xlabel("time / period")
+        ax.grid(alpha=0.3)
+    axes[0].set_ylabel("displacement at the damper [µm]")
+    axes[0].legend(frameon=False)
+    return _save(figure, folder / "ring-histories.png")
+
+
 def amplification(folder: Path = ASSETS) -> Path:
     """Tabulate the amplification factors of the mistuned ring over the coupling stiffness."""
     kept, dofs = (1, 3, 25), ("damper", "tip")
@@ -275,4 +303,5 @@ if __name__ == "__main__":
     print(starts())
     print(certificate())
     print(bladed_disks())
+    print(ring_histories())
     print(amplification())

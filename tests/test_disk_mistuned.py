@@ -66,38 +66,6 @@ def test_the_pattern_is_that_of_the_table():
     )
 
 
-# errata.md, section 4: uniform pattern of seed 0, 7 %, engine order 3, at the damper; H = 1 and 3
-AMPLIFICATION = {
-    1e3: (1.198, 1.244),
-    3e3: (1.429, 1.465),
-    5e3: (1.579, 1.637),
-    7e3: (1.684, 1.575),
-    1.2e4: (1.450, 1.370),
-    1e5: (1.111, 1.095),
-}
-
-
-def amplification(coupling, omega, harmonics):
-    disk = ss.reference.beam_ring(coupling=coupling, engine_order=3)
-    observe = [f"{blade}.damper" for blade in range(36)]
-    frf = ss.forced_response(disk.mistuned(PATTERN), omega, harmonics, observe=observe)
-    return frf.amplification(ss.forced_response(disk, omega, harmonics), "damper")
-
-
-@pytest.mark.parametrize(("coupling", "expected"), AMPLIFICATION.items())
-def test_amplification_factors_are_those_of_the_table(coupling, expected):
-    for harmonics, factor in zip((1, 3), expected, strict=True):
-        found = amplification(coupling, OMEGA, harmonics)
-        assert found.factor == pytest.approx(factor, rel=6e-4)
-        assert found.factor == found.peak.amplitude / found.tuned.amplitude
-
-
-def test_the_converged_amplification_factor_is_that_of_the_table():
-    found = amplification(7e3, np.linspace(184.0, 204.0, 21), 25)
-    assert found.factor == pytest.approx(1.479, rel=1e-3)
-    assert found.blade == 13
-
-
 def test_sectors_names_and_phases():
     disk = small().mistuned(0.0)
     assert isinstance(disk, MistunedDisk)
@@ -164,19 +132,6 @@ def test_exact_orbits_and_time_integration_agree_with_the_balance():
     assert np.abs(certificate.relative).max() < 1e-3
 
 
-def test_the_ring_at_200_rad_s_against_time_integration(ring):
-    # errata.md, section 4: largest error of a blade at H = 1, 3, 9 and 25
-    disk, observe = ring.mistuned(PATTERN), [f"{blade}.damper" for blade in range(36)]
-    close = ss.forced_response(disk, [200.0], 61, observe=observe).blade_amplitudes("damper")
-    for harmonics, error in ((1, 0.45), (3, 0.27), (9, 0.09), (25, 6e-4)):
-        frf = ss.forced_response(disk, [200.0], harmonics, observe=observe)
-        off = np.abs(frf.blade_amplitudes("damper") / close - 1.0).max()
-        assert off == pytest.approx(error, rel=0.1)
-    run = ss.transient(disk, 200.0, 60, tolerance=1e-6, observe=observe, keep=1)
-    settled = [run.amplitude(name) for name in observe]
-    assert settled == pytest.approx(list(close[0]), rel=1e-4)
-
-
 def test_amplitudes_of_all_blades_side_by_side(mistuned, tuned):
     amplitudes = mistuned.blade_amplitudes("damper")
     assert amplitudes.shape == (56, 36)
@@ -238,7 +193,9 @@ def test_results_of_disks_come_back_from_files(tmp_path, mistuned):
     assert dict(back.model.engine_orders) == {3: 3}
     assert back.model.structure.damping_law == disk.structure.damping_law
     assert np.array_equal(back.model.matrices.stiffness.next, disk.matrices.stiffness.next)
-    assert back.sector(2).peak("tip").amplitude == frf.peak("tip").amplitude
+    # Seen from another sector all phases differ, and with them the rounding.
+    top = frf.peak("tip").amplitude
+    assert back.sector(2).peak("tip").amplitude == pytest.approx(top, rel=1e-12)
     mistuned.save(tmp_path / "mistuned.nc")
     back = ss.load(tmp_path / "mistuned.nc")
     model = back.model

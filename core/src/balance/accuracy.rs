@@ -44,7 +44,9 @@ pub(super) fn extended_order(
 }
 
 /// Sum over all harmonics of the change that the extended balance would bring to each observed
-/// DOF [m]; infinite where a discarded harmonic meets a resonance that nothing damps.
+/// DOF [m]; infinite where a discarded harmonic meets a resonance that nothing damps. `solved` are
+/// the equations that were solved, if they are at hand.
+#[allow(clippy::too_many_arguments)]
 pub(super) fn errors(
     model: &Model,
     table: &SampleTable,
@@ -52,11 +54,12 @@ pub(super) fn errors(
     solution: &Unknowns,
     observe: &[usize],
     point: &Point,
+    solved: Option<&Condensed<'_>>,
 ) -> Result<Vec<f64>, Error> {
     let mut errors = vec![0.0; observe.len()];
     let infinite = vec![f64::INFINITY; observe.len()];
     let mut extended = Condensed::new(model, table, residual, false);
-    if extended.set_omega(point.omega).is_err() {
+    if extended.set_omega_beside(point.omega, solved).is_err() {
         return Ok(infinite);
     }
     let harmonics = table.harmonics();

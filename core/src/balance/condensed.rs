@@ -26,7 +26,11 @@ pub struct Condensed<'a> {
     pub(super) linear: Linear,
     omega: f64,
     pub(super) stuck: Vec<f64>,
+    /// Slip loads and tangents at the last unknowns whose tangents were evaluated.
     pub(super) loads: Vec<SlipLoad>,
+    /// Slip loads at later unknowns, if `moved_on`.
+    pub(super) values: Vec<SlipLoad>,
+    pub(super) moved_on: bool,
     pub(super) path: Path,
     pub(super) load_scale: f64,
     /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
@@ -53,6 +57,8 @@ impl<'a> Condensed<'a> {
             omega: f64::NAN,
             stuck: Vec::new(),
             loads: vec![SlipLoad::default(); model.laws().len()],
+            values: vec![SlipLoad::default(); model.laws().len()],
+            moved_on: false,
             path: Path::Load,
             load_scale: 1.0,
             softened: None,
@@ -68,6 +74,16 @@ impl<'a> Condensed<'a> {
     /// # Errors
     /// Singular static stiffness or an undamped resonance, with the harmonic concerned.
     pub fn set_omega(&mut self, omega: f64) -> Result<(), (usize, Error)> {
+        self.set_omega_beside(omega, None)
+    }
+
+    /// [`Condensed::set_omega`] with the equations in other harmonics at the same frequency, whose
+    /// compliances need no second evaluation.
+    pub(super) fn set_omega_beside(
+        &mut self,
+        omega: f64,
+        other: Option<&Self>,
+    ) -> Result<(), (usize, Error)> {
         let harmonics = self.table.harmonics();
         let contacts = self.model.compliance().contacts();
         let slots = harmonics.slots();
@@ -77,7 +93,8 @@ impl<'a> Condensed<'a> {
         self.omega = omega;
         let (linear, stuck, model) = (&mut self.linear, &mut self.stuck, self.model);
         Profile::time(&mut self.profile.compliance, || {
-            linear.evaluate(model.compliance(), harmonics, omega, stuck)
+            let known = other.map(|other| (&other.linear, other.harmonics()));
+            linear.evaluate(model.compliance(), harmonics, omega, known, stuck)
         })
     }
 
@@ -147,10 +164,13 @@ impl<'a> Condensed<'a> {
 
     /// Slip load of all points at the last evaluated unknowns.
     pub fn slip_load(&self) -> Vec<f64> {
-        self.loads.iter().flat_map(|load| load.value.iter().copied()).collect()
+        let loads = if self.moved_on { &self.values } else { &self.loads };
+        let mut slip_load = Vec::with_capacity(self.stuck.len());
+        loads.iter().for_each(|load| slip_load.extend_from_slice(&load.value));
+        slip_load
     }
 
-    /// Whether no contact has a tangent at the last evaluated unknowns.
+    /// Whether no contact has a tangent at the unknowns whose tangents were evaluated last.
     pub fn is_linear(&self) -> bool {
         self.loads.iter().all(|load| !load.active)
     }
@@ -167,7 +187,7 @@ impl<'a> Condensed<'a> {
         rate
     }
 
-    /// `out += ∂Q x` at the last evaluated unknowns.
+    /// `out += ∂Q x` at the unknowns whose tangents were evaluated last.
     pub fn add_tangent_product(&self, x: &[f64], out: &mut [f64]) {
         let slots = self.table.harmonics().slots();
         for (load, points) in self.loads.iter().zip(self.model.points()) {

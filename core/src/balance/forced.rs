@@ -345,8 +345,10 @@ impl<'a> ForcedBalance<'a> {
             for (i, value) in observed.iter().enumerate() {
                 point.displacement[i * orders + order] = *value;
             }
-            for i in 0..contacts {
-                let stuck: c64 = (0..contacts).map(|j| u[j] * stiffness[(i, j)]).sum();
+            // A contact's stiffness couples its own points alone.
+            let points = self.model.points().iter().flat_map(|p| p.clone().map(move |i| (i, p)));
+            for (i, own) in points {
+                let stuck: c64 = own.clone().map(|j| u[j] * stiffness[(i, j)]).sum();
                 point.contact_displacement[i * orders + order] = u[i];
                 point.contact_force[i * orders + order] = stuck - q[i];
             }
@@ -359,16 +361,17 @@ impl<'a> ForcedBalance<'a> {
         point.contacts = summaries;
         // Without an observed DOF there is nothing whose error could be estimated.
         if status == PointStatus::Converged && !self.observe.is_empty() {
-            self.estimate(harmonics, x, &mut point)?;
+            self.estimate(harmonics, x, Some(equations), &mut point)?;
         }
         Ok(point)
     }
 
-    /// Writes the error estimate of a solution `x`.
+    /// Writes the error estimate of a solution `x`, of these equations if they are at hand.
     pub(super) fn estimate(
         &mut self,
         harmonics: &Harmonics,
         x: &[f64],
+        solved: Option<&Condensed<'_>>,
         point: &mut Point,
     ) -> Result<(), Error> {
         point.error_estimate = vec![0.0; self.observe.len()];
@@ -381,7 +384,7 @@ impl<'a> ForcedBalance<'a> {
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
         point.error_estimate =
-            errors(self.model, &table, residual, &solution, self.observe, point)?;
+            errors(self.model, &table, residual, &solution, self.observe, point, solved)?;
         Ok(())
     }
 }

@@ -6,6 +6,7 @@
 use super::condensed::{Condensed, Path};
 use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
+use super::ring_series::RingSeries;
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
@@ -19,7 +20,7 @@ const CARRIES_NOTHING: f64 = 1e-3;
 impl Condensed<'_> {
     /// Residual, with the tangents of the laws or without.
     fn evaluate(&mut self, x: &[f64], tangent: bool, out: &mut [f64]) {
-        let mut loads = std::mem::take(&mut self.loads);
+        let mut loads = std::mem::take(if tangent { &mut self.loads } else { &mut self.values });
         let mut law_time = std::time::Duration::ZERO;
         Profile::time(&mut law_time, || {
             for (index, load) in loads.iter_mut().enumerate() {
@@ -35,8 +36,13 @@ impl Condensed<'_> {
         });
         self.profile.law += law_time;
         self.profile.evaluations += 1;
-        self.loads = loads;
-        self.factor = None;
+        if tangent {
+            self.loads = loads;
+            self.factor = None;
+        } else {
+            self.values = loads;
+        }
+        self.moved_on = !tangent;
         out.fill(0.0);
         self.add_response(&self.slip_load(), out);
         for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
@@ -68,8 +74,7 @@ impl Condensed<'_> {
         }
         self.factor = Some(match (&self.linear, self.model.compliance().ring()) {
             (Linear::Ring { orders, .. }, Some(ring)) => Factor::Ring(RingNewton::new(
-                orders,
-                self.table.harmonics(),
+                RingSeries::new(orders, self.table.harmonics()),
                 ring.layout(),
                 &self.loads,
                 self.model.points(),
@@ -180,10 +185,6 @@ impl System for Condensed<'_> {
         if self.is_linear() {
             return true;
         }
-        // Nothing can be solved after an evaluation without tangents.
-        if self.loads.iter().any(|load| load.active && load.tangent.is_empty()) {
-            return false;
-        }
         if self.factor.is_none() {
             self.factorise();
             self.profile.factorisations += 1;
@@ -191,7 +192,8 @@ impl System for Condensed<'_> {
         let factor = match &self.factor {
             Some(Factor::Dense(factor)) => factor,
             Some(Factor::Ring(factor)) => {
-                factor.solve(rhs, step);
+                let Linear::Ring { orders, .. } = &self.linear else { return false };
+                factor.solve(RingSeries::new(orders, self.table.harmonics()), rhs, step);
                 self.profile.linear_solve += start.elapsed();
                 return step.iter().all(|s| s.is_finite());
             }

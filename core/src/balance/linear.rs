@@ -8,6 +8,7 @@ use crate::structure::{Compliance, Receptance, RingOrder};
 use crate::Error;
 use faer::c64;
 use faer::linalg::solvers::PartialPivLu;
+use std::sync::Arc;
 
 /// `U = U^stuck + G Q`, one part per kept order.
 pub(super) enum Linear {
@@ -16,7 +17,7 @@ pub(super) enum Linear {
     /// Sectors coupled to their neighbours.
     Ring {
         /// Empty until a frequency is set.
-        orders: Vec<RingOrder>,
+        orders: Vec<Arc<RingOrder>>,
         /// Whether derivatives in ω are wanted.
         slopes: bool,
     },
@@ -36,20 +37,30 @@ impl Linear {
         Self::Dense(vec![blank; table.harmonics().orders().count()])
     }
 
-    /// Evaluates the compliances at a frequency, and the response of the stuck structure.
+    /// Evaluates the compliances at a frequency, and the response of the stuck structure; `known`
+    /// holds those of other harmonics at this frequency.
     pub(super) fn evaluate(
         &mut self,
         compliance: &dyn Compliance,
         harmonics: &Harmonics,
         omega: f64,
+        known: Option<(&Self, &Harmonics)>,
         stuck: &mut [f64],
     ) -> Result<(), (usize, Error)> {
+        let position = |order| {
+            let (linear, kept) = known?;
+            kept.orders().position(|other| other == order).map(|index| (linear, index))
+        };
         match self {
             Self::Dense(receptances) => {
                 for (receptance, order) in receptances.iter_mut().zip(harmonics.orders()) {
-                    compliance
-                        .receptance(order, omega, receptance)
-                        .map_err(|error| (order, error))?;
+                    if let Some((Self::Dense(known), index)) = position(order) {
+                        receptance.clone_from(&known[index]);
+                    } else {
+                        compliance
+                            .receptance(order, omega, receptance)
+                            .map_err(|error| (order, error))?;
+                    }
                     scatter(harmonics, order, &receptance.stuck, stuck);
                 }
             }
@@ -58,8 +69,12 @@ impl Linear {
                 let Some(ring) = compliance.ring() else { return Ok(()) };
                 let rest = vec![c64::new(0.0, 0.0); compliance.contacts()];
                 for order in harmonics.orders() {
-                    let equations =
-                        ring.order(order, omega, *slopes).map_err(|error| (order, error))?;
+                    let equations = match position(order) {
+                        Some((Self::Ring { orders, .. }, index)) => Arc::clone(&orders[index]),
+                        _ => Arc::new(
+                            ring.order(order, omega, *slopes).map_err(|error| (order, error))?,
+                        ),
+                    };
                     scatter(harmonics, order, &equations.respond(true, &rest).contact, stuck);
                     orders.push(equations);
                 }

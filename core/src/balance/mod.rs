@@ -10,6 +10,7 @@ mod linear;
 mod linearised;
 mod peak;
 mod ring_newton;
+mod ring_series;
 mod scale;
 mod settings;
 mod single_harmonic;

@@ -3,8 +3,9 @@
 use super::forced::ForcedBalance;
 use super::settings::{HarmonicChoice, Settings};
 use super::sweep::check_frequency;
+use super::unknowns::Unknowns;
 use super::{PointStatus, Progress};
-use crate::fourier::{amplitude, Harmonics, Measure, SampleTable};
+use crate::fourier::{amplitude, Measure};
 use crate::model::Model;
 use crate::Error;
 
@@ -34,40 +35,42 @@ pub fn refine_peak(
         return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
     }
     let observe = [dof];
-    let settings = with_one_order(model, settings, &observe, [low, guess, high])?;
+    let (settings, mut start) = with_one_order(model, settings, &observe, [low, high, guess])?;
     let mut balance = ForcedBalance::new(model, settings, &observe)?.watched(progress);
-    let mut start = None;
     let mut height = |omega: f64| -> Result<f64, Error> {
         let point = balance.solve(omega, start.as_ref())?;
         if !matches!(point.status, PointStatus::Converged | PointStatus::HarmonicsLimit) {
             return Ok(f64::NEG_INFINITY);
         }
-        let harmonics = Harmonics::new(point.harmonics, balance.half_wave());
-        let mut series = vec![0.0; harmonics.slots()];
-        harmonics.write_series(&point.displacement, &mut series);
+        let table = balance.table(point.harmonics);
+        let mut series = vec![0.0; table.harmonics().slots()];
+        table.harmonics().write_series(&point.displacement, &mut series);
         start = point.unknowns;
-        Ok(amplitude(&SampleTable::new(harmonics), &series, measure))
+        Ok(amplitude(&table, &series, measure))
     };
     brent(low, guess, high, &mut height)
 }
 
 /// Replaces automatic harmonics by the most that they choose at three frequencies: an amplitude
-/// whose order changes from point to point is too rough to maximise.
+/// whose order changes from point to point is too rough to maximise. Returns the solution at the
+/// last of them too.
 fn with_one_order(
     model: &Model,
     settings: Settings,
     observe: &[usize],
     omega: [f64; 3],
-) -> Result<Settings, Error> {
+) -> Result<(Settings, Option<Unknowns>), Error> {
     if settings.harmonics != HarmonicChoice::Auto {
-        return Ok(settings);
+        return Ok((settings, None));
     }
     let mut balance = ForcedBalance::new(model, settings, observe)?;
-    let mut highest = 1;
+    let (mut highest, mut start) = (1, None);
     for frequency in omega {
-        highest = highest.max(balance.solve(frequency, None)?.harmonics);
+        let point = balance.solve(frequency, start.as_ref())?;
+        highest = highest.max(point.harmonics);
+        start = point.unknowns;
     }
-    Ok(Settings { harmonics: HarmonicChoice::Fixed(highest), ..settings })
+    Ok((Settings { harmonics: HarmonicChoice::Fixed(highest), ..settings }, start))
 }
 
 /// Brent's maximiser without derivatives.

@@ -4,6 +4,9 @@ use super::Motion;
 use crate::fourier::{Harmonics, TurningPoint};
 use std::f64::consts::PI;
 
+/// Turning points per period that a motion has as a rule.
+const USUAL_TURNS: usize = 8;
+
 /// An interval of the period in which the element sticks. The slip load is constant there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stick {
@@ -41,7 +44,7 @@ impl Cycle {
             return Self::Free;
         }
         let harmonics = motion.table.harmonics();
-        let mut turns = Vec::new();
+        let mut turns = Vec::with_capacity(USUAL_TURNS);
         motion.table.turning_points(motion.displacement, &mut turns);
         let (crest, trough) = extremes(harmonics, &turns, motion.displacement);
         let range = crest.value - trough.value;
@@ -62,7 +65,8 @@ impl Cycle {
         k: f64,
         limit: f64,
     ) -> Self {
-        let (mut sticks, mut slips) = (Vec::new(), Vec::new());
+        let mut sticks = Vec::with_capacity(path.len());
+        let mut slips = Vec::with_capacity(path.len());
         let start = path[0];
         let sign = if start.value >= path[1].value { 1.0 } else { -1.0 };
         let mut stick = Stick {
@@ -138,7 +142,7 @@ fn path_from_crest(harmonics: &Harmonics, turns: &[TurningPoint]) -> Vec<Turning
     turns[first..].iter().copied().chain(wrapped).collect()
 }
 
-/// Angle at which the monotone arc between two turning points takes the value `target`: Newton's
+/// Angle at which the monotone arc between two turning points takes the value `target`: Halley's
 /// method from the angle of a cosine arc, kept inside its bracket.
 fn crossing(
     harmonics: &Harmonics,
@@ -152,24 +156,25 @@ fn crossing(
     let (mut low, mut high) = (from.theta, to.theta);
     let mut theta = low + (high - low) * (1.0 - 2.0 * share).acos() / PI;
     for _ in 0..80 {
-        let [value, slope, _] = harmonics.jet(series, theta);
+        let [value, slope, curvature] = harmonics.jet(series, theta);
         let excess = (value - target) * rise.signum();
         if excess > 0.0 {
             high = theta;
         } else {
             low = theta;
         }
-        let newton = theta - (value - target) / slope;
-        let next = if newton >= low - 1e-12 && newton <= high + 1e-12 {
-            newton
+        let step = (value - target) / slope;
+        let halley = theta - step / (1.0 - 0.5 * step * curvature / slope);
+        let next = if halley >= low - 1e-12 && halley <= high + 1e-12 {
+            halley
         } else {
             0.5 * (low + high)
         };
         let moved = (next - theta).abs();
         theta = next;
-        // Newton's method squares its error, and the force is continuous here: after a step this
+        // Halley's method cubes its error, and the force is continuous here: after a step this
         // short the integrals are good to rounding.
-        if moved <= 1e-7 {
+        if moved <= 1e-6 {
             break;
         }
     }

@@ -134,9 +134,10 @@ impl FrictionLaw for Jenkins {
                         matrix[i * size + j] = v;
                     }
                 });
-                self.add_constants(harmonics, &sticks, &slips, weight, value);
+                let ends = StickEnds::new(harmonics, &sticks);
+                self.add_constants(&ends, &sticks, &slips, weight, value);
                 if tangent {
-                    add_anchors(harmonics, &sticks, k * weight, matrix);
+                    ends.add_anchors(harmonics, sticks.len(), k * weight, matrix);
                 }
                 halve_mean_row(harmonics, size, out, tangent);
             }
@@ -252,23 +253,22 @@ impl FrictionLaw for Jenkins {
 
 impl Jenkins {
     /// Integrals of the constant parts: the slip load of each stick interval, and `−(±F_d)` of
-    /// each slip interval.
+    /// each slip interval, which lies between two of them.
     fn add_constants(
         &self,
-        harmonics: &Harmonics,
+        ends: &StickEnds,
         sticks: &[Stick],
         slips: &[Slip],
         weight: f64,
         out: &mut [f64],
     ) {
-        let mut bounds = Bounds::new(harmonics);
-        for stick in sticks {
+        for (index, stick) in sticks.iter().enumerate() {
             let constant = weight * stick.slip_load;
-            bounds.add_integral(harmonics, stick.start, stick.end, constant, out);
+            add_difference(ends.of(2 * index + 1), ends.of(2 * index), constant, out);
         }
-        for slip in slips {
+        for (index, slip) in slips.iter().enumerate() {
             let constant = -weight * slip.sign * self.slip_force;
-            bounds.add_integral(harmonics, slip.start, slip.end, constant, out);
+            add_difference(ends.of(2 * index + 2), ends.of(2 * index + 1), constant, out);
         }
     }
 
@@ -285,14 +285,13 @@ impl Jenkins {
 
 /// Basis integrals over intervals, from the antiderivatives at their two ends.
 pub(super) struct Bounds {
-    start: Vec<f64>,
-    end: Vec<f64>,
+    /// Antiderivatives at the start and, behind them, at the end.
+    ends: Vec<f64>,
 }
 
 impl Bounds {
     pub(super) fn new(harmonics: &Harmonics) -> Self {
-        let size = harmonics.slots();
-        Self { start: vec![0.0; size], end: vec![0.0; size] }
+        Self { ends: vec![0.0; 2 * harmonics.slots()] }
     }
 
     /// Adds `factor ∫ basis dθ` to `out`.
@@ -304,29 +303,68 @@ impl Bounds {
         factor: f64,
         out: &mut [f64],
     ) {
-        harmonics.antiderivative(start, &mut self.start);
-        harmonics.antiderivative(end, &mut self.end);
-        for ((out, start), end) in out.iter_mut().zip(&self.start).zip(&self.end) {
+        let (from, to) = self.ends.split_at_mut(harmonics.slots());
+        harmonics.antiderivative(start, from);
+        harmonics.antiderivative(end, to);
+        for ((out, start), end) in out.iter_mut().zip(&*from).zip(&*to) {
             *out += factor * (end - start);
         }
     }
 }
 
-/// Adds the rank-one change of every stick interval: its slip load follows the displacement of
-/// its anchor. Leaving this history out breaks Newton's method.
-fn add_anchors(harmonics: &Harmonics, sticks: &[Stick], weight: f64, tangent: &mut [f64]) {
-    let size = harmonics.slots();
-    let mut bounds = Bounds::new(harmonics);
-    let (mut integral, mut at_anchor) = (vec![0.0; size], vec![0.0; size]);
-    for stick in sticks {
-        integral.fill(0.0);
-        bounds.add_integral(harmonics, stick.start, stick.end, weight, &mut integral);
-        harmonics.basis(stick.anchor, &mut at_anchor);
-        for (row, i) in tangent.chunks_exact_mut(size).zip(&integral) {
-            for (entry, j) in row.iter_mut().zip(&at_anchor) {
-                *entry += i * j;
+/// Antiderivatives of the basis at the start and the end of each stick interval, in turn.
+struct StickEnds {
+    size: usize,
+    values: Vec<f64>,
+}
+
+impl StickEnds {
+    fn new(harmonics: &Harmonics, sticks: &[Stick]) -> Self {
+        let size = harmonics.slots();
+        // Behind them, room for one integral and one basis.
+        let mut values = vec![0.0; 2 * (sticks.len() + 1) * size];
+        for (stick, ends) in sticks.iter().zip(values.chunks_exact_mut(2 * size)) {
+            let (start, end) = ends.split_at_mut(size);
+            harmonics.antiderivative(stick.start, start);
+            harmonics.antiderivative(stick.end, end);
+        }
+        Self { size, values }
+    }
+
+    fn of(&self, end: usize) -> &[f64] {
+        &self.values[end * self.size..(end + 1) * self.size]
+    }
+
+    /// Adds the rank-one change of every stick interval: its slip load follows the displacement
+    /// of its anchor, where it starts. Leaving this history out breaks Newton's method.
+    fn add_anchors(
+        mut self,
+        harmonics: &Harmonics,
+        sticks: usize,
+        weight: f64,
+        tangent: &mut [f64],
+    ) {
+        let size = self.size;
+        let (ends, rest) = self.values.split_at_mut(2 * sticks * size);
+        let (integral, at_anchor) = rest.split_at_mut(size);
+        for ends in ends.chunks_exact(2 * size) {
+            let (start, end) = ends.split_at(size);
+            integral.fill(0.0);
+            add_difference(end, start, weight, integral);
+            harmonics.differentiate(start, at_anchor);
+            for (row, i) in tangent.chunks_exact_mut(size).zip(&*integral) {
+                for (entry, j) in row.iter_mut().zip(&*at_anchor) {
+                    *entry += i * j;
+                }
             }
         }
+    }
+}
+
+/// `out += factor (end − start)`.
+fn add_difference(end: &[f64], start: &[f64], factor: f64, out: &mut [f64]) {
+    for ((out, end), start) in out.iter_mut().zip(end).zip(start) {
+        *out += factor * (end - start);
     }
 }
 

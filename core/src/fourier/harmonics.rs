@@ -150,6 +150,18 @@ impl Harmonics {
         });
     }
 
+    /// The basis where its antiderivatives are `antiderivative`.
+    pub fn differentiate(&self, antiderivative: &[f64], basis: &mut [f64]) {
+        if self.has_mean() {
+            basis[0] = 1.0;
+        }
+        for (index, &order) in self.oscillating.iter().enumerate() {
+            let slot = self.offset() + 2 * index;
+            basis[slot] = -(order as f64) * antiderivative[slot + 1];
+            basis[slot + 1] = order as f64 * antiderivative[slot];
+        }
+    }
+
     /// Calls `visit(k, cos kθ, sin kθ, slot)` for every k ≥ 1, by rotation instead of one
     /// sine and cosine per order.
     #[inline]

@@ -6,6 +6,9 @@ use super::Harmonics;
 /// H has at most 2H turning points, so that 16H samples keep them apart by eight on average.
 const SAMPLES_PER_HARMONIC: usize = 64;
 
+/// Samples that are looked at together.
+const BLOCK: usize = 32;
+
 /// Angles closer than this are the same.
 const ROUNDING: f64 = 1e-12;
 
@@ -36,7 +39,7 @@ impl SampleTable {
         let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
         let (mut cos, mut sin) = (Vec::new(), Vec::new());
         for &order in harmonics.oscillating() {
-            for i in 0..=quarter {
+            for i in 0..padded(quarter + 1) {
                 let (s, c) = (order as f64 * i as f64 * step).sin_cos();
                 cos.push(c);
                 sin.push(s);
@@ -58,14 +61,21 @@ impl SampleTable {
         let mirrored = self.harmonics.half_wave();
         let slope = self.sample_slope(series);
         let step = std::f64::consts::FRAC_PI_2 / self.quarter as f64;
-        for (i, triple) in slope.windows(3).enumerate() {
-            let [here, next, after] = [triple[0], triple[1], triple[2]];
-            let (left, right) = (i as f64 * step, (i + 1) as f64 * step);
-            if (here > 0.0) != (next > 0.0) {
-                let guess = left + step * (here / (here - next)).clamp(0.0, 1.0);
-                points.push(self.locate(series, left, right, here > 0.0, guess));
-            } else if next.abs() < here.abs() && (after > 0.0) == (next > 0.0) {
-                self.push_hidden_pair(series, [here, next, after], [left, right + step], points);
+        let last = slope.len() - 2;
+        for block in (0..last).step_by(BLOCK) {
+            if !may_turn(&slope[block..(block + BLOCK + 2).min(slope.len())]) {
+                continue;
+            }
+            for i in block..(block + BLOCK).min(last) {
+                let [here, next, after] = [slope[i], slope[i + 1], slope[i + 2]];
+                let (left, right) = (i as f64 * step, (i + 1) as f64 * step);
+                if (here > 0.0) != (next > 0.0) {
+                    let guess = left + step * zero_between([here, next, after]);
+                    points.push(self.locate(series, left, right, here > 0.0, guess));
+                } else if dips(here, next, after) {
+                    let bracket = [left, right + step];
+                    self.push_hidden_pair(series, [here, next, after], bracket, points);
+                }
             }
         }
         let span = self.harmonics.span();
@@ -84,23 +94,15 @@ impl SampleTable {
     fn sample_slope(&self, series: &[f64]) -> Vec<f64> {
         let q = self.quarter;
         // Even and odd orders apart: they reflect with opposite sign about π/2.
-        let mut sums = [(); 4].map(|()| Vec::new());
-        let present = if self.harmonics.half_wave() { 2.. } else { 0.. };
-        sums[present].iter_mut().for_each(|sum| sum.resize(q + 1, 0.0));
-        for (index, &order) in self.harmonics.oscillating().iter().enumerate() {
-            let slot = self.harmonics.offset() + 2 * index;
-            let k = order as f64;
-            let (of_cos, of_sin) = (k * series[slot + 1], -k * series[slot]);
-            let row = index * (q + 1)..(index + 1) * (q + 1);
-            let parity = 2 * (order % 2);
-            for (sum, c) in sums[parity].iter_mut().zip(&self.cos[row.clone()]) {
-                *sum += of_cos * c;
-            }
-            for (sum, s) in sums[parity + 1].iter_mut().zip(&self.sin[row]) {
-                *sum += of_sin * s;
-            }
+        let length = padded(q + 1);
+        let mut sums = vec![0.0; 4 * length];
+        let (even, odd) = sums.split_at_mut(2 * length);
+        self.add_slopes(series, 1, odd);
+        if !self.harmonics.half_wave() {
+            self.add_slopes(series, 0, even);
         }
-        let [even_cos, even_sin, odd_cos, odd_sin] = sums;
+        let ([even_cos, even_sin], [odd_cos, odd_sin]) =
+            (halves(even, length), halves(odd, length));
         let half_wave = self.harmonics.half_wave();
         let count = if half_wave { 2 * q } else { 4 * q };
         let mut slope = vec![0.0; count + 2];
@@ -130,6 +132,24 @@ impl SampleTable {
         slope
     }
 
+    /// Adds the slopes of the even or of the odd harmonics on the quarter period to `out`: those
+    /// of the sines, which are cosines, and those of the cosines.
+    fn add_slopes(&self, series: &[f64], parity: usize, out: &mut [f64]) {
+        let length = padded(self.quarter + 1);
+        let (of_sines, of_cosines) = out.split_at_mut(length);
+        let offset = self.harmonics.offset();
+        for (index, &order) in self.harmonics.oscillating().iter().enumerate() {
+            if order % 2 == parity {
+                let (slot, k) = (offset + 2 * index, order as f64);
+                let row = index * length..(index + 1) * length;
+                add_multiples([
+                    (k * series[slot + 1], &self.cos[row.clone()], &mut *of_sines),
+                    (-k * series[slot], &self.sin[row], &mut *of_cosines),
+                ]);
+            }
+        }
+    }
+
     /// Looks for two turning points between samples of equal sign: where the slope comes close to
     /// zero, its extremum decides.
     fn push_hidden_pair(
@@ -141,7 +161,7 @@ impl SampleTable {
     ) {
         let [before, here, after] = slope.map(f64::abs);
         let bend = before - 2.0 * here + after;
-        if here > before || here > after || bend <= 0.0 {
+        if bend <= 0.0 {
             return;
         }
         let vertex = here - (after - before).powi(2) / (8.0 * bend);
@@ -213,6 +233,59 @@ impl SampleTable {
         }
         TurningPoint { theta, value: jet[0] }
     }
+}
+
+/// Whether the second of three values of equal sign is closest to zero.
+fn dips(here: f64, next: f64, after: f64) -> bool {
+    (next.abs() < here.abs()) & (next.abs() <= after.abs()) & ((after > 0.0) == (next > 0.0))
+}
+
+/// Whether the slope changes its sign or comes closest to zero somewhere in a block of samples.
+fn may_turn(slope: &[f64]) -> bool {
+    pulp::Arch::new().dispatch(|| {
+        let mut found = false;
+        for ((here, next), after) in slope.iter().zip(&slope[1..]).zip(&slope[2..]) {
+            found |= (*here > 0.0) != (*next > 0.0);
+            found |= (next.abs() < here.abs()) & (next.abs() <= after.abs());
+        }
+        found
+    })
+}
+
+/// Where the parabola through three equidistant values of which the first two differ in sign
+/// crosses zero, as a share of the first interval.
+fn zero_between([here, next, after]: [f64; 3]) -> f64 {
+    let chord = (here / (here - next)).clamp(0.0, 1.0);
+    // One step of Newton's method on the parabola, from where its chord crosses.
+    let bend = 0.5 * (after - 2.0 * next + here);
+    let slope = next - here + bend * (2.0 * chord - 1.0);
+    let share = chord - bend * chord * (chord - 1.0) / slope;
+    if share.is_finite() {
+        share.clamp(0.0, 1.0)
+    } else {
+        chord
+    }
+}
+
+/// Length of a row of the table: whole vectors.
+fn padded(length: usize) -> usize {
+    length.next_multiple_of(8)
+}
+
+fn halves(sums: &[f64], length: usize) -> [&[f64]; 2] {
+    let (first, second) = sums.split_at(length);
+    [first, second]
+}
+
+/// Adds multiples `(factor, row, sum)` to sums, with the vector instructions there are.
+fn add_multiples(parts: [(f64, &[f64], &mut [f64]); 2]) {
+    pulp::Arch::new().dispatch(|| {
+        for (factor, row, sum) in parts {
+            for (x, r) in sum.iter_mut().zip(row) {
+                *x += factor * r;
+            }
+        }
+    });
 }
 
 #[cfg(test)]

@@ -23,58 +23,55 @@ pub struct CyclicTridiagonal {
     border: BlockFactors,
 }
 
-/// An eliminated block: its pivot, pivot⁻¹ times its coupling to the next block and to the border,
-/// and the rows of the next block and of the border in its columns.
+/// An eliminated block: its pivot, pivot⁻¹ times its coupling to the border and, beside it, to the
+/// next block, and the rows of the next block and of the border in its columns.
 #[derive(Debug, Clone)]
 struct Eliminated {
     pivot: BlockFactors,
-    to_next: Option<Block>,
-    to_border: Block,
-    from_next: Block,
+    to_others: Block,
+    from_next: Option<Block>,
     from_border: Block,
 }
 
 impl CyclicTridiagonal {
     /// Factors the matrix of these block rows.
     #[must_use]
-    pub fn new(rows: &[BlockRow]) -> Self {
-        let Some((last, inner)) = rows.split_last() else { return Self::default() };
+    pub fn new(mut rows: Vec<BlockRow>) -> Self {
+        let Some(last) = rows.pop() else { return Self::default() };
         let size = last.own.rows();
-        let mut border = last.own.clone();
-        let Some(first) = inner.first() else {
+        let mut border = last.own;
+        let mut inner = rows.into_iter();
+        let Some(BlockRow { mut own, lower: mut to_border, mut upper }) = inner.next() else {
             border.add(&last.lower);
             border.add(&last.upper);
             return Self { size, eliminated: Vec::new(), border: BlockFactors::new(border) };
         };
-        // The block at hand, and what couples it to the border in either direction.
-        let (mut own, mut to_border) = (first.own.clone(), first.lower.clone());
-        let mut from_border = last.upper.clone();
-        let mut eliminated = Vec::with_capacity(inner.len());
-        for (index, row) in inner.iter().enumerate() {
-            let next = inner.get(index + 1);
-            if next.is_none() {
-                // Its next block is the border itself.
-                to_border.add(&row.upper);
-                from_border.add(&last.lower);
-            }
+        // What couples the block at hand to the border, in the border's row.
+        let mut from_border = last.upper;
+        let mut eliminated = Vec::with_capacity(inner.len() + 1);
+        for next in inner {
             let pivot = BlockFactors::new(own);
-            pivot.solve(&mut to_border);
-            border.subtract_product(&from_border, &to_border);
-            let Some(next) = next else {
-                let (to_next, from_next) = (None, Block::default());
-                eliminated.push(Eliminated { pivot, to_next, to_border, from_next, from_border });
-                break;
-            };
-            let mut to_next = row.upper.clone();
-            pivot.solve(&mut to_next);
-            own = next.own.clone();
-            own.subtract_product(&next.lower, &to_next);
-            let next_to_border = Block::minus_product(&next.lower, &to_border);
-            let border_from_next = Block::minus_product(&from_border, &to_next);
-            let (to_next, from_next) = (Some(to_next), next.lower.clone());
-            eliminated.push(Eliminated { pivot, to_next, to_border, from_next, from_border });
-            (to_border, from_border) = (next_to_border, border_from_next);
+            let mut to_others = Block::beside(&to_border, &upper);
+            pivot.solve(&mut to_others);
+            let second = to_border.stride();
+            let of_border = Block::minus_product(&from_border, &to_others);
+            let of_next = Block::minus_product(&next.lower, &to_others);
+            border.add_part(&of_border, 0);
+            (own, upper) = (next.own, next.upper);
+            own.add_part(&of_next, second);
+            let from_next = Some(next.lower);
+            eliminated.push(Eliminated { pivot, to_others, from_next, from_border });
+            to_border = of_next.column_part(0..size);
+            from_border = of_border.column_part(second..second + size);
         }
+        // The next block of the last one left is the border itself.
+        to_border.add(&upper);
+        from_border.add(&last.lower);
+        let pivot = BlockFactors::new(own);
+        pivot.solve(&mut to_border);
+        border.subtract_product(&from_border, &to_border);
+        let (to_others, from_next) = (to_border, None);
+        eliminated.push(Eliminated { pivot, to_others, from_next, from_border });
         Self { size, eliminated, border: BlockFactors::new(border) }
     }
 
@@ -86,17 +83,18 @@ impl CyclicTridiagonal {
             let (own, rest) = inner[index * size..].split_at_mut(size);
             part.pivot.solve_vector(own);
             part.from_border.subtract_from(own, border);
-            if part.to_next.is_some() {
-                part.from_next.subtract_from(own, &mut rest[..size]);
+            if let Some(from_next) = &part.from_next {
+                from_next.subtract_from(own, &mut rest[..size]);
             }
         }
         self.border.solve_vector(border);
         for (index, part) in self.eliminated.iter().enumerate().rev() {
             let (own, rest) = inner[index * size..].split_at_mut(size);
-            if let Some(to_next) = &part.to_next {
-                to_next.subtract_from(&rest[..size], own);
+            if part.from_next.is_some() {
+                let second = part.to_others.stride() / 2;
+                part.to_others.subtract_part_from(second, &rest[..size], own);
             }
-            part.to_border.subtract_from(border, own);
+            part.to_others.subtract_from(border, own);
         }
     }
 }
@@ -132,15 +130,16 @@ mod tests {
                     (&row.upper, (i + 1) % count),
                 ];
                 for (part, j) in parts {
-                    for (at, value) in part.values().iter().enumerate() {
-                        dense[(i * size + at / size, j * size + at % size)] += value;
+                    for at in 0..size * size {
+                        let (row, column) = (at / size, at % size);
+                        dense[(i * size + row, j * size + column)] += part[(row, column)];
                     }
                 }
             }
             let right = Mat::from_fn(count * size, 1, |i, _| (1.0 + i as f64).sin());
             let expected = dense.partial_piv_lu().solve(&right);
             let mut found: Vec<f64> = (0..count * size).map(|i| right[(i, 0)]).collect();
-            CyclicTridiagonal::new(&rows).solve(&mut found);
+            CyclicTridiagonal::new(rows).solve(&mut found);
             for (i, found) in found.iter().enumerate() {
                 assert!((expected[(i, 0)] - found).abs() < 1e-12, "{count}");
             }

@@ -3,6 +3,7 @@
 mod broyden;
 mod cyclic_tridiagonal;
 mod homotopy;
+mod kernels;
 mod line_search;
 mod newton;
 mod qr;
@@ -25,7 +26,7 @@ pub trait System {
     /// Residual at `x`; keeps what [`System::solve`] needs.
     fn residual(&mut self, x: &[f64], out: &mut [f64]);
 
-    /// Residual at `x` alone, for methods that do without [`System::solve`].
+    /// Residual at `x` alone; [`System::solve`] goes on with the Jacobian it has.
     fn value(&mut self, x: &[f64], out: &mut [f64]) {
         self.residual(x, out);
     }
@@ -46,7 +47,8 @@ pub trait System {
         false
     }
 
-    /// Solves `J step = rhs` with the Jacobian at the last `x`; `false` if J is singular.
+    /// Solves `J step = rhs` with the Jacobian at the last `x` that [`System::residual`] was called
+    /// with; `false` if J is singular.
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool;
 }
 

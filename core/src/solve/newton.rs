@@ -1,4 +1,5 @@
-//! Newton's method with a line search on the residual norm.
+//! Newton's method with a line search on the residual norm. Its last steps, which are small, share
+//! one Jacobian.
 
 use super::line_search::LineSearch;
 use super::{norm, System};
@@ -45,6 +46,10 @@ pub struct Report {
 /// Shortest step of the line search: below it the direction is no descent direction in practice.
 pub(super) const SHORTEST_STEP: f64 = 1.0 / 256.0;
 
+/// Behind a step this small the Jacobian has hardly changed, and serves for another step: one with
+/// it leaves about this share of the error.
+const SERVES_AGAIN: f64 = 1e-3;
+
 /// Solves `system = 0` from `x`, which holds the best point found on return.
 pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings) -> Report {
     let size = system.size();
@@ -52,6 +57,8 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
     let mut trial = LineSearch::new(size);
     system.residual(x, &mut residual);
     let mut size_of_residual = norm(&residual);
+    // Whether the Jacobian is that at x.
+    let mut fresh = true;
     for iteration in 0..settings.max_iterations {
         let report = |outcome, residual: f64, x: &[f64]| Report {
             outcome,
@@ -70,19 +77,38 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         }
         let relative_step = system.relative_size(&step, x);
         let close = relative_step <= 1e-9;
-        let evaluate = |x: &[f64], out: &mut [f64]| system.residual(x, out);
-        if !trial.along(evaluate, x, &step, size_of_residual, SHORTEST_STEP, close) {
+        let keep = relative_step <= SERVES_AGAIN;
+        let evaluate = |x: &[f64], out: &mut [f64]| {
+            if keep {
+                system.value(x, out);
+            } else {
+                system.residual(x, out);
+            }
+        };
+        let shortest = if fresh { SHORTEST_STEP } else { 1.0 };
+        if !trial.along(evaluate, x, &step, size_of_residual, shortest, close) {
             system.residual(x, &mut residual);
+            if !fresh {
+                fresh = true;
+                continue;
+            }
             return report(Outcome::Stalled, size_of_residual, x);
         }
         // Where Newton's method converges, the error shrinks as the residual does: the error left
         // is the step times the contraction just seen.
-        let left = relative_step * trial.contraction(size_of_residual).min(1.0);
+        let contraction = trial.contraction(size_of_residual);
+        let left = relative_step * contraction.min(1.0);
         x.copy_from_slice(&trial.x);
         std::mem::swap(&mut residual, &mut trial.residual);
         size_of_residual = trial.size;
         if close || (trial.length == 1.0 && left <= settings.tolerance) {
             return report(Outcome::Converged, size_of_residual, x);
+        }
+        fresh = !keep;
+        // Two more steps with the same Jacobian cost less than a new one; three do not.
+        if keep && left * contraction * contraction > settings.tolerance {
+            system.residual(x, &mut residual);
+            fresh = true;
         }
     }
     Report {

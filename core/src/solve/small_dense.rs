@@ -1,11 +1,14 @@
 //! Small dense matrices, the blocks of banded systems: a general library spends more on getting
 //! started and on aligned memory than these blocks take.
 
-/// A small matrix, row by row.
+use super::kernels::{self, padded};
+
+/// A small matrix, row by row, each row padded with zeros to whole vectors.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Block {
     rows: usize,
     columns: usize,
+    stride: usize,
     values: Vec<f64>,
 }
 
@@ -13,7 +16,8 @@ impl Block {
     /// A matrix of zeros.
     #[must_use]
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        Self { rows, columns, values: vec![0.0; rows * columns] }
+        let stride = padded(columns);
+        Self { rows, columns, stride, values: vec![0.0; rows * stride] }
     }
 
     /// The identity.
@@ -24,6 +28,24 @@ impl Block {
             identity[(i, i)] = 1.0;
         }
         identity
+    }
+
+    /// Two matrices of as many rows side by side, padding included.
+    #[must_use]
+    pub(super) fn beside(left: &Self, right: &Self) -> Self {
+        let stride = left.stride + right.stride;
+        let mut values = Vec::with_capacity(left.rows * stride);
+        for i in 0..left.rows {
+            values.extend_from_slice(left.row(i));
+            values.extend_from_slice(right.row(i));
+        }
+        Self { rows: left.rows, columns: stride, stride, values }
+    }
+
+    /// Numbers per row, padding included.
+    #[must_use]
+    pub(super) fn stride(&self) -> usize {
+        self.stride
     }
 
     /// Number of rows.
@@ -38,26 +60,34 @@ impl Block {
         self.columns
     }
 
-    /// Entries row by row.
+    /// A row with its padding.
     #[must_use]
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    pub fn row(&self, i: usize) -> &[f64] {
+        &self.values[i * self.stride..(i + 1) * self.stride]
     }
 
-    /// Whether every entry is zero.
-    #[must_use]
-    pub fn is_zero(&self) -> bool {
-        self.values.iter().all(|value| *value == 0.0)
+    /// A row with its padding, which has to stay zero.
+    pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
+        &mut self.values[i * self.stride..(i + 1) * self.stride]
     }
 
     /// `self −= a b`.
     pub fn subtract_product(&mut self, a: &Self, b: &Self) {
-        subtract_product(&mut self.values, &a.values, &b.values, a.columns, b.columns);
+        let sizes = [a.stride, a.columns, self.stride];
+        kernels::subtract_product(&mut self.values, &a.values, &b.values, sizes);
     }
 
     /// `self += other`.
     pub fn add(&mut self, other: &Self) {
         self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a += b);
+    }
+
+    /// Adds the columns of `other` from `first` on, a whole number of vectors.
+    pub(super) fn add_part(&mut self, other: &Self, first: usize) {
+        let rows = self.values.chunks_exact_mut(self.stride.max(1));
+        for (to, from) in rows.zip(other.values.chunks_exact(other.stride.max(1))) {
+            to.iter_mut().zip(&from[first..]).for_each(|(a, b)| *a += b);
+        }
     }
 
     /// The negative of a product, `−a b`.
@@ -72,29 +102,30 @@ impl Block {
     #[must_use]
     pub fn column_part(&self, range: std::ops::Range<usize>) -> Self {
         let mut part = Self::zeros(self.rows, range.len());
-        if !range.is_empty() {
-            let rows = part.values.chunks_exact_mut(range.len());
-            for (to, from) in rows.zip(self.values.chunks_exact(self.columns)) {
-                to.copy_from_slice(&from[range.clone()]);
-            }
+        for i in 0..self.rows {
+            part.row_mut(i)[..range.len()].copy_from_slice(&self.row(i)[range.clone()]);
         }
         part
     }
 
     /// Adds a matrix to the columns from `first` on.
     pub fn add_columns(&mut self, first: usize, other: &Self) {
-        if other.columns == 0 {
-            return;
-        }
-        let rows = self.values.chunks_exact_mut(self.columns);
-        for (to, from) in rows.zip(other.values.chunks_exact(other.columns)) {
-            to[first..first + other.columns].iter_mut().zip(from).for_each(|(a, b)| *a += b);
+        for i in 0..other.rows {
+            let to = &mut self.row_mut(i)[first..first + other.columns];
+            to.iter_mut().zip(other.row(i)).for_each(|(a, b)| *a += b);
         }
     }
 
     /// `out −= self x`.
     pub fn subtract_from(&self, x: &[f64], out: &mut [f64]) {
-        subtract_product(out, &self.values, x, self.columns, 1);
+        self.subtract_part_from(0, x, out);
+    }
+
+    /// `out −= part x` with the columns from `first` on, as many as x has entries.
+    pub(super) fn subtract_part_from(&self, first: usize, x: &[f64], out: &mut [f64]) {
+        for (row, out) in self.values.chunks_exact(self.stride.max(1)).zip(out) {
+            *out -= dot(&row[first..first + x.len()], x);
+        }
     }
 }
 
@@ -102,115 +133,69 @@ impl std::ops::Index<(usize, usize)> for Block {
     type Output = f64;
 
     fn index(&self, (i, j): (usize, usize)) -> &f64 {
-        &self.values[i * self.columns + j]
+        &self.values[i * self.stride + j]
     }
 }
 
 impl std::ops::IndexMut<(usize, usize)> for Block {
     fn index_mut(&mut self, (i, j): (usize, usize)) -> &mut f64 {
-        &mut self.values[i * self.columns + j]
+        &mut self.values[i * self.stride + j]
     }
 }
 
 /// LU factors of a square block with row pivoting; those of a singular one are not finite.
 #[derive(Debug, Clone, Default)]
 pub struct BlockFactors {
-    lu: Vec<f64>,
+    lu: Block,
     pivots: Vec<usize>,
 }
 
 impl BlockFactors {
     /// Factors a square block.
     #[must_use]
-    pub fn new(block: Block) -> Self {
-        let (size, mut lu) = (block.rows, block.values);
-        let mut pivots = vec![0; size];
-        factorise(&mut lu, size, &mut pivots);
-        Self { lu, pivots }
+    pub fn new(mut block: Block) -> Self {
+        let mut pivots = vec![0; block.rows];
+        kernels::factorise(&mut block.values, block.stride, &mut pivots);
+        Self { lu: block, pivots }
     }
 
     /// Solves in place for all columns of a block.
     pub fn solve(&self, right: &mut Block) {
-        solve(&self.lu, self.pivots.len(), &self.pivots, &mut right.values, right.columns);
+        let stride = right.stride;
+        for (i, &pivot) in self.pivots.iter().enumerate().filter(|(i, p)| i != *p) {
+            let (above, below) = right.values.split_at_mut(pivot * stride);
+            above[i * stride..(i + 1) * stride].swap_with_slice(&mut below[..stride]);
+        }
+        let sizes = [self.lu.stride, self.pivots.len(), stride];
+        kernels::substitute(&self.lu.values, &mut right.values, sizes);
     }
 
     /// Solves in place for one right-hand side.
     pub fn solve_vector(&self, right: &mut [f64]) {
-        solve(&self.lu, self.pivots.len(), &self.pivots, right, 1);
-    }
-}
-
-/// `out −= a b`, with a: m × k and b: k × n.
-fn subtract_product(out: &mut [f64], a: &[f64], b: &[f64], k: usize, n: usize) {
-    if k == 0 || n == 0 {
-        return;
-    }
-    for (out, a) in out.chunks_exact_mut(n).zip(a.chunks_exact(k)) {
-        for (a, b) in a.iter().zip(b.chunks_exact(n)) {
-            if *a != 0.0 {
-                for (out, b) in out.iter_mut().zip(b) {
-                    *out -= a * b;
-                }
-            }
+        for (i, &pivot) in self.pivots.iter().enumerate() {
+            right.swap(i, pivot);
+        }
+        let size = self.pivots.len();
+        for i in 1..size {
+            right[i] -= dot(&self.lu.row(i)[..i], &right[..i]);
+        }
+        for i in (0..size).rev() {
+            let row = self.lu.row(i);
+            let known = dot(&row[i + 1..size], &right[i + 1..size]);
+            right[i] = (right[i] - known) / row[i];
         }
     }
 }
 
-/// LU factors of a square matrix with row pivoting, in place; `pivots[i]` is the row swapped with
-/// row i. A singular matrix gives factors that are not finite.
-fn factorise(a: &mut [f64], size: usize, pivots: &mut [usize]) {
-    for i in 0..size {
-        let pivot = (i..size)
-            .max_by(|&p, &q| a[p * size + i].abs().total_cmp(&a[q * size + i].abs()))
-            .unwrap_or(i);
-        pivots[i] = pivot;
-        if pivot != i {
-            for j in 0..size {
-                a.swap(i * size + j, pivot * size + j);
-            }
-        }
-        let inverse = 1.0 / a[i * size + i];
-        let (above, below) = a.split_at_mut((i + 1) * size);
-        let row = &above[i * size..];
-        for other in below.chunks_exact_mut(size) {
-            let factor = other[i] * inverse;
-            other[i] = factor;
-            if factor != 0.0 {
-                for (x, r) in other[i + 1..].iter_mut().zip(&row[i + 1..]) {
-                    *x -= factor * r;
-                }
-            }
+/// Scalar product in four sums, which need not wait for each other.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (a, b) = (a.chunks_exact(4), b.chunks_exact(4));
+    let left: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in a.zip(b) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
         }
     }
-}
-
-/// Solves with the factors for `columns` right-hand sides, size × columns, in place.
-fn solve(lu: &[f64], size: usize, pivots: &[usize], right: &mut [f64], columns: usize) {
-    for (i, &pivot) in pivots.iter().enumerate() {
-        if pivot != i {
-            for j in 0..columns {
-                right.swap(i * columns + j, pivot * columns + j);
-            }
-        }
-    }
-    for i in 1..size {
-        let (above, below) = right.split_at_mut(i * columns);
-        eliminate(&mut below[..columns], &lu[i * size..i * size + i], above, columns);
-    }
-    for i in (0..size).rev() {
-        let (above, below) = right.split_at_mut((i + 1) * columns);
-        let row = &mut above[i * columns..];
-        eliminate(row, &lu[i * size + i + 1..(i + 1) * size], below, columns);
-        let inverse = 1.0 / lu[i * size + i];
-        row.iter_mut().for_each(|x| *x *= inverse);
-    }
-}
-
-/// `row −= Σ factors_j rows_j`.
-fn eliminate(row: &mut [f64], factors: &[f64], rows: &[f64], columns: usize) {
-    for (factor, other) in factors.iter().zip(rows.chunks_exact(columns)) {
-        for (x, y) in row.iter_mut().zip(other) {
-            *x -= factor * y;
-        }
-    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + left
 }

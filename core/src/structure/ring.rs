@@ -171,8 +171,9 @@ impl Ring {
         for (sector, receptance) in self.sectors.iter().zip(&mut receptances) {
             sector.receptance(harmonic, omega, receptance)?;
         }
-        let links =
-            (0..self.sectors.len()).map(|index| self.link(index, harmonic as f64, omega)).collect();
+        // Couplings are the same all around, contacts between neighbours need not be.
+        let different = if self.layout.between.is_empty() { 1 } else { self.sectors.len() };
+        let links = (0..different).map(|index| self.link(index, harmonic as f64, omega)).collect();
         Ok(RingOrder::new(self.layout.clone(), receptances, links))
     }
 

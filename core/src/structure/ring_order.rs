@@ -10,7 +10,8 @@ use faer::{c64, Mat, MatRef};
 pub struct RingOrder {
     layout: RingLayout,
     receptances: Vec<Receptance>,
-    /// Z_i, which couples sector i to the next one, and its derivative in ω.
+    /// Z_i, which couples sector i to the next one, and its derivative in ω; a single one if all
+    /// are the same.
     links: Vec<[Mat<c64>; 2]>,
     interface: CyclicTridiagonal,
 }
@@ -32,21 +33,21 @@ impl RingOrder {
         receptances: Vec<Receptance>,
         links: Vec<[Mat<c64>; 2]>,
     ) -> Self {
-        let (count, ports, first) = (links.len(), layout.ports(), layout.first_interface());
+        let (count, ports, first) = (receptances.len(), layout.ports(), layout.first_interface());
         let size = layout.interface.len();
         let rows: Vec<BlockRow> = (0..count)
             .map(|i| {
                 let contact = &receptances[i].contact;
                 let own = Mat::from_fn(size, size, |a, b| contact[(first + b) * ports + first + a]);
-                let before = &links[(i + count - 1) % count][0];
+                let before = &links[(i + count - 1) % count % links.len()][0];
                 BlockRow {
                     lower: real((&own * before.transpose()).as_ref()),
                     own: Block::identity(2 * size),
-                    upper: real((&own * &links[i][0]).as_ref()),
+                    upper: real((&own * &links[i % links.len()][0]).as_ref()),
                 }
             })
             .collect();
-        let interface = CyclicTridiagonal::new(&rows);
+        let interface = CyclicTridiagonal::new(rows);
         Self { layout, receptances, links, interface }
     }
 
@@ -71,7 +72,7 @@ impl RingOrder {
     /// Coupling of a sector to the next one on the interface.
     #[must_use]
     pub fn link(&self, index: usize) -> MatRef<'_, c64> {
-        self.links[index][0].as_ref()
+        self.links[index % self.links.len()][0].as_ref()
     }
 
     /// Response to slip loads at the contacts and, if `loaded`, to the external loads.
@@ -94,7 +95,7 @@ impl RingOrder {
             if loaded {
                 port[i * ports..(i + 1) * ports].copy_from_slice(&self.receptances[i].stuck);
             }
-            self.add_product(i, &force[i * ports..(i + 1) * ports], &mut port);
+            self.add_product(i, ports, &force[i * ports..(i + 1) * ports], &mut port);
         }
         self.couple(port, force)
     }
@@ -119,7 +120,7 @@ impl RingOrder {
                     port[range.clone()].iter_mut().zip(stuck).for_each(|(p, s)| *p += s);
                 }
             }
-            self.add_product(i, &change[range], &mut port);
+            self.add_product(i, ports, &change[range], &mut port);
         }
         self.couple(port, change)
     }
@@ -146,9 +147,7 @@ impl RingOrder {
         self.add_coupling(0, &port, &mut coupling);
         // The interface has been solved for; the other ports follow from it.
         for i in 0..count {
-            let kept = port[i * ports + first..(i + 1) * ports].to_vec();
-            self.add_product(i, &coupling[i * ports..(i + 1) * ports], &mut port);
-            port[i * ports + first..(i + 1) * ports].copy_from_slice(&kept);
+            self.add_product(i, first, &coupling[i * ports..(i + 1) * ports], &mut port);
         }
         force.iter_mut().zip(&coupling).for_each(|(f, c)| *f += c);
         let contact = self.contact_displacement(&port);
@@ -176,7 +175,8 @@ impl RingOrder {
         let (first, size) = (self.layout.first_interface(), self.layout.interface.len());
         for i in 0..count {
             let (next, before) = ((i + 1) % count, (i + count - 1) % count);
-            let (ahead, behind) = (&self.links[i][which], &self.links[before][which]);
+            let link = |index: usize| &self.links[index % self.links.len()][which];
+            let (ahead, behind) = (link(i), link(before));
             for a in 0..size {
                 for b in 0..size {
                     force[i * ports + first + a] -= ahead[(a, b)] * port[next * ports + first + b]
@@ -186,15 +186,15 @@ impl RingOrder {
         }
     }
 
-    /// Adds what forces on the ports of a sector move there.
-    fn add_product(&self, sector: usize, force: &[c64], port: &mut [c64]) {
+    /// Adds what forces on the ports of a sector move at the first `rows` of them.
+    fn add_product(&self, sector: usize, rows: usize, force: &[c64], port: &mut [c64]) {
         let ports = self.layout.ports();
         let contact = &self.receptances[sector].contact;
         for (column, f) in force.iter().enumerate() {
             if *f == c64::new(0.0, 0.0) {
                 continue;
             }
-            for row in 0..ports {
+            for row in 0..rows {
                 port[sector * ports + row] += contact[column * ports + row] * f;
             }
         }
