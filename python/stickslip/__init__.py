@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.mistuning_study import mistuning_study
     from stickslip.analyses.optimal_damper import optimal_damper
     from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
     from stickslip.results.damper_curve import DamperCurve
     from stickslip.results.exact_response import ExactResponse
+    from stickslip.results.mistuning import MistuningStudy
     from stickslip.results.optimal_damper import OptimalDamper
     from stickslip.results.status import Status
     from stickslip.results.store import load
@@ -50,6 +52,7 @@ __all__ = [
     "Interrupted",
     "Jenkins",
     "MistunedDisk",
+    "MistuningStudy",
     "ModalDamping",
     "Model",
     "ModelError",
@@ -68,6 +71,7 @@ __all__ = [
     "join",
     "load",
     "mistuning_pattern",
+    "mistuning_study",
     "natural_frequencies",
     "optimal_damper",
     "plot",
@@ -89,6 +93,7 @@ _HOMES = {
     "Interface": "disk",
     "Jenkins": "model",
     "MistunedDisk": "disk",
+    "MistuningStudy": "results.mistuning",
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",
@@ -107,6 +112,7 @@ _HOMES = {
     "join": "model",
     "load": "results.store",
     "mistuning_pattern": "disk",
+    "mistuning_study": "analyses.mistuning_study",
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",

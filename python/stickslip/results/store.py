@@ -29,6 +29,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "transient": ("stickslip.results.transient", "Transient"),
     "damper_curve": ("stickslip.results.damper_curve", "DamperCurve"),
     "optimal_damper": ("stickslip.results.optimal_damper", "OptimalDamper"),
+    "mistuning_study": ("stickslip.results.mistuning", "MistuningStudy"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 
@@ -81,7 +82,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    ForcedResponse, ExactResponse, Transient, DamperCurve or OptimalDamper
+    ForcedResponse, ExactResponse, Transient, DamperCurve, OptimalDamper or MistuningStudy
         Of the kind that was saved and equal to it, bit by bit, with its model: peaks can still be
         refined, and runs continued.
 
