@@ -86,7 +86,8 @@ def _truncation(arrays: MistuningArrays, dofs: tuple[str, ...]) -> str:
     if not known.any():
         return ""
     share = np.where(known, arrays.error_estimate / arrays.amplitude, 0.0)
-    share = share + arrays.tuned_error_estimate / arrays.tuned_amplitude
+    tuned = arrays.tuned_error_estimate / arrays.tuned_amplitude
+    share = share + tuned[np.newaxis, :, np.newaxis, :]
     worst = np.unravel_index(share.argmax(), share.shape)
     if not share[worst] > LARGE_ERROR:
         return ""

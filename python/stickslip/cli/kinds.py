@@ -21,6 +21,7 @@ MODULES: Mapping[str, str] = {
     "transient": "stickslip.cli.transients",
     "damper_curve": "stickslip.cli.dampers",
     "optimal_damper": "stickslip.cli.optima",
+    "mistuning_study": "stickslip.cli.mistuning",
 }
 """The module of every kind of result; results of one module are drawn together."""
 
