@@ -8,7 +8,7 @@ use super::summit::{summits, Quest, Summits};
 use crate::balance::Settings;
 use crate::Error;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{channel, RecvTimeoutError};
+use std::sync::mpsc::{sync_channel, RecvTimeoutError};
 use std::time::Duration;
 
 /// Time between two questions whether to go on.
@@ -46,8 +46,11 @@ pub fn study(
         .build()
         .map_err(|error| Error::shape("threads", "as many as the system grants", error))?;
     let stop = AtomicBool::new(false);
-    let (sender, receiver) = channel();
+    // Nothing is kept between a thread and `deliver`: what a thread has found is in flight.
+    let (sender, receiver) = sync_channel(0);
     pool.in_place_scope_fifo(|scope| {
+        // Dropped with this closure, so that no thread waits for a listener that has gone.
+        let receiver = receiver;
         for (index, pattern) in patterns.iter().enumerate() {
             let (sender, stop) = (sender.clone(), &stop);
             scope.spawn_fifo(move |_| {
