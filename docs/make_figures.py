@@ -228,6 +228,25 @@ def amplification(folder: Path = ASSETS) -> Path:
     return file
 
 
+def mistuning(folder: Path = ASSETS) -> Path:
+    """Draw the amplification factors of many rings: their distribution, and what moves it."""
+    options = {"omega": (140.0, 290.0), "seed": 1, "harmonics": 3, "dofs": "damper"}
+    ring = ss.reference.beam_ring(coupling=7e3, engine_order=3)
+    many = ss.mistuning_study(ring, 0.07, patterns=1000, distribution="uniform", **options)
+    moved = ss.mistuning_study(
+        ring,
+        [0.005, 0.01, 0.02, 0.04, 0.07],
+        coupling_stiffness=[3e3, 1.2e4],
+        patterns=100,
+        **options,
+    )
+    figure = Figure(figsize=(11.0, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    plot.distribution(many, "damper", ax=left)
+    plot.amplification(moved, "damper", "deviation", ax=right)
+    return _save(figure, folder / "mistuning.png")
+
+
 def _errors(
     model: ss.Model, exact: ss.ForcedResponse, harmonics: int | Literal["auto"]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -262,3 +281,4 @@ if __name__ == "__main__":
     print(certificate())
     print(bladed_disks())
     print(amplification())
+    print(mistuning())

@@ -32,7 +32,9 @@ def patterns_of(
         raise ModelError(f"patterns: {brief(patterns)}; give their number, or an array of them")
     rows = np.array(np.atleast_2d(given), dtype=np.float64)
     if rows.shape[1] != sectors:
-        raise ModelError(f"patterns: shape {given.shape} for {sectors} sectors; give (p, {sectors})")
+        raise ModelError(
+            f"patterns: shape {given.shape} for {sectors} sectors; give (p, {sectors})"
+        )
     bad = np.argwhere(~np.isfinite(rows))
     if bad.size:
         place = ", ".join(map(str, bad[0]))
@@ -48,7 +50,7 @@ def require_stiff(deviations: Float, patterns: Float) -> None:
     pattern, blade = (int(at) for at in np.unravel_index(patterns.argmin(), patterns.shape))
     raise ModelError(
         f"deviation: {largest:g} leaves blade {blade} of pattern {pattern} the stiffness "
-        f"{1.0 + largest * least:.3g} K; give a smaller one, or distribution=\"uniform\""
+        f'{1.0 + largest * least:.3g} K; give a smaller one, or distribution="uniform"'
     )
 
 

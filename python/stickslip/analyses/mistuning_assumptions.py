@@ -8,7 +8,7 @@ import numpy as np
 
 from stickslip.analyses.assumptions import LARGE_ERROR
 from stickslip.analyses.mistuning_settings import MistuningSettings
-from stickslip.results.mistuning import MistuningArrays
+from stickslip.results.mistuning_arrays import MistuningArrays
 from stickslip.results.status import Status
 
 __all__ = ["mistuning_assumptions"]
@@ -61,9 +61,9 @@ def _range(settings: MistuningSettings, arrays: MistuningArrays) -> str:
     if not at_edge and not tuned:
         return f"{where}."
     return (
-        f"{where}; {at_edge} of {arrays.at_edge.size} and {tuned} of {arrays.tuned_at_edge.size} of "
-        "the tuned disk lie at an end of this range, and the response may be higher outside: widen "
-        "omega."
+        f"{where}; {at_edge} of {arrays.at_edge.size}, and of the tuned disk {tuned} of "
+        f"{arrays.tuned_at_edge.size}, lie at an end of this range, and the response may be higher "
+        "outside: widen omega."
     )
 
 

@@ -35,7 +35,9 @@ class Series(NamedTuple):
     """Peaks of the tuned disk, one per degree of freedom."""
 
 
-def tuned_peaks(disk: BladedDisk, settings: MistuningSettings, dofs: Sequence[str]) -> tuple[Row, ...]:
+def tuned_peaks(
+    disk: BladedDisk, settings: MistuningSettings, dofs: Sequence[str]
+) -> tuple[Row, ...]:
     """Return the peaks of the tuned disk, by one sector if its motion is one wave."""
     from stickslip import _core
 
@@ -56,8 +58,8 @@ def tuned_peaks(disk: BladedDisk, settings: MistuningSettings, dofs: Sequence[st
         status = Status.from_code(row.status)
         if not status.solved:
             raise ModelError(
-                f"dof {dof!r}: the peak of the tuned disk was not found ({status}), and nothing can "
-                f"be compared with it. {status.advice}"
+                f"dof {dof!r}: the peak of the tuned disk was not found ({status}), and "
+                f"nothing can be compared with it. {status.advice}"
             )
         if row.amplitude == 0.0:
             raise ModelError(f"dof {dof!r}: it does not move; give the disk forces that reach it")

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.analyses.arguments import Progress
 from stickslip.analyses.mistuning_assumptions import mistuning_assumptions
@@ -16,7 +18,8 @@ from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
-from stickslip.results.mistuning import MistuningArrays, MistuningStudy
+from stickslip.results.mistuning import MistuningStudy
+from stickslip.results.mistuning_arrays import MistuningArrays
 from stickslip.results.status import Status
 
 __all__ = ["Work"]
@@ -44,7 +47,7 @@ class Work:
         self.known = np.zeros(shape, dtype=bool)
         missing = Row(np.nan, np.nan, -1, Status.NOT_COMPUTED.code, 0, np.nan, at_edge=False)
         kinds = {"blade": np.int64, "status": np.uint8, "harmonics": np.int64, "at_edge": np.bool_}
-        self.arrays = {
+        self.arrays: dict[str, NDArray[Any]] = {
             name: np.full((*shape, len(dofs)), value, dtype=kinds.get(name, np.float64))
             for name, value in missing._asdict().items()
         }
@@ -83,7 +86,7 @@ class Work:
             return True
         report = _reporter(progress)
 
-        def deliver(index: int, found: list[Row], points: int) -> None:
+        def deliver(index: int, found: list[_core.Summit], points: int) -> None:
             d, c, p = (int(at) for at in missing[index])
             rows = [Row(*row) for row in found]
             if store is not None:
@@ -114,7 +117,9 @@ class Work:
     def result(self, seconds: float, *, interrupted: bool) -> MistuningStudy:
         """Return what is there."""
         tuned = {
-            f"tuned_{name}": np.array([[getattr(row, name) for row in s.tuned] for s in self.series])
+            f"tuned_{name}": np.array(
+                [[getattr(row, name) for row in s.tuned] for s in self.series]
+            )
             for name in ("omega", "amplitude", "harmonics", "error_estimate", "at_edge")
         }
         arrays = MistuningArrays(

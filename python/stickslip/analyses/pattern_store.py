@@ -91,9 +91,7 @@ class PatternStore:
         if self.path.is_dir():
             raise ModelError(f"{self.path}: is a folder; give the name of a file in it")
         if not self.path.parent.is_dir():
-            raise ModelError(
-                f"{self.path}: there is no folder {self.path.parent}; create it first"
-            )
+            raise ModelError(f"{self.path}: there is no folder {self.path.parent}; create it first")
         with self._named():
             self._base = sqlite3.connect(self.path, isolation_level=None, timeout=30.0)
         try:
@@ -183,8 +181,8 @@ class PatternStore:
             for name in names
         ]
         raise ModelError(
-            f"{self.path}: holds another study ({', '.join(told)}); give another store, or run "
-            "the same study"
+            f"{self.path}: holds another study ({', '.join(told)}); give another store, "
+            "remove it, or run the same study"
         )
 
     @contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, TypedDict
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from stickslip.checks import brief, choice, real_number
 from stickslip.errors import ModelError
@@ -197,7 +198,9 @@ def _trend(
     ]
     value, low, high = np.array(ends, dtype=np.float64).T
     if np.isfinite(value).any():
-        ax.plot(below, value, marker="^", ms=4, lw=1.2, ls="--", color=colour, label=f"{q:g} %{name}")
+        ax.plot(
+            below, value, marker="^", ms=4, lw=1.2, ls="--", color=colour, label=f"{q:g} %{name}"
+        )
         # An open end is drawn to the point itself.
         bars = [value - np.where(np.isfinite(low), low, value)]
         bars.append(np.where(np.isfinite(high), high, value) - value)
@@ -216,12 +219,13 @@ def _mark(ax: Axes, found: tuple[float, float, float], q: float, confidence: flo
     bars = np.array([[value - low], [high - value]])
     shown = np.where(np.isfinite(bars), bars, 0.0)
     label = f"{q:g} %: {value:.4g} ({low:.4g} to {high:.4g}, {confidence:.0%})"
-    ax.errorbar([value], height, xerr=shown, fmt="D", ms=5, mfc="white", color="0.2", capsize=3,
-                label=label)
+    ax.errorbar(
+        [value], height, xerr=shown, fmt="D", ms=5, mfc="white", color="0.2", capsize=3, label=label
+    )
 
 
-def _height(probability: Float) -> Float:
-    return np.asarray(-np.log(-np.log(probability)), dtype=np.float64)
+def _height(probability: ArrayLike) -> Float:
+    return np.asarray(-np.log(-np.log(np.asarray(probability))), dtype=np.float64)
 
 
 def _study(result: object) -> MistuningStudy:

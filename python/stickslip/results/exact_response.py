@@ -271,7 +271,7 @@ class ExactResponse(ForcedResponse):
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
         tops = np.nanmax([self.amplitude(dof, measure) for dof in dofs], axis=1)
         rivals = np.flatnonzero(tops >= RIVAL * tops.max())
-        peaks = {int(at): self.peak(dofs[at], measure) for at in rivals}
+        peaks = {at: self.peak(dofs[at], measure) for at in rivals.tolist()}
         return max(peaks.items(), key=lambda one: one[1].amplitude)
 
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
@@ -13,11 +12,11 @@ from numpy.typing import NDArray
 from stickslip.checks import choice, real_number, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.arrays import Bool, Float, Int, constant
+from stickslip.results.arrays import Float, Int, constant
+from stickslip.results.mistuning_arrays import ALL, VARIABLES, MistuningArrays
 from stickslip.results.result import Result
 from stickslip.results.status import Status
 from stickslip.results.variables import (
-    Variable,
     attributes,
     coordinate,
     dof_coordinate,
@@ -37,89 +36,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.mistuning_settings import MistuningSettings
     from stickslip.plot.mistuning import DistributionOptions, TrendOptions
 
-__all__ = ["MistuningArrays", "MistuningStudy"]
-
-
-@dataclass(frozen=True, eq=False)
-class MistuningArrays:
-    """The numbers of a study of d deviations, c couplings, p patterns and q degrees of freedom."""
-
-    deviation: Float
-    """(d,) Standard deviation of the sectors' stiffness."""
-    coupling: Float
-    """(c,) Stiffness of the couplings [N/m]; not-a-number: several, or none."""
-    patterns: Float
-    """(p, n) Deviations of the sectors in units of the standard deviation."""
-    omega: Float
-    """(d, c, p, q) Angular frequency of the highest peak of all blades [rad/s]."""
-    amplitude: Float
-    """(d, c, p, q) Its amplitude [m]."""
-    blade: Int
-    """(d, c, p, q) Its blade, counted from 0; -1 if it was not found."""
-    status: NDArray[np.uint8]
-    """(d, c, p, q) Codes of `Status`."""
-    harmonics: Int
-    """(d, c, p, q) Highest harmonic kept."""
-    error_estimate: Float
-    """(d, c, p, q) What the discarded harmonics could still change in the amplitude [m]."""
-    at_edge: Bool
-    """(d, c, p, q) Whether the peak lies at an end of the range of frequencies."""
-    tuned_omega: Float
-    """(c, q) Angular frequency of the peak of the tuned disk [rad/s]."""
-    tuned_amplitude: Float
-    """(c, q) Its amplitude [m]."""
-    tuned_harmonics: Int
-    """(c, q) Highest harmonic kept."""
-    tuned_error_estimate: Float
-    """(c, q) What the discarded harmonics could still change in it [m]."""
-    tuned_at_edge: Bool
-    """(c, q) Whether it lies at an end of the range of frequencies."""
-
-    def __post_init__(self) -> None:
-        for entry in fields(self):
-            array = np.ascontiguousarray(getattr(self, entry.name))
-            object.__setattr__(self, entry.name, constant(array))
-
-    def __reduce__(self) -> tuple[type[MistuningArrays], tuple[object, ...]]:
-        # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        return MistuningArrays, tuple(getattr(self, entry.name) for entry in fields(self))
-
-    @cached_property
-    def solved(self) -> Bool:
-        """(d, c, p, q) Whether the peak was found."""
-        return constant(np.isfinite(self.amplitude))
-
-    @cached_property
-    def amplification(self) -> Float:
-        """(d, c, p, q) Amplification factor; not-a-number if the peak was not found."""
-        return constant(self.amplitude / self.tuned_amplitude[np.newaxis, :, np.newaxis, :])
-
-
-_ALL = ("deviation", "coupling_stiffness", "pattern", "dof")
-_TUNED = ("coupling_stiffness", "dof")
-_VARIABLES: Mapping[str, Variable] = {
-    "patterns": Variable("patterns", ("pattern", "sector"), "1", "deviation in units of S"),
-    "omega": Variable("omega", _ALL, "rad/s", "angular frequency of the highest peak"),
-    "amplitude": Variable("amplitude", _ALL, "m", "amplitude of the highest peak"),
-    "blade": Variable("blade", _ALL, "1", "blade of the highest peak, -1: not found"),
-    "status": Variable("status", _ALL, "1", "how the search ended"),
-    "harmonics_kept": Variable("harmonics", _ALL, "1", "highest harmonic kept"),
-    "error_estimate": Variable(
-        "error_estimate", _ALL, "m", "what the discarded harmonics could still change"
-    ),
-    "at_edge": Variable("at_edge", _ALL, "1", "whether the peak lies at an end of the range"),
-    "tuned_omega": Variable("tuned_omega", _TUNED, "rad/s", "frequency of the tuned peak"),
-    "tuned_amplitude": Variable("tuned_amplitude", _TUNED, "m", "amplitude of the tuned peak"),
-    "tuned_harmonics_kept": Variable(
-        "tuned_harmonics", _TUNED, "1", "highest harmonic kept, of the tuned peak"
-    ),
-    "tuned_error_estimate": Variable(
-        "tuned_error_estimate", _TUNED, "m", "what the discarded harmonics could still change"
-    ),
-    "tuned_at_edge": Variable(
-        "tuned_at_edge", _TUNED, "1", "whether the tuned peak lies at an end of the range"
-    ),
-}
+__all__ = ["MistuningStudy"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -353,7 +270,7 @@ class MistuningStudy(Result):
         stiffness = {"units": "N/m", "long_name": "stiffness of the couplings"}
         numbers = {"units": "1", "long_name": "number of the pattern"}
         dataset = xr.Dataset(
-            written(_VARIABLES, arrays),
+            written(VARIABLES, arrays),
             coords={
                 "deviation": ("deviation", arrays.deviation.copy(), meaning),
                 "coupling_stiffness": ("coupling_stiffness", arrays.coupling.copy(), stiffness),
@@ -364,7 +281,7 @@ class MistuningStudy(Result):
         )
         if derived:
             said = {"units": "1", "long_name": "amplification factor"}
-            dataset["amplification"] = (_ALL, arrays.amplification.copy(), said)
+            dataset["amplification"] = (ALL, arrays.amplification.copy(), said)
         return dataset
 
     @classmethod
@@ -394,7 +311,7 @@ class MistuningStudy(Result):
         arrays = MistuningArrays(
             deviation=coordinate(dataset, "deviation"),
             coupling=coordinate(dataset, "coupling_stiffness"),
-            **read(_VARIABLES, dataset),
+            **read(VARIABLES, dataset),
         )
         if arrays.status.max(initial=0) >= len(Status):
             raise ValueError(f"status {arrays.status.max()} is unknown")

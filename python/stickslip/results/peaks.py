@@ -109,9 +109,7 @@ def highest(result: ForcedResponse, dof: str, measure: Measure, refine: Refine) 
     return Peak(*peak, at_edge, beside_gap)
 
 
-def highest_of(
-    result: ForcedResponse, dofs: Sequence[str], measure: Measure
-) -> tuple[int, Peak]:
+def highest_of(result: ForcedResponse, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
     """Return which of some degrees of freedom has the highest peak, and the peak.
 
     All of them are followed together, by harmonic balance over the range of the computed points.

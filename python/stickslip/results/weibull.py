@@ -205,8 +205,7 @@ def fit_weibull(factors: ArrayLike, confidence: float = 0.95) -> WeibullFit:
     data = data[np.isfinite(data)]
     if data.size < FEWEST:
         raise ModelError(
-            f"weibull: {data.size} factors for three parameters; compute at least {FEWEST} "
-            "patterns"
+            f"weibull: {data.size} factors for three parameters; compute at least {FEWEST} patterns"
         )
     if data[-1] - data[0] <= _NEGLIGIBLE * abs(data[-1]):
         raise ModelError(

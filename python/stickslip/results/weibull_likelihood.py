@@ -52,8 +52,12 @@ def _least(data: Float, trial: _Trial, start: NDArray[np.float64]) -> tuple[floa
         return _surprise(data, *trial(at))
 
     step = np.vstack([start, *(start + 0.1 * row for row in np.eye(start.size))])
-    settings = {"xatol": 1e-6, "fatol": 1e-8, "maxiter": 2000, "initial_simplex": step}
-    found = minimize(surprise, start, method="Nelder-Mead", options=settings)
+    found = minimize(
+        surprise,
+        start,
+        method="Nelder-Mead",
+        options={"xatol": 1e-6, "fatol": 1e-8, "maxiter": 2000, "initial_simplex": step},
+    )
     return float(found.fun), np.asarray(found.x)
 
 
@@ -127,9 +131,7 @@ def _allowed(data: Float, best: tuple[float, float, float], confidence: float) -
     return _surprise(data, *_median_form(best)) + 0.5 * float(chi2.ppf(confidence, 1))
 
 
-def excess_at_no_limit(
-    data: Float, best: tuple[float, float, float], confidence: float
-) -> float:
+def excess_at_no_limit(data: Float, best: tuple[float, float, float], confidence: float) -> float:
     """Return by how much the largest shape is significantly worse than the best."""
     m, d, _ = _median_form(best)
     spread, k = float(data.std()), 1.0 / _SHAPES[1]

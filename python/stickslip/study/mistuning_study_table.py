@@ -139,9 +139,7 @@ class MistuningStudyTable(Table):
         """The DOFs that each key names."""
         return {"dofs": self.dofs or ()}
 
-    def run(
-        self, model: Model, progress: Callable[[float], None] | None
-    ) -> MistuningStudy:
+    def run(self, model: Model, progress: Callable[[float], None] | None) -> MistuningStudy:
         """Compute the study, but for what its store holds."""
         return mistuning_study(
             model,  # type: ignore[arg-type]
