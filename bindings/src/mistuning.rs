@@ -53,11 +53,7 @@ impl TunedDisk {
     }
 
     /// The ring whose sectors' stiffnesses deviate.
-    fn mistuned(
-        &self,
-        py: Python<'_>,
-        deviations: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<Problem> {
+    fn mistuned(&self, py: Python<'_>, deviations: PyReadonlyArray1<'_, f64>) -> PyResult<Problem> {
         let deviations = deviations.as_array().to_vec();
         let model = py.detach(|| self.disk.mistuned(&deviations)).map_err(refused)?;
         Ok(Problem { model: Arc::new(model) })
@@ -136,17 +132,15 @@ pub fn mistuning_study(
     deliver: Py<PyAny>,
 ) -> PyResult<bool> {
     let (quest, settings) = quest.parse()?;
-    let disks: Vec<Arc<design::TunedDisk>> = disks.iter().map(|one| Arc::clone(&one.disk)).collect();
+    let disks: Vec<Arc<design::TunedDisk>> =
+        disks.iter().map(|one| Arc::clone(&one.disk)).collect();
     let rows: Vec<Vec<f64>> =
         deviations.as_array().outer_iter().map(|row| row.iter().copied().collect()).collect();
     let orders: Vec<Option<usize>> = orders.into_iter().map(Some).collect();
     let (result, raised) = py.detach(|| {
         let disks: Vec<&design::TunedDisk> = disks.iter().map(AsRef::as_ref).collect();
-        let patterns: Vec<Pattern<'_>> = rows
-            .iter()
-            .zip(which)
-            .map(|(deviations, disk)| Pattern { disk, deviations })
-            .collect();
+        let patterns: Vec<Pattern<'_>> =
+            rows.iter().zip(which).map(|(deviations, disk)| Pattern { disk, deviations }).collect();
         let raised = RefCell::new(None);
         let ask = |question: &dyn Fn(Python<'_>) -> PyResult<()>| match Python::attach(question) {
             Ok(()) => true,
@@ -160,16 +154,8 @@ pub fn mistuning_study(
             ask(&|py| deliver.call1(py, (index, rows.clone(), found.points)).map(drop))
         };
         let mut wait = || ask(&|py| py.check_signals());
-        let result = study(
-            &disks,
-            &patterns,
-            settings,
-            &quest,
-            &orders,
-            threads,
-            &mut hand_over,
-            &mut wait,
-        );
+        let result =
+            study(&disks, &patterns, settings, &quest, &orders, threads, &mut hand_over, &mut wait);
         (result, Raised::from(raised.into_inner()))
     });
     let complete = raised.is_empty();

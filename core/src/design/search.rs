@@ -193,7 +193,10 @@ impl<'a, 'b> Search<'a, 'b> {
         let (low, high) = self.aim.span;
         let least = self.height(group) * (1.0 + DOUBT);
         let ends = first.at > low * (1.0 + 2.0 * ASIDE) || last.at < high;
-        ends || self.gaps.iter().any(|gap| (gap.closed || unfinished) && gap.promises[group].1 > least)
+        ends || self
+            .gaps
+            .iter()
+            .any(|gap| (gap.closed || unfinished) && gap.promises[group].1 > least)
     }
 
     /// An interval between two samples, with what it promises.
