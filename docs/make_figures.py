@@ -230,15 +230,26 @@ def amplification(folder: Path = ASSETS) -> Path:
 
 def mistuning(folder: Path = ASSETS) -> Path:
     """Draw the amplification factors of many rings: their distribution, and what moves it."""
-    options = {"omega": (140.0, 290.0), "seed": 1, "harmonics": 3, "dofs": "damper"}
     ring = ss.reference.beam_ring(coupling=7e3, engine_order=3)
-    many = ss.mistuning_study(ring, 0.07, patterns=1000, distribution="uniform", **options)
+    many = ss.mistuning_study(
+        ring,
+        0.07,
+        patterns=1000,
+        distribution="uniform",
+        seed=1,
+        omega=(140.0, 290.0),
+        harmonics=3,
+        dofs="damper",
+    )
     moved = ss.mistuning_study(
         ring,
-        [0.005, 0.01, 0.02, 0.04, 0.07],
+        [0.01, 0.02, 0.04, 0.07],
         coupling_stiffness=[3e3, 1.2e4],
-        patterns=100,
-        **options,
+        patterns=120,
+        seed=1,
+        omega=(140.0, 280.0),
+        harmonics=3,
+        dofs="damper",
     )
     figure = Figure(figsize=(11.0, 4.2), layout="constrained")
     left, right = figure.subplots(1, 2)
