@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip import _core
@@ -182,6 +183,31 @@ def test_files_and_pickles(small, tmp_path):
     dataset = small.to_dataset()
     assert dataset["amplification"].dims == ("deviation", "coupling_stiffness", "pattern", "dof")
     assert np.array_equal(dataset["amplification"][..., 0], small.amplification("tip"))
+
+
+def test_figures(small):
+    figure = Figure()
+    above, below, aside = figure.subplots(3, 1)
+    small.plot_distribution("tip", deviation=0.05, coupling=3e3, ax=above)
+    disks, fit = above.lines[:2]
+    assert disks.get_xdata() == pytest.approx(
+        np.sort(small.factors("tip", deviation=0.05, coupling=3e3))
+    )
+    found = small.weibull("tip", deviation=0.05, coupling=3e3)
+    x, y = fit.get_data()
+    assert np.exp(-np.exp(-y)) == pytest.approx(found.cdf(x), abs=1e-9)
+    labels = above.get_legend_handles_labels()[1]
+    high = small.percentile("tip", 99.9, deviation=0.05, coupling=3e3)
+    assert f"99.9 %: {high.value:.4g} ({high.low:.4g} to {high.high:.4g}, 95%)" in labels
+    small.plot_deviation("tip", ax=below)
+    mean = small.amplification("tip").mean(axis=-1)
+    assert below.lines[0].get_ydata() == pytest.approx(mean[:, 0])
+    small.plot_coupling("tip", ax=aside)
+    assert aside.lines[0].get_ydata() == pytest.approx(mean[0])
+    assert aside.get_xscale() == "log"
+    few = study(patterns=3)
+    few.plot_distribution("tip", ax=figure.add_subplot())
+    assert "3 disks: no fit, 3 factors for" in figure.axes[-1].get_title()
 
 
 def test_a_peak_that_cannot_be_found_says_why():
