@@ -101,6 +101,19 @@ def test_no_peak_is_missed(disk, deviation):
             assert result.omega(dof)[0, 0, number] == pytest.approx(grid[highest[0]], abs=0.11)
 
 
+def test_blades_without_couplings_are_each_for_themselves():
+    disk, pattern = ring(4), np.array([1.0, -1.0, 0.3, 0.0])
+    result = study(disk, 0.05, patterns=pattern, coupling_stiffness=[0.0], dofs="damper")
+    beam, peaks = disk.structure, []
+    for factor in 1.0 + 0.05 * pattern:
+        blade = ss.Structure(beam.mass, factor * beam.stiffness, beam.damping_law, beam.dofs)
+        model = ss.Model(blade, disk.contacts, disk.forces)
+        peaks.append(ss.forced_response(model, np.linspace(*SPAN, 56), 3).peak("damper").amplitude)
+    assert result.blade("damper").item() == np.argmax(peaks)
+    assert result.amplitude("damper").item() == pytest.approx(max(peaks), rel=1e-7)
+    assert result.tuned("damper").item() == pytest.approx(peaks[3], rel=1e-7)
+
+
 def test_the_tuned_peak_and_no_deviation():
     disk = ring()
     result = study(disk, 0.0, patterns=1)

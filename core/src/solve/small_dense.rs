@@ -186,6 +186,10 @@ fn factorise(a: &mut [f64], size: usize, pivots: &mut [usize]) {
 
 /// Solves with the factors for `columns` right-hand sides, size × columns, in place.
 fn solve(lu: &[f64], size: usize, pivots: &[usize], right: &mut [f64], columns: usize) {
+    // A sector without neighbours has nothing to solve for.
+    if columns == 0 {
+        return;
+    }
     for (i, &pivot) in pivots.iter().enumerate() {
         if pivot != i {
             for j in 0..columns {
