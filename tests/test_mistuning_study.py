@@ -275,6 +275,7 @@ def test_progress_and_what_a_callback_raises():
         ({"deviation": "7 %"}, "deviation: '7 %'; give 0.05 for 5 %"),
         ({"deviation": 0.9}, "deviation: 0.9 leaves blade . of pattern . the stiffness -"),
         ({"patterns": 0}, "patterns: 0 lies below 1"),
+        ({"patterns": True}, "patterns: True is not an integer"),
         ({"patterns": np.zeros((2, 5))}, r"patterns: shape \(2, 5\) for 6 sectors; give \(p, 6\)"),
         ({"patterns": [[np.nan] * 6]}, r"patterns\[0, 0\] is nan; give finite numbers"),
         ({"patterns": "many"}, "patterns: 'many'; give their number"),

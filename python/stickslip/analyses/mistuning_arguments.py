@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.checks import brief, text, unknown
+from stickslip.checks import brief, text, unknown, whole_number
 from stickslip.disk.arguments import NEXT
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.pattern import Distribution, drawn_patterns
@@ -23,7 +23,8 @@ def patterns_of(
 ) -> tuple[Float, bool]:
     """Return the patterns, and whether they were drawn."""
     if isinstance(patterns, int | np.integer):
-        return drawn_patterns(sectors, int(patterns), distribution, seed=seed), True
+        count = whole_number(patterns, "patterns", smallest=1)
+        return drawn_patterns(sectors, count, distribution, seed=seed), True
     try:
         given = np.asarray(patterns)
     except ValueError:
