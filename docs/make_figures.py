@@ -269,6 +269,36 @@ def amplification(folder: Path = ASSETS) -> Path:
     return file
 
 
+def mistuning(folder: Path = ASSETS) -> Path:
+    """Draw the amplification factors of many rings: their distribution, and what moves it."""
+    ring = ss.reference.beam_ring(coupling=7e3, engine_order=3)
+    many = ss.mistuning_study(
+        ring,
+        0.07,
+        patterns=1000,
+        distribution="uniform",
+        seed=1,
+        omega=(140.0, 290.0),
+        harmonics=3,
+        dofs="damper",
+    )
+    moved = ss.mistuning_study(
+        ring,
+        [0.01, 0.02, 0.04, 0.07],
+        coupling_stiffness=[3e3, 1.2e4],
+        patterns=120,
+        seed=1,
+        omega=(140.0, 280.0),
+        harmonics=3,
+        dofs="damper",
+    )
+    figure = Figure(figsize=(11.0, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    plot.distribution(many, "damper", ax=left)
+    plot.amplification(moved, "damper", "deviation", ax=right)
+    return _save(figure, folder / "mistuning.png")
+
+
 def _errors(
     model: ss.Model, exact: ss.ForcedResponse, harmonics: int | Literal["auto"]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -305,3 +335,4 @@ if __name__ == "__main__":
     print(bladed_disks())
     print(ring_histories())
     print(amplification())
+    print(mistuning())

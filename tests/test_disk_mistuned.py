@@ -145,6 +145,22 @@ def test_amplitudes_of_all_blades_side_by_side(mistuned, tuned):
     assert mistuned.amplification(tuned, "damper").blade == 13
 
 
+def test_the_highest_blade_is_the_highest_of_all_refined_peaks(mistuned):
+    blade, peak = mistuned.highest_blade("damper")
+    tops = mistuned.blade_amplitudes("damper").max(axis=0)
+    rivals = np.flatnonzero(tops > 0.98 * tops.max())
+    refined = {int(one): mistuned.peak(f"{one}.damper") for one in rivals}
+    best = max(refined, key=lambda one: refined[one].amplitude)
+    assert blade == best
+    assert peak.amplitude == pytest.approx(refined[best].amplitude, rel=1e-7)
+    assert peak.omega == pytest.approx(refined[best].omega, rel=1e-4)
+    # At a single frequency there is nothing between the points.
+    lone = ss.forced_response(mistuned.model, [193.0], 3, observe=mistuned.dofs)
+    blade, peak = lone.highest_blade("damper")
+    assert peak.amplitude == lone.blade_amplitudes("damper").max()
+    assert peak.at_edge
+
+
 def test_some_blades_only():
     frf = ss.forced_response(
         small().mistuned(0.0), [200.0], 3, observe=["4.tip", "1.tip", "0.mode"]

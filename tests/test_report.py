@@ -89,6 +89,9 @@ def results():
         "optimum": ss.optimal_damper(BEAM, dof="tip", bounds=(50.0, 1e3)),
         "tuned": ss.forced_response(disk, grid, 3),
         "mistuned": ss.forced_response(mistuned, grid[::4], 3),
+        "patterns": ss.mistuning_study(
+            disk, 0.05, patterns=12, omega=(180.0, 230.0), dofs=["damper"], harmonics=1
+        ),
         "settled": ss.classify(FLUTTER, {"mass": 5e-5}),
         "starts": ss.basin_map(FLUTTER, {"mass": [1e-5, 1e-4]}),
     }

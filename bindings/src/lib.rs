@@ -3,6 +3,7 @@
 mod arrays;
 mod design;
 mod fates;
+mod mistuning;
 mod orbits;
 mod problem;
 mod response;
@@ -29,6 +30,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(design::damper_curve, module)?)?;
     module.add_function(wrap_pyfunction!(design::optimal_damper, module)?)?;
     module.add_function(wrap_pyfunction!(design::sensitivity, module)?)?;
+    module.add_class::<mistuning::TunedDisk>()?;
+    module.add_function(wrap_pyfunction!(mistuning::summits, module)?)?;
+    module.add_function(wrap_pyfunction!(mistuning::mistuning_study, module)?)?;
     module.add_class::<orbits::Orbits>()?;
     module.add_function(wrap_pyfunction!(orbits::exact_response, module)?)?;
     module.add_function(wrap_pyfunction!(orbits::exact_peak, module)?)?;

@@ -11,11 +11,11 @@ use stickslip_core::structure::{
     CyclicMatrix, CyclicStructure, HarmonicLoad, RingCoupling, Structure,
 };
 
-type Matrix<'py> = PyReadonlyArray2<'py, f64>;
+pub type Matrix<'py> = PyReadonlyArray2<'py, f64>;
 type ContactSpec<'py> = (String, Matrix<'py>, Bound<'py, PyDict>);
-type SectorContactSpec<'py> = (String, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
+pub type SectorContactSpec<'py> = (String, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
 type SectorMatrices<'py> = PyReadonlyArray3<'py, f64>;
-type Forces<'py> = Vec<(usize, PyReadonlyArray1<'py, Complex64>)>;
+pub type Forces<'py> = Vec<(usize, PyReadonlyArray1<'py, Complex64>)>;
 
 /// A structure with its contacts and loads, decomposed once.
 #[pyclass(frozen, module = "stickslip._core")]
@@ -165,7 +165,7 @@ fn parameters(dictionary: &Bound<'_, PyDict>) -> PyResult<Parameters> {
     Ok(parameters)
 }
 
-fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<SectorContact>> {
+pub fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<SectorContact>> {
     contacts
         .into_iter()
         .map(|(name, own, next, dictionary)| {
@@ -175,7 +175,7 @@ fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<SectorC
         .collect()
 }
 
-fn harmonic_loads(forces: Forces<'_>) -> Vec<HarmonicLoad> {
+pub fn harmonic_loads(forces: Forces<'_>) -> Vec<HarmonicLoad> {
     let load = |(harmonic, amplitude): (usize, PyReadonlyArray1<'_, Complex64>)| HarmonicLoad {
         harmonic,
         amplitude: amplitude.as_array().iter().copied().collect(),

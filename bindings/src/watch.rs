@@ -58,7 +58,18 @@ impl<'a> Watch<'a> {
 /// What Python has raised meanwhile.
 pub struct Raised(Option<PyErr>);
 
+impl From<Option<PyErr>> for Raised {
+    fn from(error: Option<PyErr>) -> Self {
+        Self(error)
+    }
+}
+
 impl Raised {
+    /// Whether nothing was raised.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_none()
+    }
+
     /// Raises it.
     pub fn raise(self) -> PyResult<()> {
         self.0.map_or(Ok(()), Err)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.mistuning_study import mistuning_study
     from stickslip.analyses.optimal_damper import optimal_damper
     from stickslip.analyses.single_harmonic import single_harmonic
     from stickslip.analyses.transient import transient
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from stickslip.results.basin_map import BasinMap
     from stickslip.results.damper_curve import DamperCurve
     from stickslip.results.exact_response import ExactResponse
+    from stickslip.results.mistuning import MistuningStudy
     from stickslip.results.motion_class import MotionClass
     from stickslip.results.optimal_damper import OptimalDamper
     from stickslip.results.status import Status
@@ -61,6 +63,7 @@ __all__ = [
     "Interrupted",
     "Jenkins",
     "MistunedDisk",
+    "MistuningStudy",
     "ModalDamping",
     "Model",
     "ModelError",
@@ -84,6 +87,7 @@ __all__ = [
     "join",
     "load",
     "mistuning_pattern",
+    "mistuning_study",
     "modal_damping",
     "natural_frequencies",
     "optimal_damper",
@@ -109,6 +113,7 @@ _HOMES = {
     "Interface": "disk",
     "Jenkins": "model",
     "MistunedDisk": "disk",
+    "MistuningStudy": "results.mistuning",
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",
@@ -133,6 +138,7 @@ _HOMES = {
     "load": "results.store",
     "mistuning_pattern": "disk",
     "modal_damping": "model.damping",
+    "mistuning_study": "analyses.mistuning_study",
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",

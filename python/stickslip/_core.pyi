@@ -129,6 +129,47 @@ def single_harmonic(
     progress: Callable[[float], None] | None,
 ) -> Solution: ...
 
+Summit = tuple[float, float, int, int, int, float, bool]
+
+class Quest(TypedDict):
+    groups: list[list[int]]
+    measure: str
+    omega: tuple[float, float]
+    harmonics: int | None
+    tolerance: float
+    residual: Residual
+    max_harmonics: int
+    max_iterations: int
+
+class TunedDisk:
+    def __init__(
+        self,
+        mass: Float,
+        stiffness: Float,
+        coupled_stiffness: Float,
+        damping: tuple[Float, Float, Float],
+        coupling: tuple[Float, Float, Float],
+        contacts: Sequence[SectorContact],
+        forces: Sequence[Sequence[tuple[int, Complex]]],
+    ) -> None: ...
+    def mistuned(self, deviations: Float) -> Problem: ...
+
+def summits(
+    problem: Problem,
+    quest: Quest,
+    march: int | None,
+    progress: Callable[[float], None] | None,
+) -> list[Summit]: ...
+def mistuning_study(
+    disks: Sequence[TunedDisk],
+    which: Sequence[int],
+    deviations: Float,
+    quest: Quest,
+    orders: Sequence[int],
+    threads: int,
+    deliver: Callable[[int, list[Summit], int], None],
+) -> bool: ...
+
 class Orbits(Solution):
     @property
     def range(self) -> Float: ...

@@ -131,6 +131,48 @@ impl<'a> Condensed<'a> {
         Ok(())
     }
 
+    /// Displacements of the DOFs `observe` and their derivatives in ω at every kept order, handed to
+    /// `store(order, values, rates)`, from contact displacements and slip loads and their rates;
+    /// for equations with slopes.
+    ///
+    /// # Errors
+    /// As [`Condensed::set_omega`].
+    pub(super) fn jets(
+        &self,
+        solution: [&[f64]; 2],
+        rates: [&[f64]; 2],
+        observe: &[usize],
+        mut store: impl FnMut(usize, &[c64], &[c64]),
+    ) -> Result<(), Error> {
+        let harmonics = self.table.harmonics();
+        let compliance = self.model.compliance();
+        let zero = c64::new(0.0, 0.0);
+        let (mut values, mut slopes) = (vec![zero; observe.len()], vec![zero; observe.len()]);
+        let gathered = |order: usize, series: &[f64]| {
+            let mut amplitudes = Vec::new();
+            gather(harmonics, order, series, &mut amplitudes);
+            amplitudes
+        };
+        for (index, order) in harmonics.orders().enumerate() {
+            let [u, q] = solution.map(|series| gathered(order, series));
+            let [du, dq] = rates.map(|series| gathered(order, series));
+            let at = (index, order);
+            self.linear.displacement(compliance, at, self.omega, &u, &q, observe, &mut values)?;
+            let (solution, rates) = ([&u[..], &q[..]], [&du[..], &dq[..]]);
+            self.linear.displacement_rate(
+                compliance,
+                at,
+                self.omega,
+                solution,
+                rates,
+                observe,
+                &mut slopes,
+            )?;
+            store(order, &values, &slopes);
+        }
+        Ok(())
+    }
+
     /// Has the iterations ask whether to end the analysis.
     pub fn watch(&mut self, interrupted: &'a dyn Fn() -> bool) {
         self.interrupted = Some(interrupted);

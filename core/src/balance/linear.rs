@@ -103,6 +103,29 @@ impl Linear {
         }
     }
 
+    /// Derivatives in ω of [`Linear::displacement`], with slip loads and contact displacements
+    /// (`solution`: u, q) that change at `rates`; for equations with slopes.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn displacement_rate(
+        &self,
+        compliance: &dyn Compliance,
+        (index, order): (usize, usize),
+        omega: f64,
+        [u, q]: [&[c64]; 2],
+        [du, dq]: [&[c64]; 2],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        if let (Self::Ring { orders, .. }, Some(ring)) = (self, compliance.ring()) {
+            return ring.displacement_rate_of(&orders[index], order, omega, [q, dq], observe, out);
+        }
+        let mut moved = vec![c64::new(0.0, 0.0); observe.len()];
+        compliance.displacement_slope(order, omega, u, q, observe, out)?;
+        compliance.slip_displacement(order, omega, du, dq, observe, &mut moved)?;
+        out.iter_mut().zip(moved).for_each(|(out, moved)| *out += moved);
+        Ok(())
+    }
+
     /// `out += G q`.
     pub(super) fn add_response(&self, harmonics: &Harmonics, slip_load: &[f64], out: &mut [f64]) {
         match self {

@@ -192,21 +192,38 @@ impl<'a> Linearised<'a> {
         Ok((amplitude(self.equations.table, &series, measure), slopes))
     }
 
-    /// Amplitude of one DOF with its derivative and that of the contact displacements in
-    /// frequency; `None` where the Jacobian is singular.
+    /// Amplitudes of some DOFs, each with its derivative in frequency, and the derivative of the
+    /// contact displacements; `None` where the Jacobian is singular.
     ///
     /// # Errors
     /// As [`Linearised::new`].
-    pub fn frequency_jet(
+    #[allow(clippy::type_complexity)]
+    pub fn frequency_jets(
         &mut self,
-        dof: usize,
+        dofs: &[usize],
         measure: Measure,
-    ) -> Result<Option<(f64, f64, Vec<f64>)>, Error> {
-        let series = self.displacement(dof)?;
-        let gradient = amplitude_gradient(self.equations.table, &series, measure);
+    ) -> Result<Option<(Vec<(f64, f64)>, Vec<f64>)>, Error> {
         let Some(rate) = self.contact_rate(Cause::Frequency) else { return Ok(None) };
-        let slope = self.slope(dof, &gradient, Cause::Frequency, &rate)?;
-        Ok(Some((amplitude(self.equations.table, &series, measure), slope, rate)))
+        let mut slip_rate = vec![0.0; self.x.len()];
+        self.equations.add_tangent_product(&rate, &mut slip_rate);
+        let harmonics = self.equations.harmonics();
+        let slots = harmonics.slots();
+        let (mut series, mut slopes) =
+            (vec![0.0; dofs.len() * slots], vec![0.0; dofs.len() * slots]);
+        let solution = [self.x.as_slice(), self.slip_load.as_slice()];
+        let change = [rate.as_slice(), slip_rate.as_slice()];
+        self.equations.jets(solution, change, dofs, |order, values, rates| {
+            scatter(harmonics, order, values, &mut series);
+            scatter(harmonics, order, rates, &mut slopes);
+        })?;
+        let jets = series.chunks_exact(slots).zip(slopes.chunks_exact(slots));
+        let jets = jets.map(|(series, slopes)| {
+            let table = self.equations.table;
+            let gradient = amplitude_gradient(table, series, measure);
+            let slope = gradient.iter().zip(slopes).map(|(g, s)| g * s).sum();
+            (amplitude(table, series, measure), slope)
+        });
+        Ok(Some((jets.collect(), rate)))
     }
 
     fn slope(

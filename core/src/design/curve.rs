@@ -1,6 +1,7 @@
 //! The damper curve: peak amplitude and frequency along a parameter.
 
-use super::search::{Found, Sample, Search};
+use super::samples::Sample;
+use super::search::{first_look, Aim, Found, Search};
 use super::variation::{Member, Variation};
 use crate::balance::{
     ForcedBalance, HarmonicChoice, Linearised, Memory, PointStatus, Progress, Settings,
@@ -10,6 +11,11 @@ use crate::model::Model;
 use crate::timing::Profile;
 use crate::Error;
 use std::time::Instant;
+
+/// Gain in height, relative, that is not worth another point of a search.
+const GAIN: f64 = 1e-11;
+/// Points after which a search ends in any case.
+const MOST_POINTS: usize = 200;
 
 /// What peak is followed.
 #[derive(Debug, Clone, PartialEq)]
@@ -169,13 +175,14 @@ impl<'a> Follower<'a> {
             let Some(found) = self.search(&member, share)? else {
                 return Ok(self.failed(value));
             };
-            if let Some(status) = found.failure {
+            let Some(&top) = found.tops.first() else { return Ok(self.failed(value)) };
+            if let Some(status) = top.failure {
                 // A lower maximum is no peak.
                 self.seeds = found.samples;
                 return Ok(Peak::missing(value, status));
             }
-            let best = &found.samples[found.best];
-            let (status, order, estimate) = self.judge(&member, best.knot.at, Some(best), share)?;
+            let best = &found.samples[top.sample];
+            let (status, order, estimate) = self.judge(&member, best.at, Some(best), share)?;
             if order > self.order && status != PointStatus::NotComputed {
                 // The harmonics that the peak asks for may move it, and change which is highest.
                 self.seeds = found.samples;
@@ -192,13 +199,13 @@ impl<'a> Follower<'a> {
             }
             let peak = Peak {
                 value,
-                omega: best.knot.at,
-                amplitude: member.scale * best.knot.height,
+                omega: best.at,
+                amplitude: member.scale * best.knots[0].height,
                 slope: self.slope(&member, best)?,
                 status,
                 harmonics: self.order,
                 error_estimate: member.scale * estimate,
-                at_edge: found.best == 0 || found.best + 1 == found.samples.len(),
+                at_edge: top.sample == 0 || top.sample + 1 == found.samples.len(),
             };
             self.order = order;
             self.seeds = found.samples;
@@ -224,17 +231,16 @@ impl<'a> Follower<'a> {
             .watched(self.progress)
             .remembering(std::mem::take(&mut self.memory));
         balance.report(share);
-        let search = Search {
-            model: &member.model,
-            residual: member.residual,
-            target: self.target,
-            balance: &mut balance,
-            samples: Vec::new(),
-            gaps: Vec::new(),
-            failures: 0,
-            failure: None,
+        let aim = Aim {
+            groups: vec![vec![self.target.dof]],
+            measure: self.target.measure,
+            span: self.target.span,
+            gain: GAIN,
+            most_points: MOST_POINTS,
         };
-        let found = search.run(&self.seeds)?;
+        let search = Search::new(&member.model, member.residual, &aim, &mut balance);
+        let looks = first_look(self.target.span, &self.seeds);
+        let found = search.run(&looks, &self.seeds)?;
         self.points += found.as_ref().map_or(0, |found| found.samples.len());
         self.memory = balance.into_memory();
         Ok(found)
@@ -269,7 +275,7 @@ impl<'a> Follower<'a> {
             .remembering(std::mem::take(&mut self.memory));
         let table = balance.table(best.unknowns.harmonics().highest());
         self.memory = balance.into_memory();
-        let (model, omega) = (&member.model, best.knot.at);
+        let (model, omega) = (&member.model, best.at);
         let mut linearised =
             Linearised::new(model, &table, member.residual, omega, &best.unknowns)?;
         let causes: Vec<_> = member.causes.iter().map(|(cause, _)| *cause).collect();

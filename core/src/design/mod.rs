@@ -1,12 +1,19 @@
-//! Damper design: the peak of a response followed along a parameter of its contacts or its load,
-//! and the parameter that makes it least.
+//! Design: the peak of a response followed along a parameter of its contacts or its load, the
+//! parameter that makes it least, and the highest peaks of disks whose sectors deviate.
 
 mod curve;
 mod interpolant;
+mod mistuned;
 mod optimum;
+mod patterns;
+mod samples;
 mod search;
+mod summit;
 mod variation;
 
 pub use curve::{peak_curve, Curve, Peak, Target};
+pub use mistuned::TunedDisk;
 pub use optimum::{optimum, Optimum};
+pub use patterns::{study, Pattern};
+pub use summit::{summits, Quest, Summit, Summits};
 pub use variation::{Common, Variation};

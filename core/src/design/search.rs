@@ -1,54 +1,62 @@
-//! The highest point of a response over a range of frequencies, whichever of its maxima that is.
+//! The highest point of a response over a range of frequencies, whichever of its maxima that is,
+//! and of whichever DOF of a group.
 //!
-//! Every point is solved with its exact slope. Between two points an [`Interpolant`] says how high
-//! the curve may be; the interval that promises most is split next, until none promises more than
-//! what has been found. Jumps between rival maxima are seen, because none is followed by itself.
+//! Every point is solved with the exact slopes of all DOFs. Between two points an [`Interpolant`]
+//! says how high each curve may be; the interval that promises most is split next, until none
+//! promises more than what has been found. Jumps between rival maxima, and between the blades of a
+//! disk, are seen, because none is followed by itself.
 
-use super::curve::Target;
 use super::interpolant::{Interpolant, Knot};
+use super::samples::{predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
 use crate::contact::Residual;
+use crate::fourier::Measure;
 use crate::model::Model;
 use crate::Error;
+use std::ops::Range;
 
-/// Points of the first look at the range.
+/// Points of an even first look at the range.
 const LOOKS: usize = 9;
 /// Share by which an interpolant of that look may err: it may hide a maximum this much higher.
 const UNSEEN: f64 = 0.5;
 /// The error of an interpolant falls with the fourth power of its width; this times as much is
 /// allowed for.
 const CAUTION: f64 = 4.0;
-/// Gain in height, relative, that is not worth another point.
-const GAIN: f64 = 1e-11;
 /// Splits in a row that may leave more than half of an interval.
 const IDLE: u32 = 1;
 /// Shortest interval that is split, relative to the frequency.
 const SHORTEST: f64 = 1e-9;
-/// Points after which a search ends in any case.
-const MOST_POINTS: usize = 200;
 /// Points without a solution after which an interval is closed without another attempt.
 const MOST_FAILURES: usize = 40;
 /// Gain in height, relative, that an interval without a solution must not promise.
 const DOUBT: f64 = 1e-6;
 /// Distance at which an undamped resonance is passed, relative to the frequency.
 const ASIDE: f64 = 1e-8;
-/// Maxima from this share of the highest are looked at again at the next parameter.
+/// Maxima from this share of the highest are looked at again in the next response.
 const RIVAL: f64 = 0.7;
 
-/// A solved point with its slopes.
+/// What is looked for.
 #[derive(Debug, Clone)]
-pub(super) struct Sample {
-    pub(super) knot: Knot,
-    pub(super) unknowns: Unknowns,
-    /// Derivative of the unknowns in frequency.
-    rate: Vec<f64>,
+pub(super) struct Aim {
+    /// DOFs, group by group; the highest of each group is sought.
+    pub(super) groups: Vec<Vec<usize>>,
+    /// Measure of their amplitudes.
+    pub(super) measure: Measure,
+    /// Range of frequencies [rad/s].
+    pub(super) span: (f64, f64),
+    /// Gain in height, relative, that is not worth another point.
+    pub(super) gain: f64,
+    /// Points after which a search ends in any case.
+    pub(super) most_points: usize,
 }
 
 /// What is known of an interval between two samples.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Gap {
-    /// Error allowed for in its interpolant.
-    error: f64,
+#[derive(Debug, Clone)]
+struct Gap {
+    /// Errors allowed for in the interpolants of all DOFs.
+    errors: Vec<f64>,
+    /// Where and how high the curves of each group may be.
+    promises: Vec<(f64, f64)>,
     /// Splits in a row that have left more than half of it.
     idle: u32,
     /// Whether its inside could not be solved.
@@ -58,7 +66,7 @@ pub(super) struct Gap {
 impl Gap {
     /// The share at which it is split: where asked for, or, when that keeps creeping along from an
     /// end, between that and the whole. A resonance that slip has cut off misleads its flanks.
-    fn stride(self, share: f64) -> f64 {
+    fn stride(&self, share: f64) -> f64 {
         if self.idle <= IDLE {
             return share;
         }
@@ -70,38 +78,60 @@ impl Gap {
     }
 }
 
-/// How a search ended.
-pub(super) struct Found {
-    /// All points, by frequency.
-    pub(super) samples: Vec<Sample>,
-    /// Position of the highest.
-    pub(super) best: usize,
+/// The highest point of a group.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Top {
+    /// Position of its sample.
+    pub(super) sample: usize,
+    /// Position of its DOF among those of all groups.
+    pub(super) curve: usize,
     /// Why the highest point may lie elsewhere, where nothing could be solved.
     pub(super) failure: Option<PointStatus>,
 }
 
-/// A search under way.
-pub(super) struct Search<'a, 'b> {
-    pub(super) model: &'a Model,
-    pub(super) residual: Residual,
-    pub(super) target: &'a Target,
-    pub(super) balance: &'b mut ForcedBalance<'a>,
+/// How a search ended.
+pub(super) struct Found {
+    /// All points, by frequency.
     pub(super) samples: Vec<Sample>,
-    /// What is known of the intervals between them.
-    pub(super) gaps: Vec<Gap>,
-    /// Points without a solution.
-    pub(super) failures: usize,
-    /// How the last of them ended.
-    pub(super) failure: Option<PointStatus>,
+    /// The highest point of each group.
+    pub(super) tops: Vec<Top>,
 }
 
-impl Search<'_, '_> {
-    /// Finds the highest point, from the samples of a similar response.
+/// A search under way.
+pub(super) struct Search<'a, 'b> {
+    model: &'a Model,
+    residual: Residual,
+    aim: &'b Aim,
+    dofs: Vec<usize>,
+    balance: &'b mut ForcedBalance<'a>,
+    samples: Vec<Sample>,
+    /// What is known of the intervals between them.
+    gaps: Vec<Gap>,
+    /// Points without a solution.
+    failures: usize,
+    /// How the last of them ended.
+    failure: Option<PointStatus>,
+}
+
+impl<'a, 'b> Search<'a, 'b> {
+    pub(super) fn new(
+        model: &'a Model,
+        residual: Residual,
+        aim: &'b Aim,
+        balance: &'b mut ForcedBalance<'a>,
+    ) -> Self {
+        let dofs = aim.groups.concat();
+        let (samples, gaps) = (Vec::new(), Vec::new());
+        Self { model, residual, aim, dofs, balance, samples, gaps, failures: 0, failure: None }
+    }
+
+    /// Finds the highest points from a first look, ascending from one end of the range to the
+    /// other, and the samples of a similar response.
     ///
     /// # Errors
     /// As for a solution at one frequency.
-    pub(super) fn run(mut self, seeds: &[Sample]) -> Result<Option<Found>, Error> {
-        for omega in first_look(self.target.span, seeds) {
+    pub(super) fn run(mut self, looks: &[f64], seeds: &[Sample]) -> Result<Option<Found>, Error> {
+        for &omega in looks {
             let start = self.beside(seeds, omega);
             if let Some(sample) = self.solve(omega, start)? {
                 self.samples.push(sample);
@@ -110,56 +140,99 @@ impl Search<'_, '_> {
                 return Ok(None);
             }
         }
-        let fresh = Gap { error: UNSEEN, idle: 0, closed: false };
-        self.gaps = vec![fresh; self.samples.len().saturating_sub(1)];
-        while self.samples.len() < MOST_POINTS {
+        for interval in 1..self.samples.len() {
+            let gap = self.gap(interval - 1, vec![UNSEEN; self.dofs.len()], 0);
+            self.gaps.push(gap);
+        }
+        let most_points = self.aim.most_points.max(2 * looks.len());
+        while self.samples.len() < most_points {
             let Some((interval, share)) = self.most_promising() else { break };
             if !self.split(interval, share)? {
                 return Ok(None);
             }
         }
-        let failure = if self.is_in_doubt() { self.failure } else { None };
-        let best = self.best();
-        Ok(best.map(|best| Found { samples: self.samples, best, failure }))
+        let unfinished = self.samples.len() >= most_points;
+        let mut tops = Vec::with_capacity(self.aim.groups.len());
+        for group in 0..self.aim.groups.len() {
+            let Some((sample, curve)) = self.top(group) else { return Ok(None) };
+            let mut failure = if self.is_in_doubt(group, false) { self.failure } else { None };
+            if unfinished && failure.is_none() && self.is_in_doubt(group, true) {
+                failure = Some(PointStatus::Stalled);
+            }
+            tops.push(Top { sample, curve, failure });
+        }
+        Ok(Some(Found { samples: self.samples, tops }))
     }
 
-    /// Whether a part of the range that could not be solved may hold a higher point.
-    fn is_in_doubt(&self) -> bool {
-        let (Some(best), Some(first), Some(last)) =
-            (self.best(), self.samples.first(), self.samples.last())
-        else {
+    /// Positions of the DOFs of a group among all.
+    fn curves(&self, group: usize) -> Range<usize> {
+        let first = self.aim.groups[..group].iter().map(Vec::len).sum();
+        first..first + self.aim.groups[group].len()
+    }
+
+    /// Sample and DOF of the highest point of a group.
+    fn top(&self, group: usize) -> Option<(usize, usize)> {
+        let curves = self.curves(group);
+        let all = self.samples.iter().enumerate().flat_map(|(at, sample)| {
+            let knots = curves.clone().zip(&sample.knots[curves.clone()]);
+            knots.map(move |(curve, knot)| (at, curve, knot.height))
+        });
+        all.max_by(|a, b| a.2.total_cmp(&b.2)).map(|(at, curve, _)| (at, curve))
+    }
+
+    fn height(&self, group: usize) -> f64 {
+        self.top(group).map_or(0.0, |(at, curve)| self.samples[at].knots[curve].height)
+    }
+
+    /// Whether a part of the range that could not be solved, or that `unfinished` points have left
+    /// open, may hold a higher point.
+    fn is_in_doubt(&self, group: usize, unfinished: bool) -> bool {
+        let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else {
             return true;
         };
-        let (low, high) = self.target.span;
-        let reference = self.samples[best].knot.height;
-        let ends = first.knot.at > low * (1.0 + 2.0 * ASIDE) || last.knot.at < high;
-        ends || self.samples.windows(2).zip(&self.gaps).any(|(pair, gap)| {
-            let interpolant = Interpolant::new(pair[0].knot, pair[1].knot, reference);
-            gap.closed && interpolant.promise(gap.error).1 > reference * (1.0 + DOUBT)
-        })
+        let (low, high) = self.aim.span;
+        let least = self.height(group) * (1.0 + DOUBT);
+        let ends = first.at > low * (1.0 + 2.0 * ASIDE) || last.at < high;
+        ends || self
+            .gaps
+            .iter()
+            .any(|gap| (gap.closed || unfinished) && gap.promises[group].1 > least)
     }
 
-    fn best(&self) -> Option<usize> {
-        let heights = self.samples.iter().map(|sample| sample.knot.height).enumerate();
-        heights.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(best, _)| best)
+    /// An interval between two samples, with what it promises.
+    fn gap(&self, interval: usize, errors: Vec<f64>, idle: u32) -> Gap {
+        let (left, right) = (&self.samples[interval].knots, &self.samples[interval + 1].knots);
+        let promises = (0..self.aim.groups.len())
+            .map(|group| {
+                let reference = self.height(group);
+                if reference == 0.0 {
+                    return (0.5, 0.0);
+                }
+                self.curves(group)
+                    .map(|i| Interpolant::new(left[i], right[i], reference).promise(errors[i]))
+                    .fold((0.5, 0.0), |best, one| if one.1 > best.1 { one } else { best })
+            })
+            .collect();
+        Gap { errors, promises, idle, closed: false }
     }
 
     /// The interval that may hold the highest point, and where to look in it.
     fn most_promising(&self) -> Option<(usize, f64)> {
-        let reference = self.samples[self.best()?].knot.height;
-        if reference == 0.0 {
-            return None;
-        }
-        let mut best = (None, reference * (1.0 + GAIN));
-        for (i, pair) in self.samples.windows(2).enumerate() {
-            let (left, right) = (pair[0].knot, pair[1].knot);
-            if self.gaps[i].closed || right.at - left.at <= SHORTEST * right.at {
+        let mut best = (None, 1.0 + self.aim.gain);
+        for group in 0..self.aim.groups.len() {
+            let reference = self.height(group);
+            if reference == 0.0 {
                 continue;
             }
-            let (share, promise) =
-                Interpolant::new(left, right, reference).promise(self.gaps[i].error);
-            if promise > best.1 {
-                best = (Some((i, share)), promise);
+            for (i, pair) in self.samples.windows(2).enumerate() {
+                let gap = &self.gaps[i];
+                if gap.closed || pair[1].at - pair[0].at <= SHORTEST * pair[1].at {
+                    continue;
+                }
+                let (share, promise) = gap.promises[group];
+                if promise / reference > best.1 {
+                    best = (Some((i, share)), promise / reference);
+                }
             }
         }
         best.0
@@ -167,37 +240,51 @@ impl Search<'_, '_> {
 
     /// Solves inside an interval; `false` if the analysis is to end.
     fn split(&mut self, interval: usize, share: f64) -> Result<bool, Error> {
-        let (left, right) = (self.samples[interval].knot, self.samples[interval + 1].knot);
-        let width = right.at - left.at;
-        let gap = self.gaps[interval];
+        let gap = self.gaps[interval].clone();
         let Some(sample) = self.inside(interval, gap.stride(share))? else {
             // Nothing more is asked of an interval whose inside cannot be solved.
             self.gaps[interval].closed = true;
             return Ok(self.failure != Some(PointStatus::NotComputed));
         };
-        let reference = left.height.max(right.height).max(sample.knot.height);
-        let share = (sample.knot.at - left.at) / width;
-        let expected = Interpolant::new(left, right, reference).height(share);
+        let (left, right) = (&self.samples[interval], &self.samples[interval + 1]);
+        let share = (sample.at - left.at) / (right.at - left.at);
         let bump = 16.0 * (share * (1.0 - share)).powi(2);
-        let error = (expected / sample.knot.height - 1.0).abs().min(1.0) / bump;
-        let inside = (0.1..0.9).contains(&share);
-        let part = |part: f64| {
-            let allowed = CAUTION * error * part.powi(4);
-            // Close to an end the error is small wherever the middle may be.
-            let error = if inside { allowed.min(1.0) } else { allowed.min(gap.error) };
-            Gap { error, idle: if part > 0.5 { gap.idle + 1 } else { 0 }, closed: false }
+        let missed = |i: usize| {
+            let (left, right, knot) = (left.knots[i], right.knots[i], sample.knots[i]);
+            let reference = left.height.max(right.height).max(knot.height);
+            let expected = Interpolant::new(left, right, reference).height(share);
+            (expected / knot.height - 1.0).abs().min(1.0) / bump
         };
-        self.gaps.splice(interval..=interval, [part(share), part(1.0 - share)]);
+        let missed: Vec<f64> = (0..self.dofs.len()).map(missed).collect();
+        let inside = (0.1..0.9).contains(&share);
+        let errors = |part: f64| {
+            let allowed = |(error, before): (&f64, &f64)| {
+                let allowed = CAUTION * error * part.powi(4);
+                // Close to an end the error is small wherever the middle may be.
+                if inside {
+                    allowed.min(1.0)
+                } else {
+                    allowed.min(*before)
+                }
+            };
+            missed.iter().zip(&gap.errors).map(allowed).collect::<Vec<f64>>()
+        };
+        let parts = [share, 1.0 - share].map(errors);
         self.samples.insert(interval + 1, sample);
+        let [before, after] = parts;
+        let idle = |part: f64| if part > 0.5 { gap.idle + 1 } else { 0 };
+        let before = self.gap(interval, before, idle(share));
+        let after = self.gap(interval + 1, after, idle(1.0 - share));
+        self.gaps.splice(interval..=interval, [before, after]);
         Ok(true)
     }
 
     /// A point inside an interval: at the share asked for, or halfway from there to an end.
     fn inside(&mut self, interval: usize, share: f64) -> Result<Option<Sample>, Error> {
-        let (left, right) = (self.samples[interval].knot.at, self.samples[interval + 1].knot.at);
+        let (left, right) = (self.samples[interval].at, self.samples[interval + 1].at);
         for share in [share, 0.5 * share, 0.5 * (1.0 + share)] {
             let solved = self.solve(left + share * (right - left), None)?;
-            let sample = solved.filter(|sample| left < sample.knot.at && sample.knot.at < right);
+            let sample = solved.filter(|sample| left < sample.at && sample.at < right);
             let ended = self.failure == Some(PointStatus::NotComputed);
             if sample.is_some() || ended || self.failures > MOST_FAILURES {
                 return Ok(sample);
@@ -209,7 +296,7 @@ impl Search<'_, '_> {
     /// Solves at one frequency: from `start` or the samples around it, from the stuck response,
     /// or from either neighbour as it is.
     fn solve(&mut self, omega: f64, start: Option<Unknowns>) -> Result<Option<Sample>, Error> {
-        let after = self.samples.partition_point(|sample| sample.knot.at < omega);
+        let after = self.samples.partition_point(|sample| sample.at < omega);
         let start = start.or_else(|| predicted(&self.samples, omega));
         let neighbours = [after.checked_sub(1), Some(after)].into_iter().flatten();
         let neighbours: Vec<_> = neighbours
@@ -244,14 +331,15 @@ impl Search<'_, '_> {
         let table = self.balance.table(unknowns.harmonics().highest());
         let mut linearised =
             Linearised::new(self.model, &table, self.residual, point.omega, unknowns)?;
-        let jet = linearised.frequency_jet(self.target.dof, self.target.measure)?;
+        let jets = linearised.frequency_jets(&self.dofs, self.aim.measure)?;
         self.balance.add_profile(linearised.profile());
-        let Some((height, slope, rate)) = jet else {
+        let Some((jets, rate)) = jets else {
             self.failure = Some(PointStatus::Singular);
             return Ok(None);
         };
-        let knot = Knot { at: point.omega, height, slope };
-        Ok(Some(Sample { knot, unknowns: unknowns.clone(), rate }))
+        let at = point.omega;
+        let knots = jets.iter().map(|&(height, slope)| Knot { at, height, slope }).collect();
+        Ok(Some(Sample { at, knots, unknowns: unknowns.clone(), rate }))
     }
 
     /// A start from a similar response: its solution, moved by as much as the last sample differs
@@ -259,7 +347,7 @@ impl Search<'_, '_> {
     fn beside(&self, seeds: &[Sample], omega: f64) -> Option<Unknowns> {
         let mut start = predicted(seeds, omega)?;
         if let Some(last) = self.samples.last() {
-            let similar = predicted(seeds, last.knot.at)?.recast(last.unknowns.harmonics());
+            let similar = predicted(seeds, last.at)?.recast(last.unknowns.harmonics());
             let harmonics = last.unknowns.harmonics().clone();
             let values = start.recast(&harmonics);
             let moves = last.unknowns.values().iter().zip(&similar);
@@ -270,49 +358,34 @@ impl Search<'_, '_> {
     }
 }
 
-impl Sample {
-    fn extrapolated(&self, omega: f64) -> Unknowns {
-        let step = omega - self.knot.at;
-        let values = self.unknowns.values().iter().zip(&self.rate).map(|(x, r)| x + step * r);
-        Unknowns::new(self.unknowns.harmonics().clone(), values.collect())
-    }
-
-    fn interpolated(&self, right: &Self, omega: f64) -> Unknowns {
-        let width = right.knot.at - self.knot.at;
-        let t = (omega - self.knot.at) / width;
-        let (rise, fall) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
-        let ends = self.unknowns.values().iter().zip(right.unknowns.values());
-        let values = ends.zip(self.rate.iter().zip(&right.rate)).map(|((x, y), (dx, dy))| {
-            x + rise * (y - x) + width * fall * ((1.0 - t) * dx - t * dy)
-        });
-        Unknowns::new(self.unknowns.harmonics().clone(), values.collect())
-    }
-}
-
-/// A start from samples around a frequency: their cubic, or the tangent of the nearest.
-fn predicted(samples: &[Sample], omega: f64) -> Option<Unknowns> {
-    let after = samples.partition_point(|sample| sample.knot.at < omega);
-    match (after.checked_sub(1).map(|i| &samples[i]), samples.get(after)) {
-        (Some(left), Some(right)) => Some(left.interpolated(right, omega)),
-        (Some(one), None) | (None, Some(one)) => Some(one.extrapolated(omega)),
-        (None, None) => None,
-    }
-}
-
 /// Even frequencies over the range, and the maxima of a similar response.
-fn first_look((low, high): (f64, f64), seeds: &[Sample]) -> Vec<f64> {
+pub(super) fn first_look((low, high): (f64, f64), seeds: &[Sample]) -> Vec<f64> {
     let spacing = (high - low) / (LOOKS - 1) as f64;
     let mut omega: Vec<f64> = (0..LOOKS - 1).map(|i| low + i as f64 * spacing).collect();
     omega.push(high);
-    let highest = seeds.iter().map(|seed| seed.knot.height).fold(0.0, f64::max);
-    for three in seeds.windows(3) {
-        let [a, b, c] = [&three[0], &three[1], &three[2]].map(|seed| seed.knot);
-        if b.height >= a.height && b.height > c.height && b.height >= RIVAL * highest {
-            omega.push(b.at);
+    omega.extend(rivals(seeds));
+    sorted(omega, (low, high), 0.02 * spacing)
+}
+
+/// Frequencies at which a curve of a similar response has a maximum near its highest.
+pub(super) fn rivals(seeds: &[Sample]) -> Vec<f64> {
+    let mut omega = Vec::new();
+    for curve in 0..seeds.first().map_or(0, |seed| seed.knots.len()) {
+        let highest = seeds.iter().map(|seed| seed.knots[curve].height).fold(0.0, f64::max);
+        for three in seeds.windows(3) {
+            let [a, b, c] = [&three[0], &three[1], &three[2]].map(|seed| seed.knots[curve]);
+            if b.height >= a.height && b.height > c.height && b.height >= RIVAL * highest {
+                omega.push(b.at);
+            }
         }
     }
+    omega
+}
+
+/// Frequencies inside a range in ascending order, at least `distance` apart; both ends are kept.
+pub(super) fn sorted(mut omega: Vec<f64>, (low, high): (f64, f64), distance: f64) -> Vec<f64> {
     omega.retain(|w| (low..=high).contains(w));
     omega.sort_by(f64::total_cmp);
-    omega.dedup_by(|a, b| (*a - *b).abs() < 0.02 * spacing);
+    omega.dedup_by(|a, b| (*a - *b).abs() < distance);
     omega
 }

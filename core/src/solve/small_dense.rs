@@ -161,6 +161,10 @@ impl BlockFactors {
 
     /// Solves in place for all columns of a block.
     pub fn solve(&self, right: &mut Block) {
+        // A sector without neighbours has nothing to solve for.
+        if right.columns == 0 {
+            return;
+        }
         let stride = right.stride;
         for (i, &pivot) in self.pivots.iter().enumerate().filter(|(i, p)| i != *p) {
             let (above, below) = right.values.split_at_mut(pivot * stride);

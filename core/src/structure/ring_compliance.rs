@@ -26,6 +26,36 @@ impl Ring {
         })
     }
 
+    /// Derivative in ω of [`Ring::displacement_of`] with slip loads that change at `slip_rate`; the
+    /// equations must have slopes.
+    ///
+    /// # Errors
+    /// As [`Compliance::receptance`].
+    pub fn displacement_rate_of(
+        &self,
+        order: &RingOrder,
+        harmonic: usize,
+        omega: f64,
+        [slip_load, slip_rate]: [&[c64]; 2],
+        observe: &[usize],
+        out: &mut [c64],
+    ) -> Result<(), Error> {
+        let motion = order.respond(true, slip_load);
+        let mut rate = order.respond_rate(true, &motion);
+        let moved = order.respond(false, slip_rate);
+        rate.port.iter_mut().zip(&moved.port).for_each(|(rate, moved)| *rate += moved);
+        rate.force.iter_mut().zip(&moved.force).for_each(|(rate, moved)| *rate += moved);
+        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
+            sector.displacement_slope(harmonic, omega, port, force, dof, value)
+        })?;
+        let mut moved = vec![c64::new(0.0, 0.0); observe.len()];
+        self.observe(&rate, observe, &mut moved, |sector, port, force, dof, value| {
+            sector.slip_displacement(harmonic, omega, port, force, dof, value)
+        })?;
+        out.iter_mut().zip(moved).for_each(|(out, moved)| *out += moved);
+        Ok(())
+    }
+
     /// Reads observed DOFs off the sectors they belong to, with the motion at their ports.
     fn observe(
         &self,

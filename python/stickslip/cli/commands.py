@@ -123,12 +123,13 @@ def run(
 ) -> None:
     """Compute a study: one result per level, saved as NetCDF, with a table and a picture."""
     from stickslip.cli import console
+    from stickslip.cli.stores import storing
     from stickslip.study import Study
     from stickslip.views.kinds import view_of
 
     clock = Clock()
     with clock("reading the study"):
-        loaded = Study.load(study)
+        loaded = storing(Study.load(study), out)
         out.mkdir(parents=True, exist_ok=True)
     curves = _compute(loaded, out, clock, quiet=quiet)
     if not quiet:
@@ -172,13 +173,19 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curv
             cast("Result", stop.result).save(file)
             raise KeyboardInterrupt(
                 f"{len(curves)} of {len(cases)} {_nouns(study)} complete in {out}, "
-                f"the next one as far as it went in {file}"
+                f"the next one as far as it went in {file}{_rest(study)}"
             ) from None
     return curves
 
 
 def _nouns(study: Study) -> str:
-    return "runs" if study.tables.analysis.kind == "transient" else "curves"
+    nouns = {"transient": "runs", "mistuning-study": "studies"}
+    return nouns.get(study.tables.analysis.kind, "curves")
+
+
+def _rest(study: Study) -> str:
+    stored = study.tables.analysis.kind == "mistuning-study"
+    return "; run it again to go on from there" if stored else ""
 
 
 def _level(case: Case) -> str:

@@ -91,10 +91,20 @@ def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | 
     if not (wanted and sys.stdout.isatty() and sys.stderr.isatty()):
         yield None
         return
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+    from rich.progress import TimeElapsedColumn as Elapsed
+    from rich.progress import TimeRemainingColumn as Left
 
     columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn()
-    bar = Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True)
+    times = Elapsed(), TextColumn("left"), Left()
+    # The speed is that of the last minute: curves differ in effort along their way.
+    bar = Progress(
+        *columns,
+        *times,
+        console=Console(stderr=True),
+        transient=True,
+        speed_estimate_period=60.0,
+    )
     task = bar.add_task(title, total=1.0)
     begin = time.perf_counter()
 

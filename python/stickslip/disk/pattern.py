@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stickslip.checks import choice, real_number, whole_number
 from stickslip.errors import ModelError
 
-__all__ = ["DISTRIBUTIONS", "Distribution", "mistuning_pattern"]
+__all__ = ["DISTRIBUTIONS", "Distribution", "drawn_patterns", "mistuning_pattern"]
 
 Distribution: TypeAlias = Literal["normal", "uniform"]
 DISTRIBUTIONS: tuple[str, ...] = get_args(Distribution)
@@ -53,7 +53,49 @@ def mistuning_pattern(
         raise ModelError(f"deviation: {size:g} is negative; give 0.05 for 5 %")
     choice(distribution, "distribution", DISTRIBUTIONS)
     generator = np.random.default_rng(whole_number(seed, "seed"))
+    return size * _drawn(generator, count, distribution)
+
+
+def drawn_patterns(
+    sectors: int, count: int, distribution: Distribution = "normal", *, seed: int = 0
+) -> NDArray[np.float64]:
+    """Draw patterns of unit standard deviation, each from a generator of its own.
+
+    Parameters
+    ----------
+    sectors : int
+        Number of sectors.
+    count : int
+        Number of patterns.
+    distribution : {"normal", "uniform"}, optional
+        Distribution of zero mean and unit deviation. Mean and deviation are those of the
+        distribution: the 36 numbers of one pattern have others, as the blades of one disk do.
+    seed : int, optional
+        Pattern i is drawn from ``SeedSequence(seed, spawn_key=(i,))`` of NumPy, the same however
+        many there are.
+
+    Returns
+    -------
+    ndarray of float64, shape (count, sectors)
+        Deviations r_i, in units of the standard deviation S.
+
+    Raises
+    ------
+    ModelError
+        If a number is outside its range, or there is no such distribution.
+    """
+    size = whole_number(sectors, "sectors", smallest=1)
+    number = whole_number(count, "patterns", smallest=1)
+    choice(distribution, "distribution", DISTRIBUTIONS)
+    entropy = whole_number(seed, "seed")
+    sequences = (np.random.SeedSequence(entropy, spawn_key=(i,)) for i in range(number))
+    rows = [_drawn(np.random.default_rng(one), size, distribution) for one in sequences]
+    return np.stack(rows)
+
+
+def _drawn(generator: np.random.Generator, count: int, distribution: str) -> NDArray[np.float64]:
+    """Draw numbers of zero mean and unit deviation."""
     if distribution == "normal":
-        return size * generator.standard_normal(count)
+        return generator.standard_normal(count)
     bound = 3.0**0.5
-    return size * generator.uniform(-bound, bound, count)
+    return generator.uniform(-bound, bound, count)

@@ -13,6 +13,12 @@ from stickslip.plot.charts import (
 )
 from stickslip.plot.damper import DamperOptions, damper
 from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
+from stickslip.plot.mistuning import (
+    DistributionOptions,
+    TrendOptions,
+    amplification,
+    distribution,
+)
 from stickslip.plot.orbits import MultiplierOptions, events, multipliers
 from stickslip.plot.transients import (
     HistoryOptions,
@@ -33,6 +39,7 @@ __all__ = [
     "CurveOptions",
     "DamperOptions",
     "DiameterOptions",
+    "DistributionOptions",
     "Frame",
     "HistoryOptions",
     "LineOptions",
@@ -41,14 +48,17 @@ __all__ = [
     "PoincareOptions",
     "SafeOptions",
     "SpectrumOptions",
+    "TrendOptions",
     "WaveOptions",
     "aerodynamic",
+    "amplification",
     "basins",
     "blade_bars",
     "blade_curves",
     "contact_history",
     "curves",
     "damper",
+    "distribution",
     "events",
     "history",
     "hysteresis",

@@ -13,7 +13,7 @@ from stickslip.checks import brief, text, unknown
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Complex, Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
-from stickslip.results.peaks import RIVAL, Peak
+from stickslip.results.peaks import Peak
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -50,6 +50,10 @@ class BladeMotion(ContactMotion):
     @abstractmethod
     def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
         """Return the highest point of the response curve."""
+
+    @abstractmethod
+    def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
+        """Return which of some degrees of freedom has the highest peak, and the peak."""
 
     def sector(self, number: int) -> Self:
         """Return the motion of another sector of a tuned disk.
@@ -147,7 +151,7 @@ class BladeMotion(ContactMotion):
     def highest_blade(self, dof: str, measure: Measure = "half_range") -> tuple[int, Peak]:
         """Return the blade with the highest peak, and the peak.
 
-        Blades whose largest computed amplitude is within 10 % of the largest of all are refined.
+        All observed blades are followed together over the range of the computed points.
 
         Parameters
         ----------
@@ -170,13 +174,9 @@ class BladeMotion(ContactMotion):
         """
         if not self.arrays.solved.any():
             raise ModelError(f"peak of {dof!r}: no point is solved; see status")
-        tops = np.nanmax(self.blade_amplitudes(dof, measure), axis=0)
-        rivals = [
-            (blade, self.peak(f"{blade}.{dof}", measure))
-            for blade, top in zip(self.blades(dof), tops, strict=True)
-            if top >= RIVAL * tops.max()
-        ]
-        return max(rivals, key=lambda one: one[1].amplitude)
+        blades = self.blades(dof)
+        index, peak = self._highest_of([f"{blade}.{dof}" for blade in blades], measure)
+        return blades[index], peak
 
     def amplification(
         self, tuned: BladeMotion, dof: str, measure: Measure = "half_range"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -19,7 +19,7 @@ from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
 from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
-from stickslip.results.peaks import Bracket, Peak, highest
+from stickslip.results.peaks import RIVAL, Bracket, Peak, highest
 from stickslip.results.variables import Variable, coordinate, names, read, state_names
 
 if TYPE_CHECKING:
@@ -267,6 +267,12 @@ class ExactResponse(ForcedResponse):
         if key not in self._peaks:
             self._peaks[key] = highest(self, dof, measure, _refined)
         return self._peaks[key]
+
+    def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
+        tops = np.nanmax([self.amplitude(dof, measure) for dof in dofs], axis=1)
+        rivals = np.flatnonzero(tops >= RIVAL * tops.max())
+        peaks = {at: self.peak(dofs[at], measure) for at in rivals.tolist()}
+        return max(peaks.items(), key=lambda one: one[1].amplitude)
 
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.

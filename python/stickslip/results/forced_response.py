@@ -14,7 +14,7 @@ from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
 from stickslip.results.blades import BladeMotion
 from stickslip.results.energy import Energy, energy_of
-from stickslip.results.peaks import Peak, Summary, highest, refined, rows
+from stickslip.results.peaks import Peak, Summary, highest, highest_of, refined, rows
 from stickslip.results.sensitivities import Sensitivities
 
 if TYPE_CHECKING:
@@ -202,6 +202,9 @@ class ForcedResponse(BladeMotion, Sensitivities):
         if key not in self._peaks:
             self._peaks[key] = highest(self, dof, measure, refined)
         return self._peaks[key]
+
+    def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
+        return highest_of(self, dofs, measure)
 
     def error_estimate(self, dof: str) -> Float:
         """Return what the discarded harmonics could still change in a displacement.

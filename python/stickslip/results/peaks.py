@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
@@ -15,7 +15,7 @@ from stickslip.results.arrays import Bool, Float, Int, Measure
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
 
-__all__ = ["Peak", "Summary", "highest", "refined", "rows"]
+__all__ = ["Peak", "Summary", "highest", "highest_of", "refined", "rows"]
 
 RIVAL = 0.9
 """Local maxima from this share of the largest may be the true peak once they are refined."""
@@ -107,6 +107,69 @@ def highest(result: ForcedResponse, dof: str, measure: Measure, refine: Refine) 
             stacklevel=3,
         )
     return Peak(*peak, at_edge, beside_gap)
+
+
+def highest_of(result: ForcedResponse, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
+    """Return which of some degrees of freedom has the highest peak, and the peak.
+
+    All of them are followed together, by harmonic balance over the range of the computed points.
+
+    Parameters
+    ----------
+    result : ForcedResponse
+        The curves.
+    dofs : sequence of str
+        Observed degrees of freedom.
+    measure : {"half_range", "max", "fundamental"}
+        Measure of the amplitude.
+
+    Returns
+    -------
+    index : int
+        Position among `dofs`.
+    peak : Peak
+        Not below any computed point.
+
+    Raises
+    ------
+    ModelError
+        If no point is solved, or the core refuses.
+    """
+    from stickslip import _core
+
+    heights = np.stack([result.amplitude(dof, measure) for dof in dofs])
+    known = np.isfinite(heights).all(axis=0)
+    index = int(heights[:, known].max(axis=1).argmax()) if known.any() else 0
+    low, high = (result.omega[known].min(), result.omega[known].max()) if known.any() else (0, 0)
+    found: tuple[float, float] | None = None
+    if low < high:
+        settings = result.settings
+        quest: _core.Quest = {
+            "groups": [[result.model.structure.index(dof) for dof in dofs]],
+            "measure": measure,
+            "omega": (float(low), float(high)),
+            "harmonics": settings.fixed_harmonics,
+            "tolerance": settings.tolerance,
+            "residual": settings.residual,
+            "max_harmonics": settings.max_harmonics,
+            "max_iterations": settings.max_iterations,
+        }
+        try:
+            ((omega, amplitude, member, *_),) = _core.summits(
+                result.model.problem, quest, settings.march, None
+            )
+        except ValueError as error:
+            raise ModelError(f"peak of {dofs[index]!r}: {error}") from error
+        # A part that could not be solved leaves no peak: then that of the computed points counts.
+        if amplitude >= heights[:, known].max():
+            index, found = member, (omega, amplitude)
+
+    def refine(
+        result: ForcedResponse, dof: str, measure: Measure, bracket: Bracket
+    ) -> tuple[float, float]:
+        return found or refined(result, dof, measure, bracket)
+
+    return index, highest(result, dofs[index], measure, refine)
 
 
 def rows(result: ForcedResponse, dofs: Iterable[str] | str) -> list[Summary]:

@@ -30,6 +30,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "optimal_damper": ("stickslip.results.optimal_damper", "OptimalDamper"),
     "motion_class": ("stickslip.results.motion_class", "MotionClass"),
     "basin_map": ("stickslip.results.basin_map", "BasinMap"),
+    "mistuning_study": ("stickslip.results.mistuning", "MistuningStudy"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 
@@ -72,7 +73,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    ForcedResponse, ExactResponse, Transient, DamperCurve, OptimalDamper, MotionClass or BasinMap
+    Result
         Of the kind that was saved and equal to it, bit by bit, with its model: peaks can still be
         refined, and runs continued.
 

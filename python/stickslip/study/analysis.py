@@ -12,6 +12,7 @@ from stickslip.study.certify_table import CertifyTable
 from stickslip.study.damper_curve_table import DamperCurveTable
 from stickslip.study.entries import chosen_by
 from stickslip.study.exact_table import ExactTable
+from stickslip.study.mistuning_study_table import MistuningStudyTable
 from stickslip.study.single_harmonic_table import SingleHarmonicTable
 from stickslip.study.transient_table import TransientTable
 
@@ -24,7 +25,8 @@ AnalysisTable = Annotated[
     | Annotated[CertifyTable, Tag("<certify>")]
     | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")]
     | Annotated[DamperCurveTable, Tag("<damper-curve>")]
-    | Annotated[BasinMapTable, Tag("<basin-map>")],
+    | Annotated[BasinMapTable, Tag("<basin-map>")]
+    | Annotated[MistuningStudyTable, Tag("<mistuning-study>")],
     chosen_by(
         "kind",
         "forced-response",
@@ -34,6 +36,7 @@ AnalysisTable = Annotated[
         "single-harmonic",
         "damper-curve",
         "basin-map",
+        "mistuning-study",
         default="forced-response",
     ),
 ]

@@ -170,6 +170,12 @@ class StudyTables(Table):
             raise ModelError(
                 "coupling 1: there are no sectors to couple; add the table [disk], or leave it out"
             )
+        tuned = self.disk is not None and self.disk.mistuning is None
+        if self.analysis.kind == "mistuning-study" and not tuned:
+            raise ModelError(
+                "analysis: a mistuning-study makes its disks of a tuned one; add the table [disk], "
+                "without 'mistuning'"
+            )
         return self
 
     @model_validator(mode="after")

@@ -24,6 +24,7 @@ MODULES: Mapping[str, str] = {
     "optimal_damper": "stickslip.views.optima",
     "motion_class": "stickslip.views.motions",
     "basin_map": "stickslip.views.basins",
+    "mistuning_study": "stickslip.views.mistuning",
 }
 """The module of every kind of result; results of one module are drawn together."""
 

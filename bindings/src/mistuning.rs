@@ -1,0 +1,165 @@
+//! Mistuned disks: the highest blade of one, and of many patterns in parallel threads.
+
+use crate::arrays::{matrix, refused};
+use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
+use crate::response::{status_code, ResidualArgument};
+use crate::settings::{evaluated, settings};
+use crate::watch::{Raised, Watch};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use std::cell::RefCell;
+use std::sync::Arc;
+use stickslip_core::balance::{Method, Settings};
+use stickslip_core::design::{self, study, Pattern, Summit};
+use stickslip_core::structure::RingCoupling;
+
+/// A tuned disk, from which rings of deviating sectors are made.
+#[pyclass(frozen, module = "stickslip._core")]
+pub struct TunedDisk {
+    disk: Arc<design::TunedDisk>,
+}
+
+#[pymethods]
+impl TunedDisk {
+    /// Builds the disk from the matrices of a sector: mass with what couplings add; stiffness
+    /// without, and what they add; damping that does not deviate, that goes with the stiffness and
+    /// that goes with its root; the blocks of mass, damping and stiffness to the next sector;
+    /// contacts of every sector, and forces sector by sector.
+    #[new]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        mass: Matrix<'_>,
+        stiffness: Matrix<'_>,
+        coupled_stiffness: Matrix<'_>,
+        damping: (Matrix<'_>, Matrix<'_>, Matrix<'_>),
+        coupling: (Matrix<'_>, Matrix<'_>, Matrix<'_>),
+        contacts: Vec<SectorContactSpec<'_>>,
+        forces: Vec<Forces<'_>>,
+    ) -> PyResult<Self> {
+        let disk = design::TunedDisk {
+            mass: matrix(&mass),
+            stiffness: matrix(&stiffness),
+            coupled_stiffness: matrix(&coupled_stiffness),
+            damping: [matrix(&damping.0), matrix(&damping.1), matrix(&damping.2)],
+            coupling: RingCoupling {
+                mass: matrix(&coupling.0),
+                damping: matrix(&coupling.1),
+                stiffness: matrix(&coupling.2),
+            },
+            contacts: sector_contacts(contacts)?,
+            loads: forces.into_iter().map(harmonic_loads).collect(),
+        };
+        Ok(Self { disk: Arc::new(disk) })
+    }
+
+    /// The ring whose sectors' stiffnesses deviate.
+    fn mistuned(&self, py: Python<'_>, deviations: PyReadonlyArray1<'_, f64>) -> PyResult<Problem> {
+        let deviations = deviations.as_array().to_vec();
+        let model = py.detach(|| self.disk.mistuned(&deviations)).map_err(refused)?;
+        Ok(Problem { model: Arc::new(model) })
+    }
+}
+
+/// Which highest points are sought, and how: `groups` of DOFs, of each of which the highest.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Quest {
+    groups: Vec<Vec<usize>>,
+    measure: String,
+    omega: (f64, f64),
+    harmonics: Option<usize>,
+    tolerance: f64,
+    residual: ResidualArgument,
+    max_harmonics: usize,
+    max_iterations: usize,
+}
+
+impl Quest {
+    fn parse(self) -> PyResult<(design::Quest, Settings)> {
+        let measure = self.measure.parse().map_err(refused)?;
+        let settings = settings(
+            self.harmonics,
+            self.tolerance,
+            &self.residual,
+            Method::Newton,
+            self.max_harmonics,
+            self.max_iterations,
+        )?;
+        Ok((design::Quest { groups: self.groups, measure, span: self.omega }, settings))
+    }
+}
+
+/// Frequency, amplitude, DOF by its position in the group, status, harmonics kept, error estimate,
+/// whether it lies at an end of the range.
+type Row = (f64, f64, usize, u8, usize, f64, bool);
+
+fn row(summit: &Summit) -> Row {
+    let Summit { omega, amplitude, member, status, harmonics, error_estimate, at_edge } = *summit;
+    (omega, amplitude, member, status_code(status), harmonics, error_estimate, at_edge)
+}
+
+/// The highest point of every group of DOFs.
+#[pyfunction]
+pub fn summits(
+    py: Python<'_>,
+    problem: &Problem,
+    quest: Quest,
+    march: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<Row>> {
+    let model = evaluated(problem, march)?;
+    let (quest, settings) = quest.parse()?;
+    let (found, raised) = Watch::during(py, progress.as_ref(), |look| {
+        design::summits(&model, settings, &quest, None, look)
+    });
+    raised.raise()?;
+    Ok(found.map_err(refused)?.summits.iter().map(row).collect())
+}
+
+/// The highest blade of every pattern, one row of `deviations` each, of the disk at its position in
+/// `disks`; groups hold DOFs of a sector. `deliver(index, rows, points)` is called as they come.
+/// Whether all were computed: Ctrl-C ends the study early.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub fn mistuning_study(
+    py: Python<'_>,
+    disks: Vec<PyRef<'_, TunedDisk>>,
+    which: Vec<usize>,
+    deviations: PyReadonlyArray2<'_, f64>,
+    quest: Quest,
+    orders: Vec<usize>,
+    threads: usize,
+    deliver: Py<PyAny>,
+) -> PyResult<bool> {
+    let (quest, settings) = quest.parse()?;
+    let disks: Vec<Arc<design::TunedDisk>> =
+        disks.iter().map(|one| Arc::clone(&one.disk)).collect();
+    let rows: Vec<Vec<f64>> =
+        deviations.as_array().outer_iter().map(|row| row.iter().copied().collect()).collect();
+    let orders: Vec<Option<usize>> = orders.into_iter().map(Some).collect();
+    let (result, raised) = py.detach(|| {
+        let disks: Vec<&design::TunedDisk> = disks.iter().map(AsRef::as_ref).collect();
+        let patterns: Vec<Pattern<'_>> =
+            rows.iter().zip(which).map(|(deviations, disk)| Pattern { disk, deviations }).collect();
+        let raised = RefCell::new(None);
+        let ask = |question: &dyn Fn(Python<'_>) -> PyResult<()>| match Python::attach(question) {
+            Ok(()) => true,
+            Err(error) => {
+                raised.replace(Some(error));
+                false
+            }
+        };
+        let mut hand_over = |index: usize, found: design::Summits| {
+            let rows: Vec<Row> = found.summits.iter().map(row).collect();
+            ask(&|py| deliver.call1(py, (index, rows.clone(), found.points)).map(drop))
+        };
+        let mut wait = || ask(&|py| py.check_signals());
+        let result =
+            study(&disks, &patterns, settings, &quest, &orders, threads, &mut hand_over, &mut wait);
+        (result, Raised::from(raised.into_inner()))
+    });
+    let complete = raised.is_empty();
+    raised.raise_unless_interrupt(py)?;
+    result.map_err(refused)?;
+    Ok(complete)
+}

@@ -1,0 +1,171 @@
+"""Amplification factors of many mistuned disks."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Literal
+
+from numpy.typing import ArrayLike
+
+from stickslip.analyses.arguments import Progress, Residual, Span, require_forced, require_progress
+from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS
+from stickslip.analyses.memory import require_numbers
+from stickslip.analyses.mistuning_arguments import (
+    dofs_of,
+    numbers_of,
+    patterns_of,
+    processors,
+    require_stiff,
+)
+from stickslip.analyses.mistuning_disks import Series, coupled_disks, identity_of, tuned_peaks
+from stickslip.analyses.mistuning_run import Work
+from stickslip.analyses.mistuning_settings import MistuningSettings
+from stickslip.analyses.pattern_store import PatternStore
+from stickslip.checks import brief, whole_number
+from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.pattern import Distribution
+from stickslip.errors import Interrupted, ModelError
+from stickslip.results.arrays import Measure
+from stickslip.results.mistuning import MistuningStudy
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+__all__ = ["mistuning_study"]
+
+
+def mistuning_study(
+    disk: BladedDisk,
+    deviation: ArrayLike,
+    *,
+    omega: Span,
+    patterns: int | ArrayLike = 1000,
+    seed: int = 0,
+    distribution: Distribution = "normal",
+    dofs: Iterable[str] | str | None = None,
+    coupling_stiffness: ArrayLike | None = None,
+    measure: Measure = "half_range",
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 1e-3,
+    residual: Residual = "centred",
+    threads: int | None = None,
+    store: str | PathLike[str] | None = None,
+    progress: Progress = None,
+    max_harmonics: int = MAX_HARMONICS,
+    max_iterations: int = MAX_ITERATIONS,
+) -> MistuningStudy:
+    """Amplification factors of disks whose blades deviate at random, and their distribution.
+
+    Of every disk the highest point over all blades and all frequencies of a range is found directly
+    from some twenty solutions with exact slopes; no grid has to be fine enough. Its ratio to the
+    peak of the tuned disk is the amplification factor. What is computed of a disk depends on
+    nothing but its own pattern and the tuned disk, so that numbers are the same bit by bit with any
+    number of threads, in one run or in several.
+
+    Parameters
+    ----------
+    disk : BladedDisk
+        The tuned disk.
+    deviation : float or array_like, shape (m,)
+        Standard deviations S of the sectors' stiffness: sector i of a pattern r has (1 + S r_i) K,
+        as ``disk.mistuned(S * r)``.
+    omega : (float, float)
+        Range of frequencies in which peaks are the highest points [rad/s].
+    patterns : int or array_like, shape (p, n), optional
+        How many patterns are drawn; or the patterns themselves, in units of S.
+    seed : int, optional
+        Of the patterns drawn. Pattern i of a seed is the same however many there are, and the same
+        for all deviations and couplings.
+    distribution : {"normal", "uniform"}, optional
+        Distribution of zero mean and unit deviation of the patterns drawn.
+    dofs : str or iterable of str, optional
+        Degrees of freedom of a sector whose amplification is sought. Default: all that carry a
+        contact or a force.
+    coupling_stiffness : float or array_like, shape (c,), optional
+        Stiffnesses that all couplings take in turn [N/m]. Default: those of the disk.
+    measure : {"half_range", "max", "fundamental"}, optional
+        See `ForcedResponse.amplitude`.
+    threads : int, optional
+        Threads. Default: as many as there are processors.
+    store : path-like, optional
+        File in which the results are kept as they come. If there is one of the same study already,
+        with as many patterns, deviations and couplings or with others, only what is missing is
+        computed: a run that was stopped, however rudely, goes on where it was.
+    harmonics, tolerance, residual, progress, max_harmonics, max_iterations
+        See `stickslip.forced_response`; automatic harmonics start from those of the tuned disk.
+
+    Returns
+    -------
+    MistuningStudy
+        One amplification factor per deviation, coupling, pattern and degree of freedom.
+
+    Raises
+    ------
+    ModelError
+        If an argument is of the wrong type or outside its range, the peak of the tuned disk cannot
+        be found, or the store holds another study.
+    Interrupted
+        On Ctrl-C; its `result` holds the patterns that had been computed.
+
+    References
+    ----------
+    Guillen (1999), section 4.5 and Fig. 4.22, of one pattern.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> ring = ss.reference.beam_ring(sectors=12, coupling=7e3, engine_order=3)
+    >>> study = ss.mistuning_study(ring, 0.05, omega=(150, 260), patterns=2, seed=1, harmonics=3)
+    >>> study.amplification("damper").shape
+    (1, 1, 2)
+    """
+    if not isinstance(disk, BladedDisk):
+        raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give the tuned disk")
+    require_progress(progress)
+    if not isinstance(omega, tuple):
+        raise ModelError("omega: give a range (from, to) in rad/s")
+    rows, drawn = patterns_of(patterns, disk.sectors, distribution, seed)
+    settings = MistuningSettings(
+        span=omega,
+        distribution=distribution if drawn else None,
+        seed=whole_number(seed, "seed") if drawn else None,
+        measure=measure,
+        harmonics=harmonics,
+        tolerance=tolerance,
+        residual=residual,
+        max_harmonics=max_harmonics,
+        max_iterations=max_iterations,
+    )
+    names = dofs_of(dofs, disk)
+    deviations = numbers_of(deviation, "deviation", "0.05 for 5 %")
+    require_stiff(deviations, rows)
+    automatic = settings.harmonics == "auto"
+    kept = settings.max_harmonics if settings.harmonics == "auto" else settings.harmonics
+    require_forced(disk, kept, "max_harmonics" if automatic else "harmonics")
+    pool = processors() if threads is None else whole_number(threads, "threads", smallest=1)
+    disks = coupled_disks(disk, coupling_stiffness)
+    count = deviations.size * len(disks) * len(rows) * len(names)
+    require_numbers(8 * count, f"the result of {count} peaks", "give fewer patterns")
+    start = time.perf_counter()
+    series = [Series(one, value, tuned_peaks(one, settings, names)) for value, one in disks]
+    work = Work(disk, settings, names, deviations, series, rows)
+    if store is None:
+        complete = work.run(pool, progress, None)
+    else:
+        identity = identity_of(disk, settings, names, rows, given=coupling_stiffness is not None)
+        with PatternStore(store, identity) as kept_rows:
+            work.recall(kept_rows)
+            complete = work.run(pool, progress, kept_rows)
+    result = work.result(time.perf_counter() - start, interrupted=not complete)
+    if not complete:
+        rest = "" if store is None else f"; {os.fspath(store)} goes on from there"
+        raise Interrupted(
+            f"mistuning study interrupted after {work.done} of {work.total} disks, which the "
+            f"result of this exception holds{rest}",
+            result,
+        )
+    if progress is not None:
+        progress(1.0)
+    return result

@@ -1,0 +1,338 @@
+"""Amplification factors of mistuned disks and their distribution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import choice, real_number, unknown
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.results.arrays import Float, Int, constant
+from stickslip.results.mistuning_arrays import ALL, VARIABLES, MistuningArrays
+from stickslip.results.result import Result
+from stickslip.results.status import Status
+from stickslip.results.variables import (
+    attributes,
+    coordinate,
+    dof_coordinate,
+    parts,
+    read,
+    settings_of,
+    written,
+)
+from stickslip.results.weibull import Percentile, WeibullFit, empirical_percentile, fit_weibull
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+    from stickslip.analyses.mistuning_settings import MistuningSettings
+    from stickslip.plot.mistuning import DistributionOptions, TrendOptions
+
+__all__ = ["MistuningStudy"]
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class MistuningStudy(Result):
+    """Amplification factors of many mistuned disks.
+
+    The amplification factor of a disk is the highest peak of any blade over that of the tuned disk,
+    both over the range of frequencies. Arrays of d deviations, c couplings and p patterns; where
+    one is to be chosen, it is given by its value and may be left out if there is only one.
+
+    Attributes
+    ----------
+    model : BladedDisk
+        The tuned disk.
+    settings : MistuningSettings
+        How the disks were made and computed.
+    arrays : MistuningArrays
+        Every number by its name.
+    """
+
+    kind: ClassVar[str] = "mistuning_study"
+
+    settings: MistuningSettings
+    arrays: MistuningArrays
+
+    def __repr__(self) -> str:
+        d, c, p, _ = self.arrays.amplitude.shape
+        done = int(self.arrays.solved.all(axis=-1).sum())
+        return (
+            f"MistuningStudy({d} deviation(s), {c} coupling(s), {p} pattern(s): {done} of "
+            f"{d * c * p} disks found, {', '.join(self.dofs)})"
+        )
+
+    @property
+    def deviation(self) -> Float:
+        """Standard deviations of the sectors' stiffness, shape (d,)."""
+        return self.arrays.deviation
+
+    @property
+    def coupling_stiffness(self) -> Float:
+        """Stiffnesses of the couplings [N/m], shape (c,)."""
+        return self.arrays.coupling
+
+    @property
+    def patterns(self) -> Float:
+        """Patterns r, shape (p, n): ``disk.mistuned(deviation * patterns[i])`` is a disk."""
+        return self.arrays.patterns
+
+    @cached_property
+    def status(self) -> NDArray[np.object_]:
+        """How each search ended, shape (d, c, p, q); `Status`, with its advice."""
+        known = np.array(list(Status), dtype=object)
+        status: NDArray[np.object_] = known[self.arrays.status]
+        status.setflags(write=False)
+        return status
+
+    def amplification(self, dof: str) -> Float:
+        """Return amplification factors, shape (d, c, p); not-a-number if not found.
+
+        Parameters
+        ----------
+        dof : str
+            Degree of freedom of a sector.
+
+        Raises
+        ------
+        ModelError
+            If it was not studied.
+        """
+        return self.arrays.amplification[..., self._dof(dof)]
+
+    def error(self, dof: str) -> Float:
+        """Return what the discarded harmonics could change in the factors, shape (d, c, p).
+
+        Of the mistuned and of the tuned peak together.
+        """
+        at, arrays = self._dof(dof), self.arrays
+        tuned = arrays.tuned_error_estimate[:, at] / arrays.tuned_amplitude[:, at]
+        own = arrays.error_estimate[..., at] / arrays.amplitude[..., at]
+        return constant(self.amplification(dof) * (own + tuned[np.newaxis, :, np.newaxis]))
+
+    def blade(self, dof: str) -> Int:
+        """Return the blades of the highest peaks, shape (d, c, p); -1 if not found."""
+        return self.arrays.blade[..., self._dof(dof)]
+
+    def omega(self, dof: str) -> Float:
+        """Return the frequencies of the highest peaks, shape (d, c, p) [rad/s]."""
+        return self.arrays.omega[..., self._dof(dof)]
+
+    def amplitude(self, dof: str) -> Float:
+        """Return the amplitudes of the highest peaks, shape (d, c, p) [m]."""
+        return self.arrays.amplitude[..., self._dof(dof)]
+
+    def tuned(self, dof: str) -> Float:
+        """Return the amplitudes of the peaks of the tuned disk, shape (c,) [m]."""
+        return self.arrays.tuned_amplitude[:, self._dof(dof)]
+
+    def factors(
+        self, dof: str, *, deviation: float | None = None, coupling: float | None = None
+    ) -> Float:
+        """Return the amplification factors found for one deviation and one coupling.
+
+        Parameters
+        ----------
+        dof : str
+            Degree of freedom of a sector.
+        deviation, coupling : float, optional
+            One of the values of the study. Default: the only one.
+
+        Returns
+        -------
+        ndarray of float64, shape (found,)
+            In the order of the patterns, those that were not found left out.
+
+        Raises
+        ------
+        ModelError
+            If the degree of freedom, deviation or coupling was not studied, or there are several
+            and none is given.
+        """
+        row = self.amplification(dof)[
+            _one(deviation, self.deviation, "deviation"),
+            _one(coupling, self.coupling_stiffness, "coupling"),
+        ]
+        return constant(row[np.isfinite(row)])
+
+    def weibull(
+        self,
+        dof: str,
+        *,
+        deviation: float | None = None,
+        coupling: float | None = None,
+        confidence: float = 0.95,
+    ) -> WeibullFit:
+        """Return the three-parameter Weibull distribution of the factors.
+
+        Parameters
+        ----------
+        dof, deviation, coupling
+            See `factors`.
+        confidence : float, optional
+            Probability with which an interval is to hold the true value.
+
+        Returns
+        -------
+        WeibullFit
+            Shape, scale and location with their intervals, its distance from the factors.
+
+        Raises
+        ------
+        ModelError
+            As `factors`; if there are fewer than 30 factors, or all are equal.
+        """
+        return fit_weibull(self.factors(dof, deviation=deviation, coupling=coupling), confidence)
+
+    def percentile(
+        self,
+        dof: str,
+        q: float,
+        *,
+        method: Literal["weibull", "empirical"] = "weibull",
+        deviation: float | None = None,
+        coupling: float | None = None,
+        confidence: float = 0.95,
+    ) -> Percentile:
+        """Return the factor that q percent of all disks do not exceed, with its confidence.
+
+        Parameters
+        ----------
+        dof, deviation, coupling
+            See `factors`.
+        q : float
+            From 0 to 100, exclusive: 99.9.
+        method : {"weibull", "empirical"}, optional
+            From the fitted distribution, also beyond the data; or from the factors themselves.
+        confidence : float, optional
+            Probability with which the interval is to hold the true percentile.
+
+        Returns
+        -------
+        Percentile
+            Value, low and high end.
+
+        Raises
+        ------
+        ModelError
+            As `weibull`; if q or the method is unknown.
+        """
+        chosen = choice(method, "method", ("weibull", "empirical"))
+        if chosen == "empirical":
+            factors = self.factors(dof, deviation=deviation, coupling=coupling)
+            return empirical_percentile(factors, q, confidence)
+        fit = self.weibull(dof, deviation=deviation, coupling=coupling, confidence=confidence)
+        return fit.percentile(q)
+
+    def plot_distribution(self, dof: str, **options: Unpack[DistributionOptions]) -> Axes:
+        """Draw factors and their fit on extreme-value paper; see `stickslip.plot.distribution`."""
+        from stickslip import plot
+
+        return plot.distribution(self, dof, **options)
+
+    def plot_deviation(self, dof: str, **options: Unpack[TrendOptions]) -> Axes:
+        """Draw factors against the deviation; see `stickslip.plot.amplification`."""
+        from stickslip import plot
+
+        return plot.amplification(self, dof, "deviation", **options)
+
+    def plot_coupling(self, dof: str, **options: Unpack[TrendOptions]) -> Axes:
+        """Draw factors against the stiffness of couplings; see `stickslip.plot.amplification`."""
+        from stickslip import plot
+
+        return plot.amplification(self, dof, "coupling", **options)
+
+    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+        """Return everything as an xarray dataset with units on every variable.
+
+        Parameters
+        ----------
+        derived : bool, optional
+            Whether to add what follows from the other variables: the amplification factors.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions deviation, coupling_stiffness, pattern, dof and sector.
+        """
+        import xarray as xr
+
+        arrays = self.arrays
+        meaning = {"units": "1", "long_name": "standard deviation of the sectors' stiffness"}
+        stiffness = {"units": "N/m", "long_name": "stiffness of the couplings"}
+        numbers = {"units": "1", "long_name": "number of the pattern"}
+        dataset = xr.Dataset(
+            written(VARIABLES, arrays),
+            coords={
+                "deviation": ("deviation", arrays.deviation.copy(), meaning),
+                "coupling_stiffness": ("coupling_stiffness", arrays.coupling.copy(), stiffness),
+                "pattern": ("pattern", np.arange(len(arrays.patterns)), numbers),
+                "dof": dof_coordinate(self),
+            },
+            attrs=attributes(self, self.settings, "Amplification factors of mistuned disks"),
+        )
+        if derived:
+            said = {"units": "1", "long_name": "amplification factor"}
+            dataset["amplification"] = (ALL, arrays.amplification.copy(), said)
+        return dataset
+
+    @classmethod
+    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+        """Return the study that a dataset holds.
+
+        Parameters
+        ----------
+        dataset : xarray.Dataset
+            As `to_dataset` makes it.
+        model : BladedDisk
+            The tuned disk.
+
+        Returns
+        -------
+        MistuningStudy
+            Equal to the one that made the dataset, bit by bit.
+
+        Raises
+        ------
+        KeyError, ValueError
+            If the dataset is incomplete, or belongs to another model.
+        """
+        from stickslip.analyses.mistuning_settings import MistuningSettings
+
+        values = settings_of(dataset)
+        arrays = MistuningArrays(
+            deviation=coordinate(dataset, "deviation"),
+            coupling=coordinate(dataset, "coupling_stiffness"),
+            **read(VARIABLES, dataset),
+        )
+        if arrays.status.max(initial=0) >= len(Status):
+            raise ValueError(f"status {arrays.status.max()} is unknown")
+        settings = MistuningSettings(**values | {"span": tuple(values["span"])})
+        return cls(**parts(dataset, model), settings=settings, arrays=arrays)
+
+    def _dof(self, dof: str) -> int:
+        if dof not in self.dofs:
+            raise ModelError(unknown("dof of the study", dof, self.dofs))
+        return self.dofs.index(dof)
+
+
+def _one(value: float | None, known: Float, entry: str) -> int:
+    """Return the position of a value of the study."""
+    shown = ", ".join(f"{one:g}" for one in known)
+    if value is None:
+        if known.size > 1:
+            raise ModelError(f"{entry}: there are {known.size}; give one of {shown}")
+        return 0
+    number = real_number(value, entry)
+    at = np.flatnonzero(np.isclose(known, number, rtol=1e-12, atol=0.0))
+    if not at.size:
+        raise ModelError(f"{entry}: {number:g} was not studied; give one of {shown}")
+    return int(at[0])
