@@ -1,5 +1,6 @@
 """The command line."""
 
 from stickslip.cli.commands import app
+from stickslip.cli.reproduction import reproduce
 
-__all__ = ["app"]
+__all__ = ["app", "reproduce"]

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import secrets
-from collections.abc import Hashable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Hashable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -14,6 +12,7 @@ import numpy as np
 
 from stickslip.checks import file_path, listed
 from stickslip.errors import ModelError
+from stickslip.files import whole
 from stickslip.results.stored_model import model_of, model_variables
 
 if TYPE_CHECKING:
@@ -63,7 +62,7 @@ def save(result: Result, path: str | os.PathLike[str]) -> None:
     dataset = _split(result.to_dataset(derived=False).assign(model_variables(result.model)))
     dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": result.kind}
     try:
-        with _whole(target) as temporary:
+        with whole(target) as temporary:
             dataset.to_netcdf(temporary, engine="h5netcdf", encoding=_encoding(dataset))
     except OSError as error:
         raise ModelError(
@@ -175,20 +174,6 @@ def _encoding(dataset: xr.Dataset) -> dict[Hashable, dict[str, object]]:
         if variable.ndim and variable.size:
             encoding[name] |= {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True}
     return encoding
-
-
-@contextmanager
-def _whole(target: Path) -> Iterator[Path]:
-    """Let a file be written beside its target, and put it there once it is complete."""
-    temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
-    try:
-        yield temporary
-        with temporary.open("rb") as written:
-            os.fsync(written.fileno())
-        temporary.replace(target)
-    finally:
-        with suppress(FileNotFoundError):
-            temporary.unlink()
 
 
 def _line(error: BaseException) -> str:
