@@ -1,8 +1,8 @@
 """Makes the pictures and numbers of the gallery: ``python docs/make_gallery.py [NAME ...]``.
 
-The same code as ``stickslip reproduce all`` at full resolution. They are kept with the pages, so that
-building the pages computes nothing, and the pages show what was measured on an idle machine; what
-each item takes goes into the package, for the list of ``stickslip reproduce``.
+The same code as ``stickslip reproduce all``, at full resolution. Pictures and numbers are kept with
+the pages, so that building the pages computes nothing; what each item takes is kept in the package,
+for the list of ``stickslip reproduce``.
 """
 
 from __future__ import annotations

@@ -96,7 +96,7 @@ def settled(model: ss.Model, omega: Iterable[float], dof: str) -> tuple[Float, F
             keep=1,
             observe=dof,
         )
-        spring = largest_range(run.contact_force(contact.name)) / contact.parameters()["stiffness"]
+        spring = largest_range(run.contact_force(0)) / contact.parameters()["stiffness"]
         found = (run.amplitude(dof), spring)
         rows.append(found if run.status.name == "SETTLED" else (np.nan, np.nan))
     displacement, damper = np.array(rows).T

@@ -92,6 +92,8 @@ def _thinned(series: Series) -> dict[str, int]:
 
 
 def _frame(ax: Axes, plot: Plot) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     ax.set_xlabel(_typeset(plot.x.label))
     _scale(ax, plot.x, "x")
     _scale(ax, plot.y, "y")
@@ -101,7 +103,7 @@ def _frame(ax: Axes, plot: Plot) -> None:
     ax.margins(x=0.02 if marked or plot.x.log else 0.0)
     places = np.concatenate([np.asarray(line.get_xdata(), float) for line in ax.lines])
     if not plot.x.log and places.max() < 100.0 and not np.any(places % 1.0):
-        ax.xaxis.get_major_locator().set_params(integer=True)
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(visible=True, color="0.9", lw=0.7)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from stickslip.errors import ModelError
 from stickslip.files import whole
 from stickslip.reproduce.index import page
 from stickslip.reproduce.item import Item
@@ -20,6 +21,7 @@ from stickslip.reproduce.subjects import SUBJECTS
 __all__ = ["INDEX", "records", "write", "write_index", "write_picture", "write_record"]
 
 INDEX = "index.html"
+_KEYS = {"subject", "see", "corrected", "inferred", "facts", "table", "seconds"}
 DPI = 120
 
 
@@ -113,13 +115,25 @@ def write_record(
 
 
 def records(folder: Path) -> dict[str, dict[str, Any]]:
-    """Return the records in a folder, by name, in the order of the dissertation."""
+    """Return the records in a folder, by name, in the order of the dissertation.
+
+    Raises
+    ------
+    ModelError
+        If a file with the name of a record is none.
+    """
     files = {name: folder / f"{name}.json" for name in SUBJECTS}
-    return {
-        name: json.loads(file.read_text(encoding="utf-8"))
-        for name, file in files.items()
-        if file.is_file()
-    }
+    return {name: _record(file) for name, file in files.items() if file.is_file()}
+
+
+def _record(file: Path) -> dict[str, Any]:
+    try:
+        record = json.loads(file.read_text(encoding="utf-8"))
+    except ValueError:
+        record = None
+    if not isinstance(record, dict) or not record.keys() >= _KEYS:
+        raise ModelError(f"{file}: not a record of a reproduction; delete it and run again")
+    return record
 
 
 def write_index(folder: Path) -> None:

@@ -43,7 +43,7 @@ class Item:
 
     @property
     def heading(self) -> str:
-        """ "Table 2.3", "Fig. 4.22"."""
+        """How the dissertation calls it: "Table 2.3", "Fig. 4.22"."""
         return heading(self.name)
 
     @property
