@@ -1,8 +1,8 @@
 """Makes the pictures and numbers of the gallery: ``python docs/make_gallery.py [NAME ...]``.
 
 The same code as ``stickslip reproduce all``, at full resolution. Pictures and numbers are kept with
-the pages, so that building the pages computes nothing; what each item takes is kept in the package,
-for the list of ``stickslip reproduce``.
+the pages, so that building the pages computes nothing; what each item takes, in processor time, is
+kept in the package, for the list of ``stickslip reproduce``.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ def main(names: list[str]) -> None:
     """Reproduce some or all items into the assets of the documentation."""
     FOLDER.mkdir(exist_ok=True)
     for item in chosen(names or ["all"]):
-        begin = time.perf_counter()
+        begin = time.process_time()
         numbers = item.compute(FULL)
-        seconds = time.perf_counter() - begin
+        seconds = time.process_time() - begin
         write_picture(numbers.plot, FOLDER / f"{item.name}.png", colours=COLOURS)
         write_record(item, numbers, seconds, FULL, FOLDER)
         _remember(item.name, seconds)

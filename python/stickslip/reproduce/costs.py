@@ -12,6 +12,6 @@ FILE = Path(__file__).with_name("costs.json")
 
 
 def costs() -> Mapping[str, float]:
-    """Return seconds on one core, by name of the item."""
+    """Return seconds of processor time, by name of the item."""
     measured: dict[str, float] = json.loads(FILE.read_text(encoding="utf-8"))
     return measured
