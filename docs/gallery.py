@@ -65,7 +65,7 @@ def _table(name: str) -> str:
 
 
 def _cost(taken: Mapping[str, float], name: str) -> str:
-    return f"{taken[name]:.1f}" if name in taken else "?"
+    return f"{taken[name]:.2g}" if name in taken else "?"
 
 
 def _row(cells: Sequence[str]) -> str:

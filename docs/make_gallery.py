@@ -31,11 +31,11 @@ def main(names: list[str]) -> None:
         write_picture(numbers.plot, FOLDER / f"{item.name}.png", colours=COLOURS)
         write_record(item, numbers, seconds, FULL, FOLDER)
         _remember(item.name, seconds)
-        print(f"{item.name:<10} {seconds:6.1f} s")
+        print(f"{item.name:<10} {seconds:6.2f} s")
 
 
 def _remember(name: str, seconds: float) -> None:
-    known = {**costs(), name: round(seconds, 1)}
+    known = {**costs(), name: round(seconds, 2)}
     kept = {name: known[name] for name in items() if name in known}
     with whole(FILE) as temporary:
         temporary.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")

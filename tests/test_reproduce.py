@@ -3,6 +3,7 @@
 Numbers without a remark are those of exact orbits, computed independently of this package.
 """
 
+import runpy
 from functools import cache
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from stickslip.reproduce import (
     Table,
     chosen,
     costs,
+    heading,
     items,
     write,
 )
@@ -31,6 +33,7 @@ from stickslip.reproduce.curves import settled
 from stickslip.reproduce.drawing import draw
 from stickslip.reproduce.folder import records
 
+DOCS = Path(__file__).parents[1] / "docs"
 ERROR = "error of the tip peak to exact [%]"
 
 # What the facts of an item must be: value and relative tolerance.
@@ -322,7 +325,7 @@ def test_what_is_not_a_number_is_left_empty(tmp_path):
 
 
 def test_gallery_holds_what_the_catalogue_has():
-    folder = Path(__file__).parents[1] / "docs" / "assets" / "reproduction"
+    folder = DOCS / "assets" / "reproduction"
     known = records(folder)
     assert set(known) == set(items()), "run docs/make_gallery.py"
     for name, record in known.items():
@@ -331,3 +334,24 @@ def test_gallery_holds_what_the_catalogue_has():
         facts = {fact["what"]: fact["value"] for fact in record["facts"]}
         for what, (value, tolerance) in KEY_NUMBERS[name].items():
             assert facts[what] == pytest.approx(value, rel=tolerance), (name, what)
+
+
+def test_pages_are_written_from_the_catalogue():
+    hook = runpy.run_path(str(DOCS / "gallery.py"))["on_page_markdown"]
+    coverage = hook("# Coverage\n\n{{ coverage }}\n").splitlines()
+    for name in SUBJECTS:
+        (line,) = [
+            line
+            for line in coverage
+            if f"{heading(name)}]" in line or f"| {heading(name)} |" in line
+        ]
+        assert ("done" in line) == (name in items())
+        assert ("not yet" in line) == (name not in items())
+    gallery = hook("{{ gallery }}")
+    for name, item in items().items():
+        assert f"assets/reproduction/{name}.png" in gallery
+        assert item.see in gallery
+        assert item.code in gallery
+        assert all(line in gallery for line in item.corrected)
+    assert "| Runge-Kutta |" in hook("{{ table table-4.1 }}")
+    assert hook("text with {{ braces }}") == "text with {{ braces }}"

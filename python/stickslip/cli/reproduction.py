@@ -76,7 +76,7 @@ def _list() -> None:
     table.add_column("cost [s]", justify="right")
     table.add_column("subject")
     for name, subject in SUBJECTS.items():
-        cost = f"{measured[name]:.1f}" if name in done and name in measured else ""
+        cost = f"{measured[name]:.2g}" if name in done and name in measured else ""
         table.add_row(name, "done" if name in done else "not yet", cost, subject)
     console.show(table)
     whole = sum(measured.get(name, 0.0) for name in done)

@@ -125,12 +125,12 @@ def _integration(
 
 @reproduces(
     "table-4.1",
-    """Runge-Kutta takes some hundred times as long as harmonic balance, as in print, although both
+    """Runge-Kutta takes hundreds of times as long as harmonic balance, as in print, although both
     are compiled here. Newton's method with the exact tangent needs fewer iterations than Broyden's.
     Exact orbits have no error and stay far below the time of any integration.""",
     corrected=(errata.RETURN_MAP, errata.BROYDEN),
     inferred=(
-        "Read ratios of one run: the printed seconds are those of a workstation of 1998.",
+        "Read ratios of one run: the printed seconds are those of an HP C240 workstation.",
         "The column of the 18-DOF blade is left out: its data are proprietary.",
     ),
 )

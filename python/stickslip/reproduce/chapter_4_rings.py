@@ -151,9 +151,9 @@ def _beams(title: str, balance: ss.ForcedResponse, run: ss.Transient) -> Panel:
         held = balance.damper_displacement((beam, 0), 0)
         marks = run.displacement(f"{beam}.damper")[:-1]
         series += [
-            over_period(f"x₁, beam {beam}", moved, pair=2 * place),
-            over_period(f"x_d, beam {beam}", held, pair=2 * place + 1),
-            over_period(f"x₁, beam {beam}, Runge-Kutta", marks, kind="marks", pair=2 * place),
+            over_period(f"x₁, beam {beam}", moved, pair=place),
+            over_period(f"x_d, beam {beam}", held, kind="limit", pair=place),
+            over_period(f"x₁, beam {beam}, Runge-Kutta", marks, kind="marks", pair=place),
         ]
     return Panel(tuple(series), title)
 

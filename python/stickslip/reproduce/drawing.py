@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -67,6 +68,7 @@ def draw(plot: Plot) -> Figure:
             )
         ax.set_title(_typeset(panel.title), fontsize="medium")
         _frame(ax, plot)
+    _from_zero(rows[0], plot)
     rows[0][0].set_ylabel(_typeset(plot.y.label))
     handles: dict[str, Any] = {}
     for ax in rows[0]:
@@ -97,8 +99,6 @@ def _frame(ax: Axes, plot: Plot) -> None:
     ax.set_xlabel(_typeset(plot.x.label))
     _scale(ax, plot.x, "x")
     _scale(ax, plot.y, "y")
-    if not plot.y.log and ax.dataLim.y0 >= 0.0:
-        ax.set_ylim(bottom=0.0)
     marked = any(line.get_linestyle() == "None" for line in ax.lines)
     ax.margins(x=0.02 if marked or plot.x.log else 0.0)
     places = np.concatenate([np.asarray(line.get_xdata(), float) for line in ax.lines])
@@ -107,6 +107,15 @@ def _frame(ax: Axes, plot: Plot) -> None:
     ax.grid(visible=True, color="0.9", lw=0.7)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
+
+
+def _from_zero(row: Iterable[Axes], plot: Plot) -> None:
+    """Let amplitudes start at zero, unless that would press them together."""
+    values = [series.y for panel in plot.panels for series in panel.series]
+    low, high = (plot.y.factor * float(end(np.concatenate(values))) for end in (np.min, np.max))
+    if not plot.y.log and 0.0 <= low < 0.5 * high:
+        for ax in row:
+            ax.set_ylim(0.0, 1.05 * high)
 
 
 def _scale(ax: Axes, axis: Axis, which: str) -> None:

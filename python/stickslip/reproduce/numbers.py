@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -148,13 +148,11 @@ class Numbers:
     plot: Plot
     facts: tuple[Fact, ...] = ()
     table: Table | None = None
-    _by_name: dict[str, float] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        names = {fact.what: fact.value for fact in self.facts}
-        if len(names) < len(self.facts):
+        names = [fact.what for fact in self.facts]
+        if len(set(names)) < len(names):
             raise ValueError("two facts have the same name")
-        object.__setattr__(self, "_by_name", names)
 
     def fact(self, what: str) -> float:
         """Return the value of a fact.
@@ -164,4 +162,4 @@ class Numbers:
         KeyError
             If there is no such fact.
         """
-        return self._by_name[what]
+        return {fact.what: fact.value for fact in self.facts}[what]
