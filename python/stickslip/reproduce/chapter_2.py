@@ -213,7 +213,7 @@ def figure_2_9(resolution: Resolution) -> Numbers:
 
 @reproduces(
     "table-2.3",
-    """Exact orbits confirm the printed time integration to 0.5 %, but for the damper at 16.563 N,
+    """Exact orbits confirm the printed time integration to 0.7 %, but for the damper at 16.563 N,
     where it is 1 % low. One harmonic errs by up to 21 % at the tip and 6 % at the damper, and by
     less than 7 % wherever friction damps best.""",
     corrected=(errata.SINGLE_HARMONIC, errata.ERROR_ROW),
