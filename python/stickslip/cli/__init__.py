@@ -2,5 +2,6 @@
 
 from stickslip.cli import reporting
 from stickslip.cli.commands import app
+from stickslip.cli.reproduction import reproduce
 
-__all__ = ["app", "reporting"]
+__all__ = ["app", "reporting", "reproduce"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, Union
 
 from stickslip.checks import brief, choice, file_path, text
 from stickslip.errors import ModelError
-from stickslip.results.files import whole
+from stickslip.files import whole
 from stickslip.results.result import Result
 
 if TYPE_CHECKING:

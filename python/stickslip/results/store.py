@@ -12,7 +12,7 @@ import numpy as np
 
 from stickslip.checks import file_path, listed
 from stickslip.errors import ModelError
-from stickslip.results.files import whole
+from stickslip.files import whole
 from stickslip.results.stored_model import model_of, model_variables
 
 if TYPE_CHECKING:

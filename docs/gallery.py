@@ -1,0 +1,96 @@
+"""Build hook: writes the gallery and the coverage page from the catalogue of reproductions.
+
+A line ``{{ gallery }}``, ``{{ coverage }}`` or ``{{ table NAME }}`` of a page is replaced. Texts,
+code and status come from the package that the pages are built with, pictures and numbers from
+``docs/assets/reproduction``, which ``docs/make_gallery.py`` fills.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from stickslip.reproduce import SUBJECTS, costs, heading, items
+from stickslip.reproduce.folder import records
+from stickslip.reproduce.index import fact_rows, number
+
+FOLDER = Path(__file__).parent / "assets" / "reproduction"
+_MARK = re.compile(r"^\{\{ (?P<what>gallery|coverage|table) ?(?P<name>[\w.-]*) \}\}$", re.MULTILINE)
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Replace every mark of a page."""
+    return _MARK.sub(lambda mark: _WRITERS[mark["what"]](mark["name"]), markdown)
+
+
+def _gallery(_: str) -> str:
+    known = records(FOLDER)
+    return "\n\n".join(_entry(name, known[name]) for name in items() if name in known)
+
+
+def _entry(name: str, record: dict[str, Any]) -> str:
+    item = items()[name]
+    title = f"{item.heading}: {SUBJECTS[name]}"
+    facts = [row for row in fact_rows(record) if row[1]]
+    parts = [
+        f"### {title} {{#{name}}}",
+        f"![{title}](assets/reproduction/{name}.png)",
+        item.see,
+        *(f"*Corrected:* {line}" for line in item.corrected),
+        *(f"*Chosen here:* {line}" for line in item.inferred),
+    ]
+    if record["table"]:
+        parts.append(_folded("The table", _table(name)))
+    rows = [f"| {' | '.join(row)} |" for row in facts]
+    head = ["| | value | unit | printed |", "|---|---|---|---|"]
+    parts.append(_folded("Numbers", "\n".join([*head, *rows])))
+    # No fence of its own class: the block is not run with the page, tests run the function itself.
+    parts.append(_folded("The code that made it", f"```{{.python .norun}}\n{item.code}\n```"))
+    parts.append(f"`stickslip reproduce {name}`, {_cost(costs(), name)} s on one core")
+    return "\n\n".join(parts)
+
+
+def _folded(title: str, text: str) -> str:
+    return f'<details markdown="1"><summary>{title}</summary>\n\n{text}\n\n</details>'
+
+
+def _table(name: str) -> str:
+    table = records(FOLDER)[name]["table"]
+    rows = [[number(cell) for cell in row] for row in table["rows"]]
+    return "\n".join(
+        [_row(table["columns"]), _row(["---"] * len(table["columns"])), *map(_row, rows)]
+    )
+
+
+def _cost(taken: Mapping[str, float], name: str) -> str:
+    return f"{taken[name]:.2g}" if name in taken else "?"
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _coverage(_: str) -> str:
+    done, taken = items(), costs()
+    lines = [
+        f"{len(done)} of {len(SUBJECTS)} are reproduced, together in {sum(taken.values()):.0f} s.",
+        "",
+        "| | subject | status | cost [s] |",
+        "|---|---|---|---|",
+    ]
+    for name, subject in SUBJECTS.items():
+        if name in done:
+            cells = f"[{heading(name)}](gallery.md#{name})", subject, "done", _cost(taken, name)
+        else:
+            cells = heading(name), subject, "not yet", ""
+        lines.append(_row(cells))
+    return "\n".join(lines)
+
+
+_WRITERS: dict[str, Callable[[str], str]] = {
+    "gallery": _gallery,
+    "coverage": _coverage,
+    "table": _table,
+}

@@ -1,0 +1,45 @@
+"""Makes the pictures and numbers of the gallery: ``python docs/make_gallery.py [NAME ...]``.
+
+The same code as ``stickslip reproduce all``, at full resolution. Pictures and numbers are kept with
+the pages, so that building the pages computes nothing; what each item takes, in processor time, is
+kept in the package, for the list of ``stickslip reproduce``.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from pathlib import Path
+
+from stickslip.files import whole
+from stickslip.reproduce import FULL, chosen, costs, items
+from stickslip.reproduce.costs import FILE
+from stickslip.reproduce.folder import write_picture, write_record
+
+FOLDER = Path(__file__).parent / "assets" / "reproduction"
+COLOURS = 48
+
+
+def main(names: list[str]) -> None:
+    """Reproduce some or all items into the assets of the documentation."""
+    FOLDER.mkdir(exist_ok=True)
+    for item in chosen(names or ["all"]):
+        begin = time.process_time()
+        numbers = item.compute(FULL)
+        seconds = time.process_time() - begin
+        write_picture(numbers.plot, FOLDER / f"{item.name}.png", colours=COLOURS)
+        write_record(item, numbers, seconds, FULL, FOLDER)
+        _remember(item.name, seconds)
+        print(f"{item.name:<10} {seconds:6.2f} s")
+
+
+def _remember(name: str, seconds: float) -> None:
+    known = {**costs(), name: round(seconds, 2)}
+    kept = {name: known[name] for name in items() if name in known}
+    with whole(FILE) as temporary:
+        temporary.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
