@@ -27,7 +27,8 @@ if TYPE_CHECKING:
         mistuning_pattern,
     )
     from stickslip.errors import Interrupted, ModelError
-    from stickslip.io import read_matrix
+    from stickslip.fe import Reduction, Solid, craig_bampton
+    from stickslip.io import Frf, read_dofs, read_frf, read_matrix, write_frf
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
     from stickslip.model.state import State
     from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
@@ -46,6 +47,7 @@ __all__ = [
     "ExactResponse",
     "Force",
     "ForcedResponse",
+    "Frf",
     "Interface",
     "Interrupted",
     "Jenkins",
@@ -55,12 +57,15 @@ __all__ = [
     "ModelError",
     "OptimalDamper",
     "Rayleigh",
+    "Reduction",
+    "Solid",
     "State",
     "Status",
     "Structure",
     "Transient",
     "__version__",
     "certify",
+    "craig_bampton",
     "cyclic_sector",
     "damper_curve",
     "exact_response",
@@ -71,11 +76,14 @@ __all__ = [
     "natural_frequencies",
     "optimal_damper",
     "plot",
+    "read_dofs",
+    "read_frf",
     "read_matrix",
     "reference",
     "single_harmonic",
     "study",
     "transient",
+    "write_frf",
 ]
 
 _HOMES = {
@@ -85,6 +93,7 @@ _HOMES = {
     "ExactResponse": "results.exact_response",
     "Force": "model",
     "ForcedResponse": "results",
+    "Frf": "io",
     "Interrupted": "errors",
     "Interface": "disk",
     "Jenkins": "model",
@@ -94,12 +103,15 @@ _HOMES = {
     "ModelError": "errors",
     "OptimalDamper": "results.optimal_damper",
     "Rayleigh": "model",
+    "Reduction": "fe",
+    "Solid": "fe",
     "State": "model.state",
     "Status": "results",
     "Structure": "model",
     "Transient": "results.transient",
     "__version__": "_core",
     "certify": "analyses.certify",
+    "craig_bampton": "fe",
     "cyclic_sector": "disk",
     "damper_curve": "analyses.damper_curve",
     "exact_response": "analyses.exact_response",
@@ -109,9 +121,12 @@ _HOMES = {
     "mistuning_pattern": "disk",
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
+    "read_dofs": "io",
+    "read_frf": "io",
     "read_matrix": "io",
     "single_harmonic": "analyses.single_harmonic",
     "transient": "analyses.transient",
+    "write_frf": "io",
 }
 _MODULES = ("plot", "reference", "study")
 
