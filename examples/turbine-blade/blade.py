@@ -30,7 +30,7 @@ class Blade:
     stagger: float = np.deg2rad(18.0)
     twist: float = np.deg2rad(32.0)
     platform: tuple[float, float, float] = (0.052, 0.030, 0.005)
-    shank: tuple[float, float, float] = (0.040, 0.007, 0.030)
+    shank: tuple[float, float, float] = (0.040, 0.005, 0.035)
     root: tuple[float, float, float] = (0.040, 0.020, 0.014)
     along: int = 18
     through: int = 3
@@ -59,7 +59,7 @@ class Blade:
         return solid.nearest(points[-self.beside[0] - 1, self._core(1)[0], -1])
 
     def pressure(self, solid: Solid) -> np.ndarray:
-        """Return the forces of a pressure on the airfoil, 1 kPa at the tip, growing with height."""
+        """Return the forces of a pressure on the airfoil, 100 Pa at the tip, growing with height."""
         grid = self._grid()
         i, j = self._core(0), self._core(1)
         foot = sum(self.up[:3])
@@ -67,7 +67,7 @@ class Blade:
 
         def traction(x: np.ndarray) -> np.ndarray:
             angle = self.stagger + self.twist * np.clip(x[2] / self.span, 0.0, 1.0)
-            push = 1e3 * np.clip(x[2] / self.span, 0.0, 1.0)
+            push = 100.0 * np.clip(x[2] / self.span, 0.0, 1.0)
             return np.array([-np.sin(angle) * push, np.cos(angle) * push, 0.0 * push])
 
         return solid.load(traction, side[side >= 0])
