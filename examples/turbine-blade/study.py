@@ -19,6 +19,7 @@ import stickslip as ss
 
 RATIOS = (0.01, 0.1, 0.3, 0.6, 1.0, 2.0, 5.0, 20.0, 100.0)  # F_d / F_d0
 SPAN = (0.95, 1.05)  # from below the free to above the stuck natural frequency
+HARMONICS = 9  # of Figs 4.10 to 4.13
 TOLERANCE = 1e-3
 
 
@@ -49,17 +50,17 @@ def study() -> dict[str, object]:
 
     curves = {
         ratio: ss.forced_response(
-            with_slip_force(model, ratio * best.slip_force), omega=span, tolerance=TOLERANCE
+            with_slip_force(model, ratio * best.slip_force), omega=span, harmonics=HARMONICS
         )
         for ratio in RATIOS
     }
     best_model = with_slip_force(model, best.slip_force)
-    orbits = ss.exact_response(best_model, omega=np.linspace(*span, 200))
+    orbits = ss.exact_response(best_model, omega=np.linspace(*span, 100))
     same = ss.forced_response(best_model, omega=orbits.omega, tolerance=TOLERANCE)
-    nine = ss.forced_response(best_model, omega=orbits.omega, harmonics=9)
+    nine = ss.forced_response(best_model, omega=orbits.omega, harmonics=HARMONICS)
     differences = {
         name: {dof: difference(curve, orbits, dof) for dof in scale}
-        for name, curve in (("auto", same), ("9", nine))
+        for name, curve in (("auto", same), (str(HARMONICS), nine))
     }
     draw(curves, orbits, nine, scale)
     numbers: dict[str, object] = {
@@ -109,7 +110,7 @@ def draw(
         x, y = orbits.omega / peak.omega, orbits.amplitude(dof) / peak.amplitude
         axes[1, column].plot(x, y, "k-", lw=1.0, label="exact orbits")
         y = nine.amplitude(dof) / peak.amplitude
-        axes[1, column].plot(x, y, "o", ms=3, mfc="none", label="9 harmonics")
+        axes[1, column].plot(x, y, "o", ms=3, mfc="none", label=f"{HARMONICS} harmonics")
         axes[1, column].set_title(f"{dof}, F_d = F_d0")
         axes[1, column].legend()
         for axis in axes[:, column]:

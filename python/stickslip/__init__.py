@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from stickslip import plot, reference, study
+    from stickslip import fe, plot, reference, study
     from stickslip._core import __version__
     from stickslip.analyses.certify import certify
     from stickslip.analyses.damper_curve import damper_curve
@@ -69,6 +69,7 @@ __all__ = [
     "cyclic_sector",
     "damper_curve",
     "exact_response",
+    "fe",
     "forced_response",
     "join",
     "load",
@@ -128,7 +129,7 @@ _HOMES = {
     "transient": "analyses.transient",
     "write_frf": "io",
 }
-_MODULES = ("plot", "reference", "study")
+_MODULES = ("fe", "plot", "reference", "study")
 
 
 def __getattr__(name: str) -> object:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,10 +11,35 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = ["SIGNS", "whole_matrix"]
+__all__ = ["SIGNS", "require_whole_numbers", "whole_matrix"]
+
+_EXPONENT = re.compile(r"[ED][+-]?(\d+)[ \t\r]*$", re.I | re.M)
 
 SIGNS = {"general": 0, "symmetric": 1, "skew-symmetric": -1}
 """What an entry is multiplied by when it is mirrored; 0: it is not."""
+
+
+def require_whole_numbers(text: str) -> None:
+    """Refuse a text that ends inside a number, as far as that can be seen.
+
+    Parameters
+    ----------
+    text : str
+        Lines of numbers. Many programs do not end the last line.
+
+    Raises
+    ------
+    ValueError
+        If the last line does not end, and stops in an exponent that is shorter than all others.
+    """
+    if text.endswith("\n") or not text:
+        return
+    body, _, last = text.rpartition("\n")
+    digits = [len(match[1]) for match in _EXPONENT.finditer(body[-4000:])]
+    own = _EXPONENT.search(last)
+    stops = re.search(r"[ED+.-]\s*$", last, re.I) is not None
+    if stops or (own is not None and digits and len(own[1]) < min(digits)):
+        raise ValueError(f"the last number, {last[-12:]!r}, is not whole; the file was cut short")
 
 
 def whole_matrix(
