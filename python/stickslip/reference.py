@@ -48,7 +48,7 @@ DAMPER_SLIP_FORCE = 246.048
 BLADE_DAMPER_STIFFNESS = 1e6
 """Stiffness of the damper under the platform of `turbine_blade` [N/m]."""
 
-BLADE_SLIP_FORCE = 1.468
+BLADE_SLIP_FORCE = 1.3263
 """Slip force F_d0 that minimises the peak of the tip of `turbine_blade` [N]."""
 
 RING_COUPLINGS = (1e3, 3e3, 5e3, 6e3, 7e3, 1.2e4, 1e5)

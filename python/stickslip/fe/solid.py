@@ -241,7 +241,7 @@ class Solid:
         """Values of the shape functions (function, point), the same in every element."""
         skfem = _skfem()
         basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4)
-        return np.array([np.atleast_2d(one[0].value)[0] for one in basis.basis])
+        return np.array([np.atleast_2d(np.asarray(one[0]))[0] for one in basis.basis])
 
     @cached_property
     def _nodal_basis(self) -> Any:

@@ -75,7 +75,7 @@ def _header(line: str) -> tuple[str, str]:
     """Return layout and symmetry."""
     words = line.lower().split()
     if len(words) != 5 or words[:2] != ["%%matrixmarket", "matrix"]:
-        raise ValueError("no %%MatrixMarket matrix header (Abaqus' .mtx is another format)")
+        raise ValueError("no %%MatrixMarket matrix header")
     layout, field, symmetry = words[2:]
     if layout not in ("coordinate", "array"):
         raise ValueError(f"unknown layout {layout!r}")
