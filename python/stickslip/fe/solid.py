@@ -25,6 +25,8 @@ _VTK = np.array(
     + [(0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)]
 )
 """Places of the 20 nodes in VTK's order, in half edges."""
+_MIRRORED = [*range(4, 8), *range(4), *range(12, 16), *range(8, 12), *range(16, 20)]
+"""The same with top and bottom exchanged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,7 +263,11 @@ class Solid:
     def _vtk_cells(self) -> NDArray[np.int64]:
         places = np.rint(2.0 * np.asarray(_skfem().ElementHexS2().doflocs)).astype(int)
         order = [int(np.flatnonzero((places == place).all(axis=1))[0]) for place in _VTK]
-        return self._node_of_place[:, order]
+        cells = self._node_of_place[:, order]
+        # Meshes may map their elements mirrored; other programs want the corners right-handed.
+        first, along, across, up = (self.nodes[cells[:, corner]] for corner in (0, 1, 3, 4))
+        volume = np.einsum("ei,ei->e", np.cross(along - first, across - first), up - first)
+        return np.where((volume < 0.0)[:, None], cells[:, _MIRRORED], cells)
 
 
 def _skfem() -> Any:
