@@ -58,7 +58,9 @@ def test_the_blade_study_file_is_the_reference_blade():
     reference = ss.reference.turbine_blade()
     np.testing.assert_array_equal(study.model.structure.mass, reference.structure.mass)
     np.testing.assert_array_equal(study.model.structure.stiffness, reference.structure.stiffness)
-    np.testing.assert_allclose(study.model.structure.damping, reference.structure.damping, rtol=1e-9)
+    np.testing.assert_allclose(
+        study.model.structure.damping, reference.structure.damping, rtol=1e-9
+    )
     for own, other in zip(study.model.forces, reference.forces, strict=True):
         assert own.dof == other.dof
         assert own.amplitude == pytest.approx(other.amplitude, rel=1e-9)

@@ -92,9 +92,7 @@ def test_dmig_in_narrow_and_free_fields(tmp_path):
         "        2       3       -1.25D+5\n"
         "DMIG,STIF,2,3,,2,3,4.0E5\n"
     )
-    np.testing.assert_array_equal(
-        ss.read_matrix(file, "STIF"), [[4e5, -1.25e5], [-1.25e5, 3e5]]
-    )
+    np.testing.assert_array_equal(ss.read_matrix(file, "STIF"), [[4e5, -1.25e5], [-1.25e5, 3e5]])
     assert ss.read_dofs(file) == ("2.3", "27.1")
 
 
@@ -104,8 +102,11 @@ def test_calculix_matrices_have_its_frequencies():
     assert ss.read_dofs(DATA / "bar.sti") == ss.read_dofs(DATA / "bar.dof")
     assert ss.read_dofs(DATA / "bar.sti")[:4] == ("5.1", "5.2", "5.3", "6.1")
     hertz = np.sqrt(scipy.linalg.eigh(K, M, eigvals_only=True)) / (2.0 * np.pi)
-    printed = [float(line.split()[3]) for line in (DATA / "bar.dat").read_text().splitlines()
-               if len(line.split()) == 5 and line.split()[0].isdigit()]
+    printed = [
+        float(line.split()[3])
+        for line in (DATA / "bar.dat").read_text().splitlines()
+        if len(line.split()) == 5 and line.split()[0].isdigit()
+    ]
     assert len(printed) == 4
     np.testing.assert_allclose(hertz[:4], printed, rtol=2e-6)
 

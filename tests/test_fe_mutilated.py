@@ -112,13 +112,12 @@ def test_a_flipped_byte_is_refused_or_does_not_matter(sound, tmp_path, name, see
     try:
         found = read(spoiled(sound, tmp_path, name, bytes(content)), key)
         ss.Structure(np.eye(len(found)), found)  # where a stiffness ends up, and is symmetric
-    except ModelError as error:
-        assert "\n" not in str(error)
-    else:
-        changed = np.abs(found - expected) > 1e-8 * np.abs(expected).max()
-        assert changed.sum() <= 1
-        assert not (changed & ~np.eye(len(changed), dtype=bool)).any()
-        assert not changed.any() or name in WITHOUT_CHECK_SUM
+    except ModelError:
+        return
+    changed = np.abs(found - expected) > 1e-8 * np.abs(expected).max()
+    assert changed.sum() <= 1
+    assert not (changed & ~np.eye(len(changed), dtype=bool)).any()
+    assert not changed.any() or name in WITHOUT_CHECK_SUM
 
 
 @pytest.mark.parametrize("other", ["market.mtx", "binary.op4", "seven.mat", "frf.uff"])

@@ -90,7 +90,9 @@ def test_the_report_tells_a_held_structure_from_a_free_one():
     np.testing.assert_allclose(stuck.full, full, rtol=1e-9)
 
     M, K = chain(80, grounded=False)
-    free = ss.craig_bampton(M, K, [79], modes=10, dofs=[f"{node}.1" for node in range(80)]).report(5)
+    free = ss.craig_bampton(M, K, [79], modes=10, dofs=[f"{node}.1" for node in range(80)]).report(
+        5
+    )
     assert free.rigid == 1
     assert free.grounding["1"] < 1e-12
     assert np.isnan(free.errors[0])
@@ -109,7 +111,10 @@ def test_the_report_tells_a_held_structure_from_a_free_one():
         ({"modes": 30}, "modes: 30 is too large"),
         ({"dofs": ["1.1"]}, "1 names for 20 rows"),
         ({"stiffness": np.eye(19)}, "stiffness: 19 rows, but the mass has 20"),
-        ({"stiffness": np.triu(np.ones((20, 20)))}, "stiffness: not symmetric, by 1 of its largest"),
+        (
+            {"stiffness": np.triu(np.ones((20, 20)))},
+            "stiffness: not symmetric, by 1 of its largest",
+        ),
         ({"stiffness": np.full((20, 20), np.nan)}, "stiffness: an entry is not finite"),
         ({"mass": "blade.op4"}, "mass: 'blade.op4' is not a matrix"),
         ({"stiffness": np.zeros((20, 20))}, "can still move as a rigid body"),
@@ -231,6 +236,7 @@ def test_stresses_of_the_coarse_blade_reach_paraview(blade, tmp_path, monkeypatc
     cell = written.points[written.cells[0].data]
     np.testing.assert_allclose(cell[:, 8], 0.5 * (cell[:, 0] + cell[:, 1]), atol=1e-12)
     np.testing.assert_allclose(cell[:, 16], 0.5 * (cell[:, 0] + cell[:, 4]), atol=1e-12)
-    tip = written.point_data["displacement amplitude [m]"][stress.Blade(**stress.COARSE).tip(
-        blade[1].solid)]
+    tip = written.point_data["displacement amplitude [m]"][
+        stress.Blade(**stress.COARSE).tip(blade[1].solid)
+    ]
     assert tip[1] == pytest.approx(found["tip_m"], rel=1e-2)

@@ -40,9 +40,7 @@ def main() -> dict[float, float]:
     """Return the peak of the tip [m] by slip force [N]."""
     with tempfile.TemporaryDirectory() as folder:
         mass, stiffness, dofs = matrices(Path(folder))
-    reduced = ss.craig_bampton(
-        mass, stiffness, {"damper": DAMPER, "tip": TIP}, modes=10, dofs=dofs
-    )
+    reduced = ss.craig_bampton(mass, stiffness, {"damper": DAMPER, "tip": TIP}, modes=10, dofs=dofs)
     print(reduced.report(5))
     plate = reduced.structure(ss.ModalDamping(0.001))
     low, high = 0.9, 1.2

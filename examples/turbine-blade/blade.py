@@ -43,14 +43,14 @@ class Blade:
 
     def clamped(self, solid: Solid) -> np.ndarray:
         """Return the nodes of the root's flanks and bottom, which the disk holds."""
-        x, y, z = solid.nodes.T
+        _, y, z = solid.nodes.T
         bottom = -(self.platform[2] + self.shank[2] + self.root[2])
         flank = (np.abs(np.abs(y) - 0.5 * self.root[1]) < 1e-9) & (z < bottom + self.root[2])
         return np.flatnonzero(flank | (z < bottom + 1e-9))
 
     def damper(self, solid: Solid) -> int:
         """Return the node under the platform where the damper rubs."""
-        x, y, z = self.platform
+        _, y, z = self.platform
         return solid.nearest((0.0, 0.5 * y, -z))
 
     def tip(self, solid: Solid) -> int:
@@ -59,7 +59,7 @@ class Blade:
         return solid.nearest(points[-self.beside[0] - 1, self._core(1)[0], -1])
 
     def pressure(self, solid: Solid) -> np.ndarray:
-        """Return the forces of a pressure on the airfoil, 100 Pa at the tip, growing with height."""
+        """Return the forces of a pressure on the airfoil: 100 Pa at the tip, 0 at the foot."""
         grid = self._grid()
         i, j = self._core(0), self._core(1)
         foot = sum(self.up[:3])
@@ -80,7 +80,10 @@ class Blade:
     def _heights(self) -> np.ndarray:
         depth = np.cumsum([0.0, self.platform[2], self.shank[2], self.root[2]])[::-1]
         levels = [*-depth, self.span]
-        parts = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(levels, levels[1:], self.up)]
+        parts = [
+            np.linspace(a, b, n + 1)[1:]
+            for a, b, n in zip(levels[:-1], levels[1:], self.up, strict=True)
+        ]
         return np.concatenate([[levels[0]], *parts])
 
     def _filled(self) -> np.ndarray:
@@ -148,7 +151,7 @@ class Blade:
         filled = self._filled()
         used = np.zeros(np.array(filled.shape) + 1, bool)
         for corner in np.ndindex(2, 2, 2):
-            window = tuple(slice(c, c + n) for c, n in zip(corner, filled.shape))
+            window = tuple(slice(c, c + n) for c, n in zip(corner, filled.shape, strict=True))
             used[window] |= filled
         grid = np.full(used.shape, -1)
         grid[used] = np.arange(used.sum())

@@ -87,7 +87,9 @@ class ReductionReport:
         return "\n".join(lines)
 
 
-def reported(reduction: Reduction, frequencies: int, springs: Mapping[int, float]) -> ReductionReport:
+def reported(
+    reduction: Reduction, frequencies: int, springs: Mapping[int, float]
+) -> ReductionReport:
     """Return the report; `springs` by position in the boundary [N/m]."""
     count = whole_number(frequencies, "frequencies", smallest=1, largest=reduction.size - 1)
     count = min(count, len(reduction.dofs))

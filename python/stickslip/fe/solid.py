@@ -19,10 +19,16 @@ if TYPE_CHECKING:
 
 __all__ = ["Solid"]
 
+_BOTTOM = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)]
+_EDGES = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)]
 _VTK = np.array(
-    [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
-    + [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)]
-    + [(0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)]
+    [
+        *_BOTTOM,
+        *((x, y, 2) for x, y, _ in _BOTTOM),
+        *_EDGES,
+        *((x, y, 2) for x, y, _ in _EDGES),
+        *((x, y, 1) for x, y, _ in _BOTTOM),
+    ]
 )
 """Places of the 20 nodes in VTK's order, in half edges."""
 _MIRRORED = [*range(4, 8), *range(4), *range(12, 16), *range(8, 12), *range(16, 20)]
@@ -143,7 +149,7 @@ class Solid:
             raise ModelError("solid: no face has all its vertices among those given")
         basis = skfem.FacetBasis(self.mesh, self._basis.elem, facets=faces, intorder=4)
 
-        @skfem.LinearForm
+        @skfem.LinearForm  # type: ignore[untyped-decorator, unused-ignore]
         def work(v: Any, w: Any) -> Any:
             force = traction(np.asarray(w.x))
             return force[0] * v[0] + force[1] * v[1] + force[2] * v[2]

@@ -40,8 +40,9 @@ def symmetric_sparse(value: object, entry: str) -> tuple[csc_array, float]:
     """
     from scipy.sparse import csc_array
 
+    given: Any = value
     try:
-        matrix = csc_array(value)  # type: ignore[arg-type]
+        matrix = csc_array(given)
     except (TypeError, ValueError):
         raise ModelError(f"{entry}: {brief(value)} is not a matrix; give a sparse one") from None
     if matrix.dtype.kind not in "fiu":
@@ -83,9 +84,7 @@ class Factor:
         # Pivots on the diagonal keep the symmetric order, which fills in least.
         options = {"SymmetricMode": True}
         self._lu: Any = _interruptible(
-            lambda: splu(
-                matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options
-            )
+            lambda: splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
         )
         self.size = matrix.shape[0]
 

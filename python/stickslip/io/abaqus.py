@@ -37,8 +37,8 @@ def read_abaqus(path: Path, key: str | None = None) -> Labelled:
 
     References
     ----------
-    Dassault Systemes, "Abaqus Analysis User's Guide", "Generating structural matrices" and "Defining
-    substructures".
+    Dassault Systemes, "Abaqus Analysis User's Guide", "Generating structural matrices" and
+    "Defining substructures".
     """
     text = path.read_text(encoding="ascii")
     lines = text.splitlines(keepends=True)
@@ -79,7 +79,9 @@ def _of_nodes(table: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Label
 
 def _substructure(lines: list[str], key: str | None) -> Labelled:
     """Return the lower triangle by rows below *MATRIX, mirrored."""
-    starts = {match[1].lower(): at for at, line in enumerate(lines) if (match := _MATRIX.match(line))}
+    starts = {
+        match[1].lower(): at for at, line in enumerate(lines) if (match := _MATRIX.match(line))
+    }
     if key is None and len(starts) == 1:
         key = next(iter(starts))
     if key not in starts:

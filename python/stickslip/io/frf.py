@@ -121,7 +121,7 @@ class Frf:
         return cls(response.omega[solved][order], motion[order], dof, reference)
 
     def receptance(self) -> NDArray[np.complex128]:
-        """Return displacement per force [m/N], shape (n,); not-a-number at 0 rad/s of a derivative."""
+        """Return displacement per force [m/N], shape (n,); of derivatives nan at 0 rad/s."""
         with np.errstate(divide="ignore", invalid="ignore"):
             moved = self.values / (1j * self.omega) ** _DERIVATIVES[self.quantity]
         return np.where(np.isfinite(moved), moved, np.nan)
@@ -267,5 +267,5 @@ def _require_end(file: Path) -> None:
     """Refuse a file whose last dataset does not end."""
     with file.open("rb") as stream:
         content = stream.read()
-    if content.rstrip()[-2:] != b"-1" or len(re.findall(rb"(?m)^    -1\s*$", content)) < 2:
+    if not content.rstrip().endswith(b"    -1") or content.count(b"    -1") < 2:
         raise ModelError(f"{file}: the last dataset does not end; the file was cut short")

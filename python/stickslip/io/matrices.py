@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
@@ -163,7 +163,8 @@ def _sparse(matrix: object, entry: str) -> csc_array:
     """Return a matrix of real, finite numbers without making it dense."""
     from scipy.sparse import coo_array, issparse
 
-    found = coo_array(matrix) if issparse(matrix) else coo_array(real_matrix(matrix, entry))
+    given: Any = matrix if issparse(matrix) else real_matrix(matrix, entry)
+    found = coo_array(given)
     if found.dtype.kind not in "fiu":
         raise ModelError(f"{entry}: entries of type {found.dtype}; give real matrices")
     wrong = np.flatnonzero(~np.isfinite(found.data))
@@ -175,7 +176,8 @@ def _sparse(matrix: object, entry: str) -> csc_array:
 
 def _not_finite(entry: str, value: float, row: int, column: int) -> ModelError:
     return ModelError(
-        f"{entry}: {value} in row {row}, column {column}, counted from 0; every entry must be finite"
+        f"{entry}: {value} in row {row}, column {column}, counted from 0; "
+        "every entry must be finite"
     )
 
 

@@ -37,11 +37,11 @@ _Piece = tuple[int, NDArray[np.float64]]
 class _Header:
     """What precedes a matrix."""
 
+    name: str
     columns: int
     rows: int
     form: int
     kind: int
-    name: str
 
     def __post_init__(self) -> None:
         if self.columns < 1 or self.rows == 0:
@@ -151,7 +151,7 @@ def _binary(content: bytes) -> Iterator[_Column]:
         if len(record) != length:
             raise ValueError(f"a record of {len(record)} bytes stands where a matrix must begin")
         sizes = np.frombuffer(record, integer, 4).tolist()
-        header = _Header(*sizes, name=_name(record[4 * width :].decode("latin-1")))
+        header = _Header(_name(record[4 * width :].decode("latin-1")), *sizes)
         # Single precision follows the width of integers, double precision has always 8 bytes.
         real = np.dtype(f"{order}f{width if header.kind % 2 else 8}")
         columns = []
@@ -253,7 +253,7 @@ def _first_line(line: str) -> tuple[_Header, tuple[int, int]]:
     written = _FORMAT.fullmatch(numbers)
     if numbers and written is None:
         raise ValueError(f"unknown number format {numbers[:20]!r}")
-    header = _Header(*sizes, name=_name(line[end : end + 8]))
+    header = _Header(_name(line[end : end + 8]), *sizes)
     return header, (int(written[1]), int(written[2])) if written else (5, 16)
 
 
@@ -283,7 +283,9 @@ class _Lines(Iterator[str]):
             expected = min(per_line, count - len(fields))
             line = next(self).rstrip()
             if len(line) != expected * width:
-                raise ValueError(f"{expected} numbers of {width} characters expected: {line[:40]!r}")
+                raise ValueError(
+                    f"{expected} numbers of {width} characters expected: {line[:40]!r}"
+                )
             fields += [line[at : at + width] for at in range(0, len(line), width)]
         return np.array([field.replace("D", "E") for field in fields], dtype=np.float64)
 

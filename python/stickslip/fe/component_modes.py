@@ -101,7 +101,7 @@ def craig_bampton(
         raise _moves_rigidly(names) from None
     except MemoryError:
         raise ModelError(
-            f"stiffness: the factors of {inner.size} rows do not fit into memory; use fewer elements"
+            f"stiffness: the factors of {inner.size} rows do not fit into memory; coarsen"
         ) from None
     coupling = K[inner][:, kept].toarray()
     constraint = -factor.solve(coupling)
