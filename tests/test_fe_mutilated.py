@@ -144,3 +144,14 @@ def test_entries_that_contradict_each_other_are_refused(sound, tmp_path):
     (tmp_path / "bar.dof").unlink()
     with pytest.raises(ModelError, match=r"bar\.dof must lie beside it"):
         ss.read_matrix(names)
+
+
+@pytest.mark.parametrize("part", [0.001, 0.5])
+def test_a_crash_of_the_ansys_reader_is_one_error(tmp_path, part):
+    reason = "ansys-mapdl-reader is not installed: pip install 'stickslip[ansys]'"
+    reader = pytest.importorskip("ansys.mapdl.reader", reason=reason)
+    content = (Path(reader.__file__).parent / "examples" / "file.full").read_bytes()
+    file = tmp_path / "file.full"
+    file.write_bytes(content[: int(part * len(content))])
+    with pytest.raises(ModelError, match=r"cannot be read as \.full: .*; write the file again"):
+        ss.read_matrix(file, "stiffness")
