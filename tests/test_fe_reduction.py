@@ -109,6 +109,8 @@ def test_the_report_tells_a_held_structure_from_a_free_one():
         ({"modes": None}, "give either modes=16, their number, or omega="),
         ({"omega": 10.0}, "give either modes=16, their number, or omega="),
         ({"modes": 30}, "modes: 30 is too large"),
+        ({"modes": None, "omega": 1.0}, "lies below every fixed-interface mode, the first at"),
+        ({"mass": np.zeros((20, 20))}, "mass: no entry of the diagonal is positive"),
         ({"dofs": ["1.1"]}, "1 names for 20 rows"),
         ({"stiffness": np.eye(19)}, "stiffness: 19 rows, but the mass has 20"),
         (
@@ -127,6 +129,17 @@ def test_what_cannot_be_reduced_is_refused(change, message):
     given |= change
     with pytest.raises(ModelError, match=message):
         ss.craig_bampton(given.pop("mass"), given.pop("stiffness"), given.pop("boundary"), **given)
+
+
+def test_massless_dofs_inside_are_condensed():
+    M, K = (matrix.toarray() for matrix in chain(30))
+    M[4, 4] = M[17, 17] = 0.0
+    reduced = ss.craig_bampton(M, K, [29], modes=12)
+    shapes = scipy.linalg.eigh(M, K, eigvals_only=True)[::-1]
+    full = np.sqrt(1.0 / shapes[:4])
+    own = np.sqrt(scipy.linalg.eigh(reduced.stiffness, reduced.mass, eigvals_only=True))[:4]
+    np.testing.assert_allclose(own, full, rtol=1e-3)
+    np.testing.assert_allclose(reduced.report(4).full, full, rtol=1e-9)
 
 
 def test_a_structure_held_too_little_is_refused():

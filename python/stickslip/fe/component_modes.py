@@ -25,6 +25,8 @@ __all__ = ["craig_bampton"]
 Dof: TypeAlias = int | str
 _FIRST = 20
 """Modes computed at first where a frequency says how many are wanted."""
+_MASSLESS = 1e-12
+"""Inertia below this part of the largest is none."""
 _NOISE = 1e3
 """Eigenvalues below this many rounding errors of the largest are rigid-body motions."""
 
@@ -88,6 +90,8 @@ def craig_bampton(
     M, skew_mass = symmetric_sparse(mass, "mass")
     K, skew_stiffness = symmetric_sparse(stiffness, "stiffness")
     size = M.shape[0]
+    if not M.diagonal().max() > 0.0:
+        raise ModelError("mass: no entry of the diagonal is positive; give the mass matrix")
     if K.shape != M.shape:
         raise ModelError(f"stiffness: {K.shape[0]} rows, but the mass has {size}")
     rows = _row_names(dofs, size)
@@ -105,8 +109,13 @@ def craig_bampton(
         ) from None
     coupling = K[inner][:, kept].toarray()
     constraint = -factor.solve(coupling)
-    squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
-    highest = float((K_ii.diagonal() / np.maximum(M_ii.diagonal(), 1e-300)).max())
+    try:
+        squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
+    except np.linalg.LinAlgError:
+        raise _moves_rigidly(names) from None
+    inertia = M_ii.diagonal()
+    moving = inertia > _MASSLESS * inertia.max()
+    highest = float((K_ii.diagonal()[moving] / inertia[moving]).max())
     if not squares[0] > _NOISE * np.finfo(np.float64).eps * highest:
         raise _moves_rigidly(names)
     if omega is not None:
@@ -115,6 +124,11 @@ def craig_bampton(
             count = min(2 * count, inner.size - 1)
             squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
         wanted = int(np.searchsorted(squares, limit**2))
+        if not wanted:
+            raise ModelError(
+                f"omega: {limit:g} rad/s lies below every fixed-interface mode, the first at "
+                f"{np.sqrt(squares[0]):.6g} rad/s; give a higher one, or modes=1"
+            )
         squares, shapes = squares[:wanted], shapes[:, :wanted]
     return Reduction(
         M, K, rows, names, kept, constraint, shapes, squares, (skew_mass, skew_stiffness)

@@ -121,13 +121,18 @@ def lowest_modes(
     ------
     ModelError
         If Lanczos' method does not converge.
+    numpy.linalg.LinAlgError
+        If K - shift M is not positive definite, as far as that is noticed.
     """
     from scipy.linalg import eigh
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
     size = stiffness.shape[0]
     if size <= _DENSE:
-        squares, modes = eigh(stiffness.toarray(), mass.toarray(), subset_by_index=(0, count - 1))
+        # 1 / (lambda - shift): the stiffness has an inverse, the mass of massless dofs has none.
+        shifted = (stiffness - shift * mass).toarray()
+        inverses, modes = eigh(mass.toarray(), shifted, subset_by_index=(size - count, size - 1))
+        squares = shift + 1.0 / inverses
     else:
         inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
         # A fixed start makes two runs agree to the last digit.

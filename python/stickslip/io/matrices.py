@@ -116,6 +116,8 @@ def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str
     """
     file = file_path(path, "path")
     if _ending(file) == ".dof":
+        if not os.path.isfile(file):
+            raise ModelError(f"{file}: no such file; check the path")
         with _readable(file):
             return read_calculix_dofs(file)
     names = _load(file, key).dofs
