@@ -64,6 +64,7 @@ bench: $(VENV)/.developed
 	cargo bench -p stickslip-core
 	$(BIN)/python benchmarks/speed.py
 	$(BIN)/python benchmarks/table_4_1.py
+	$(BIN)/python benchmarks/table_4_1_blade.py
 
 peers: $(VENV)/.developed
 	$(BIN)/python benchmarks/speed.py --peers
