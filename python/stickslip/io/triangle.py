@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 __all__ = ["SIGNS", "require_whole_numbers", "whole_matrix"]
 
-_EXPONENT = re.compile(r"[ED][+-]?(\d+)[ \t\r]*$", re.I | re.M)
+# Fortran drops the letter of an exponent of three digits.
+_EXPONENT = re.compile(r"(?:[ED][+-]?|(?<=[\d.])[+-])(\d+)[ \t\r]*$", re.I)
 
 SIGNS = {"general": 0, "symmetric": 1, "skew-symmetric": -1}
 """What an entry is multiplied by when it is mirrored; 0: it is not."""
@@ -30,15 +31,18 @@ def require_whole_numbers(text: str) -> None:
     Raises
     ------
     ValueError
-        If the last line does not end, and stops in an exponent that is shorter than all others.
+        If the last line does not end, and its last number has no exponent or a shorter one than
+        those of the lines before.
     """
     if text.endswith("\n") or not text:
         return
-    body, _, last = text.rpartition("\n")
-    digits = [len(match[1]) for match in _EXPONENT.finditer(body[-4000:])]
+    *lines, last = text[-4000:].split("\n")
+    digits = [len(found[1]) if (found := _EXPONENT.search(line)) else 0 for line in lines[-5:]]
+    # Two digits are the rule, three the exception.
+    least = min(2, *digits) if len(digits) > 2 else 0
     own = _EXPONENT.search(last)
     stops = re.search(r"[ED+.-]\s*$", last, re.I) is not None
-    if stops or (own is not None and digits and len(own[1]) < min(digits)):
+    if stops or (len(own[1]) if own else 0) < least:
         raise ValueError(f"the last number, {last[-12:]!r}, is not whole; the file was cut short")
 
 
