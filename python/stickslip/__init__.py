@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from stickslip import plot, reference, study
+    from stickslip import fe, plot, reference, study
     from stickslip._core import __version__
     from stickslip.analyses.basin_map import basin_map
     from stickslip.analyses.certify import certify
@@ -32,8 +32,9 @@ if TYPE_CHECKING:
         mistuning_pattern,
     )
     from stickslip.errors import Interrupted, ModelError
+    from stickslip.fe import Reduction, Solid, craig_bampton
     from stickslip.html.report import report
-    from stickslip.io import read_matrix
+    from stickslip.io import Frf, read_dofs, read_frf, read_matrix, write_frf
     from stickslip.model import Force, Jenkins, Model, natural_frequencies
     from stickslip.model.damping import modal_damping
     from stickslip.model.destabilised import destabilised
@@ -58,6 +59,7 @@ __all__ = [
     "ExactResponse",
     "Force",
     "ForcedResponse",
+    "Frf",
     "InfluenceCoefficients",
     "Interface",
     "Interrupted",
@@ -70,6 +72,8 @@ __all__ = [
     "MotionClass",
     "OptimalDamper",
     "Rayleigh",
+    "Reduction",
+    "Solid",
     "State",
     "Status",
     "Structure",
@@ -79,10 +83,12 @@ __all__ = [
     "basin_map",
     "certify",
     "classify",
+    "craig_bampton",
     "cyclic_sector",
     "damper_curve",
     "destabilised",
     "exact_response",
+    "fe",
     "forced_response",
     "join",
     "load",
@@ -92,12 +98,15 @@ __all__ = [
     "natural_frequencies",
     "optimal_damper",
     "plot",
+    "read_dofs",
+    "read_frf",
     "read_matrix",
     "reference",
     "report",
     "single_harmonic",
     "study",
     "transient",
+    "write_frf",
 ]
 
 _HOMES = {
@@ -109,6 +118,7 @@ _HOMES = {
     "Force": "model",
     "ForcedResponse": "results",
     "InfluenceCoefficients": "disk",
+    "Frf": "io",
     "Interrupted": "errors",
     "Interface": "disk",
     "Jenkins": "model",
@@ -120,6 +130,8 @@ _HOMES = {
     "MotionClass": "results.motion_class",
     "OptimalDamper": "results.optimal_damper",
     "Rayleigh": "model",
+    "Reduction": "fe",
+    "Solid": "fe",
     "State": "model.state",
     "Status": "results",
     "Structure": "model",
@@ -129,6 +141,7 @@ _HOMES = {
     "basin_map": "analyses.basin_map",
     "certify": "analyses.certify",
     "classify": "analyses.classify",
+    "craig_bampton": "fe",
     "cyclic_sector": "disk",
     "damper_curve": "analyses.damper_curve",
     "destabilised": "model.destabilised",
@@ -141,12 +154,15 @@ _HOMES = {
     "mistuning_study": "analyses.mistuning_study",
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
+    "read_dofs": "io",
+    "read_frf": "io",
     "read_matrix": "io",
     "report": "html.report",
     "single_harmonic": "analyses.single_harmonic",
     "transient": "analyses.transient",
+    "write_frf": "io",
 }
-_MODULES = ("plot", "reference", "study")
+_MODULES = ("fe", "plot", "reference", "study")
 
 
 def __getattr__(name: str) -> object:

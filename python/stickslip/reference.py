@@ -10,6 +10,7 @@ blisks with friction ring dampers", Eur. J. Mech. A/Solids 26 (2007) 676-687.
 from __future__ import annotations
 
 from math import pi
+from pathlib import Path
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from stickslip.model import Force, Jenkins, Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 __all__ = [
+    "BLADE_DAMPER_STIFFNESS",
+    "BLADE_SLIP_FORCE",
     "DAMPER_SLIP_FORCE",
     "DAMPER_STIFFNESS",
     "RING_COUPLINGS",
@@ -30,6 +33,7 @@ __all__ = [
     "single_dof",
     "snecma_beam",
     "snecma_structure",
+    "turbine_blade",
 ]
 
 SNECMA_LOADS = (0.938, 2.188, 6.563, 16.563, 20.313, 25.0, 31.475, 38.438)
@@ -40,6 +44,12 @@ DAMPER_STIFFNESS = 2.4e7
 
 DAMPER_SLIP_FORCE = 246.048
 """Slip force F_d of the damper of eq. (2.32) and Table 2.2 [N]."""
+
+BLADE_DAMPER_STIFFNESS = 1e6
+"""Stiffness of the damper under the platform of `turbine_blade` [N/m]."""
+
+BLADE_SLIP_FORCE = 1.3263
+"""Slip force F_d0 that minimises the peak of the tip of `turbine_blade` [N]."""
 
 RING_COUPLINGS = (1e3, 3e3, 5e3, 6e3, 7e3, 1.2e4, 1e5)
 """Coupling stiffnesses between the tips of the ring of beams, Figs 4.20-4.22 [N/m]."""
@@ -273,6 +283,44 @@ def rubber_beam(force: float = 1.5, *, damping_ratio: float = 1e-3) -> Model:
     )
     contact = Jenkins("w6", stiffness=1e7, slip_force=15.0)
     return Model(beam, [contact], [Force(f"w{nodes}", force)])
+
+
+def turbine_blade(slip_force: float = BLADE_SLIP_FORCE, load: float = 1.0) -> Model:
+    """Return an open turbine blade, 18 component modes of a finite-element model.
+
+    A twisted blade of nickel alloy, 110 mm high and 40 mm wide, with a platform, on a shank whose
+    root is clamped: 60,000 degrees of freedom reduced to 2 constraint modes and 16 fixed-interface
+    modes. It takes the place of the proprietary blade of the dissertation. A pressure that grows
+    along the airfoil, 100 Pa at the tip, excites all degrees of freedom.
+
+    Parameters
+    ----------
+    slip_force : float, optional
+        Of the damper under the platform [N].
+    load : float, optional
+        Factor on the pressure.
+
+    Returns
+    -------
+    Model
+        Degrees of freedom "damper" (under the platform, across the row of blades), "tip" (trailing
+        edge of the tip, same direction) and "mode-1", ..., "mode-16". The damping ratio is 5e-4 at
+        1600 and 47,000 rad/s and lower between them.
+
+    References
+    ----------
+    Guillen (1999), section 4.3; made by examples/turbine-blade/reduce.py.
+    """
+    with np.load(Path(__file__).parent / "data" / "turbine_blade.npz") as shipped:
+        mass, stiffness, force = shipped["mass"], shipped["stiffness"], shipped["force"]
+    ratio, low, high = 5e-4, 1600.0, 47000.0
+    damping = Rayleigh(
+        mass=2.0 * ratio * low * high / (low + high), stiffness=2.0 * ratio / (low + high)
+    )
+    dofs = ["damper", "tip", *(f"mode-{mode}" for mode in range(1, 17))]
+    damper = Jenkins("damper", stiffness=BLADE_DAMPER_STIFFNESS, slip_force=slip_force)
+    forces = [Force(dof, load * value) for dof, value in zip(dofs, force.tolist(), strict=True)]
+    return Model(Structure(mass, stiffness, damping, dofs), [damper], forces)
 
 
 def _damper(dof: str, name: str | None = None) -> Jenkins:

@@ -50,6 +50,10 @@ pub(super) const SHORTEST_STEP: f64 = 1.0 / 256.0;
 /// it leaves about this share of the error.
 const SERVES_AGAIN: f64 = 1e-3;
 
+/// Share of the tolerance that steps with a kept Jacobian have to reach: displacements beside very
+/// stiff contacts are small differences, which an error of the unknowns reaches many times over.
+const OF_KEPT: f64 = 1e-2;
+
 /// Solves `system = 0` from `x`, which holds the best point found on return.
 pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings) -> Report {
     let size = system.size();
@@ -101,8 +105,18 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         x.copy_from_slice(&trial.x);
         std::mem::swap(&mut residual, &mut trial.residual);
         size_of_residual = trial.size;
-        if close || (trial.length == 1.0 && left <= settings.tolerance) {
+        // Rounding hides the contraction of the last steps; behind one with a Jacobian of its own
+        // the error is that of rounding.
+        if close && fresh {
             return report(Outcome::Converged, size_of_residual, x);
+        }
+        if trial.length == 1.0 && left <= settings.tolerance {
+            // Newton's own last step would leave hardly more than rounding. One with a Jacobian
+            // kept leaves what the step that would follow tells, at the price of a substitution.
+            let known = keep && system.solve(&residual, &mut step);
+            if !keep || (known && system.relative_size(&step, x) <= OF_KEPT * settings.tolerance) {
+                return report(Outcome::Converged, size_of_residual, x);
+            }
         }
         fresh = !keep;
         // Two more steps with the same Jacobian cost less than a new one; three do not.

@@ -68,6 +68,7 @@ def _list() -> None:
     """Print every table and figure with its status and what it takes."""
     from stickslip.cli import console
     from stickslip.reproduce import SUBJECTS, costs, items
+    from stickslip.views.tables import new_table
 
     done, measured = items(), costs()
     table = new_table()

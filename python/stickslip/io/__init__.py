@@ -1,5 +1,6 @@
-"""Matrices from files."""
+"""Matrices and measured responses from files."""
 
-from stickslip.io.matrices import read_matrix
+from stickslip.io.frf import Frf, read_frf, write_frf
+from stickslip.io.matrices import read_dofs, read_matrix
 
-__all__ = ["read_matrix"]
+__all__ = ["Frf", "read_dofs", "read_frf", "read_matrix", "write_frf"]

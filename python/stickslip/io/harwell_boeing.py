@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.triangle import whole_matrix
+from stickslip.io.triangle import require_whole_numbers, whole_matrix
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -129,8 +129,10 @@ def read_harwell_boeing(path: Path) -> coo_array:
     Duff, Grimes and Lewis, "Users' guide for the Harwell-Boeing sparse matrix collection" (1992);
     "The Rutherford-Boeing sparse matrix collection" (1997).
     """
-    lines = path.read_text(encoding="latin-1").splitlines()
+    text = path.read_text(encoding="latin-1")
+    lines = text.splitlines()
     header = _Header.parse(lines)
+    require_whole_numbers(text)
     blocks = []
     start = header.lines
     for length in header.lengths:

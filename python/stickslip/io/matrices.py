@@ -1,24 +1,32 @@
-"""Matrices from files: NumPy, MATLAB, MatrixMarket and Harwell-Boeing."""
+"""Matrices from files: one reader per format, chosen by the ending of the name."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
 from stickslip.checks import Matrix, brief, file_path, listed, real_matrix, text, unknown
 from stickslip.errors import ModelError
+from stickslip.io.abaqus import abaqus_keys, read_abaqus
+from stickslip.io.ansys import ANSYS_KEYS, read_ansys
+from stickslip.io.calculix import read_calculix, read_calculix_dofs
+from stickslip.io.dmig import read_dmig
 from stickslip.io.harwell_boeing import read_harwell_boeing
+from stickslip.io.label import Labelled
 from stickslip.io.matlab import require_sound
 from stickslip.io.matrix_market import read_matrix_market
+from stickslip.io.op4 import read_op4
 
 if TYPE_CHECKING:
     import h5py  # type: ignore[import-untyped, unused-ignore]
+    from scipy.sparse import csc_array
 
-__all__ = ["read_matrix"]
+__all__ = ["read_dofs", "read_matrix"]
 
 _LONGEST = 80
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -27,7 +35,21 @@ _MATLAB_NUMBERS = {"double", "single", "sparse", "logical"} | {
 }
 
 
-def read_matrix(path: str | os.PathLike[str], key: str | None = None) -> Matrix:
+@overload
+def read_matrix(
+    path: str | os.PathLike[str], key: str | None = None, *, sparse: Literal[False] = False
+) -> Matrix: ...
+
+
+@overload
+def read_matrix(
+    path: str | os.PathLike[str], key: str | None = None, *, sparse: Literal[True]
+) -> csc_array: ...
+
+
+def read_matrix(
+    path: str | os.PathLike[str], key: str | None = None, *, sparse: bool = False
+) -> Matrix | csc_array:
     """Read one real matrix from a file.
 
     Parameters
@@ -35,23 +57,77 @@ def read_matrix(path: str | os.PathLike[str], key: str | None = None) -> Matrix:
     path : str or path-like
         The file. Its ending says what it is: `.npy`, `.npz` (of `numpy.savez` or
         `scipy.sparse.save_npz`), `.mat` (MATLAB; -v7.3 files need the package h5py), `.mtx` or
-        `.mtx.gz` (MatrixMarket), `.hb`, `.rb`, `.rua`, `.rsa`, `.hbf`, `.psa` (Harwell-Boeing and
-        Rutherford-Boeing, as of ANSYS' HBMAT).
+        `.mtx.gz` (MatrixMarket, or Abaqus' text), `.hb`, `.rb`, `.rua`, `.rsa`, `.hbf`, `.psa`
+        (Harwell-Boeing and Rutherford-Boeing, as of ANSYS' HBMAT), `.op4` (Nastran's OUTPUT4),
+        `.pch`, `.dmig` (Nastran's DMIG), `.sti`, `.mas` (CalculiX, with the `.dof` beside it),
+        `.full` (ANSYS, with the package ansys-mapdl-reader).
     key : str, optional
-        Name of the matrix in a `.npz` or `.mat` file; it may be left out if there is only one.
+        Name of the matrix in a file that holds several (`.npz`, `.mat`, `.op4`, `.pch`; "stiffness"
+        or "mass" in `.full` and substructures of Abaqus); it may be left out if there is only one.
+    sparse : bool, optional
+        Return a sparse matrix: the way to read finite-element models for `craig_bampton`.
 
     Returns
     -------
-    ndarray of float64, shape (rows, columns)
-        The dense matrix. Symmetric storage of one triangle has been mirrored.
+    ndarray of float64, shape (rows, columns), or scipy.sparse.csc_array
+        The matrix. Symmetric storage of one triangle has been mirrored.
 
     Raises
     ------
     ModelError
         If the file is missing, damaged or of an unknown kind; if `key` is unknown, or needed and
-        missing; if the matrix is complex, not finite, not two-dimensional, or sparse and too large.
+        missing; if the matrix is complex, not finite, not two-dimensional, or sparse and too large
+        to be made dense.
+
+    See Also
+    --------
+    read_dofs : the names of its rows.
     """
     file = file_path(path, "path")
+    loaded = _load(file, key)
+    if sparse:
+        return _sparse(loaded.matrix, _entry(file, key))
+    with _readable(file):
+        matrix = real_matrix(loaded.matrix, _entry(file, key))
+    if not np.isfinite(matrix).all():
+        row, column = np.argwhere(~np.isfinite(matrix))[0]
+        raise _not_finite(_entry(file, key), matrix[row, column], row, column)
+    return matrix
+
+
+def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str, ...]:
+    """Read the names of the rows of a matrix, where the file has them.
+
+    Parameters
+    ----------
+    path, key
+        As of `read_matrix`: CalculiX (`.sti`, `.mas`, `.dof`), Nastran's DMIG, Abaqus' matrix input
+        format and substructures, ANSYS' `.full`.
+
+    Returns
+    -------
+    tuple of str
+        "node.direction", one per row; directions count from 1.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read, or does not name its rows.
+    """
+    file = file_path(path, "path")
+    if _ending(file) == ".dof":
+        if not os.path.isfile(file):
+            raise ModelError(f"{file}: no such file; check the path")
+        with _readable(file):
+            return read_calculix_dofs(file)
+    names = _load(file, key).dofs
+    if names is None:
+        raise ModelError(f"{file}: it does not name its rows; count them, from 0")
+    return names
+
+
+def _load(file: Path, key: str | None) -> Labelled:
+    """Return what the reader of the format makes of the file."""
     if key is not None:
         text(key, f"{file}: key")
     reader = _READERS.get(_ending(file))
@@ -59,14 +135,23 @@ def read_matrix(path: str | os.PathLike[str], key: str | None = None) -> Matrix:
         raise ModelError(f"{file}: {unknown('file ending', _ending(file), _READERS)}")
     if not os.path.isfile(file):
         raise ModelError(f"{file}: no such file; check the path")
+    with _readable(file):
+        loaded = reader(file, key)
+        if not isinstance(loaded, Labelled):
+            loaded = Labelled(loaded, None)
+        if hasattr(loaded.matrix, "check_format"):
+            # Damaged sparse indices would write outside the dense array.
+            loaded.matrix.check_format(full_check=True)
+    return loaded
+
+
+@contextmanager
+def _readable(file: Path) -> Iterator[None]:
+    """Word whatever a reader stumbles over."""
     # The readers' libraries raise whatever they stumble over in a damaged file, struct.error and
     # MemoryError among it.
     try:
-        loaded = reader(file, key)
-        if hasattr(loaded, "check_format"):
-            # Damaged sparse indices would write outside the dense array.
-            loaded.check_format(full_check=True)
-        matrix = real_matrix(loaded, _entry(file, key))
+        yield
     except ModelError:
         raise
     except Exception as error:
@@ -74,13 +159,28 @@ def read_matrix(path: str | os.PathLike[str], key: str | None = None) -> Matrix:
         raise ModelError(
             f"{file}: cannot be read as {_ending(file)}: {cause}; write the file again"
         ) from error
-    if not np.isfinite(matrix).all():
-        row, column = np.argwhere(~np.isfinite(matrix))[0]
-        raise ModelError(
-            f"{_entry(file, key)}: {matrix[row, column]} in row {row}, column {column}, counted "
-            "from 0; every entry must be finite"
-        )
-    return matrix
+
+
+def _sparse(matrix: object, entry: str) -> csc_array:
+    """Return a matrix of real, finite numbers without making it dense."""
+    from scipy.sparse import coo_array, issparse
+
+    given: Any = matrix if issparse(matrix) else real_matrix(matrix, entry)
+    found = coo_array(given)
+    if found.dtype.kind not in "fiu":
+        raise ModelError(f"{entry}: entries of type {found.dtype}; give real matrices")
+    wrong = np.flatnonzero(~np.isfinite(found.data))
+    if wrong.size:
+        at = wrong[0]
+        raise _not_finite(entry, found.data[at], int(found.row[at]), int(found.col[at]))
+    return found.astype(np.float64).tocsc()
+
+
+def _not_finite(entry: str, value: float, row: int, column: int) -> ModelError:
+    return ModelError(
+        f"{entry}: {value} in row {row}, column {column}, counted from 0; "
+        "every entry must be finite"
+    )
 
 
 def _ending(file: Path) -> str:
@@ -175,9 +275,37 @@ def _read_matlab_sparse(file: Path, name: str, group: h5py.Group) -> object:
     return csc_array((values, group["ir"][()], pointers), shape=(rows, len(pointers) - 1))
 
 
-def _read_matrix_market(file: Path, key: str | None) -> object:
+def _read_mtx(file: Path, key: str | None) -> object:
+    """Read MatrixMarket, or what Abaqus calls .mtx."""
+    if _ending(file) == ".mtx":
+        start = file.read_bytes()[:512].lstrip()
+        if start[:1].isdigit() or start[:1] == b"*":
+            keys = abaqus_keys(file)
+            if keys:
+                return read_abaqus(file, _choose(file, key, keys))
+            _refuse_key(file, key)
+            return read_abaqus(file)
     _refuse_key(file, key)
     return read_matrix_market(file)
+
+
+def _read_op4(file: Path, key: str | None) -> object:
+    matrices = read_op4(file)
+    return matrices[_choose(file, key and key.upper(), matrices)]()
+
+
+def _read_dmig(file: Path, key: str | None) -> object:
+    matrices = read_dmig(file)
+    return matrices[_choose(file, key and key.upper(), matrices)]
+
+
+def _read_calculix(file: Path, key: str | None) -> object:
+    _refuse_key(file, key)
+    return read_calculix(file)
+
+
+def _read_ansys(file: Path, key: str | None) -> object:
+    return read_ansys(file, _choose(file, key, ANSYS_KEYS))
 
 
 def _read_harwell_boeing(file: Path, key: str | None) -> object:
@@ -189,7 +317,11 @@ _READERS: dict[str, Callable[[Path, str | None], object]] = {
     ".npy": _read_numpy,
     ".npz": _read_numpy,
     ".mat": _read_matlab,
-    ".mtx": _read_matrix_market,
-    ".mtx.gz": _read_matrix_market,
+    ".mtx": _read_mtx,
+    ".mtx.gz": _read_mtx,
     **dict.fromkeys((".hb", ".rb", ".rua", ".rsa", ".hbf", ".psa"), _read_harwell_boeing),
+    ".op4": _read_op4,
+    **dict.fromkeys((".pch", ".dmig"), _read_dmig),
+    **dict.fromkeys((".sti", ".mas"), _read_calculix),
+    ".full": _read_ansys,
 }

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.triangle import SIGNS, whole_matrix
+from stickslip.io.triangle import SIGNS, require_whole_numbers, whole_matrix
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -54,6 +54,7 @@ def read_matrix_market(path: Path) -> coo_array:
     content = gzip.decompress(path.read_bytes()) if packed else path.read_bytes()
     header, _, text = content.decode("latin-1").replace("\r\n", "\n").partition("\n")
     layout, symmetry = _header(header)
+    require_whole_numbers(text)
     start = _COMMENTS.match(text)
     sizes, _, body = text[start.end() if start else 0 :].partition("\n")
     if layout == "coordinate":
@@ -74,7 +75,7 @@ def _header(line: str) -> tuple[str, str]:
     """Return layout and symmetry."""
     words = line.lower().split()
     if len(words) != 5 or words[:2] != ["%%matrixmarket", "matrix"]:
-        raise ValueError("no %%MatrixMarket matrix header (Abaqus' .mtx is another format)")
+        raise ValueError("no %%MatrixMarket matrix header")
     layout, field, symmetry = words[2:]
     if layout not in ("coordinate", "array"):
         raise ValueError(f"unknown layout {layout!r}")

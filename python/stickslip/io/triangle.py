@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,10 +11,39 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = ["SIGNS", "whole_matrix"]
+__all__ = ["SIGNS", "require_whole_numbers", "whole_matrix"]
+
+# Fortran drops the letter of an exponent of three digits.
+_EXPONENT = re.compile(r"(?:[ED][+-]?|(?<=[\d.])[+-])(\d+)[ \t\r]*$", re.I)
 
 SIGNS = {"general": 0, "symmetric": 1, "skew-symmetric": -1}
 """What an entry is multiplied by when it is mirrored; 0: it is not."""
+
+
+def require_whole_numbers(text: str) -> None:
+    """Refuse a text that ends inside a number, as far as that can be seen.
+
+    Parameters
+    ----------
+    text : str
+        Lines of numbers. Many programs do not end the last line.
+
+    Raises
+    ------
+    ValueError
+        If the last line does not end, and its last number has no exponent or a shorter one than
+        those of the lines before.
+    """
+    if text.endswith("\n") or not text:
+        return
+    *lines, last = text[-4000:].split("\n")
+    digits = [len(found[1]) if (found := _EXPONENT.search(line)) else 0 for line in lines[-5:]]
+    # Two digits are the rule, three the exception.
+    least = min(2, *digits) if len(digits) > 2 else 0
+    own = _EXPONENT.search(last)
+    stops = re.search(r"[ED+.-]\s*$", last, re.I) is not None
+    if stops or (len(own[1]) if own else 0) < least:
+        raise ValueError(f"the last number, {last[-12:]!r}, is not whole; the file was cut short")
 
 
 def whole_matrix(

@@ -1,0 +1,286 @@
+"""Solid finite elements: hexahedra of 20 nodes, quadratic shape functions."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.checks import file_path, real_number
+from stickslip.errors import ModelError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+__all__ = ["Solid"]
+
+_BOTTOM = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)]
+_EDGES = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)]
+_VTK = np.array(
+    [
+        *_BOTTOM,
+        *((x, y, 2) for x, y, _ in _BOTTOM),
+        *_EDGES,
+        *((x, y, 2) for x, y, _ in _EDGES),
+        *((x, y, 1) for x, y, _ in _BOTTOM),
+    ]
+)
+"""Places of the 20 nodes in VTK's order, in half edges."""
+_MIRRORED = [*range(4, 8), *range(4), *range(12, 16), *range(8, 12), *range(16, 20)]
+"""The same with top and bottom exchanged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """An elastic body of hexahedra.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshHex
+        Vertices in m; the elements have straight edges.
+    young : float
+        Young's modulus [Pa].
+    poisson : float
+        Poisson's ratio.
+    density : float
+        [kg/m^3].
+
+    Attributes
+    ----------
+    nodes : ndarray of float64, shape (n, 3)
+        Vertices, then middles of edges [m]. Degree of freedom 3 i + j is direction j of node i.
+    dofs : tuple of str
+        Their names, "node.direction", both from 1.
+
+    Raises
+    ------
+    ModelError
+        If scikit-fem is missing, or a constant is not physical.
+    """
+
+    mesh: Any
+    young: float
+    poisson: float
+    density: float
+    _basis: Any = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        skfem = _skfem()
+        for name in ("young", "density"):
+            if real_number(getattr(self, name), f"solid: {name}") <= 0.0:
+                raise ModelError(f"solid: {name} {getattr(self, name):g} must be positive")
+        if not -1.0 < real_number(self.poisson, "solid: poisson") < 0.5:
+            raise ModelError(f"solid: poisson {self.poisson:g} must lie between -1 and 0.5")
+        # Order 4 integrates the mass of a brick exactly.
+        element = skfem.ElementVector(skfem.ElementHexS2())
+        object.__setattr__(self, "_basis", skfem.Basis(self.mesh, element, intorder=4))
+
+    @cached_property
+    def nodes(self) -> NDArray[np.float64]:
+        """Places of the nodes [m], shape (n, 3)."""
+        return np.asarray(self._basis.doflocs[:, ::3].T, dtype=np.float64)
+
+    @cached_property
+    def dofs(self) -> tuple[str, ...]:
+        """Names of the degrees of freedom."""
+        return tuple(f"{node}.{way}" for node in range(1, len(self.nodes) + 1) for way in (1, 2, 3))
+
+    @cached_property
+    def stiffness(self) -> csc_array:
+        """Stiffness matrix [N/m], sparse, of the free body."""
+        grad, weights = self._gradients
+        shear = self.young / (2.0 * (1.0 + self.poisson))
+        lame = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
+        flat = grad.reshape(*grad.shape[:2], 60)  # (element, point, shape function and direction)
+        products = np.matmul((flat * weights[:, :, None]).transpose(0, 2, 1), flat)
+        products = products.reshape(-1, 20, 3, 20, 3)
+        whole = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
+        trace = shear * np.einsum("eaibi->eab", products)
+        for way in range(3):
+            whole[:, :, way, :, way] += trace
+        return self._assembled(whole)
+
+    @cached_property
+    def mass(self) -> csc_array:
+        """Consistent mass matrix [kg], sparse."""
+        _, weights = self._gradients
+        shapes = self._scalar_values
+        scalar = np.einsum("aq,bq,eq->eab", shapes, shapes, self.density * weights, optimize=True)
+        whole = np.zeros((len(scalar), 20, 3, 20, 3))
+        for way in range(3):
+            whole[:, :, way, :, way] = scalar
+        return self._assembled(whole)
+
+    def nearest(self, point: ArrayLike) -> int:
+        """Return the node nearest to a point [m]."""
+        return int(np.linalg.norm(self.nodes - np.asarray(point), axis=1).argmin())
+
+    def load(
+        self, traction: Callable[[NDArray[np.float64]], NDArray[np.float64]], vertices: ArrayLike
+    ) -> NDArray[np.float64]:
+        """Return the forces of a traction on part of the surface.
+
+        Parameters
+        ----------
+        traction : callable
+            From places, shape (3, ...), to force per area, the same shape [Pa].
+        vertices : array_like of int
+            The faces that have all their vertices among these are loaded.
+
+        Returns
+        -------
+        ndarray of float64, shape (3 n,)
+            Forces [N].
+
+        Raises
+        ------
+        ModelError
+            If there is no such face.
+        """
+        skfem = _skfem()
+        among = np.isin(self.mesh.facets, np.asarray(vertices)).all(axis=0)
+        faces = np.intersect1d(np.flatnonzero(among), self.mesh.boundary_facets())
+        if not faces.size:
+            raise ModelError("solid: no face has all its vertices among those given")
+        basis = skfem.FacetBasis(self.mesh, self._basis.elem, facets=faces, intorder=4)
+
+        @skfem.LinearForm  # type: ignore[untyped-decorator, unused-ignore]
+        def work(v: Any, w: Any) -> Any:
+            force = traction(np.asarray(w.x))
+            return force[0] * v[0] + force[1] * v[1] + force[2] * v[2]
+
+        return np.asarray(work.assemble(basis), dtype=np.float64)
+
+    def stress(self, displacement: ArrayLike) -> NDArray[Any]:
+        """Return the stress of a displacement field at the nodes.
+
+        Parameters
+        ----------
+        displacement : array_like, shape (3 n,)
+            Of all degrees of freedom, real or complex [m].
+
+        Returns
+        -------
+        ndarray, shape (n, 6)
+            xx, yy, zz, yz, xz, xy [Pa]: the mean of the elements around a node, each evaluated at
+            the node itself.
+        """
+        given = np.asarray(displacement)
+        if np.iscomplexobj(given):
+            return np.asarray(self.stress(given.real) + 1j * self.stress(given.imag))
+        gradient = np.asarray(self._nodal_basis.interpolate(given).grad)  # (i, j, element, place)
+        strain = 0.5 * (gradient + gradient.transpose(1, 0, 2, 3))
+        shear = self.young / (2.0 * (1.0 + self.poisson))
+        lame = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
+        stress = 2.0 * shear * strain
+        for way in range(3):
+            stress[way, way] += lame * np.trace(strain)
+        places = self._node_of_place
+        count = np.bincount(places.ravel(), minlength=len(self.nodes))
+        parts = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
+        sums = [
+            np.bincount(places.ravel(), stress[i, j].ravel(), minlength=len(self.nodes))
+            for i, j in parts
+        ]
+        return np.asarray(np.array(sums).T / count[:, None])
+
+    def write_vtu(self, path: str | os.PathLike[str], fields: Mapping[str, ArrayLike]) -> None:
+        """Write mesh and nodal fields for ParaView.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file, `.vtu`; it is written whole or not at all.
+        fields : mapping of str to array_like, shape (n,) or (n, 3)
+            Real values at the nodes by name.
+
+        Raises
+        ------
+        ModelError
+            If meshio is missing, or the file cannot be written.
+        """
+        try:
+            import meshio
+        except ImportError:
+            raise ModelError(
+                f"{path}: .vtu files need the package meshio: pip install 'stickslip[fe]'"
+            ) from None
+        file = file_path(path, "path")
+        values = {name: np.asarray(value, dtype=np.float64) for name, value in fields.items()}
+        cells = [("hexahedron20", self._vtk_cells)]
+        partial = file.with_name(f".{file.name}.part")
+        try:
+            meshio.Mesh(self.nodes, cells, point_data=values).write(partial, file_format="vtu")
+            os.replace(partial, file)
+        except OSError as error:
+            raise ModelError(f"{file}: cannot be written: {error.strerror or error}") from None
+        finally:
+            partial.unlink(missing_ok=True)
+
+    def _assembled(self, whole: NDArray[np.float64]) -> csc_array:
+        """Add up matrices of elements, shape (elements, 20, 3, 20, 3)."""
+        from scipy.sparse import coo_array
+
+        dofs = (3 * self._node_of_place[:, :, None] + np.arange(3)).reshape(-1, 60)
+        rows = np.broadcast_to(dofs[:, :, None], (len(dofs), 60, 60))
+        columns = rows.transpose(0, 2, 1)
+        size = 3 * len(self.nodes)
+        entries = (whole.ravel(), (rows.ravel(), columns.ravel()))
+        matrix = coo_array(entries, shape=(size, size)).tocsc()
+        matrix.eliminate_zeros()
+        return matrix
+
+    @cached_property
+    def _gradients(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Gradients of the shape functions (element, point, function, direction), and weights."""
+        skfem = _skfem()
+        basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4)
+        shape = basis.dx.shape
+        grad = np.array([np.broadcast_to(one[0].grad, (3, *shape)) for one in basis.basis])
+        return np.ascontiguousarray(grad.transpose(2, 3, 0, 1)), np.asarray(basis.dx)
+
+    @cached_property
+    def _scalar_values(self) -> NDArray[np.float64]:
+        """Values of the shape functions (function, point), the same in every element."""
+        skfem = _skfem()
+        basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4)
+        return np.array([np.atleast_2d(np.asarray(one[0]))[0] for one in basis.basis])
+
+    @cached_property
+    def _nodal_basis(self) -> Any:
+        """The basis evaluated at the nodes of each element, in the element's order."""
+        skfem = _skfem()
+        scalar = skfem.ElementHexS2()
+        places = np.asarray(scalar.doflocs).T
+        weights = np.full(places.shape[1], 1.0 / places.shape[1])
+        return skfem.Basis(self.mesh, self._basis.elem, quadrature=(places, weights))
+
+    @cached_property
+    def _node_of_place(self) -> NDArray[np.int64]:
+        """The node at each place of each element, shape (elements, 20)."""
+        return np.asarray(self._basis.element_dofs[::3].T // 3, dtype=np.int64)
+
+    @cached_property
+    def _vtk_cells(self) -> NDArray[np.int64]:
+        places = np.rint(2.0 * np.asarray(_skfem().ElementHexS2().doflocs)).astype(int)
+        order = [int(np.flatnonzero((places == place).all(axis=1))[0]) for place in _VTK]
+        cells = self._node_of_place[:, order]
+        # Meshes may map their elements mirrored; other programs want the corners right-handed.
+        first, along, across, up = (self.nodes[cells[:, corner]] for corner in (0, 1, 3, 4))
+        volume = np.einsum("ei,ei->e", np.cross(along - first, across - first), up - first)
+        return np.where((volume < 0.0)[:, None], cells[:, _MIRRORED], cells)
+
+
+def _skfem() -> Any:
+    try:
+        import skfem
+    except ImportError:
+        raise ModelError(
+            "solid: finite elements need the package scikit-fem: pip install 'stickslip[fe]'"
+        ) from None
+    return skfem

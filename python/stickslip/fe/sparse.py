@@ -1,0 +1,170 @@
+"""Large sparse matrices: checked at the door, factored once, their lowest modes by shift-invert."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import brief
+from stickslip.errors import ModelError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+__all__ = ["Factor", "asymmetry", "lowest_modes", "symmetric_sparse"]
+
+_ASYMMETRY = 1e-8
+_DENSE = 400
+"""Rows up to which a dense eigenproblem is faster and surer than Lanczos' method."""
+
+_Made = TypeVar("_Made")
+
+
+def asymmetry(matrix: csc_array) -> float:
+    """Return the largest |a_ij - a_ji| as a part of the largest |a_ij|."""
+    largest = float(abs(matrix).max()) if matrix.nnz else 0.0
+    return float(abs(matrix - matrix.T).max()) / largest if largest else 0.0
+
+
+def symmetric_sparse(value: object, entry: str) -> tuple[csc_array, float]:
+    """Return a matrix as sparse, real, finite and exactly symmetric, and how symmetric it was.
+
+    Raises
+    ------
+    ModelError
+        If it is none of this, beyond rounded digits (1e-8 of the largest entry).
+    """
+    from scipy.sparse import csc_array
+
+    given: Any = value
+    try:
+        matrix = csc_array(given)
+    except (TypeError, ValueError):
+        raise ModelError(f"{entry}: {brief(value)} is not a matrix; give a sparse one") from None
+    if matrix.dtype.kind not in "fiu":
+        raise ModelError(f"{entry}: entries of type {matrix.dtype}; give real numbers")
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or not matrix.shape[0]:
+        raise ModelError(f"{entry}: shape {matrix.shape}; give a square matrix")
+    matrix = matrix.astype(np.float64)
+    matrix.sum_duplicates()
+    if not np.isfinite(matrix.data).all():
+        raise ModelError(f"{entry}: an entry is not finite; every entry must be")
+    skew = asymmetry(matrix)
+    if skew > _ASYMMETRY:
+        raise ModelError(
+            f"{entry}: not symmetric, by {skew:.2g} of its largest entry; mirror the triangle that "
+            "is filled, or put skew terms into the damping of the reduced structure"
+        )
+    return csc_array(0.5 * (matrix + matrix.T)), skew
+
+
+class Factor:
+    """A symmetric matrix, factored (SuperLU).
+
+    Parameters
+    ----------
+    matrix : scipy.sparse.csc_array, shape (N, N)
+        The matrix.
+
+    Raises
+    ------
+    RuntimeError
+        If it is singular to the last digit.
+    MemoryError
+        If its factors do not fit.
+    """
+
+    def __init__(self, matrix: csc_array) -> None:
+        from scipy.sparse.linalg import splu
+
+        # Pivots on the diagonal keep the symmetric order, which fills in least.
+        options = {"SymmetricMode": True}
+        self._lu: Any = _interruptible(
+            lambda: splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        )
+        self.size = matrix.shape[0]
+
+    def solve(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the solution of one or more right-hand sides, shape (N,) or (N, columns)."""
+        solution: NDArray[np.float64] = self._lu.solve(right)
+        return solution
+
+
+def lowest_modes(
+    stiffness: csc_array, mass: csc_array, count: int, factor: Factor, shift: float = 0.0
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the modes of K x = lambda M x nearest above a shift.
+
+    Parameters
+    ----------
+    stiffness, mass : scipy.sparse.csc_array, shape (N, N)
+        Symmetric; the mass positive semidefinite.
+    count : int
+        Number of modes.
+    factor : Factor
+        Of K - shift M.
+    shift : float, optional
+        Below every eigenvalue [rad^2/s^2].
+
+    Returns
+    -------
+    squares : ndarray of float64, shape (count,)
+        Squared angular frequencies, ascending.
+    modes : ndarray of float64, shape (N, count)
+        Mass-normalised; the largest entry of each is positive.
+
+    Raises
+    ------
+    ModelError
+        If Lanczos' method does not converge.
+    numpy.linalg.LinAlgError
+        If K - shift M is not positive definite, as far as that is noticed.
+    """
+    from scipy.linalg import eigh
+    from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
+
+    size = stiffness.shape[0]
+    if size <= _DENSE:
+        # 1 / (lambda - shift): the stiffness has an inverse, the mass of massless dofs has none.
+        shifted = (stiffness - shift * mass).toarray()
+        inverses, modes = eigh(mass.toarray(), shifted, subset_by_index=(size - count, size - 1))
+        squares = shift + 1.0 / inverses
+    else:
+        inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
+        # A fixed start makes two runs agree to the last digit.
+        start = np.random.default_rng(0).standard_normal(size)
+        try:
+            squares, modes = eigsh(stiffness, count, mass, shift, OPinv=inverse, v0=start)
+        except ArpackError as error:
+            raise ModelError(
+                f"modes: Lanczos' method failed ({brief(str(error))}); ask for fewer or more modes"
+            ) from None
+    order = np.argsort(squares)
+    squares, modes = squares[order], modes[:, order]
+    modes = modes / np.sqrt(np.einsum("ij,ij->j", modes, mass @ modes))
+    largest = modes[np.abs(modes).argmax(axis=0), np.arange(count)]
+    return np.asarray(squares), np.asarray(modes * np.sign(largest))
+
+
+def _interruptible(make: Callable[[], _Made]) -> _Made:
+    """Run compiled code in a thread, so that Ctrl-C is heard meanwhile."""
+    made: list[_Made] = []
+    failed: list[BaseException] = []
+
+    def work() -> None:
+        try:
+            made.append(make())
+        except BaseException as error:  # handed on to the caller below
+            failed.append(error)
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    while thread.is_alive():
+        thread.join(0.2)
+    if failed:
+        raise failed[0]
+    return made[0]

@@ -1,0 +1,99 @@
+"""The .full file of ANSYS, read by ansys-mapdl-reader in a process of its own.
+
+Its compiled reader trusts the addresses in the file: a damaged one takes the process down, and
+another process is all it may take.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from stickslip.errors import ModelError
+from stickslip.io.label import Labelled, node_names
+from stickslip.io.triangle import whole_matrix
+
+__all__ = ["ANSYS_KEYS", "read_ansys"]
+
+ANSYS_KEYS = ("stiffness", "mass")
+"""The matrices of a .full file."""
+
+_PATIENCE = 600
+"""Seconds; the largest sound files take one or two minutes."""
+
+_READ = """
+import sys
+import numpy as np
+from ansys.mapdl import reader
+full = reader.read_binary(sys.argv[1])
+dofs, stiffness, mass = full.load_km(as_sparse=True, sort=False)
+chosen = {"stiffness": stiffness, "mass": mass}[sys.argv[3]]
+if chosen is None:
+    sys.exit("the file holds no such matrix")
+chosen = chosen.tocoo()
+np.savez(sys.argv[2], dofs=dofs, held=full.const, rows=chosen.row, columns=chosen.col,
+         values=chosen.data, size=len(dofs))
+"""
+
+
+def read_ansys(path: Path, key: str) -> Labelled:
+    """Read a matrix of a .full file.
+
+    Parameters
+    ----------
+    path : Path
+        The file; unsymmetric matrices and lumped masses are refused by the reader.
+    key : str
+        "stiffness" or "mass".
+
+    Returns
+    -------
+    Labelled
+        The whole matrix without the rows of constrained degrees of freedom; its rows are
+        "node.direction", directions from 1.
+
+    Raises
+    ------
+    ModelError
+        If ansys-mapdl-reader is not installed.
+    ValueError
+        With the reason, if the file is damaged.
+    """
+    if importlib.util.find_spec("ansys") is None or importlib.util.find_spec("vtk") is None:
+        raise ModelError(
+            f"{path}: a .full file needs ansys-mapdl-reader, some 600 MB with VTK: "
+            "pip install 'stickslip[ansys]'; or export with ANSYS' HBMAT to a .hb file"
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "matrix.npz"
+        command = [sys.executable, "-c", _READ, str(path), str(target), key]
+        try:
+            made = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
+        except subprocess.TimeoutExpired:
+            raise ValueError(f"no answer within {_PATIENCE} s; the file is damaged") from None
+        if made.returncode or not target.is_file():
+            told = made.stderr.decode(errors="replace").strip().splitlines()
+            raise ValueError(told[-1] if told and made.returncode > 0 else "its reader crashed")
+        with np.load(target) as read:
+            return _labelled(dict(read))
+
+
+def _labelled(read: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.generic]]]) -> Labelled:
+    dofs, size = np.asarray(read["dofs"], np.int64), int(read["size"])
+    rows, columns = np.asarray(read["rows"], np.int64), np.asarray(read["columns"], np.int64)
+    values = np.asarray(read["values"], np.float64)
+    if not size or (dofs[:, 0] < 1).any() or len(np.unique(dofs, axis=0)) < size:
+        raise ValueError("its degrees of freedom are not named once each")
+    matrix = whole_matrix((size, size), rows, columns, values, "symmetric").tocsr()
+    held = np.asarray(read["held"], np.int64).reshape(-1, 2)
+    free = ~(dofs[:, None] == held[None]).all(axis=2).any(axis=1) if len(held) else dofs[:, 0] > 0
+    diagonal = matrix.diagonal()[free]
+    if not (diagonal > 0.0).all():
+        raise ValueError("a diagonal entry is not positive; the file is damaged")
+    names = node_names(dofs[free, 0], dofs[free, 1] + 1)
+    return Labelled(matrix[free][:, free].tocoo(), names)

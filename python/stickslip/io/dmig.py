@@ -1,0 +1,155 @@
+"""Matrices that Nastran punches as bulk data, DMIG."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.io.label import Labelled, node_names, square_matrix
+
+if TYPE_CHECKING:
+    from scipy.sparse import coo_array
+
+__all__ = ["read_dmig"]
+
+_BARE_EXPONENT = re.compile(r"(?<=[0-9.])([+-]\d+)$")
+_Place = tuple[int, int]
+"""Grid point and component."""
+
+
+@dataclass
+class _Entries:
+    """The cards of one matrix, collected."""
+
+    form: int
+    kind: int
+    rows: list[_Place] = field(default_factory=list)
+    columns: list[_Place] = field(default_factory=list)
+    values: list[float] = field(default_factory=list)
+
+
+def read_dmig(path: Path) -> dict[str, Labelled]:
+    """Read all square matrices of a punch file.
+
+    Parameters
+    ----------
+    path : Path
+        The file; cards other than DMIG are passed over.
+
+    Returns
+    -------
+    dict of str to Labelled
+        The matrices by name, in capitals. All have the same rows: every grid point and component
+        that one of them names, sorted. A triangle is mirrored.
+
+    Raises
+    ------
+    ValueError
+        With the reason, if the file is damaged, or a matrix is complex or rectangular.
+
+    References
+    ----------
+    MSC Software, "MSC Nastran Quick Reference Guide", bulk data entry DMIG.
+    """
+    text = path.read_text(encoding="ascii")
+    if not text.endswith("\n"):
+        raise ValueError("the last line does not end; the file was cut short")
+    matrices: dict[str, _Entries] = {}
+    for fields in _cards(text.splitlines()):
+        name = fields[0].upper()
+        if fields[1] == "0":
+            if name in matrices:
+                raise ValueError(f"matrix {name!r} is given twice")
+            matrices[name] = _Entries(_integer(fields[2]), _integer(fields[3]))
+        elif name not in matrices:
+            raise ValueError(f"matrix {name!r} has columns, but no first card")
+        else:
+            _add_column(matrices[name], fields)
+    if not matrices:
+        raise ValueError("no DMIG card")
+    used = sorted({place for one in matrices.values() for place in (*one.rows, *one.columns)})
+    index = {place: row for row, place in enumerate(used)}
+    names = node_names(*zip(*used, strict=True)) if used else ()
+    return {
+        name: Labelled(_matrix(name, entries, index), names) for name, entries in matrices.items()
+    }
+
+
+def _cards(lines: list[str]) -> Iterator[list[str]]:
+    """Yield the fields of each DMIG card, continuations joined."""
+    card: list[str] | None = None
+    for line in lines:
+        line = line.split("$")[0].expandtabs().rstrip()
+        if not line:
+            continue
+        if line[0] not in "*+ ,":
+            if card is not None:
+                yield card
+            card = [] if re.match(r"DMIG\b", line, re.I) else None
+        if card is not None:
+            card += _fields(line)
+    if card is not None:
+        yield card
+
+
+def _fields(line: str) -> list[str]:
+    if "," in line:
+        return [word.strip() for word in (*line.split(",")[1:9], *[""] * 8)][:8]
+    wide = "*" in line[:8]
+    width, count = (16, 4) if wide else (8, 8)
+    if len(line) > 8 + width * count + 8:
+        raise ValueError(f"line {line[:40]!r} is longer than a card")
+    return [line[at : at + width].strip() for at in range(8, 8 + width * count, width)]
+
+
+def _add_column(entries: _Entries, fields: list[str]) -> None:
+    column = _integer(fields[1]), _integer(fields[2])
+    if fields[3]:
+        raise ValueError(f"{fields[3]!r} stands where column {column[0]}.{column[1]} is blank")
+    body = fields[4:]
+    for at in range(0, len(body), 4):
+        grid, component, real, imaginary = (*body[at : at + 4], *[""] * 4)[:4]
+        if not (grid or component or real or imaginary):
+            continue
+        if imaginary and _real(imaginary) != 0.0:
+            raise ValueError("the matrix is complex; export real matrices")
+        entries.rows.append((_integer(grid), _integer(component or "0")))
+        entries.columns.append(column)
+        entries.values.append(_real(real))
+
+
+def _matrix(name: str, entries: _Entries, index: dict[_Place, int]) -> coo_array:
+    from scipy.sparse import coo_array
+
+    if entries.kind not in (1, 2):
+        raise ValueError(f"matrix {name!r} is complex (type {entries.kind}); export real matrices")
+    if entries.form not in (1, 6):
+        raise ValueError(f"matrix {name!r} is not square (form {entries.form})")
+    if not entries.values:
+        raise ValueError(f"matrix {name!r} has no columns; the file is not whole")
+    rows = np.array([index[place] for place in entries.rows], dtype=np.int64)
+    columns = np.array([index[place] for place in entries.columns], dtype=np.int64)
+    values = np.array(entries.values)
+    if entries.form == 6:
+        return square_matrix(rows, columns, values, len(index))
+    if np.unique(rows * len(index) + columns).size < rows.size:
+        raise ValueError(f"matrix {name!r}: an entry is given twice")
+    return coo_array((values, (rows, columns)), shape=(len(index),) * 2)
+
+
+def _integer(word: str) -> int:
+    if not re.fullmatch(r"\d+", word):
+        raise ValueError(f"{word!r} stands where a whole number must be")
+    return int(word)
+
+
+def _real(word: str) -> float:
+    number = word.upper().replace("D", "E")
+    if not re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)(E?[-+]?\d+)?", number):
+        raise ValueError(f"{word!r} is no real number")
+    return float(_BARE_EXPONENT.sub(r"E\1", number) if "E" not in number else number)

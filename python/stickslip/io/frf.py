@@ -1,0 +1,271 @@
+"""Frequency response functions, measured and computed, in Universal File Format (dataset 58)."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.checks import brief, choice, file_path, members, text
+from stickslip.errors import ModelError
+
+if TYPE_CHECKING:
+    from stickslip.results import ForcedResponse
+
+__all__ = ["Frf", "read_frf", "write_frf"]
+
+Quantity: TypeAlias = Literal["displacement", "velocity", "acceleration"]
+
+_QUANTITIES = {8: "displacement", 11: "velocity", 12: "acceleration"}
+_DERIVATIVES = {"displacement": 0, "velocity": 1, "acceleration": 2}
+_FREQUENCY, _FORCE, _FRF = 18, 13, 4
+_NODE_DOF = re.compile(r"([1-9]\d{0,9})\.([1-6])(-?)")
+_LONGEST = 10
+"""Characters that the format leaves for the name of an entity."""
+
+
+@dataclass(frozen=True, eq=False)
+class Frf:
+    """A frequency response function: motion at one degree of freedom per force at another.
+
+    Parameters
+    ----------
+    omega : array_like of float, shape (n,)
+        Angular frequencies, ascending [rad/s].
+    values : array_like of complex, shape (n,)
+        Motion per force, x(t) = Re(values F exp(i omega t)) [m/N], [m/s/N] or [m/s^2/N].
+    dof : str
+        Where the motion is: "node.direction", directions from 1 to 6 and a minus behind for the
+        negative one, or another name.
+    reference : str
+        Where the force is.
+    quantity : {"displacement", "velocity", "acceleration"}, optional
+        The motion.
+
+    Raises
+    ------
+    ModelError
+        If a number is not finite, the frequencies do not ascend from 0 or above, or the lengths
+        differ.
+    """
+
+    omega: NDArray[np.float64]
+    values: NDArray[np.complex128]
+    dof: str
+    reference: str
+    quantity: Quantity = "displacement"
+
+    def __init__(
+        self,
+        omega: ArrayLike,
+        values: ArrayLike,
+        dof: str,
+        reference: str,
+        quantity: Quantity = "displacement",
+    ) -> None:
+        frequency, motion = np.array(omega, np.float64), np.array(values, np.complex128)
+        if frequency.ndim != 1 or frequency.shape != motion.shape or frequency.size < 2:
+            raise ModelError(
+                f"frf: {frequency.shape} frequencies, {motion.shape} values; give two lists of one "
+                "length, at least 2"
+            )
+        if not (np.isfinite(frequency).all() and np.isfinite(motion).all()):
+            raise ModelError("frf: a frequency or value is not finite")
+        if frequency[0] < 0.0 or (np.diff(frequency) <= 0.0).any():
+            raise ModelError("frf: the frequencies do not ascend from 0 or above; sort them")
+        frequency.flags.writeable = motion.flags.writeable = False
+        object.__setattr__(self, "omega", frequency)
+        object.__setattr__(self, "values", motion)
+        object.__setattr__(self, "dof", text(dof, "frf: dof"))
+        object.__setattr__(self, "reference", text(reference, "frf: reference"))
+        object.__setattr__(self, "quantity", choice(quantity, "frf: quantity", _DERIVATIVES))
+
+    @classmethod
+    def of(cls, response: ForcedResponse, dof: str, reference: str) -> Frf:
+        """Return the fundamental of a computed response per force.
+
+        Parameters
+        ----------
+        response : ForcedResponse
+            The response; points that were not solved are left out.
+        dof : str
+            An observed degree of freedom.
+        reference : str
+            A degree of freedom with a force of the first harmonic; other forces stay in proportion
+            to it.
+
+        Returns
+        -------
+        Frf
+            The displacement per force. A structure with friction has another one at every level.
+
+        Raises
+        ------
+        ModelError
+            If a degree of freedom is unknown or not observed, or there is no force at `reference`.
+        """
+        forces = [f for f in response.model.forces if f.harmonic == 1 and f.dof == reference]
+        amplitude = sum(force.coefficient for force in forces)
+        if not amplitude:
+            raise ModelError(f"frf: no force at {brief(reference)}; name a dof with a force")
+        solved = response.converged
+        order = np.argsort(response.omega[solved])
+        motion = response.coefficients(dof)[solved, 1] / amplitude
+        return cls(response.omega[solved][order], motion[order], dof, reference)
+
+    def receptance(self) -> NDArray[np.complex128]:
+        """Return displacement per force [m/N], shape (n,); of derivatives nan at 0 rad/s."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moved = self.values / (1j * self.omega) ** _DERIVATIVES[self.quantity]
+        return np.where(np.isfinite(moved), moved, np.nan)
+
+
+def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
+    """Read the frequency response functions of a Universal File.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file, `.uff` or `.unv`: datasets 58 and 58b. Other datasets and functions are passed
+        over.
+
+    Returns
+    -------
+    tuple of Frf
+        In SI units; `.receptance()` gives m/N whatever was measured.
+
+    Raises
+    ------
+    ModelError
+        If the package pyuff is missing, the file is missing or damaged, or holds no frequency
+        response function per force.
+    """
+    file = file_path(path, "path")
+    if not file.is_file():
+        raise ModelError(f"{file}: no such file; check the path")
+    pyuff = _pyuff(file)
+    try:
+        universal = pyuff.UFF(str(file))
+        kinds = np.atleast_1d(universal.get_set_types())
+        sets = [universal.read_sets(int(at)) for at in np.flatnonzero(kinds == 58)]
+        found = [_frf(one) for one in sets if one["func_type"] == _FRF]
+    except Exception as error:
+        cause = " ".join(str(error).split())[:80] or type(error).__name__
+        raise ModelError(
+            f"{file}: cannot be read as Universal File: {cause}; write the file again"
+        ) from error
+    _require_end(file)
+    if not found:
+        raise ModelError(f"{file}: it holds no frequency response function (dataset 58, type 4)")
+    return tuple(found)
+
+
+def write_frf(path: str | os.PathLike[str], functions: Frf | Iterable[Frf]) -> None:
+    """Write frequency response functions to a Universal File, dataset 58 as text.
+
+    The format holds 6 digits of the frequency and 12 of the values.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file; it is written whole or not at all.
+    functions : Frf or iterable of Frf
+        The functions. Names other than "node.direction" have at most 10 characters.
+
+    Raises
+    ------
+    ModelError
+        If the package pyuff is missing, a name is too long, or the file cannot be written.
+    """
+    file = file_path(path, "path")
+    pyuff = _pyuff(file)
+    given = (functions,) if isinstance(functions, Frf) else members(functions, "frf", "[frf, ...]")
+    sets = [_dataset(pyuff, one) for one in given]
+    partial = file.with_name(f".{file.name}.part")
+    try:
+        partial.unlink(missing_ok=True)
+        pyuff.UFF(str(partial)).write_sets(sets, mode="overwrite")
+        os.replace(partial, file)
+    except OSError as error:
+        raise ModelError(f"{file}: cannot be written: {error.strerror or error}") from None
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _pyuff(file: Path) -> ModuleType:
+    try:
+        import pyuff
+    except ImportError:
+        raise ModelError(
+            f"{file}: Universal Files need the package pyuff: pip install 'stickslip[fe]'"
+        ) from None
+    module: ModuleType = pyuff
+    return module
+
+
+def _frf(dataset: Mapping[str, object]) -> Frf:
+    """Check what pyuff takes on trust."""
+    numbers = {name: int(str(dataset[name])) for name in ("num_pts", "abscissa_spec_data_type")}
+    values, frequency = np.asarray(dataset["data"]), np.asarray(dataset["x"])
+    if not len(values) == numbers["num_pts"] == len(frequency):
+        raise ValueError(f"{numbers['num_pts']} points announced, {len(values)} present")
+    if numbers["abscissa_spec_data_type"] not in (0, _FREQUENCY):
+        raise ValueError("a function of something else than frequency")
+    if dataset["orddenom_spec_data_type"] not in (0, _FORCE):
+        raise ValueError("a response per something else than force")
+    quantity = _QUANTITIES.get(int(str(dataset["ordinate_spec_data_type"])))
+    if quantity is None:
+        raise ValueError("neither displacement, nor velocity, nor acceleration")
+    dof, reference = (_dof(dataset, side) for side in ("rsp", "ref"))
+    return Frf(2.0 * np.pi * frequency, values, dof, reference, quantity)  # type: ignore[arg-type]
+
+
+def _dof(dataset: Mapping[str, object], side: str) -> str:
+    node, way = int(str(dataset[f"{side}_node"])), int(str(dataset[f"{side}_dir"]))
+    if node > 0:
+        return f"{node}.{abs(way)}{'-' if way < 0 else ''}"
+    return str(dataset[f"{side}_ent_name"]).strip() or "none"
+
+
+def _dataset(pyuff: ModuleType, frf: Frf) -> object:
+    kind = next(code for code, name in _QUANTITIES.items() if name == frf.quantity)
+    places: dict[str, object] = {}
+    for side, dof in (("rsp", frf.dof), ("ref", frf.reference)):
+        match = _NODE_DOF.fullmatch(dof)
+        if match is None and len(dof) > _LONGEST:
+            raise ModelError(
+                f"frf: {brief(dof)} has {len(dof)} characters; the format holds {_LONGEST}"
+            )
+        places[f"{side}_ent_name"] = "NONE" if match else dof
+        places[f"{side}_node"] = int(match[1]) if match else 0
+        places[f"{side}_dir"] = int(match[3] + match[2]) if match else 0
+    return pyuff.prepare_58(
+        binary=0,
+        func_type=_FRF,
+        data=np.array(frf.values),
+        x=frf.omega / (2.0 * np.pi),
+        id1=f"{frf.quantity} of {frf.dof} per force at {frf.reference}",
+        abscissa_spacing=0,
+        abscissa_spec_data_type=_FREQUENCY,
+        ordinate_spec_data_type=kind,
+        orddenom_spec_data_type=_FORCE,
+        ordinate_axis_units_lab=("m", "m/s", "m/s^2")[_DERIVATIVES[frf.quantity]],
+        orddenom_axis_units_lab="N",
+        abscissa_axis_units_lab="Hz",
+        **places,
+    )
+
+
+def _require_end(file: Path) -> None:
+    """Refuse a file whose last dataset does not end."""
+    with file.open("rb") as stream:
+        content = stream.read()
+    if not content.rstrip().endswith(b"    -1") or content.count(b"    -1") < 2:
+        raise ModelError(f"{file}: the last dataset does not end; the file was cut short")

@@ -1,0 +1,104 @@
+"""Frequency response functions in Universal Files."""
+
+import os
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.errors import ModelError
+
+pyuff = pytest.importorskip("pyuff", reason="pip install 'stickslip[fe]'")
+
+HERTZ = np.linspace(10.0, 50.0, 30)
+VALUES = np.exp(1j * HERTZ / 7.0) * 1e-6 / HERTZ
+
+
+def written(path, **changes):
+    """Write a measured function as a test-bench program does."""
+    entries = {
+        "binary": 0,
+        "func_type": 4,
+        "rsp_node": 17,
+        "rsp_dir": -3,
+        "ref_node": 4,
+        "ref_dir": 1,
+        "data": VALUES,
+        "x": HERTZ,
+        "abscissa_spacing": 0,
+        "abscissa_spec_data_type": 18,
+        "ordinate_spec_data_type": 12,
+        "orddenom_spec_data_type": 13,
+    }
+    # pyuff 2.5 loses binary sets that it writes with mode="overwrite"
+    pyuff.UFF(os.fspath(path)).write_sets(pyuff.prepare_58(**entries | changes), mode="add")
+    return path
+
+
+# pyuff 2.5 leaves the file open that it has written binary sets to
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("binary", [0, 1])
+def test_measured_functions_are_read_to_their_digits(tmp_path, binary):
+    (found,) = ss.read_frf(written(tmp_path / "bench.uff", binary=binary))
+    assert (found.dof, found.reference, found.quantity) == ("17.3-", "4.1", "acceleration")
+    digits = 1e-15 if binary else 5e-6
+    np.testing.assert_allclose(found.omega, 2.0 * np.pi * HERTZ, rtol=digits)
+    np.testing.assert_allclose(found.values, VALUES, rtol=1e-15 if binary else 1e-11)
+    np.testing.assert_allclose(found.receptance(), -found.values / found.omega**2)
+
+
+def test_computed_functions_reach_other_programs(tmp_path):
+    model = ss.reference.snecma_beam()
+    curve = ss.forced_response(model, omega=np.linspace(150.0, 250.0, 30), harmonics=3)
+    frf = ss.Frf.of(curve, "damper", "tip")
+    expected = curve.coefficients("damper")[:, 1] / 20.313
+    np.testing.assert_allclose(frf.values, expected)
+    ss.write_frf(
+        tmp_path / "beam.uff", [frf, ss.Frf(frf.omega, frf.values, "9.1", "9.2", "velocity")]
+    )
+    theirs = pyuff.UFF(os.fspath(tmp_path / "beam.uff")).read_sets()
+    assert [one["ordinate_spec_data_type"] for one in theirs] == [8, 11]
+    assert [one["rsp_node"] for one in theirs] == [0, 9]
+    assert theirs[0]["rsp_ent_name"].strip() == "damper"
+    np.testing.assert_allclose(theirs[0]["data"], expected, rtol=1e-11)
+    np.testing.assert_allclose(theirs[0]["x"], curve.omega / (2.0 * np.pi), rtol=5e-6)
+    again = ss.read_frf(tmp_path / "beam.uff")
+    assert [(one.dof, one.reference, one.quantity) for one in again] == [
+        ("damper", "tip", "displacement"),
+        ("9.1", "9.2", "velocity"),
+    ]
+    assert list(tmp_path.iterdir()) == [tmp_path / "beam.uff"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"func_type": 1, "data": VALUES.real}, "holds no frequency response function"),
+        ({"ordinate_spec_data_type": 2}, "neither displacement, nor velocity, nor acceleration"),
+        ({"orddenom_spec_data_type": 8}, "a response per something else than force"),
+        ({"abscissa_spec_data_type": 17}, "a function of something else than frequency"),
+        ({"x": HERTZ[::-1]}, "the frequencies do not ascend"),
+    ],
+)
+def test_other_functions_are_refused(tmp_path, changes, message):
+    with pytest.raises(ModelError, match=message):
+        ss.read_frf(written(tmp_path / "bench.uff", **changes))
+
+
+def test_bad_functions_are_refused(tmp_path):
+    with pytest.raises(ModelError, match="give two lists of one length"):
+        ss.Frf([1.0, 2.0], [1.0], "1.1", "1.1")
+    with pytest.raises(ModelError, match="not finite"):
+        ss.Frf([1.0, 2.0], [1.0, np.nan], "1.1", "1.1")
+    with pytest.raises(ModelError, match="unknown choice 'speed'"):
+        ss.Frf([1.0, 2.0], [1.0, 2.0], "1.1", "1.1", "speed")
+    long = ss.Frf([1.0, 2.0], [1.0, 2.0], "leading-edge", "1.1")
+    with pytest.raises(ModelError, match="'leading-edge' has 12 characters; the format holds 10"):
+        ss.write_frf(tmp_path / "long.uff", long)
+    assert list(tmp_path.iterdir()) == []
+    curve = ss.forced_response(ss.reference.snecma_beam(), omega=[150.0, 160.0], harmonics=1)
+    with pytest.raises(ModelError, match="no force at 'damper'"):
+        ss.Frf.of(curve, "tip", "damper")
+    with pytest.raises(ModelError, match="no such file"):
+        ss.read_frf(tmp_path / "missing.uff")
