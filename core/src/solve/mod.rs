@@ -1,6 +1,9 @@
 //! Solvers that know nothing of friction: a system has a residual and a Newton direction.
 
+mod bordered;
+mod branch;
 mod broyden;
+mod continuation;
 mod cyclic_tridiagonal;
 mod homotopy;
 mod line_search;
@@ -8,7 +11,9 @@ mod newton;
 mod qr;
 mod small_dense;
 
+pub use branch::{Bounds, Branch, End};
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
+pub use continuation::{at_parameter, tangent, Advance, Continuation, Curve, Steps};
 pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
