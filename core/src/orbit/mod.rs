@@ -1,15 +1,18 @@
 //! Exact periodic orbits by shooting with the exact flow, and their Floquet multipliers: no
 //! harmonic is discarded, so that they judge the harmonic balance.
 
+mod limit_cycle;
 mod periodic;
 mod quadrature;
 mod rescue;
 mod residual;
 mod settings;
 mod shooting;
+mod start;
 mod survey;
 mod sweep;
 
+pub use limit_cycle::{CycleOrbits, OrbitCurve};
 pub use periodic::{Orbit, PeriodicOrbits};
 pub use rescue::Rescue;
 pub use settings::OrbitSettings;
