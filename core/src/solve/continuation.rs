@@ -2,8 +2,8 @@
 //!
 //! The curve is given as a [`Curve`]: one equation less than unknowns, of which the last one is the
 //! parameter. Where the equations are only piecewise smooth the curve has corners: its tangent
-//! jumps, and so predictions follow the secant, and a turn counts only if the point found lies
-//! ahead (Allgower and Georg 2003, chapter 6, for the smooth case).
+//! jumps, and so a turn counts only if the point found lies ahead and the curve passes through it
+//! in the direction of the way there (Allgower and Georg 2003, chapter 6, for the smooth case).
 
 use super::bordered::{Bordered, Condition};
 use super::norm;
@@ -117,16 +117,39 @@ impl Continuation {
                 let (cosine, distance) = self.compare(&point, &unit, &weights);
                 let corner = self.step <= CORNER * self.steps.longest;
                 if distance < 3.0 * self.step && (cosine > BEND || (corner && cosine > 0.0)) {
-                    let easy = iterations <= EASY && cosine > 0.5 * (1.0 + BEND);
-                    let factor = if easy { GROWTH } else { 1.0 };
-                    self.move_to(curve, point);
-                    self.step = (factor * self.step).min(self.steps.longest);
-                    return Advance::Point;
+                    let turn = self.turn(curve, &point, &weights);
+                    let bend = turn.as_ref().map_or(-1.0, |(cosine, _)| *cosine);
+                    if bend > BEND || corner {
+                        let easy = iterations <= EASY && cosine.min(bend) > 0.5 * (1.0 + BEND);
+                        let factor = if easy { GROWTH } else { 1.0 };
+                        self.move_to(curve, point);
+                        if let Some((_, tangent)) = turn.filter(|_| bend > BEND) {
+                            self.direction = tangent;
+                        }
+                        self.step = (factor * self.step).min(self.steps.longest);
+                        return Advance::Point;
+                    }
                 }
             }
             self.step *= 0.5;
         }
         self.jump(curve, &unit, &weights)
+    }
+
+    /// Tangent at a new point, and its cosine with the way there: a point of another part of the
+    /// curve that passes nearby has another tangent.
+    fn turn(
+        &self,
+        curve: &mut dyn Curve,
+        point: &[f64],
+        weights: &[f64],
+    ) -> Option<(f64, Vec<f64>)> {
+        let way: Vec<f64> = point.iter().zip(&self.point).map(|(a, b)| a - b).collect();
+        let tangent = tangent(curve, point, weights, &way)?;
+        let rest = vec![0.0; way.len()];
+        let (a, b) = (difference(&way, &rest, weights), difference(&tangent, &rest, weights));
+        let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+        Some((product / norm(&a).max(f64::MIN_POSITIVE), tangent))
     }
 
     /// Looks around where short steps fail: on spheres about the last point, along the secant and
