@@ -9,7 +9,7 @@ use stickslip_core::balance::{CycleBalance, Onset};
 use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::{Harmonics, SampleTable};
 use stickslip_core::model::{Contact, Model, NegativeDamping, Scalar, SelfExcited};
-use stickslip_core::orbit::{CycleOrbits, OrbitCurve};
+use stickslip_core::orbit::{limit_cycles, CycleOrbits, CycleSettings, OrbitCurve};
 use stickslip_core::solve::{Bounds, Branch, Steps};
 use stickslip_core::structure::Structure;
 
@@ -112,5 +112,29 @@ fn look_exact() {
     let (model, negative) = beam();
     for mode in 0..3 {
         trace_exact(&model, negative.clone(), mode);
+    }
+}
+
+#[test]
+fn look_driver() {
+    let (model, negative) = beam();
+    for exact in [true, false] {
+        let time = std::time::Instant::now();
+        let settings = CycleSettings { exact, ..CycleSettings::default() };
+        let out = limit_cycles(&model, &NegativeDamping::Whole(negative.clone()), &Scalar::Ratio, 1.0, &settings, &|_| true).unwrap();
+        println!("{exact} {:?} {} limit {:?} ends {:?} {:?}", time.elapsed(), out.cycles.len(), out.limit, out.ends, out.end_values);
+        for c in &out.changes { println!("{c:?}"); }
+        println!("closed {}", out.cycles.iter().filter(|c| c.closed).count());
+    }
+    let (model, negative) = single_dof();
+    for exact in [true, false] {
+        let time = std::time::Instant::now();
+        let settings = CycleSettings { exact, range: (1e3, 2.4e10), ..CycleSettings::default() };
+        let scalar = Scalar::Law { parameter: "stiffness".into(), contacts: vec![0], factor: false };
+        let out = limit_cycles(&model, &NegativeDamping::Whole(negative.clone()), &scalar, 1.0, &settings, &|_| true).unwrap();
+        println!("{exact} {:?} {} limit {:?} {} ends {:?} {:?}", time.elapsed(), out.cycles.len(), out.limit, out.limit.unwrap().value / 2.4e7, out.ends, out.end_values);
+        for c in &out.changes { println!("{c:?}"); }
+        let amp = |c: &stickslip_core::orbit::Cycle| c.response.contact_displacement[1].norm();
+        println!("{:?} {:?}", amp(&out.cycles[0]), amp(out.cycles.last().unwrap()));
     }
 }

@@ -4,18 +4,18 @@
 //! structure that just reaches the slip limit of one contact: friction need not dissipate anything.
 
 use super::limit_cycle::CycleBalance;
+use crate::contact::Describing;
 use crate::fourier::SampleTable;
 use crate::model::SelfExcited;
 use crate::solve::at_parameter;
 use crate::structure::StuckMode;
 use crate::Error;
-use std::f64::consts::PI;
 
 /// Newton iterations for the first point.
 const ITERATIONS: usize = 40;
 /// First ratios, relative to the excess over the onset that is asked for, down to which a start is
 /// looked for: closer to the onset the stuck mode is nearer to the solution.
-const NEARER: [f64; 6] = [1.0, 0.5, 0.2, 0.05, 0.01, 0.001];
+const NEARER: [f64; 7] = [1.0, 0.5, 0.2, 0.05, 0.01, 1e-3, 1e-4];
 /// Contact displacement, relative to the largest of all modes, that counts as none.
 const STILL: f64 = 1e-9;
 
@@ -107,7 +107,7 @@ impl Onset {
         for share in NEARER {
             for factor in [1.0, 0.7, 1.5, 0.3, 3.0] {
                 let ratio = self.ratio + share * (ratio - self.ratio);
-                let guess = self.guess(table, ratio, factor);
+                let Some(guess) = self.guess(table, ratio, factor) else { continue };
                 let mut curve = CycleBalance::new(family, table, &guess, interrupted);
                 let Some((z, _)) = at_parameter(&mut curve, &guess, ratio, ITERATIONS) else {
                     if interrupted() {
@@ -128,14 +128,34 @@ impl Onset {
     }
 
     /// The stuck mode beyond the onset of slip by what makes friction dissipate the work of the
-    /// negative damping: `4 F_d (|u| − F_d/k_d) = −π ω c q²`.
-    fn guess(&self, table: &SampleTable, ratio: f64, factor: f64) -> Vec<f64> {
+    /// negative damping, by the first harmonic of one slipping contact; nothing if it cannot.
+    fn guess(&self, table: &SampleTable, ratio: f64, factor: f64) -> Option<Vec<f64>> {
         let (harmonics, mode) = (table.harmonics(), &self.mode);
         let damping = mode.damping + ratio * mode.negative;
         let stroke = mode.contact[self.point].norm();
-        let work = -PI * mode.omega * damping * self.amplitude.powi(2);
-        let excess = (work / (4.0 * self.limit * stroke * self.amplitude)).clamp(0.0, 1.0);
-        let q = self.amplitude * (1.0 + factor * excess);
+        let stiffness = self.limit / (stroke * self.amplitude);
+        let force = |excess: f64| {
+            let size = (1.0 + excess) * stroke * self.amplitude;
+            Describing::of_jenkins(stiffness, self.limit, size).stiffness
+        };
+        // Dissipation grows with the excess up to twice the amplitude at the onset.
+        let left = |excess: f64| mode.omega * damping + stroke * stroke * force(excess).im;
+        if left(1.0) < 0.0 {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if left(middle) < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let excess = factor * high;
+        let softening = stroke * stroke * (stiffness - force(excess).re);
+        let omega = (mode.omega * mode.omega - softening).max(0.0).sqrt();
+        let q = self.amplitude * (1.0 + excess);
         let slots = harmonics.slots();
         let mut z = vec![0.0; mode.contact.len() * slots];
         if let Some(slot) = harmonics.slot(1) {
@@ -144,7 +164,7 @@ impl Onset {
                 z[i * slots + slot + 1] = -q * u.im;
             }
         }
-        z.extend([mode.omega * (1.0 - 0.1 * excess), ratio]);
-        z
+        z.extend([omega, ratio]);
+        Some(z)
     }
 }

@@ -48,7 +48,7 @@ pub struct Steps {
 
 impl Default for Steps {
     fn default() -> Self {
-        Self { first: 0.02, shortest: 1e-5, longest: 0.15, max_iterations: 12 }
+        Self { first: 0.02, shortest: 1e-5, longest: 0.1, max_iterations: 12 }
     }
 }
 
@@ -282,6 +282,18 @@ pub fn at_parameter(
     let condition = Condition::Plane { normal: &normal, at: &z.clone() };
     let report = Bordered { weights: &weights, condition, max_iterations }.solve(curve, &mut z);
     report.converged.then_some((z, report.iterations))
+}
+
+/// The point of the curve on the plane across the way from `a` to `b`, at a share of it.
+#[must_use]
+pub fn across(curve: &mut dyn Curve, a: &[f64], b: &[f64], share: f64) -> Option<Vec<f64>> {
+    let weights = curve.weights(a);
+    let way: Vec<f64> = a.iter().zip(b).map(|(a, b)| b - a).collect();
+    let normal = normalised(&way, &weights);
+    let mut z = moved(a, &way, share);
+    let condition = Condition::Plane { normal: &normal, at: &z.clone() };
+    let report = Bordered { weights: &weights, condition, max_iterations: 25 }.solve(curve, &mut z);
+    report.converged.then_some(z)
 }
 
 #[cfg(test)]

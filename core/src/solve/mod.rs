@@ -13,7 +13,7 @@ mod small_dense;
 
 pub use branch::{Bounds, Branch, End};
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
-pub use continuation::{at_parameter, tangent, Advance, Continuation, Curve, Steps};
+pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Curve, Steps};
 pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
