@@ -2,6 +2,7 @@
 
 mod arrays;
 mod design;
+mod limit_cycles;
 mod orbits;
 mod problem;
 mod response;
@@ -32,6 +33,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(orbits::exact_response, module)?)?;
     module.add_function(wrap_pyfunction!(orbits::exact_peak, module)?)?;
     module.add_function(wrap_pyfunction!(orbits::orbit_history, module)?)?;
+    module.add_class::<limit_cycles::LimitCycles>()?;
+    module.add_function(wrap_pyfunction!(limit_cycles::limit_cycles, module)?)?;
     module.add_class::<transient::History>()?;
     module.add_function(wrap_pyfunction!(transient::transient, module)?)?;
     Ok(())

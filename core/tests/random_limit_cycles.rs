@@ -93,27 +93,31 @@ fn study(seeds: std::ops::Range<u64>, exact: bool) -> (usize, Vec<String>) {
             ..CycleSettings::default()
         };
         let negative = NegativeDamping::Whole(negative);
-        let time = std::time::Instant::now();
         match limit_cycles(&model, &negative, &Scalar::Ratio, 1.0, &settings, &|_| true) {
             Ok(cycles) if complete(&cycles) => solved += 1,
             Ok(cycles) => causes.push(format!(
-                "{seed}: {:?} at {:?}, limit {:?}, {} jumps, {} points, {} dofs {} contacts {:?}",
-                cycles.ends, cycles.end_values, cycles.limit, cycles.jumps, cycles.cycles.len(),
-                model.structure().dofs(), model.laws().len(), time.elapsed()
+                "{seed}: {:?} at {:?}, limit {:?}",
+                cycles.ends, cycles.end_values, cycles.limit
             )),
             Err(error) => causes.push(format!("{seed}: {error}")),
         }
-        if time.elapsed().as_secs_f64() > 3.0 { println!("slow {seed} {:?}", time.elapsed()); }
     }
     (solved, causes)
 }
 
 #[test]
 fn branches_of_random_systems_are_complete() {
-    let count: u64 = std::env::var("COUNT").ok().and_then(|c| c.parse().ok()).unwrap_or(10);
+    for (seeds, exact) in [(0..12, false), (12..16, true)] {
+        let (_, causes) = study(seeds, exact);
+        assert!(causes.is_empty(), "exact {exact}: {causes:?}");
+    }
+}
+
+#[test]
+#[ignore = "two minutes"]
+fn branches_of_a_hundred_random_systems_are_complete() {
     for exact in [false, true] {
-        let time = std::time::Instant::now();
-        let (solved, causes) = study(0..count, exact);
-        println!("exact {exact}: {solved} in {:?}\n{}", time.elapsed(), causes.join("\n"));
+        let (solved, causes) = study(0..100, exact);
+        assert_eq!(solved, 100, "exact {exact}: {causes:?}");
     }
 }

@@ -15,8 +15,11 @@ if TYPE_CHECKING:
     from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.flutter_formulas import rigid_limit_cycle, single_harmonic_cycles
+    from stickslip.analyses.limit_cycles import limit_cycles
     from stickslip.analyses.optimal_damper import optimal_damper
     from stickslip.analyses.single_harmonic import single_harmonic
+    from stickslip.analyses.stability_map import stability_map
     from stickslip.analyses.transient import transient
     from stickslip.disk import (
         BladedDisk,
@@ -34,7 +37,9 @@ if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
     from stickslip.results.damper_curve import DamperCurve
     from stickslip.results.exact_response import ExactResponse
+    from stickslip.results.limit_cycles import LimitCycles
     from stickslip.results.optimal_damper import OptimalDamper
+    from stickslip.results.stability_map import StabilityMap
     from stickslip.results.status import Status
     from stickslip.results.store import load
     from stickslip.results.transient import Transient
@@ -49,12 +54,14 @@ __all__ = [
     "Interface",
     "Interrupted",
     "Jenkins",
+    "LimitCycles",
     "MistunedDisk",
     "ModalDamping",
     "Model",
     "ModelError",
     "OptimalDamper",
     "Rayleigh",
+    "StabilityMap",
     "State",
     "Status",
     "Structure",
@@ -66,6 +73,7 @@ __all__ = [
     "exact_response",
     "forced_response",
     "join",
+    "limit_cycles",
     "load",
     "mistuning_pattern",
     "natural_frequencies",
@@ -73,7 +81,10 @@ __all__ = [
     "plot",
     "read_matrix",
     "reference",
+    "rigid_limit_cycle",
     "single_harmonic",
+    "single_harmonic_cycles",
+    "stability_map",
     "study",
     "transient",
 ]
@@ -88,12 +99,14 @@ _HOMES = {
     "Interrupted": "errors",
     "Interface": "disk",
     "Jenkins": "model",
+    "LimitCycles": "results.limit_cycles",
     "MistunedDisk": "disk",
     "ModalDamping": "model",
     "Model": "model",
     "ModelError": "errors",
     "OptimalDamper": "results.optimal_damper",
     "Rayleigh": "model",
+    "StabilityMap": "results.stability_map",
     "State": "model.state",
     "Status": "results",
     "Structure": "model",
@@ -105,12 +118,16 @@ _HOMES = {
     "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",
+    "limit_cycles": "analyses.limit_cycles",
     "load": "results.store",
     "mistuning_pattern": "disk",
     "natural_frequencies": "model",
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",
+    "rigid_limit_cycle": "analyses.flutter_formulas",
     "single_harmonic": "analyses.single_harmonic",
+    "single_harmonic_cycles": "analyses.flutter_formulas",
+    "stability_map": "analyses.stability_map",
     "transient": "analyses.transient",
 }
 _MODULES = ("plot", "reference", "study")

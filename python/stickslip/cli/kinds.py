@@ -21,6 +21,7 @@ MODULES: Mapping[str, str] = {
     "transient": "stickslip.cli.transients",
     "damper_curve": "stickslip.cli.dampers",
     "optimal_damper": "stickslip.cli.optima",
+    "limit_cycles": "stickslip.cli.cycles",
 }
 """The module of every kind of result; results of one module are drawn together."""
 

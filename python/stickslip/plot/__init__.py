@@ -10,9 +10,11 @@ from stickslip.plot.charts import (
     slip,
     waveform,
 )
+from stickslip.plot.cycles import CycleOptions, cycle_multipliers, limit_cycles
 from stickslip.plot.damper import DamperOptions, damper
 from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
 from stickslip.plot.orbits import MultiplierOptions, events, multipliers
+from stickslip.plot.stability_map import stability_map
 from stickslip.plot.transients import (
     HistoryOptions,
     PoincareOptions,
@@ -28,6 +30,7 @@ __all__ = [
     "BladeBarOptions",
     "BladeCurveOptions",
     "CurveOptions",
+    "CycleOptions",
     "DamperOptions",
     "DiameterOptions",
     "Frame",
@@ -41,10 +44,12 @@ __all__ = [
     "blade_curves",
     "contact_history",
     "curves",
+    "cycle_multipliers",
     "damper",
     "events",
     "history",
     "hysteresis",
+    "limit_cycles",
     "multipliers",
     "nodal_diameters",
     "phase",
@@ -52,5 +57,6 @@ __all__ = [
     "safe",
     "slip",
     "spectrum",
+    "stability_map",
     "waveform",
 ]

@@ -28,7 +28,9 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "exact_response": ("stickslip.results.exact_response", "ExactResponse"),
     "transient": ("stickslip.results.transient", "Transient"),
     "damper_curve": ("stickslip.results.damper_curve", "DamperCurve"),
+    "limit_cycles": ("stickslip.results.limit_cycles", "LimitCycles"),
     "optimal_damper": ("stickslip.results.optimal_damper", "OptimalDamper"),
+    "stability_map": ("stickslip.results.stability_map", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 
@@ -81,7 +83,8 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    ForcedResponse, ExactResponse, Transient, DamperCurve or OptimalDamper
+    ForcedResponse, ExactResponse, Transient, DamperCurve, OptimalDamper, LimitCycles or
+    StabilityMap
         Of the kind that was saved and equal to it, bit by bit, with its model: peaks can still be
         refined, and runs continued.
 

@@ -11,6 +11,7 @@ from stickslip.study.certify_table import CertifyTable
 from stickslip.study.damper_curve_table import DamperCurveTable
 from stickslip.study.entries import chosen_by
 from stickslip.study.exact_table import ExactTable
+from stickslip.study.limit_cycles_table import LimitCyclesTable
 from stickslip.study.single_harmonic_table import SingleHarmonicTable
 from stickslip.study.transient_table import TransientTable
 
@@ -22,7 +23,8 @@ AnalysisTable = Annotated[
     | Annotated[TransientTable, Tag("<transient>")]
     | Annotated[CertifyTable, Tag("<certify>")]
     | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")]
-    | Annotated[DamperCurveTable, Tag("<damper-curve>")],
+    | Annotated[DamperCurveTable, Tag("<damper-curve>")]
+    | Annotated[LimitCyclesTable, Tag("<limit-cycles>")],
     chosen_by(
         "kind",
         "forced-response",
@@ -31,6 +33,7 @@ AnalysisTable = Annotated[
         "certify",
         "single-harmonic",
         "damper-curve",
+        "limit-cycles",
         default="forced-response",
     ),
 ]
