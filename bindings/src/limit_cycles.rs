@@ -128,8 +128,7 @@ impl LimitCycles {
     #[getter]
     fn range<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         use numpy::PyArrayMethods as _;
-        let rows =
-            self.rows(py, 2 * self.dofs, |c| c.range.iter().flatten().copied().collect())?;
+        let rows = self.rows(py, 2 * self.dofs, |c| c.range.iter().flatten().copied().collect())?;
         rows.reshape([self.cycles().len(), self.dofs, 2])
     }
 
@@ -295,8 +294,8 @@ pub fn limit_cycles(
     }
     let negative = negative_damping.damping();
     let Followed { parameter, contacts, factor, ratio, values, range } = followed;
-    let scalar = parameter
-        .map_or(Scalar::Ratio, |parameter| Scalar::Law { parameter, contacts, factor });
+    let scalar =
+        parameter.map_or(Scalar::Ratio, |parameter| Scalar::Law { parameter, contacts, factor });
     let settings = CycleSettings {
         mode,
         values,

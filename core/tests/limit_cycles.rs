@@ -131,11 +131,8 @@ fn the_stiffness_of_the_single_mass_can_be_followed() {
     let negative = NegativeDamping::Whole(negative);
     let stiffness =
         Scalar::Law { parameter: "stiffness".to_owned(), contacts: vec![0], factor: true };
-    let settings = CycleSettings {
-        values: Some(vec![10.0, 1000.0]),
-        range: (0.01, 1001.0),
-        ..exact(0, None)
-    };
+    let settings =
+        CycleSettings { values: Some(vec![10.0, 1000.0]), range: (0.01, 1001.0), ..exact(0, None) };
     let cycles = limit_cycles(&model, &negative, &stiffness, 1.0, &settings, &|_| true).unwrap();
     close(cycles.limit.unwrap().value, 0.167108, 1e-6);
     let found: Vec<(bool, f64)> =
@@ -173,9 +170,7 @@ fn the_slip_force_scales_the_motion_alone() {
 #[test]
 fn the_beam_has_three_branches() {
     let system = beam();
-    for (mode, limit, omega) in
-        [(0, 5.1690, 185.80), (1, 14.4687, 1141.5), (2, 6.3604, 2676.4)]
-    {
+    for (mode, limit, omega) in [(0, 5.1690, 185.80), (1, 14.4687, 1141.5), (2, 6.3604, 2676.4)] {
         let settings = CycleSettings { stability: false, ..exact(mode, None) };
         let cycles = follow(&system, &settings);
         let turn = cycles.limit.unwrap();

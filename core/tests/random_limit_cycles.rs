@@ -14,7 +14,8 @@ struct Numbers(u64);
 
 impl Numbers {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
@@ -68,8 +69,7 @@ fn system(seed: u64) -> (Model, Mat<f64>, usize) {
     }
     let share = if numbers.next() < 0.3 { 0.3 * numbers.next() } else { 0.0 };
     let damping = faer::Scale(-share) * &negative;
-    let structure =
-        Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+    let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
     let mode = numbers.below(size.min(3));
     (Model::new(structure, contacts, Vec::new()).unwrap(), negative, mode)
 }

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from stickslip.analyses.certify import certify
     from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
-    from stickslip.analyses.forced_response import forced_response
     from stickslip.analyses.flutter_formulas import rigid_limit_cycle, single_harmonic_cycles
+    from stickslip.analyses.forced_response import forced_response
     from stickslip.analyses.limit_cycles import limit_cycles
     from stickslip.analyses.optimal_damper import optimal_damper
     from stickslip.analyses.single_harmonic import single_harmonic

@@ -21,9 +21,9 @@ mod sweep;
 mod unknowns;
 
 pub use adaptive::sweep_range;
+pub use cycle_start::Onset;
 pub use forced::ForcedBalance;
 pub(crate) use forced::Memory;
-pub use cycle_start::Onset;
 pub use limit_cycle::CycleBalance;
 pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;

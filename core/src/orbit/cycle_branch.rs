@@ -1,10 +1,11 @@
 //! The branch of limit cycles of a mode: from the stuck limit through the fold to the slipping side.
 
 use super::cycle_survey::{odd_table, survey};
-use super::cycles::{Cycle, CycleSettings, LimitCycles, Turn};
+use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
 use super::quadrature::Quadrature;
 use super::stability::{change, Floquet};
+use super::traced::{extreme, joined, value, Traced};
 use crate::balance::{CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress};
 use crate::fourier::SampleTable;
 use crate::model::{Model, NegativeDamping, Scalar, SelfExcited};
@@ -15,9 +16,7 @@ use faer::c64;
 use std::cell::Cell;
 use std::time::Instant;
 
-/// Rungs of automatic harmonics.
-const LADDER: [usize; 6] = [7, 15, 31, 63, 127, 255];
-/// Harmonics of the first point of exact branches.
+/// Of the first point of exact branches.
 const START_HARMONICS: usize = 15;
 /// First ratio beyond the onset, relative to it, where the range does not say.
 const BEYOND_ONSET: f64 = 0.01;
@@ -25,14 +24,6 @@ const BEYOND_ONSET: f64 = 0.01;
 const ENDLESS: f64 = 1e5;
 /// Share of the progress for the branch, if stability follows.
 const TRACING: f64 = 0.4;
-
-/// A branch with what tells its sides apart.
-struct Traced {
-    branch: Branch,
-    /// Position of the fold at which the sticking side ends.
-    limit: Option<usize>,
-    ends: [End; 2],
-}
 
 /// Follows the limit cycles of a mode of `model` with the damping `C + r C_neg`.
 ///
@@ -90,13 +81,7 @@ impl Finder<'_> {
         share: &Cell<f64>,
     ) -> Result<LimitCycles, Error> {
         let settings = self.settings;
-        let rungs: Vec<usize> = match settings.harmonics {
-            HarmonicChoice::Fixed(highest) => vec![highest],
-            HarmonicChoice::Auto => {
-                let most = settings.max_harmonics;
-                LADDER.iter().copied().filter(|h| *h < most).chain([most]).collect()
-            }
-        };
+        let rungs = settings.rungs();
         let scale = self.onset.mode.omega;
         let last = rungs.len() - 1;
         for (rung, &highest) in rungs.iter().enumerate() {
@@ -148,7 +133,6 @@ impl Finder<'_> {
         Err(self.no_start())
     }
 
-    /// By exact orbits.
     fn exactly(
         &mut self,
         orbits: &CycleOrbits<'_>,
@@ -156,7 +140,7 @@ impl Finder<'_> {
         share: &Cell<f64>,
     ) -> Result<LimitCycles, Error> {
         let scale = self.onset.mode.omega;
-        let table = odd_table(START_HARMONICS.max(1));
+        let table = odd_table(START_HARMONICS);
         let start = self.first(&table, interrupted)?;
         let of_ratio = CycleOrbits::new(&self.given)?.ok_or(Error::TravellingWave)?;
         let begin = {
@@ -174,7 +158,7 @@ impl Finder<'_> {
         let reported = odd_table(self.settings.reported);
         let mut quadrature = Quadrature::default();
         let mut cycles = Vec::with_capacity(selected.len());
-        let mut points = Vec::with_capacity(selected.len());
+        let mut points = Vec::new();
         share.set(TRACING);
         for (slipping, z) in selected {
             if interrupted() {
@@ -208,10 +192,11 @@ impl Finder<'_> {
         let onset = self.onset.ratio;
         let low = self.lowest_ratio();
         let ratio = if low > onset { low } else { onset * (1.0 + BEYOND_ONSET) };
-        self.onset.first_point(&self.given, table, ratio, interrupted).ok_or_else(|| self.no_start())
+        self.onset
+            .first_point(&self.given, table, ratio, interrupted)
+            .ok_or_else(|| self.no_start())
     }
 
-    /// Lower end of the range in r.
     fn lowest_ratio(&self) -> f64 {
         let settings = self.settings;
         if *self.family.scalar() == Scalar::Ratio {
@@ -263,7 +248,8 @@ impl Finder<'_> {
             let ends = [End::Range, branch.end];
             // What lies below the range served to get started.
             let low = settings.range.0;
-            if settings.values.is_none() && limit.is_some_and(|at| value(&branch.points[at]) > low) {
+            if settings.values.is_none() && limit.is_some_and(|at| value(&branch.points[at]) > low)
+            {
                 let outside = branch.points.iter().take_while(|z| value(z) < low).count();
                 branch.points.drain(..outside);
                 branch.folds.retain_mut(|fold| {
@@ -310,10 +296,8 @@ impl Finder<'_> {
             let beyond = |at: usize| traced.limit.is_some_and(|limit| at > limit);
             return points.iter().enumerate().map(|(at, z)| (beyond(at), z.clone())).collect();
         };
-        let mut found: Vec<(usize, Vec<f64>)> = values
-            .iter()
-            .flat_map(|value| traced.branch.at(curve, *value))
-            .collect();
+        let mut found: Vec<(usize, Vec<f64>)> =
+            values.iter().flat_map(|value| traced.branch.at(curve, *value)).collect();
         let progress = |(position, z): &(usize, Vec<f64>)| -> f64 {
             let from = value(&points[*position]);
             let to = points.get(position + 1).map_or(from, |z| value(z));
@@ -412,49 +396,4 @@ impl Finder<'_> {
             }
         }
     }
-}
-
-/// The last unknown.
-fn value(z: &[f64]) -> f64 {
-    z.last().copied().unwrap_or(f64::NAN)
-}
-
-/// Position of the fold farthest in a direction of the scalar.
-fn extreme(branch: &Branch, sign: f64) -> Option<usize> {
-    let height = |at: &usize| sign * branch.points.get(*at).map_or(f64::NAN, |z| value(z));
-    branch.folds.iter().copied().max_by(|a, b| height(a).total_cmp(&height(b)))
-}
-
-/// One branch of the walks to both sides: the one without a fold first and backwards.
-fn joined(up: Branch, down: Branch) -> Traced {
-    let (first, second, sign) =
-        if down.folds.is_empty() && !up.folds.is_empty() { (down, up, 1.0) } else { (up, down, -1.0) };
-    let limit = extreme(&second, sign);
-    let shift = first.points.len() - 1;
-    let mut points: Vec<Vec<f64>> = first.points.into_iter().rev().collect();
-    points.extend(second.points.into_iter().skip(1));
-    let mut folds: Vec<usize> = first.folds.iter().map(|at| shift - at).collect();
-    folds.extend(second.folds.iter().map(|at| shift + at));
-    let ends = [first.end, second.end];
-    let branch = Branch {
-        points,
-        folds,
-        end: second.end,
-        iterations: first.iterations + second.iterations,
-        jumps: first.jumps + second.jumps,
-    };
-    Traced { branch, limit: limit.map(|at| shift + at), ends }
-}
-
-/// Largest error of a DOF against its amplitude; a DOF that hardly moves against the others.
-fn relative(point: &Point) -> f64 {
-    let orders = point.harmonics + 1;
-    let sizes: Vec<f64> = point
-        .displacement
-        .chunks_exact(orders)
-        .map(|row| row.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt())
-        .collect();
-    let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let errors = point.error_estimate.iter().zip(&sizes);
-    errors.map(|(error, size)| error / size.max(0.02 * largest)).fold(0.0, f64::max)
 }

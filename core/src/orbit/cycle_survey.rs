@@ -102,8 +102,7 @@ fn maximum(
     for round in 0..POLISH {
         state = first.clone();
         Flow::new(model, system, omega).run(&mut state, time, &mut |_| {}).ok()?;
-        let acceleration =
-            system.acceleration(&state.displacement, &state.velocity, &state.force);
+        let acceleration = system.acceleration(&state.displacement, &state.velocity, &state.force);
         let of = |modal: &[f64]| -> f64 { system.shape(dof).zip(modal).map(|(s, q)| s * q).sum() };
         let step = of(&state.velocity) / of(&acceleration);
         // The series leads close to the extremum; a longer step would leave it.

@@ -51,7 +51,21 @@ impl Default for CycleSettings {
     }
 }
 
+/// Rungs of automatic harmonics.
+const LADDER: [usize; 6] = [7, 15, 31, 63, 127, 255];
+
 impl CycleSettings {
+    /// Highest harmonics to try, one after the other.
+    pub(super) fn rungs(&self) -> Vec<usize> {
+        match self.harmonics {
+            HarmonicChoice::Fixed(highest) => vec![highest],
+            HarmonicChoice::Auto => {
+                let most = self.max_harmonics;
+                LADDER.iter().copied().filter(|h| *h < most).chain([most]).collect()
+            }
+        }
+    }
+
     /// Checks the settings.
     ///
     /// # Errors
@@ -69,7 +83,11 @@ impl CycleSettings {
         }
         let (low, high) = self.range;
         if !(low > 0.0 && low < high) {
-            return Err(Error::value("range: lower end", low, "must lie above 0 and below its upper end"));
+            return Err(Error::value(
+                "range: lower end",
+                low,
+                "must lie above 0 and below its upper end",
+            ));
         }
         for value in self.values.iter().flatten() {
             if !(*value > 0.0 && value.is_finite()) {
@@ -160,4 +178,17 @@ pub struct LimitCycles {
     pub interrupted: bool,
     /// Where the time went.
     pub profile: Profile,
+}
+
+/// Largest error of a DOF against its amplitude; a DOF that hardly moves against the others.
+pub(super) fn relative(point: &Point) -> f64 {
+    let orders = point.harmonics + 1;
+    let sizes: Vec<f64> = point
+        .displacement
+        .chunks_exact(orders)
+        .map(|row| row.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt())
+        .collect();
+    let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let errors = point.error_estimate.iter().zip(&sizes);
+    errors.map(|(error, size)| error / size.max(0.02 * largest)).fold(0.0, f64::max)
 }

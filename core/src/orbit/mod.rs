@@ -15,12 +15,13 @@ mod stability;
 mod start;
 mod survey;
 mod sweep;
+mod traced;
 
 pub use cycle_branch::limit_cycles;
 pub use cycles::{Cycle, CycleSettings, LimitCycles, Turn};
 pub use limit_cycle::{CycleOrbits, OrbitCurve};
 pub use periodic::{Orbit, PeriodicOrbits};
-pub use stability::{Change, ChangeKind};
 pub use rescue::Rescue;
 pub use settings::OrbitSettings;
+pub use stability::{Change, ChangeKind};
 pub use sweep::{orbit_peak, orbit_sweep, Orbits};

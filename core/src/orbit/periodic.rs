@@ -234,9 +234,13 @@ impl<'a> PeriodicOrbits<'a> {
             return rest;
         };
         match balance.solve(omega, None) {
-            Ok(point) if point.status == PointStatus::Converged => {
-                start_of(self.model, &self.system, self.settings.residual, &point, balance.half_wave())
-            }
+            Ok(point) if point.status == PointStatus::Converged => start_of(
+                self.model,
+                &self.system,
+                self.settings.residual,
+                &point,
+                balance.half_wave(),
+            ),
             _ => rest,
         }
     }

@@ -121,9 +121,8 @@ pub(super) fn change(
 /// What happens between two orbits close to each other.
 fn kind(low: &Floquet, high: &Floquet) -> ChangeKind {
     let off = |m: &c64| (m.norm() - 1.0).abs();
-    let critical = |orbit: &Floquet| {
-        orbit.half.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
-    };
+    let critical =
+        |orbit: &Floquet| orbit.half.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
     let (Some(a), Some(b)) = (critical(low), critical(high)) else { return ChangeKind::Grazing };
     if off(&a).max(off(&b)) > JUMP {
         return ChangeKind::Grazing;

@@ -79,9 +79,7 @@ impl Bordered<'_> {
         let last = out.len() - 1;
         curve.residual(z, &mut out[..last]);
         let products = |from: &[f64], along: &dyn Fn(usize) -> f64| -> f64 {
-            (0..z.len())
-                .map(|i| self.weights[i].powi(2) * along(i) * (z[i] - from[i]))
-                .sum()
+            (0..z.len()).map(|i| self.weights[i].powi(2) * along(i) * (z[i] - from[i])).sum()
         };
         out[last] = match self.condition {
             Condition::Plane { normal, at } => products(at, &|i| normal[i]),

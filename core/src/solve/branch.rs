@@ -1,8 +1,8 @@
 //! A whole curve of solutions: walked along from a start to the end of a range of the parameter,
 //! with its folds, and read off at given values.
 
-use super::continuation::{at_parameter, Advance, Continuation, Curve, Steps};
 use super::bordered::{Bordered, Condition};
+use super::continuation::{at_parameter, Advance, Continuation, Curve, Steps};
 
 /// How a walk ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -176,9 +176,9 @@ impl Branch {
             let position = known.partition_point(|(s, _)| *s < at);
             known.insert(position, (at, z));
         }
-        let (_, fold) = known.into_iter().max_by(|a, b| {
-            (sign * parameter(&a.1)).total_cmp(&(sign * parameter(&b.1)))
-        })?;
+        let (_, fold) = known
+            .into_iter()
+            .max_by(|a, b| (sign * parameter(&a.1)).total_cmp(&(sign * parameter(&b.1))))?;
         Some(fold)
     }
 
@@ -217,16 +217,10 @@ impl Branch {
 }
 
 /// The point with the parameter at `value` between two others.
-fn between(
-    curve: &mut dyn Curve,
-    a: &[f64],
-    b: &[f64],
-    value: f64,
-) -> Option<(Vec<f64>, usize)> {
+fn between(curve: &mut dyn Curve, a: &[f64], b: &[f64], value: f64) -> Option<(Vec<f64>, usize)> {
     let share = (value - parameter(a)) / (parameter(b) - parameter(a));
-    let mixed = |share: f64| -> Vec<f64> {
-        a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect()
-    };
+    let mixed =
+        |share: f64| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect() };
     let size = distance(a, b).max(f64::MIN_POSITIVE);
     for start in [mixed(share), a.to_vec(), b.to_vec()] {
         curve.accept(&start);
@@ -252,9 +246,8 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     let size = |x: &[f64]| x[..motion].iter().map(|v| v * v).sum::<f64>().sqrt();
     let way: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
     let scale = size(a).max(size(b)).max(f64::MIN_POSITIVE);
-    let rest: f64 = (motion..a.len())
-        .map(|i| (way[i] / a[i].abs().max(f64::MIN_POSITIVE)).powi(2))
-        .sum();
+    let rest: f64 =
+        (motion..a.len()).map(|i| (way[i] / a[i].abs().max(f64::MIN_POSITIVE)).powi(2)).sum();
     (rest + (size(&way) / scale).powi(2)).sqrt()
 }
 

@@ -301,8 +301,7 @@ impl Modes {
 
     fn displacement(&self, omega: f64, ratio: f64, forces: &[c64]) -> Vec<c64> {
         let coordinate = |j: usize| -> c64 {
-            let load: c64 =
-                forces.iter().enumerate().map(|(i, f)| f * self.contacts[(i, j)]).sum();
+            let load: c64 = forces.iter().enumerate().map(|(i, f)| f * self.contacts[(i, j)]).sum();
             self.weight(j, omega, ratio)[0] * load
         };
         let modal: Vec<c64> = (0..self.omega_squared.len()).map(coordinate).collect();
@@ -323,8 +322,7 @@ impl Matrices {
         let size = self.mass.nrows();
         let dynamic = Mat::from_fn(size, size, |i, j| {
             restrained[(i, j)] - omega * omega * self.mass[(i, j)]
-                + c64::new(0.0, omega)
-                    * (self.damping[(i, j)] + ratio * self.negative[(i, j)])
+                + c64::new(0.0, omega) * (self.damping[(i, j)] + ratio * self.negative[(i, j)])
         });
         dynamic.partial_piv_lu()
     }
@@ -337,8 +335,7 @@ impl Matrices {
         // dG = −B A⁻¹ dA A⁻¹ Bᴴ
         let softening = Mat::from_fn(size, size, |i, j| {
             2.0 * order * frequency * self.mass[(i, j)]
-                - c64::new(0.0, order)
-                    * (self.damping[(i, j)] + ratio * self.negative[(i, j)])
+                - c64::new(0.0, order) * (self.damping[(i, j)] + ratio * self.negative[(i, j)])
         });
         let driving = faer::Scale(c64::new(0.0, -frequency)) * &self.negative;
         Answer {

@@ -16,6 +16,15 @@ if TYPE_CHECKING:
 __all__ = ["cycle_assumptions"]
 
 
+_REMEDIES = {
+    "newton": "Keep other harmonics, or use method='exact'.",
+    "exact": (
+        "Small changes may grow too much within half a period for shooting to follow; use "
+        "method='newton'."
+    ),
+}
+
+
 def cycle_assumptions(
     model: Model, settings: CycleSettings, arrays: CycleArrays, solution: _core.LimitCycles
 ) -> tuple[str, ...]:
@@ -37,7 +46,7 @@ def cycle_assumptions(
         if end == "stalled":
             texts.append(
                 f"Stalled: the {name} side ends at {settings.followed} = {value:.6g}, where no "
-                "continuation was found. Keep other harmonics, or use method='exact'."
+                f"continuation was found. {_REMEDIES[settings.method]}"
             )
         if end == "points":
             texts.append(f"The branch ends after {settings.max_points} points; raise max_points.")

@@ -118,7 +118,9 @@ def wanted(
     if given is None:
         return None, span
     if isinstance(given, tuple) and len(given) == 2:
-        low, high = sorted(real_number(end, f"{entry}: end of the range", finite=False) for end in given)
+        low, high = sorted(
+            real_number(end, f"{entry}: end of the range", finite=False) for end in given
+        )
         if not 0.0 < low < high:
             raise ModelError(f"{entry}: the range ({low:g}, {high:g}) must have two ends above 0")
         return None, (low, high)

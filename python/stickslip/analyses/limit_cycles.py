@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.analyses.arguments import Progress, Span, require_model, require_progress, require_time
+from stickslip.analyses.arguments import (
+    Progress,
+    Span,
+    require_model,
+    require_progress,
+    require_time,
+)
 from stickslip.analyses.cycle_assumptions import cycle_assumptions
 from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSettings, wanted
 from stickslip.analyses.forced_response import MAX_HARMONICS
@@ -25,6 +31,9 @@ if TYPE_CHECKING:
     from stickslip import _core
 
 __all__ = ["limit_cycles", "negative_damping_of"]
+
+AROUND = 1e3
+"""Factor beyond the values of a parameter of contacts within which the branch is followed."""
 
 MAX_POINTS = 5000
 """Most points of a branch unless another number is asked for."""
@@ -61,7 +70,8 @@ def limit_cycles(
         Structure and contacts; its forces are left out. A tuned `BladedDisk` moves in the wave of
         nodal diameter `engine_order`.
     negative_damping : array_like, shape (N, N), or damping law
-        C_neg [kg/s], also unsymmetric; or `Rayleigh` or `ModalDamping` with negative numbers. Of a tuned disk also complex matrices of shape (n, N, N)
+        C_neg [kg/s], also unsymmetric; or `Rayleigh` or `ModalDamping` with negative numbers. Of
+        a tuned disk also complex matrices of shape (n, N, N)
         by nodal diameter, which add i omega r C_neg to the dynamic stiffness.
     mode : int, optional
         Mode of the stuck structure, counted from 0; with damping C the branch begins at the ratio
@@ -266,6 +276,7 @@ def _settings(
     )
     values, span = wanted(parameters[name], name, (inf, 0.0))
     if values is not None:
-        span = (values[0], values[-1]) if len(values) > 1 else (0.999 * values[0], 1.001 * values[0])
+        # The other side of the branch is reached around a fold that may lie far outside.
+        span = (values[0] / AROUND, values[-1] * AROUND)
     one = 1.0 if ratio is None else real_number(ratio, f"ratio, with {name} followed,")
     return CycleSettings(variation=variation, ratio=one, values=values, span=span, **rest)

@@ -90,20 +90,18 @@ def stability_map(
         parameter=name, contacts=chosen_contacts(contacts, name, model), common=common
     )
     cycles = CycleSettings(
-        mode=mode, harmonics=harmonics, method=method, max_harmonics=MAX_HARMONICS,
-        max_points=MAX_POINTS, span=(LOWEST_RATIO, inf),
+        mode=mode,
+        harmonics=harmonics,
+        method=method,
+        max_harmonics=MAX_HARMONICS,
+        max_points=MAX_POINTS,
+        span=(LOWEST_RATIO, inf),
     )
     rows: list[tuple[float, float, float]] = []
     causes: list[str] = []
     interrupted = False
     for place, value in enumerate(values):
-        share = None
-        if progress is not None:
-            told = progress
-
-            def share(part: float, place: int = place) -> None:
-                told((place + part) / len(values))
-
+        share = _share(progress, place, len(values))
         try:
             solution = solve(variation.apply(model, value), matrix, cycles, share)
         except ModelError as error:
@@ -124,7 +122,9 @@ def stability_map(
         model=model,
         dofs=model.structure.dofs,
         settings=MapSettings(variation=variation, mode=mode, harmonics=harmonics, method=method),
-        arrays=MapArrays(value=np.array(values[:done]), limit=limit, omega=omega, stable_limit=stable),
+        arrays=MapArrays(
+            value=np.array(values[:done]), limit=limit, omega=omega, stable_limit=stable
+        ),
         negative_damping=matrix,
         interrupted=interrupted,
         timings={},
@@ -140,6 +140,12 @@ def stability_map(
     if progress is not None:
         progress(1.0)
     return result
+
+
+def _share(progress: Progress, place: int, total: int) -> Progress:
+    if progress is None:
+        return None
+    return lambda part: progress((place + part) / total)
 
 
 def _stable_limit(arrays: CycleArrays) -> float:

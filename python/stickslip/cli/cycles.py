@@ -61,7 +61,9 @@ def _rows(result: LimitCycles) -> list[tuple[str, int]]:
     rows = [("sticking end", 0)]
     limit = result.limit
     if limit is not None:
-        distance = np.abs(result.values / limit.value - 1.0) + np.abs(result.omega / limit.omega - 1)
+        distance = np.abs(result.values / limit.value - 1.0) + np.abs(
+            result.omega / limit.omega - 1
+        )
         rows.append(("limit", int(np.argmin(distance))))
     return [*rows, (f"{result.branch[-1]} end", result.omega.size - 1)]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
@@ -134,14 +135,30 @@ def _line(
                 ax.plot(x[mask], height[mask], ls="", marker="o", ms=4, mfc=fill, mec=colour)
         ax.plot([], [], ls="", marker="o", ms=4, color=colour, label=name)
         return
+    x, drawn, stable = _refined(one, height)
     for first, last, solid in _pieces(stable):
-        style = "-" if solid else "--"
-        ax.plot(x[first : last + 1], height[first : last + 1], color=colour, lw=1.5, ls=style)
+        piece = slice(first, last + 1)
+        ax.plot(x[piece], drawn[piece], color=colour, lw=1.5, ls="-" if solid else "--")
     ax.plot([], [], color=colour, lw=1.5, label=name)
     limit = one.limit
     if limit is not None:
         at = int(np.argmin(np.abs(one.values - limit.value) + np.abs(one.omega - limit.omega)))
         ax.plot(limit.value, height[at], ls="", marker="o", ms=5, mfc="white", mec=colour)
+
+
+def _refined(one: LimitCycles, height: Float) -> tuple[Float, Float, Bool]:
+    """Return a branch with its changes of stability as further points, between their neighbours."""
+    x, y, stable = (list(column) for column in (one.values, height, one.stable))
+    for change in reversed(one.changes):
+        at = change.after
+        if at + 1 >= one.omega.size:
+            continue
+        before, after = one.omega[at], one.omega[at + 1]
+        share = float(np.clip((change.omega - before) / (after - before), 0.0, 1.0))
+        x.insert(at + 1, change.value)
+        y.insert(at + 1, height[at] + share * (height[at + 1] - height[at]))
+        stable.insert(at + 1, stable[at])
+    return np.array(x), np.array(y), np.array(stable, dtype=np.bool_)
 
 
 def _pieces(stable: Bool) -> list[tuple[int, int, bool]]:
@@ -151,7 +168,7 @@ def _pieces(stable: Bool) -> list[tuple[int, int, bool]]:
     breaks = [0, *(np.flatnonzero(np.diff(stable)) + 1), stable.size]
     return [
         (max(int(start) - 1, 0), int(end) - 1, bool(stable[start]))
-        for start, end in zip(breaks[:-1], breaks[1:], strict=True)
+        for start, end in pairwise(breaks)
     ]
 
 

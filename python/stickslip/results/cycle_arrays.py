@@ -105,7 +105,9 @@ class CycleArrays:
             "change": np.array([one[:2] for one in changes]).reshape(-1, 2),
             "change_after": np.array([one[2] for one in changes], dtype=np.int64),
             "change_kind": np.array(kinds, dtype=np.int64),
-            "change_unstable": np.array([one[4:] for one in changes], dtype=np.int64).reshape(-1, 2),
+            "change_unstable": np.array([one[4:] for one in changes], dtype=np.int64).reshape(
+                -1, 2
+            ),
         }
         names = [entry.name for entry in fields(cls) if entry.name not in extra]
         return cls(**{name: np.array(getattr(solution, name)) for name in names}, **extra)

@@ -74,7 +74,9 @@ _VARIABLES: Mapping[str, Variable] = {
         "neutral", ("cycle",), "1", "how many multipliers belong to contacts that never slip"
     ),
     "closed": Variable("closed", ("cycle",), "1", "whether multipliers are of an exact orbit"),
-    "turn": Variable("turn", ("turn_entry",), "1", "value and omega where the branch turns for good"),
+    "turn": Variable(
+        "turn", ("turn_entry",), "1", "value and omega where the branch turns for good"
+    ),
     "folds": Variable("folds", ("fold", "turn_entry"), "1", "value and omega where it turns"),
     "change": Variable(
         "change", ("change_of_stability", "turn_entry"), "1", "value and omega of the change"

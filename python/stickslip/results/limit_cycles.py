@@ -82,7 +82,9 @@ class LimitCycles(Result):
 
     def __repr__(self) -> str:
         limit = self.limit
-        turn = "no turn" if limit is None else f"turns at {self.settings.followed} {limit.value:.6g}"
+        turn = (
+            "no turn" if limit is None else f"turns at {self.settings.followed} {limit.value:.6g}"
+        )
         return (
             f"LimitCycles({self.omega.size} cycles of mode {self.settings.mode}, "
             f"{int(self.stable.sum())} stable, {turn})"
@@ -145,7 +147,11 @@ class LimitCycles(Result):
         """Where the stability of a whole branch changes, in its order."""
         arrays = self.arrays
         rows = zip(
-            arrays.change, arrays.change_kind, arrays.change_after, arrays.change_unstable, strict=True
+            arrays.change,
+            arrays.change_kind,
+            arrays.change_after,
+            arrays.change_unstable,
+            strict=True,
         )
         return tuple(
             StabilityChange(
@@ -205,7 +211,9 @@ class LimitCycles(Result):
         column = self._column(dof)
         if measure != "fundamental" and self.settings.method == "exact":
             low, high = self.arrays.range[:, column].T
-            return constant(0.5 * (high - low) if measure == "half_range" else np.maximum(high, -low))
+            return constant(
+                0.5 * (high - low) if measure == "half_range" else np.maximum(high, -low)
+            )
         return constant(amplitude_of(self.coefficients(dof), measure))
 
     def error_estimate(self, dof: str) -> Float:
@@ -313,7 +321,9 @@ class LimitCycles(Result):
         from stickslip.model.structure import Structure
 
         if self.model.travels:
-            raise ModelError("model_at: a sector of a travelling wave has no damping matrix of its own")
+            raise ModelError(
+                "model_at: a sector of a travelling wave has no damping matrix of its own"
+            )
         position = self.position(index)
         own = self.model.structure
         structure = Structure(
@@ -381,7 +391,7 @@ class LimitCycles(Result):
         return plot.limit_cycles(self, dof, **options)
 
     def plot_multipliers(self, *, ax: Axes | None = None) -> Axes:
-        """Draw the Floquet multipliers in the complex plane; see `stickslip.plot.cycle_multipliers`."""
+        """Draw the Floquet multipliers; see `stickslip.plot.cycle_multipliers`."""
         from stickslip import plot
 
         return plot.cycle_multipliers(self, ax=ax)
@@ -389,5 +399,3 @@ class LimitCycles(Result):
     def _turn(self, value: float, omega: float) -> Limit:
         ratio = value if self.settings.variation is None else self.settings.ratio
         return Limit(ratio, omega, value)
-
-

@@ -13,6 +13,7 @@ from pydantic import Field, Strict, Tag, model_validator
 from stickslip.analyses.cycle_settings import CycleSettings
 from stickslip.analyses.forced_response import MAX_HARMONICS
 from stickslip.analyses.limit_cycles import MAX_POINTS, limit_cycles
+from stickslip.checks import real_matrix
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.study.entries import (
@@ -201,7 +202,6 @@ def with_matrices(tables: StudyTables, folder: Path) -> StudyTables:
     from stickslip.study.study import _damping
 
     matrix = _damping(StructureTable.model_construct(damping=source), folder)
-    dense = matrix.toarray() if hasattr(matrix, "toarray") else matrix
-    rows = tuple(tuple(map(float, row)) for row in np.asarray(dense))
+    rows = tuple(tuple(map(float, row)) for row in real_matrix(matrix, "negative_damping"))
     read = analysis.model_copy(update={"negative_damping": rows})
     return tables.model_copy(update={"analysis": read})
