@@ -86,3 +86,11 @@ def test_the_blisk_goes_from_stuck_to_slipping_tips():
     assert low.peak("tip").omega == pytest.approx(stuck, rel=1e-4)
     assert high.peak("tip").omega == pytest.approx(slipping, rel=1e-4)
     assert slipping / (2.0 * 3.141592653589793) == pytest.approx(189.3018526, rel=1e-8)
+
+
+def test_the_flutter_beam_has_the_limit_of_exact_orbits():
+    (branch,) = Study.load(EXAMPLES / "flutter-beam" / "study.toml").run()
+    # errata.md, section 5: third mode of the beam, all modes negatively damped
+    assert branch.limit.ratio == pytest.approx(6.3604, rel=1e-4)
+    assert branch.changes[0].value == pytest.approx(4.686, rel=1e-3)
+    assert branch.changes[0].kind == "complex pair"

@@ -54,7 +54,7 @@ def test_a_whole_branch_turns_once(whole):
 
 
 def test_motion_starts_at_its_maximum_and_balances_energy(whole, mass):
-    model, negative = mass
+    _, negative = mass
     for index in (5, -5):
         motion = whole.waveform("mass", index, 512)
         assert motion.argmax() in (0, 511)
@@ -92,9 +92,7 @@ def test_one_harmonic_is_the_closed_form(mass):
 
 def test_stiff_dampers_tend_to_the_rigid_limit(mass):
     model, negative = mass
-    rigid = ss.rigid_limit_cycle(
-        mass=944.6, damping=-7699.054, stiffness=2.4e7, slip_force=246.048
-    )
+    rigid = ss.rigid_limit_cycle(mass=944.6, damping=-7699.054, stiffness=2.4e7, slip_force=246.048)
     assert rigid.amplitude == pytest.approx(2.5533e-4, rel=1e-5)
     lco = ss.limit_cycles(
         model, negative, stiffness=[2.4e8, 2.4e10], method="exact", stability=False
@@ -294,3 +292,52 @@ def test_ctrl_c_keeps_what_is_done(mass):
     with pytest.raises(ss.Interrupted) as caught:
         ss.limit_cycles(beam, negative, method="exact", progress=stop)
     assert caught.value.result.interrupted
+
+
+STUDY = """
+[structure]
+mass = [[944.6]]
+stiffness = [[2.4e7]]
+dofs = ["mass"]
+
+[[contact]]
+law = "jenkins"
+dof = "mass"
+stiffness = 2.4e7
+slip_force = 246.048
+
+[analysis]
+kind = "limit-cycles"
+negative_damping = "c.npz"
+harmonics = 9
+"""
+
+
+def test_study_files_and_the_command(tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    from stickslip.cli.commands import app
+    from stickslip.study import Study
+
+    monkeypatch.chdir(tmp_path)
+    np.savez(tmp_path / "c.npz", c=[[-7699.054]])
+    (branch,) = Study.parse(STUDY + "ratio = { from = 0.1, to = 2 }\n", folder=tmp_path).run()
+    assert (branch.ratio[0], branch.ratio[-1]) == pytest.approx((0.1, 2.0))
+    assert branch.limit is None
+    (points,) = Study.parse(
+        STUDY + "ratio = [1]\nstiffness = {from = 1e6, to = 1e8}\n", folder=tmp_path
+    ).run()
+    assert points.limit.value / 2.4e7 == pytest.approx(0.167108, rel=1e-3)
+    both = "stiffness = {from = 1e6, to = 1e8}\nslip_force = {from = 1, to = 2}\n"
+    with pytest.raises(ss.ModelError, match="one of stiffness"):
+        Study.parse(STUDY + both, folder=tmp_path)
+    (tmp_path / "mass.toml").write_text(STUDY + "ratio = [1, 5]\n")
+    for arguments in (["run", "mass.toml"], ["show", "results/mass.nc"]):
+        told = CliRunner().invoke(app, arguments)
+        assert told.exit_code == 0, told.output
+        assert "197.41" in told.output or "harmonic balance" in told.output
+    model, negative = ss.reference.flutter_mass()
+    ss.stability_map(model, negative, stiffness=[2.4e7]).save("map.nc")
+    told = CliRunner().invoke(app, ["show", "map.nc"])
+    assert told.exit_code == 0, told.output
+    assert "5.14799" in told.output

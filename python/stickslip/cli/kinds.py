@@ -22,6 +22,7 @@ MODULES: Mapping[str, str] = {
     "damper_curve": "stickslip.cli.dampers",
     "optimal_damper": "stickslip.cli.optima",
     "limit_cycles": "stickslip.cli.cycles",
+    "stability_map": "stickslip.cli.maps",
 }
 """The module of every kind of result; results of one module are drawn together."""
 

@@ -1,0 +1,68 @@
+"""What the command line prints and draws of stability maps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.cli.console import grid, model_rows, new_table, show
+
+if TYPE_CHECKING:
+    from stickslip.cli.picture import Panel
+    from stickslip.results.stability_map import StabilityMap
+    from stickslip.study.tables import OutputTable
+
+__all__ = ["cautions", "facts", "failures", "panels", "tables"]
+
+
+def tables(
+    results: Sequence[tuple[str, StabilityMap]], label: str, dofs: Iterable[str], length_unit: str
+) -> None:
+    """Print the limits at every value."""
+    table = new_table()
+    if label:
+        table.add_column(label, overflow="fold")
+    for heading in ("varied", "value", "limit r", "rad/s", "stable up to r"):
+        table.add_column(heading, justify="right", overflow="fold")
+    for name, result in results:
+        variation = result.settings.variation
+        for row in zip(result.values, result.limit, result.omega, result.stable_limit, strict=True):
+            numbers = (f"{number:.6g}" for number in row)
+            varied = f"{variation.parameter} [{variation.unit}]"
+            table.add_row(*([name] if label else []), varied, *numbers)
+    show(table)
+
+
+def facts(result: StabilityMap) -> None:
+    """Print what a result is of, how it was computed and what it took for granted."""
+    settings = result.settings
+    rows = [
+        *model_rows(result.model),
+        ("varied", f"{settings.variation.parameter} of {', '.join(settings.variation.contacts)}"),
+        ("mode", f"{settings.mode}"),
+        ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
+    ]
+    grid(rows + [("assumed", text) for text in result.assumptions])
+
+
+def failures(name: str, result: StabilityMap) -> list[str]:
+    """Word what was not found, one line per value."""
+    return [f"{name}: {cause}" for cause in result.assumptions]
+
+
+def cautions(name: str, result: StabilityMap) -> list[str]:
+    """Return what puts the numbers in doubt: values whose stability is not known."""
+    unknown = int((np.isfinite(result.limit) & ~np.isfinite(result.stable_limit)).sum())
+    return [f"{name}: the stability of {unknown} values is not known"] if unknown else []
+
+
+def panels(
+    results: Sequence[StabilityMap], dofs: Sequence[str], output: OutputTable
+) -> list[Panel]:
+    """Return the maps."""
+    from stickslip import plot
+
+    return [partial(plot.stability_map, result) for result in results]
