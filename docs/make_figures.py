@@ -229,7 +229,7 @@ def amplification(folder: Path = ASSETS) -> Path:
 
 
 def flutter(folder: Path = ASSETS) -> Path:
-    """Draw the limit cycles of the beam under negative damping, and multipliers of its third mode."""
+    """Draw limit cycles of the beam under negative damping, and multipliers of its third mode."""
     beam, negative = ss.reference.flutter_beam()
     branches = [ss.limit_cycles(beam, negative, mode=mode, method="exact") for mode in range(3)]
     figure = Figure(figsize=(11.0, 4.2), layout="constrained")

@@ -1,7 +1,7 @@
 //! The branch of limit cycles of a mode: from the stuck limit through the fold to the slipping side.
 
 use super::cycle_survey::{odd_table, survey};
-use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn};
+use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
 use super::quadrature::Quadrature;
 use super::stability::{change, Floquet};
@@ -95,7 +95,7 @@ impl Finder<'_> {
             let selected = self.select(&mut curve, &traced);
             let beyond = odd_table(highest + (highest / 2).max(4));
             let mut cycles = Vec::with_capacity(selected.len());
-            let mut worst: f64 = 0.0;
+            let mut beyond_tolerance = 0;
             for (slipping, z) in &selected {
                 let mut point = curve.point(z, self.onset.dof);
                 let weights = curve.weights(z);
@@ -103,10 +103,11 @@ impl Finder<'_> {
                 ahead[z.len() - 1] = 1.0;
                 let along = tangent(&mut curve, z, &weights, &ahead).unwrap_or(ahead);
                 point.error_estimate = curve.errors(z, &along, &beyond);
-                worst = worst.max(relative(&point));
+                beyond_tolerance += usize::from(relative(&point) > settings.tolerance);
                 cycles.push(self.cycle(z, *slipping, point));
             }
-            let enough = worst <= settings.tolerance || rung == last || interrupted();
+            let few = beyond_tolerance * RARE <= selected.len();
+            let enough = few || rung == last || interrupted();
             if settings.harmonics == HarmonicChoice::Auto {
                 for cycle in &mut cycles {
                     if relative(&cycle.response) > settings.tolerance {

@@ -51,6 +51,9 @@ impl Default for CycleSettings {
     }
 }
 
+/// Share of the points, one in so many, that automatic harmonics may leave above the tolerance: at
+/// corners of the branch the estimate has no bound.
+pub(super) const RARE: usize = 20;
 /// Rungs of automatic harmonics.
 const LADDER: [usize; 6] = [7, 15, 31, 63, 127, 255];
 

@@ -62,6 +62,9 @@ const BEND: f64 = 0.85;
 const CORNER: f64 = 2e-3;
 /// Cosine at a corner below which the point found lies behind.
 const BEHIND: f64 = -0.95;
+/// Points in a row at steps below a hundredth of the longest after which the walk only crawls: the
+/// equations are worse than their unknowns are known.
+const CRAWL: usize = 150;
 /// Lengths of the jumps over a place where short steps fail, against the longest step.
 const JUMPS: [f64; 6] = [1e-3, 4e-3, 0.02, 0.1, 0.4, 1.0];
 
@@ -88,6 +91,8 @@ pub struct Continuation {
     direction: Vec<f64>,
     step: f64,
     steps: Steps,
+    /// Short steps in a row.
+    short: usize,
 }
 
 impl Continuation {
@@ -101,13 +106,25 @@ impl Continuation {
         *ahead.last_mut()? = sign;
         let direction = tangent(curve, &start, &weights, &ahead).unwrap_or(ahead);
         let first = steps.first;
-        Some(Self { point: start, iterations: 0, jumps: 0, direction, step: first, steps })
+        Some(Self {
+            point: start,
+            iterations: 0,
+            jumps: 0,
+            direction,
+            step: first,
+            steps,
+            short: 0,
+        })
     }
 
     /// Takes one step.
     pub fn advance(&mut self, curve: &mut dyn Curve) -> Advance {
         let weights = curve.weights(&self.point);
         let unit = normalised(&self.direction, &weights);
+        self.short = if self.step < 0.01 * self.steps.longest { self.short + 1 } else { 0 };
+        if self.short > CRAWL {
+            return Advance::Stalled;
+        }
         while self.step >= self.steps.shortest {
             if curve.interrupted() {
                 return Advance::Interrupted;

@@ -87,8 +87,8 @@ def limit_cycles(
         Which contacts take the value, and whether as their own or as a factor on it; see
         `stickslip.damper_curve`.
     harmonics : int or "auto", optional
-        Harmonics kept, odd ones alone, at all points of the branch; "auto": as `tolerance` asks.
-        Of exact orbits the highest reported.
+        Harmonics kept, odd ones alone, at all points of the branch; "auto": as `tolerance` asks,
+        which one point in twenty may miss, with that status. Of exact orbits the highest reported.
     method : {"newton", "exact"}, optional
         Harmonic balance with the frequency as an unknown, or exact orbits by shooting with the
         period as an unknown.
