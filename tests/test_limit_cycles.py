@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from matplotlib import pyplot
 
 import stickslip as ss
 
@@ -14,6 +15,12 @@ MASS = {
     (3.0, "slipping"): (7.0556856e-5, 166.33920),
     (5.0, "slipping"): (2.8865970e-5, 183.15447),
 }
+
+
+@pytest.fixture(autouse=True)
+def closed_figures():
+    yield
+    pyplot.close("all")
 
 
 @pytest.fixture(scope="module")
@@ -115,6 +122,29 @@ def test_exact_orbits_go_on_in_time(mass):
     assert run.final.vector == pytest.approx(lco.state(0).vector, rel=1e-6, abs=1e-9)
     with pytest.raises(ss.ModelError, match="of exact orbits only"):
         ss.limit_cycles(model, negative, ratio=[2.0], harmonics=5).state(0)
+
+
+def test_multipliers_are_those_of_the_motion_in_time():
+    beam, negative = ss.reference.flutter_beam()
+    lco = ss.limit_cycles(beam, negative, mode=1, method="exact", ratio=[1.49])
+    model, start = lco.model_at(0), lco.state(0).vector
+    moved = np.full(7, 1e-10)
+    moved[3:6] = 1e-7
+
+    def after(state):
+        return ss.transient(model, lco.omega[0], 1, start=ss.State.of_vector(model, state)).final
+
+    # The damper slips at t = 0, so that its force is no coordinate of the disturbance.
+    assert abs(start[6]) == pytest.approx(246.048)
+    matrix = np.zeros((7, 7))
+    for column, step in enumerate(np.diag(moved)[:6]):
+        ahead, behind = after(start + step).vector, after(start - step).vector
+        matrix[:, column] = (ahead - behind) / (2.0 * moved[column])
+    sizes = np.sort(np.abs(np.linalg.eigvals(matrix)))[::-1]
+    assert sizes[0] == pytest.approx(1.0, abs=1e-6)
+    assert sizes[1:] == pytest.approx(np.abs(lco.multipliers[0]), abs=1e-5)
+    assert lco.stable[0]
+    assert not lco.stable[-1]
 
 
 def test_one_negative_mode_has_one_pair_of_sides():

@@ -4,7 +4,7 @@ use super::cycle_survey::{odd_table, survey};
 use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
 use super::quadrature::Quadrature;
-use super::stability::{change, Floquet};
+use super::stability::{judge, Judge, TRACING};
 use super::traced::{extreme, joined, value, Traced};
 use crate::balance::{CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress};
 use crate::fourier::SampleTable;
@@ -22,8 +22,6 @@ const START_HARMONICS: usize = 15;
 const BEYOND_ONSET: f64 = 0.01;
 /// Motion, relative to the onset of slip, at which a branch counts as going to infinity.
 const ENDLESS: f64 = 1e5;
-/// Share of the progress for the branch, if stability follows.
-const TRACING: f64 = 0.4;
 
 /// Follows the limit cycles of a mode of `model` with the damping `C + r C_neg`.
 ///
@@ -54,9 +52,14 @@ pub fn limit_cycles(
     if settings.exact && orbits.is_none() {
         return Err(Error::TravellingWave);
     }
-    let mut out = match (&orbits, settings.exact) {
-        (Some(orbits), true) => finder.exactly(orbits, &interrupted, &share)?,
-        _ => finder.balanced(orbits.as_ref(), &interrupted, &share)?,
+    let found = match (&orbits, settings.exact) {
+        (Some(orbits), true) => finder.exactly(orbits, &interrupted, &share),
+        _ => finder.balanced(orbits.as_ref(), &interrupted, &share),
+    };
+    let mut out = match found {
+        // Nothing was found because nothing more was looked for.
+        Err(_) if stopped.get() => finder.result(&Traced::default(), Vec::new(), 0),
+        other => other?,
     };
     out.interrupted = stopped.get();
     out.profile.total = begin.elapsed();
@@ -97,6 +100,9 @@ impl Finder<'_> {
             let mut cycles = Vec::with_capacity(selected.len());
             let mut beyond_tolerance = 0;
             for (slipping, z) in &selected {
+                if interrupted() {
+                    break;
+                }
                 let mut point = curve.point(z, self.onset.dof);
                 let weights = curve.weights(z);
                 let mut ahead = vec![0.0; z.len()];
@@ -127,7 +133,7 @@ impl Finder<'_> {
                     .iter()
                     .map(|cycle| orbits.unknowns(&cycle.response, cycle.value, scale).ok())
                     .collect();
-                self.judge(orbits, starts, false, &mut out, interrupted, share);
+                judge(&self.judge(orbits, false), starts, &mut out, interrupted, share);
             }
             return Ok(out);
         }
@@ -179,9 +185,14 @@ impl Finder<'_> {
         out.profile.evaluations = curve.flows;
         out.profile.factorisations = curve.matrices;
         if self.settings.stability {
-            self.judge(orbits, points, true, &mut out, interrupted, share);
+            judge(&self.judge(orbits, true), points, &mut out, interrupted, share);
         }
         Ok(out)
+    }
+
+    fn judge<'b>(&self, orbits: &'b CycleOrbits<'b>, exact: bool) -> Judge<'b> {
+        let whole = self.settings.values.is_none();
+        Judge { orbits, scale: self.onset.mode.omega, exact, whole }
     }
 
     /// The first limit cycle in r, by harmonic balance.
@@ -349,52 +360,6 @@ impl Finder<'_> {
             jumps: traced.branch.jumps,
             interrupted: false,
             profile: Profile::default(),
-        }
-    }
-
-    /// Multipliers of all cycles, and changes of stability between neighbours on a whole branch.
-    fn judge(
-        &self,
-        orbits: &CycleOrbits<'_>,
-        points: Vec<Option<Vec<f64>>>,
-        exact: bool,
-        out: &mut LimitCycles,
-        interrupted: &dyn Fn() -> bool,
-        share: &Cell<f64>,
-    ) {
-        let Some(first) = points.iter().flatten().next() else { return };
-        let mut curve = OrbitCurve::new(orbits, self.onset.mode.omega, first, interrupted);
-        let total = points.len() as f64;
-        let mut known: Vec<(usize, Floquet)> = Vec::new();
-        for (index, point) in points.into_iter().enumerate() {
-            share.set(TRACING + (1.0 - TRACING) * index as f64 / total);
-            if interrupted() {
-                return;
-            }
-            let Some(point) = point else { continue };
-            let floquet = if exact {
-                Floquet::of(&curve, point, true)
-            } else {
-                Floquet::near(&mut curve, &point)
-            };
-            let Some(floquet) = floquet else { continue };
-            let cycle = &mut out.cycles[index];
-            cycle.multipliers = floquet.multipliers();
-            cycle.neutral = floquet.neutral;
-            cycle.closed = floquet.closed;
-            if floquet.closed {
-                known.push((index, floquet));
-            }
-        }
-        if self.settings.values.is_some() {
-            return;
-        }
-        for pair in known.windows(2) {
-            let [(at, before), (_, after)] = pair else { continue };
-            let [a, b] = [before, after].map(|f| f.half.iter().filter(|m| m.norm() >= 1.0).count());
-            if a != b && !interrupted() {
-                out.changes.push(change(&mut curve, before, after, *at));
-            }
         }
     }
 }

@@ -1,9 +1,13 @@
 //! Floquet multipliers along a branch of limit cycles, and where its stability changes.
 
-use super::limit_cycle::OrbitCurve;
+use super::cycles::LimitCycles;
+use super::limit_cycle::{CycleOrbits, OrbitCurve};
 use crate::solve::{across, at_parameter, Curve as _};
 use faer::c64;
+use std::cell::Cell;
 
+/// Share of the progress for the branch, before its stability.
+pub(super) const TRACING: f64 = 0.4;
 /// Newton iterations from a harmonic balance to its exact orbit.
 const ITERATIONS: usize = 12;
 /// Frequency of the exact orbit, relative to that of the balance it belongs to.
@@ -83,9 +87,64 @@ impl Floquet {
     }
 }
 
+/// What a branch is judged by.
+pub(super) struct Judge<'a> {
+    pub(super) orbits: &'a CycleOrbits<'a>,
+    /// Frequency that scales the coordinates of states [rad/s].
+    pub(super) scale: f64,
+    /// Whether the points are exact orbits already.
+    pub(super) exact: bool,
+    /// Whether they are a whole branch, on which changes of stability can be located.
+    pub(super) whole: bool,
+}
+
+/// Multipliers of all cycles, and changes of stability between neighbours on a whole branch.
+pub(super) fn judge(
+    &Judge { orbits, scale, exact, whole }: &Judge<'_>,
+    points: Vec<Option<Vec<f64>>>,
+    out: &mut LimitCycles,
+    interrupted: &dyn Fn() -> bool,
+    share: &Cell<f64>,
+) {
+    let Some(first) = points.iter().flatten().next() else { return };
+    let mut curve = OrbitCurve::new(orbits, scale, first, interrupted);
+    let total = points.len() as f64;
+    let mut known: Vec<(usize, Floquet)> = Vec::new();
+    for (index, point) in points.into_iter().enumerate() {
+        share.set(TRACING + (1.0 - TRACING) * index as f64 / total);
+        if interrupted() {
+            return;
+        }
+        let Some(point) = point else { continue };
+        let floquet = if exact {
+            Floquet::of(&curve, point, true)
+        } else {
+            Floquet::near(&mut curve, &point)
+        };
+        let Some(floquet) = floquet else { continue };
+        let cycle = &mut out.cycles[index];
+        cycle.multipliers = floquet.multipliers();
+        cycle.neutral = floquet.neutral;
+        cycle.closed = floquet.closed;
+        if floquet.closed {
+            known.push((index, floquet));
+        }
+    }
+    if !whole {
+        return;
+    }
+    for pair in known.windows(2) {
+        let [(at, before), (_, after)] = pair else { continue };
+        let [a, b] = [before, after].map(|f| f.half.iter().filter(|m| m.norm() >= 1.0).count());
+        if a != b && !interrupted() {
+            out.changes.push(change(&mut curve, before, after, *at));
+        }
+    }
+}
+
 /// The change of stability between two neighbouring orbits: located by halving, and named by the
 /// multipliers on either side.
-pub(super) fn change(
+fn change(
     curve: &mut OrbitCurve<'_>,
     before: &Floquet,
     after: &Floquet,

@@ -10,6 +10,19 @@ pub(super) struct Traced {
     pub(super) ends: [End; 2],
 }
 
+impl Default for Traced {
+    fn default() -> Self {
+        let branch = Branch {
+            points: Vec::new(),
+            folds: Vec::new(),
+            end: End::Interrupted,
+            iterations: 0,
+            jumps: 0,
+        };
+        Self { branch, limit: None, ends: [End::Interrupted; 2] }
+    }
+}
+
 /// The last unknown.
 pub(super) fn value(z: &[f64]) -> f64 {
     z.last().copied().unwrap_or(f64::NAN)

@@ -77,9 +77,9 @@ def limit_cycles(
         Mode of the stuck structure, counted from 0; with damping C the branch begins at the ratio
         at which this mode loses it.
     ratio : array_like, (float, float) or float, optional
-        A list: exactly these ratios r, on both sides of the branch. A tuple: the branch in this
-        range. Default: the whole branch from r = 0.01 on. If another parameter is followed: the
-        one r, by default 1.
+        A list: exactly these ratios r, on both sides of the branch. A tuple: the branch from its
+        sticking side on, until it leaves this range. Default: the whole branch from r = 0.01 on.
+        If another parameter is followed: the one r, by default 1.
     stiffness, slip_force : array_like or (float, float), optional
         Follow this parameter of contacts [N/m], [N] instead of r, at exactly these values, or in
         a range.
