@@ -14,12 +14,14 @@ use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
 use std::cell::Cell;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Of the first point of exact branches.
 const START_HARMONICS: usize = 15;
 /// First ratio beyond the onset, relative to it, where the range does not say.
 const BEYOND_ONSET: f64 = 0.01;
+/// Time that an ended analysis may take to read off what it has traced.
+const PATIENCE: Duration = Duration::from_millis(400);
 /// Motion, relative to the onset of slip, at which a branch counts as going to infinity.
 const ENDLESS: f64 = 1e5;
 
@@ -99,11 +101,18 @@ impl Finder<'_> {
             let beyond = odd_table(highest + (highest / 2).max(4));
             let mut cycles = Vec::with_capacity(selected.len());
             let mut beyond_tolerance = 0;
+            let mut ended = None;
             for (slipping, z) in &selected {
-                if interrupted() {
+                let stop = interrupted();
+                if stop && *ended.get_or_insert_with(Instant::now) + PATIENCE < Instant::now() {
                     break;
                 }
                 let mut point = curve.point(z, self.onset.dof);
+                // What is traced is kept; its errors are what takes the time.
+                if stop {
+                    cycles.push(self.cycle(z, *slipping, point));
+                    continue;
+                }
                 let weights = curve.weights(z);
                 let mut ahead = vec![0.0; z.len()];
                 ahead[z.len() - 1] = 1.0;
@@ -166,9 +175,12 @@ impl Finder<'_> {
         let mut quadrature = Quadrature::default();
         let mut cycles = Vec::with_capacity(selected.len());
         let mut points = Vec::new();
+        let mut ended = None;
         share.set(TRACING);
         for (slipping, z) in selected {
-            if interrupted() {
+            let late = interrupted()
+                && *ended.get_or_insert_with(Instant::now) + PATIENCE < Instant::now();
+            if late {
                 break;
             }
             let found = survey(&curve, &z, self.onset.dof, &reported, &mut quadrature);

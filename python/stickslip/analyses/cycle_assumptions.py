@@ -74,7 +74,7 @@ def cycle_assumptions(
     if settings.method == "newton":
         size = np.abs(arrays.displacement).max(axis=1)
         share = arrays.error_estimate / np.maximum(size, 0.02 * size.max(axis=1, keepdims=True))
-        worst = float(np.nanmax(share, initial=0.0)) if share.size else 0.0
+        worst = float(np.where(np.isnan(share), 0.0, share).max(initial=0.0))
         if worst > settings.tolerance:
             texts.append(
                 f"The discarded harmonics could still change amplitudes by up to {worst:.1e}; keep "
