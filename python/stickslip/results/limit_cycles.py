@@ -247,11 +247,6 @@ class LimitCycles(Result):
         -------
         ndarray of float64, shape (samples,)
             [m].
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom or cycle.
         """
         series = self.coefficients(dof)[self.position(index)]
         count = whole_number(samples, "samples", smallest=1)
@@ -368,7 +363,7 @@ class LimitCycles(Result):
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the limit cycles that a dataset holds; see `Result.from_dataset`."""
+        """Return the limit cycles in a dataset; see `Result.from_dataset`."""
         return cls(**cycle_parts(dataset, model))
 
     def plot(self, dof: str, **options: Unpack[CycleOptions]) -> Axes:
