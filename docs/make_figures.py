@@ -299,6 +299,18 @@ def mistuning(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "mistuning.png")
 
 
+def flutter(folder: Path = ASSETS) -> Path:
+    """Draw limit cycles of the beam under negative damping, and multipliers of its third mode."""
+    beam, negative = ss.reference.flutter_beam()
+    branches = [ss.limit_cycles(beam, negative, mode=mode, method="exact") for mode in range(3)]
+    figure = Figure(figsize=(11.0, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(1.4, 1.0))
+    plot.limit_cycles(branches, "tip", length_unit="mm", ax=left)
+    left.legend(frameon=False, fontsize="small")
+    plot.cycle_multipliers(branches[2], ax=right)
+    return _save(figure, folder / "flutter.png")
+
+
 def _errors(
     model: ss.Model, exact: ss.ForcedResponse, harmonics: int | Literal["auto"]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -336,3 +348,4 @@ if __name__ == "__main__":
     print(ring_histories())
     print(amplification())
     print(mistuning())
+    print(flutter())

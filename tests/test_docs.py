@@ -152,7 +152,9 @@ def _completed(given: Mapping[str, object], example: Mapping[str, object]) -> di
     for name in ("structure", "analysis"):
         table, sample = given.get(name), example[name]
         if isinstance(table, dict) and isinstance(sample, dict):
-            needed = ("mass", "stiffness", "omega")
+            # Limit cycles have a frequency of their own.
+            driven = table.get("kind") != "limit-cycles"
+            needed = ("mass", "stiffness", "omega") if driven else ("mass", "stiffness")
             whole[name] = {key: sample[key] for key in needed if key in sample} | table
     return whole
 

@@ -106,3 +106,11 @@ def test_the_readings_of_one_driven_mode(capsys):
         for line in lines[begin : begin + 2]:
             assert f"settled, mode {mode}" in line
         assert "unbounded, mode None" in lines[begin + 2]
+
+
+def test_the_flutter_beam_has_the_limit_of_exact_orbits():
+    (branch,) = Study.load(EXAMPLES / "flutter-beam" / "study.toml").run()
+    # errata.md, section 5: third mode of the beam, all modes negatively damped
+    assert branch.limit.ratio == pytest.approx(6.3604, rel=1e-4)
+    assert branch.changes[0].value == pytest.approx(4.686, rel=1e-3)
+    assert branch.changes[0].kind == "complex pair"

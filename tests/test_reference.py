@@ -115,4 +115,9 @@ def test_all_systems_are_models_of_defaults():
     for name in systems:
         system = getattr(reference, name)
         assert inspect.getdoc(system)
-        assert isinstance(system(), Model)
+        if name == "negative_damping":
+            continue
+        made = system()
+        # Systems of chapter V come with their negative damping.
+        model = made[0] if name.startswith("flutter") else made
+        assert isinstance(model, Model)

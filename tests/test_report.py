@@ -92,6 +92,10 @@ def results():
         "patterns": ss.mistuning_study(
             disk, 0.05, patterns=12, omega=(180.0, 230.0), dofs=["damper"], harmonics=1
         ),
+        "branch": ss.limit_cycles(*ss.reference.flutter_mass(), harmonics=5),
+        "boundary": ss.stability_map(
+            *ss.reference.flutter_mass(), stiffness=[1.2e7, 2.4e7, 4.8e7], method="exact"
+        ),
         "settled": ss.classify(FLUTTER, {"mass": 5e-5}),
         "starts": ss.basin_map(FLUTTER, {"mass": [1e-5, 1e-4]}),
     }

@@ -299,7 +299,7 @@ def test_foreign_file(tmp_path):
             r"in format 2, this version reads format 1 to 1; upgr",
         ),
         ("stickslip_format", "new", r"in format new, this version reads format 1"),
-        ("stickslip_kind", "limit_cycles", r"holds 'limit_cycles', this version reads 'forced_"),
+        ("stickslip_kind", "wave_fronts", r"holds 'wave_fronts', this version reads 'forced_"),
         ("settings", "{", r"not a complete stickslip result"),
         ("settings", "{}", r"not a complete stickslip result \('span'\)"),
         ("settings", '{"span": null, "tolerance": 3}', r"\(tolerance: 3; give a fraction"),

@@ -4,6 +4,7 @@ mod arrays;
 mod design;
 mod fates;
 mod mistuning;
+mod limit_cycles;
 mod orbits;
 mod problem;
 mod response;
@@ -39,6 +40,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(orbits::orbit_history, module)?)?;
     module.add_class::<fates::Fates>()?;
     module.add_function(wrap_pyfunction!(fates::fates, module)?)?;
+    module.add_class::<limit_cycles::LimitCycles>()?;
+    module.add_function(wrap_pyfunction!(limit_cycles::limit_cycles, module)?)?;
     module.add_class::<transient::History>()?;
     module.add_function(wrap_pyfunction!(transient::transient, module)?)?;
     Ok(())

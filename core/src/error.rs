@@ -62,6 +62,18 @@ pub enum Error {
     /// Time-domain analysis of one sector.
     #[error("one sector of a travelling wave has no motion of its own in time; give the whole disk, disk.mistuned(0)")]
     TravellingWave,
+    /// No limit cycle to begin a branch with.
+    #[error(
+        "mode = {mode}: no limit cycle was found next to the stuck mode of {omega:.6} rad/s, whose damping vanishes at r = {onset:.6}; ask for a ratio closer to it, or fewer harmonics"
+    )]
+    NoLimitCycle {
+        /// Mode of the stuck structure.
+        mode: usize,
+        /// Ratio r at which its damping vanishes.
+        onset: f64,
+        /// Its natural frequency in rad/s.
+        omega: f64,
+    },
     /// A friction law that is not registered.
     #[error("contact law '{name}' is unknown; known laws: {known}")]
     UnknownLaw {

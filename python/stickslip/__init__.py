@@ -16,10 +16,13 @@ if TYPE_CHECKING:
     from stickslip.analyses.classify import classify
     from stickslip.analyses.damper_curve import damper_curve
     from stickslip.analyses.exact_response import exact_response
+    from stickslip.analyses.flutter_formulas import rigid_limit_cycle, single_harmonic_cycles
     from stickslip.analyses.forced_response import forced_response
+    from stickslip.analyses.limit_cycles import limit_cycles
     from stickslip.analyses.mistuning_study import mistuning_study
     from stickslip.analyses.optimal_damper import optimal_damper
     from stickslip.analyses.single_harmonic import single_harmonic
+    from stickslip.analyses.stability_map import stability_map
     from stickslip.analyses.transient import transient
     from stickslip.disk import (
         BladedDisk,
@@ -44,9 +47,11 @@ if TYPE_CHECKING:
     from stickslip.results.basin_map import BasinMap
     from stickslip.results.damper_curve import DamperCurve
     from stickslip.results.exact_response import ExactResponse
+    from stickslip.results.limit_cycles import LimitCycles
     from stickslip.results.mistuning import MistuningStudy
     from stickslip.results.motion_class import MotionClass
     from stickslip.results.optimal_damper import OptimalDamper
+    from stickslip.results.stability_map import StabilityMap
     from stickslip.results.status import Status
     from stickslip.results.store import load
     from stickslip.results.transient import Transient
@@ -64,6 +69,7 @@ __all__ = [
     "Interface",
     "Interrupted",
     "Jenkins",
+    "LimitCycles",
     "MistunedDisk",
     "MistuningStudy",
     "ModalDamping",
@@ -74,6 +80,7 @@ __all__ = [
     "Rayleigh",
     "Reduction",
     "Solid",
+    "StabilityMap",
     "State",
     "Status",
     "Structure",
@@ -91,6 +98,7 @@ __all__ = [
     "fe",
     "forced_response",
     "join",
+    "limit_cycles",
     "load",
     "mistuning_pattern",
     "mistuning_study",
@@ -103,7 +111,10 @@ __all__ = [
     "read_matrix",
     "reference",
     "report",
+    "rigid_limit_cycle",
     "single_harmonic",
+    "single_harmonic_cycles",
+    "stability_map",
     "study",
     "transient",
     "write_frf",
@@ -122,6 +133,7 @@ _HOMES = {
     "Interrupted": "errors",
     "Interface": "disk",
     "Jenkins": "model",
+    "LimitCycles": "results.limit_cycles",
     "MistunedDisk": "disk",
     "MistuningStudy": "results.mistuning",
     "ModalDamping": "model",
@@ -132,6 +144,7 @@ _HOMES = {
     "Rayleigh": "model",
     "Reduction": "fe",
     "Solid": "fe",
+    "StabilityMap": "results.stability_map",
     "State": "model.state",
     "Status": "results",
     "Structure": "model",
@@ -148,6 +161,7 @@ _HOMES = {
     "exact_response": "analyses.exact_response",
     "forced_response": "analyses.forced_response",
     "join": "model",
+    "limit_cycles": "analyses.limit_cycles",
     "load": "results.store",
     "mistuning_pattern": "disk",
     "modal_damping": "model.damping",
@@ -158,7 +172,10 @@ _HOMES = {
     "read_frf": "io",
     "read_matrix": "io",
     "report": "html.report",
+    "rigid_limit_cycle": "analyses.flutter_formulas",
     "single_harmonic": "analyses.single_harmonic",
+    "single_harmonic_cycles": "analyses.flutter_formulas",
+    "stability_map": "analyses.stability_map",
     "transient": "analyses.transient",
     "write_frf": "io",
 }

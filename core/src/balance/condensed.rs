@@ -271,3 +271,19 @@ impl<'a> Condensed<'a> {
         load.active = true;
     }
 }
+
+/// Amplitudes of all points as a column.
+pub(super) fn gathered_load(amplitudes: &[c64]) -> faer::Mat<c64> {
+    faer::Mat::from_fn(amplitudes.len(), 1, |i, _| amplitudes[i])
+}
+
+/// Writes a column of amplitudes at one order into a real layout.
+pub(super) fn scattered(
+    harmonics: &Harmonics,
+    order: usize,
+    column: &faer::Mat<c64>,
+    out: &mut [f64],
+) {
+    let amplitudes: Vec<c64> = (0..column.nrows()).map(|i| column[(i, 0)]).collect();
+    super::unknowns::scatter(harmonics, order, &amplitudes, out);
+}

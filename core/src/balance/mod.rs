@@ -4,8 +4,11 @@
 mod accuracy;
 mod adaptive;
 mod condensed;
+mod cycle_point;
+mod cycle_start;
 mod forced;
 mod jacobian;
+mod limit_cycle;
 mod linear;
 mod linearised;
 mod peak;
@@ -19,8 +22,10 @@ mod sweep;
 mod unknowns;
 
 pub use adaptive::sweep_range;
+pub use cycle_start::Onset;
 pub use forced::ForcedBalance;
 pub(crate) use forced::Memory;
+pub use limit_cycle::CycleBalance;
 pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;

@@ -1,7 +1,10 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
 mod gathered;
+mod self_excited;
 mod slipping;
+
+pub use self_excited::{NegativeDamping, Scalar, SelfExcited};
 
 use crate::contact::{FrictionLaw, Marched};
 use crate::structure::{

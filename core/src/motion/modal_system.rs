@@ -52,10 +52,6 @@ impl ModalSystem {
         let modes = real_modes(structure.mass(), structure.stiffness())?;
         let damping = modes.project(structure.damping());
         let size = modes.omega_squared.len();
-        let largest = damping.norm_max();
-        let coupled = (0..size).any(|j| {
-            (0..size).any(|i| i != j && damping[(i, j)].abs() > 1e-14 * size as f64 * largest)
-        });
         let rows = &model.ports().rows * &modes.shapes;
         let contacts =
             (0..rows.nrows()).flat_map(|i| (0..size).map(move |j| (i, j))).map(|at| rows[at]);
@@ -65,23 +61,51 @@ impl ModalSystem {
                 .collect();
             (load.harmonic, modal)
         });
-        let stuck = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
-        let total = model.contact_stiffness();
         Ok(Self {
             contacts: contacts.collect(),
             loads: loads.filter(|(_, load): &(_, Vec<c64>)| !is_zero(load)).collect(),
-            rate: stuck + damping.norm_l2(),
-            damping: if coupled {
-                Damping::Full(damping)
-            } else {
-                Damping::Diagonal((0..size).map(|j| damping[(j, j)]).collect())
-            },
+            rate: rate_of(model, &damping),
+            damping: Damping::of(damping),
             to_modes: modes.shapes.transpose() * structure.mass(),
-            limits: model.laws().iter().flat_map(|law| law.limits()).collect(),
-            stiffness: (0..total.nrows()).map(|i| total[(i, i)]).collect(),
+            limits: limits_of(model),
+            stiffness: stiffness_of(model),
             omega_squared: modes.omega_squared,
             shapes: modes.shapes,
         })
+    }
+
+    /// The same structure without loads, with another modal damping and the contacts of another
+    /// model of it.
+    pub(crate) fn undriven(&self, model: &Model, damping: Mat<f64>) -> Self {
+        Self {
+            loads: Vec::new(),
+            rate: rate_of(model, &damping),
+            damping: Damping::of(damping),
+            limits: limits_of(model),
+            stiffness: stiffness_of(model),
+            ..self.clone()
+        }
+    }
+
+    /// `Φᵀ A Φ` of a matrix over the DOFs.
+    pub(crate) fn project(&self, matrix: &Mat<f64>) -> Mat<f64> {
+        self.shapes.transpose() * matrix * &self.shapes
+    }
+
+    /// Accelerations η'' without loads, from displacements, velocities and contact forces.
+    pub(crate) fn acceleration(
+        &self,
+        displacement: &[f64],
+        velocity: &[f64],
+        force: &[f64],
+    ) -> Vec<f64> {
+        let mut out: Vec<f64> =
+            displacement.iter().zip(&self.omega_squared).map(|(x, w)| -w * x).collect();
+        self.add_damping(velocity, -1.0, &mut out);
+        for (point, f) in force.iter().enumerate() {
+            out.iter_mut().zip(self.contact_shape(point)).for_each(|(a, b)| *a -= b * f);
+        }
+        out
     }
 
     /// Number of modes N.
@@ -211,6 +235,35 @@ impl Regime {
         }
         regime
     }
+}
+
+impl Damping {
+    /// From a modal matrix.
+    fn of(modal: Mat<f64>) -> Self {
+        let (size, largest) = (modal.nrows(), modal.norm_max());
+        let coupled = (0..size).any(|j| {
+            (0..size).any(|i| i != j && modal[(i, j)].abs() > 1e-14 * size as f64 * largest)
+        });
+        if coupled {
+            Self::Full(modal)
+        } else {
+            Self::Diagonal((0..size).map(|j| modal[(j, j)]).collect())
+        }
+    }
+}
+
+/// Fastest rate of the free motion [1/s].
+fn rate_of(model: &Model, damping: &Mat<f64>) -> f64 {
+    model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0) + damping.norm_l2()
+}
+
+fn limits_of(model: &Model) -> Vec<f64> {
+    model.laws().iter().flat_map(|law| law.limits()).collect()
+}
+
+fn stiffness_of(model: &Model) -> Vec<f64> {
+    let total = model.contact_stiffness();
+    (0..total.nrows()).map(|i| total[(i, i)]).collect()
 }
 
 fn is_zero(load: &[c64]) -> bool {

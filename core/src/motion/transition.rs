@@ -103,6 +103,18 @@ impl<'a> Transition<'a> {
         displacement.chain(state.velocity.iter().copied()).chain(force).collect()
     }
 
+    /// Rate of change of the coordinates of a state without loads, in its regime.
+    pub(crate) fn rate(&self, state: &State, regime: &Regime) -> Vec<f64> {
+        let system = self.system;
+        let speed = system.contact_displacement(&state.velocity);
+        let displacement = state.velocity.iter().zip(&self.weight).map(|(v, w)| w * v);
+        let velocity = system.acceleration(&state.displacement, &state.velocity, &state.force);
+        let force = self.root.iter().enumerate().map(|(i, root)| {
+            speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum::<f64>() / root
+        });
+        displacement.chain(velocity).chain(force).collect()
+    }
+
     /// State of coordinates, and whether the force of each point is free to vary there.
     pub(crate) fn state(&self, y: &[f64]) -> (State, Vec<bool>) {
         let modes = self.weight.len();

@@ -1,16 +1,27 @@
 //! Exact periodic orbits by shooting with the exact flow, and their Floquet multipliers: no
 //! harmonic is discarded, so that they judge the harmonic balance.
 
+mod cycle_branch;
+mod cycle_survey;
+mod cycles;
+mod limit_cycle;
 mod periodic;
 mod quadrature;
 mod rescue;
 mod residual;
 mod settings;
 mod shooting;
+mod stability;
+mod start;
 mod survey;
 mod sweep;
+mod traced;
 
+pub use cycle_branch::limit_cycles;
+pub use cycles::{Cycle, CycleSettings, LimitCycles, Turn};
+pub use limit_cycle::{CycleOrbits, OrbitCurve};
 pub use periodic::{Orbit, PeriodicOrbits};
 pub use rescue::Rescue;
 pub use settings::OrbitSettings;
+pub use stability::{Change, ChangeKind};
 pub use sweep::{orbit_peak, orbit_sweep, Orbits};

@@ -4,10 +4,9 @@ use super::quadrature::Quadrature;
 use super::residual::shifted;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
+use super::start::start_of;
 use super::survey::Survey;
 use crate::balance::{ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Settings};
-use crate::contact::Motion;
-use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::motion::{Event, ModalSystem, State};
 use crate::solve::{newton, NewtonSettings, Outcome, System as _};
@@ -235,41 +234,15 @@ impl<'a> PeriodicOrbits<'a> {
             return rest;
         };
         match balance.solve(omega, None) {
-            Ok(point) if point.status == PointStatus::Converged => {
-                self.state_of(&point, balance.half_wave())
-            }
+            Ok(point) if point.status == PointStatus::Converged => start_of(
+                self.model,
+                &self.system,
+                self.settings.residual,
+                &point,
+                balance.half_wave(),
+            ),
             _ => rest,
         }
-    }
-
-    /// State at the start of the period of a harmonic balance of all DOFs.
-    fn state_of(&self, point: &Point, half_wave: bool) -> State {
-        let orders = point.harmonics + 1;
-        let at_start = |factor: &dyn Fn(usize) -> c64| -> Vec<f64> {
-            point
-                .displacement
-                .chunks_exact(orders)
-                .map(|series| series.iter().enumerate().map(|(k, x)| (factor(k) * x).re).sum())
-                .collect()
-        };
-        let mut state = State::rest(&self.system);
-        state.displacement = self.system.to_modes(&at_start(&|_| c64::new(1.0, 0.0)));
-        state.velocity =
-            self.system.to_modes(&at_start(&|k| c64::new(0.0, k as f64 * point.omega)));
-        let table = SampleTable::new(Harmonics::new(point.harmonics, half_wave));
-        for (law, points) in self.model.laws().iter().zip(self.model.points()) {
-            let slots = table.harmonics().slots();
-            let mut series = vec![0.0; slots * points.len()];
-            for (own, out) in points.clone().zip(series.chunks_exact_mut(slots)) {
-                let amplitudes = &point.contact_displacement[own * orders..(own + 1) * orders];
-                table.harmonics().write_series(amplitudes, out);
-            }
-            let motion =
-                Motion { table: &table, displacement: &series, residual: self.settings.residual };
-            state.force[points.clone()].copy_from_slice(&law.force_history(motion, 1));
-        }
-        state.settle_points(&self.system);
-        state
     }
 
     /// Passes along the closed orbit and reads everything off it.

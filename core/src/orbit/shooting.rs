@@ -3,7 +3,7 @@
 
 use crate::contact::PointState;
 use crate::model::Model;
-use crate::motion::{Flow, Leg, ModalSystem, Passage, Regime, Transition};
+use crate::motion::{Flow, Leg, ModalSystem, Passage, Regime, State, Transition};
 use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
@@ -27,6 +27,8 @@ pub(super) struct Shooting<'a> {
     legs: Vec<Leg>,
     free: Vec<bool>,
     slipped: Vec<bool>,
+    /// State after the span.
+    pub(super) end: Option<State>,
     derivative: Option<Mat<f64>>,
     /// Transition matrices assembled so far.
     pub(super) matrices: usize,
@@ -40,10 +42,23 @@ impl<'a> Shooting<'a> {
         half_wave: bool,
         interrupted: Option<&'a dyn Fn() -> bool>,
     ) -> Self {
+        let coordinates = Transition::new(system, omega);
+        Self::within(model, system, omega, half_wave, interrupted, coordinates)
+    }
+
+    /// As [`Shooting::new`], in given coordinates.
+    pub(super) fn within(
+        model: &'a Model,
+        system: &'a ModalSystem,
+        omega: f64,
+        half_wave: bool,
+        interrupted: Option<&'a dyn Fn() -> bool>,
+        coordinates: Transition<'a>,
+    ) -> Self {
         let period = std::f64::consts::TAU / omega;
         Self {
             flow: Flow::new(model, system, omega),
-            coordinates: Transition::new(system, omega),
+            coordinates,
             stuck: Regime::new(model, &vec![PointState::Stuck; system.points()]),
             limits: system.limits(),
             half_wave,
@@ -52,6 +67,7 @@ impl<'a> Shooting<'a> {
             legs: Vec::new(),
             free: Vec::new(),
             slipped: Vec::new(),
+            end: None,
             derivative: None,
             matrices: 0,
         }
@@ -63,7 +79,7 @@ impl<'a> Shooting<'a> {
     }
 
     /// Coordinates after the span, mirrored under half-wave symmetry.
-    fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
+    pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
         let (mut state, free) = self.coordinates.state(y);
         self.free =
             free.iter().zip(self.limits).map(|(free, limit)| *free && *limit > 0.0).collect();
@@ -79,6 +95,7 @@ impl<'a> Shooting<'a> {
         });
         run.ok()?;
         let mut y = self.coordinates.coordinates(&state);
+        self.end = Some(state);
         if self.half_wave {
             y.iter_mut().for_each(|y| *y = -*y);
         }
@@ -106,7 +123,7 @@ impl<'a> Shooting<'a> {
     }
 
     /// Derivative of the image at the last evaluation.
-    fn derivative(&mut self) -> Mat<f64> {
+    pub(super) fn derivative(&mut self) -> Mat<f64> {
         if let Some(derivative) = &self.derivative {
             return derivative.clone();
         }
@@ -120,6 +137,18 @@ impl<'a> Shooting<'a> {
     /// Floquet multipliers over the full period by falling modulus, the exact ones of contacts
     /// that never slip first, and the number of these.
     pub(super) fn multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
+        let (mut multipliers, neutral) = self.span_multipliers()?;
+        if self.half_wave {
+            multipliers.iter_mut().for_each(|m| *m *= *m);
+        }
+        multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        let ones = std::iter::repeat_n(c64::new(1.0, 0.0), neutral);
+        Some((ones.chain(multipliers).collect(), neutral))
+    }
+
+    /// Multipliers over the span, mirrored under half-wave symmetry, without those of contacts
+    /// that never slip; and the number of these.
+    pub(super) fn span_multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
         let neutral = self.neutral();
         let mut matrix = self.derivative();
         let size = matrix.nrows();
@@ -137,13 +166,7 @@ impl<'a> Shooting<'a> {
         let kept: Vec<usize> =
             (0..size).filter(|i| *i < first || !neutral.contains(&(i - first))).collect();
         let rest = Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[i], kept[j])]);
-        let mut multipliers: Vec<c64> = rest.eigenvalues().ok()?;
-        if self.half_wave {
-            multipliers.iter_mut().for_each(|m| *m *= *m);
-        }
-        multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
-        let ones = std::iter::repeat_n(c64::new(1.0, 0.0), neutral.len());
-        Some((ones.chain(multipliers).collect(), neutral.len()))
+        Some((rest.eigenvalues().ok()?, neutral.len()))
     }
 }
 

@@ -1,6 +1,9 @@
 //! Solvers that know nothing of friction: a system has a residual and a Newton direction.
 
+mod bordered;
+mod branch;
 mod broyden;
+mod continuation;
 mod cyclic_tridiagonal;
 mod homotopy;
 mod kernels;
@@ -9,7 +12,9 @@ mod newton;
 mod qr;
 mod small_dense;
 
+pub use branch::{Bounds, Branch, End};
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
+pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Curve, Steps};
 pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};

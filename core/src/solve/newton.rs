@@ -63,6 +63,8 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
     let mut size_of_residual = norm(&residual);
     // Whether the Jacobian is that at x.
     let mut fresh = true;
+    // Whether the tolerance is met, and only rounding may be in the way of more.
+    let mut within = false;
     for iteration in 0..settings.max_iterations {
         let report = |outcome, residual: f64, x: &[f64]| Report {
             outcome,
@@ -96,7 +98,8 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
                 fresh = true;
                 continue;
             }
-            return report(Outcome::Stalled, size_of_residual, x);
+            let outcome = if within { Outcome::Converged } else { Outcome::Stalled };
+            return report(outcome, size_of_residual, x);
         }
         // Where Newton's method converges, the error shrinks as the residual does: the error left
         // is the step times the contraction just seen.
@@ -110,7 +113,8 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         if close && fresh {
             return report(Outcome::Converged, size_of_residual, x);
         }
-        if trial.length == 1.0 && left <= settings.tolerance {
+        within = trial.length == 1.0 && left <= settings.tolerance;
+        if within {
             // Newton's own last step would leave hardly more than rounding. One with a Jacobian
             // kept leaves what the step that would follow tells, at the price of a substitution.
             let known = keep && system.solve(&residual, &mut step);

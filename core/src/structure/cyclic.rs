@@ -97,6 +97,22 @@ impl CyclicStructure {
         Structure::new(mass, damping, stiffness)
     }
 
+    /// Mass, damping and stiffness of a wave of a nodal diameter.
+    pub(super) fn at_diameter(&self, diameter: usize) -> [Mat<c64>; 3] {
+        let delta = self.phase(diameter);
+        [&self.mass, &self.damping, &self.stiffness].map(|matrix| matrix.wave(delta))
+    }
+
+    /// Rows of B in a wave of a nodal diameter.
+    pub(super) fn rows_at(
+        &self,
+        diameter: usize,
+        own: MatRef<'_, f64>,
+        next: MatRef<'_, f64>,
+    ) -> Mat<c64> {
+        wave_rows(own, next, self.phase(diameter))
+    }
+
     fn phase(&self, diameter: usize) -> f64 {
         TAU * diameter as f64 / self.sectors as f64
     }

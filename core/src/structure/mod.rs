@@ -5,6 +5,7 @@
 //! needs no partition of the matrices and takes ω as an unknown.
 
 mod cyclic;
+mod destabilised;
 mod direct;
 mod flexibility;
 mod modal;
@@ -18,6 +19,7 @@ mod spectrum;
 mod system;
 
 pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
+pub use destabilised::{Answer, Destabilised, StuckMode};
 pub use direct::DirectCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
 pub use modes::{natural_frequencies, real_modes, RealModes};

@@ -377,7 +377,7 @@ impl ModalCompliance {
     }
 }
 
-fn is_diagonal(matrix: MatRef<'_, c64>) -> bool {
+pub(super) fn is_diagonal(matrix: MatRef<'_, c64>) -> bool {
     let size = matrix.nrows();
     let rounding = ROUNDING * size as f64 * matrix.norm_max();
     let coupled = |i: usize, j: usize| {

@@ -11,6 +11,7 @@ from stickslip.plot.charts import (
     slip,
     waveform,
 )
+from stickslip.plot.cycles import CycleOptions, cycle_multipliers, limit_cycles
 from stickslip.plot.damper import DamperOptions, damper
 from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
 from stickslip.plot.mistuning import (
@@ -20,6 +21,7 @@ from stickslip.plot.mistuning import (
     distribution,
 )
 from stickslip.plot.orbits import MultiplierOptions, events, multipliers
+from stickslip.plot.stability_map import stability_map
 from stickslip.plot.transients import (
     HistoryOptions,
     PoincareOptions,
@@ -37,6 +39,7 @@ __all__ = [
     "BladeBarOptions",
     "BladeCurveOptions",
     "CurveOptions",
+    "CycleOptions",
     "DamperOptions",
     "DiameterOptions",
     "DistributionOptions",
@@ -57,11 +60,13 @@ __all__ = [
     "blade_curves",
     "contact_history",
     "curves",
+    "cycle_multipliers",
     "damper",
     "distribution",
     "events",
     "history",
     "hysteresis",
+    "limit_cycles",
     "lines",
     "multipliers",
     "nodal_diameters",
@@ -70,5 +75,6 @@ __all__ = [
     "safe",
     "slip",
     "spectrum",
+    "stability_map",
     "waveform",
 ]

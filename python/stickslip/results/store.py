@@ -27,10 +27,12 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "exact_response": ("stickslip.results.exact_response", "ExactResponse"),
     "transient": ("stickslip.results.transient", "Transient"),
     "damper_curve": ("stickslip.results.damper_curve", "DamperCurve"),
+    "limit_cycles": ("stickslip.results.limit_cycles", "LimitCycles"),
     "optimal_damper": ("stickslip.results.optimal_damper", "OptimalDamper"),
     "motion_class": ("stickslip.results.motion_class", "MotionClass"),
     "basin_map": ("stickslip.results.basin_map", "BasinMap"),
     "mistuning_study": ("stickslip.results.mistuning", "MistuningStudy"),
+    "stability_map": ("stickslip.results.stability_map", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 

@@ -12,6 +12,7 @@ from stickslip.study.certify_table import CertifyTable
 from stickslip.study.damper_curve_table import DamperCurveTable
 from stickslip.study.entries import chosen_by
 from stickslip.study.exact_table import ExactTable
+from stickslip.study.limit_cycles_table import LimitCyclesTable
 from stickslip.study.mistuning_study_table import MistuningStudyTable
 from stickslip.study.single_harmonic_table import SingleHarmonicTable
 from stickslip.study.transient_table import TransientTable
@@ -26,7 +27,8 @@ AnalysisTable = Annotated[
     | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")]
     | Annotated[DamperCurveTable, Tag("<damper-curve>")]
     | Annotated[BasinMapTable, Tag("<basin-map>")]
-    | Annotated[MistuningStudyTable, Tag("<mistuning-study>")],
+    | Annotated[MistuningStudyTable, Tag("<mistuning-study>")]
+    | Annotated[LimitCyclesTable, Tag("<limit-cycles>")],
     chosen_by(
         "kind",
         "forced-response",
@@ -37,6 +39,7 @@ AnalysisTable = Annotated[
         "damper-curve",
         "basin-map",
         "mistuning-study",
+        "limit-cycles",
         default="forced-response",
     ),
 ]

@@ -22,6 +22,7 @@ from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure
 from stickslip.study.analysis_entries import level_name
 from stickslip.study.complaint import complaint
+from stickslip.study.limit_cycles_table import with_matrices
 from stickslip.study.structure_table import MatrixFile, ModalDampingTable, RayleighDamping
 from stickslip.study.tables import StudyTables
 
@@ -142,7 +143,7 @@ class Study:
             As `load`.
         """
         with _named(source):
-            tables = _read(text)
+            tables = with_matrices(_read(text), Path(folder))
             model = _model(tables, Path(folder))
             _check_dofs(tables, model)
         return cls(tables.name or name, tables, model, source)

@@ -25,6 +25,8 @@ MODULES: Mapping[str, str] = {
     "motion_class": "stickslip.views.motions",
     "basin_map": "stickslip.views.basins",
     "mistuning_study": "stickslip.views.mistuning",
+    "limit_cycles": "stickslip.views.cycles",
+    "stability_map": "stickslip.views.maps",
 }
 """The module of every kind of result; results of one module are drawn together."""
 

@@ -1,0 +1,170 @@
+//! Where a branch of limit cycles begins: the stuck mode at the onset of slip.
+//!
+//! As the negative damping vanishes the limit cycle tends to the linear motion of the stuck
+//! structure that just reaches the slip limit of one contact: friction need not dissipate anything.
+
+use super::limit_cycle::CycleBalance;
+use crate::contact::Describing;
+use crate::fourier::SampleTable;
+use crate::model::SelfExcited;
+use crate::solve::at_parameter;
+use crate::structure::StuckMode;
+use crate::Error;
+
+/// Newton iterations for the first point.
+const ITERATIONS: usize = 40;
+/// First ratios, relative to the excess over the onset that is asked for, down to which a start is
+/// looked for: closer to the onset the stuck mode is nearer to the solution.
+const NEARER: [f64; 7] = [1.0, 0.5, 0.2, 0.05, 0.01, 1e-3, 1e-4];
+/// Contact displacement, relative to the largest of all modes, that counts as none.
+const STILL: f64 = 1e-9;
+
+/// A stuck mode that negative damping can excite.
+#[derive(Debug, Clone)]
+pub struct Onset {
+    /// The mode.
+    pub mode: StuckMode,
+    /// Ratio r at which its damping vanishes with all contacts stuck.
+    pub ratio: f64,
+    /// Modal amplitude at which the first contact begins to slip [m √kg].
+    pub amplitude: f64,
+    /// That contact point.
+    pub point: usize,
+    /// Its slip limit [N].
+    pub limit: f64,
+    /// DOF that moves most, of those that no contact restrains, if there are any.
+    pub dof: usize,
+}
+
+impl Onset {
+    /// The onset of a mode, counted from 0 by rising frequency of the stuck structure, at a value
+    /// of what is followed.
+    ///
+    /// # Errors
+    /// No such mode; a mode that moves no contact or that the negative damping does not excite.
+    pub fn new(family: &SelfExcited<'_>, mode: usize, value: f64) -> Result<Self, Error> {
+        let laws = family.laws_at(value)?;
+        let model = family.model();
+        let mut stiffness = model.contact_stiffness().clone();
+        let mut limits = Vec::new();
+        for (law, range) in laws.iter().zip(model.points()) {
+            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
+            limits.extend(law.limits());
+        }
+        let modes = family.destabilised().stuck_modes(stiffness.as_ref())?;
+        let largest = modes.iter().flat_map(|m| &m.contact).map(|u| u.norm()).fold(0.0, f64::max);
+        let Some(own) = modes.get(mode) else {
+            let remedy = format!("the structure has modes 0 to {}", modes.len().saturating_sub(1));
+            return Err(Error::value("mode", mode as f64, &remedy));
+        };
+        let force = |i: usize| -> f64 {
+            let sum: faer::c64 =
+                (0..own.contact.len()).map(|j| own.contact[j] * stiffness[(i, j)]).sum();
+            sum.norm()
+        };
+        let onset = (0..limits.len())
+            .filter(|&i| limits[i].is_finite() && own.contact[i].norm() > STILL * largest)
+            .map(|i| (limits[i] / force(i), i))
+            .filter(|(amplitude, _)| amplitude.is_finite() && *amplitude > 0.0)
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((amplitude, point)) = onset else {
+            let remedy = "moves no contact that can slip, so that friction cannot bound it";
+            return Err(Error::value("mode", mode as f64, remedy));
+        };
+        let rounding = 1e-12 * own.omega;
+        if own.negative >= -rounding {
+            let text = format!(
+                "is not excited: its modal negative damping is {:.3e} 1/s, which must be below 0; \
+                 mind the sign of negative_damping",
+                own.negative
+            );
+            return Err(Error::value("mode", mode as f64, &text));
+        }
+        let ratio = (-own.damping / own.negative).max(0.0);
+        let restrained = |dof: usize| {
+            (0..model.ports().rows.nrows()).any(|i| model.ports().rows[(i, dof)] != 0.0)
+        };
+        let size = |dof: &usize| own.shape[*dof].norm();
+        let moves = |a: &usize, b: &usize| size(a).total_cmp(&size(b));
+        let dofs = 0..own.shape.len();
+        let most = dofs.clone().max_by(moves).unwrap_or(0);
+        let dof = dofs
+            .filter(|dof| !restrained(*dof) && size(dof) > 0.01 * size(&most))
+            .max_by(moves)
+            .unwrap_or(most);
+        Ok(Self { mode: own.clone(), ratio, amplitude, point, limit: limits[point], dof })
+    }
+
+    /// A limit cycle at the ratio r asked for, or as near to the onset as needed: unknowns of
+    /// [`CycleBalance`]. Nothing if Newton's method finds none.
+    pub fn first_point(
+        &self,
+        family: &SelfExcited<'_>,
+        table: &SampleTable,
+        ratio: f64,
+        interrupted: &dyn Fn() -> bool,
+    ) -> Option<Vec<f64>> {
+        for share in NEARER {
+            for factor in [1.0, 0.7, 1.5, 0.3, 3.0] {
+                let ratio = self.ratio + share * (ratio - self.ratio);
+                let Some(guess) = self.guess(table, ratio, factor) else { continue };
+                let mut curve = CycleBalance::new(family, table, &guess, interrupted);
+                let Some((z, _)) = at_parameter(&mut curve, &guess, ratio, ITERATIONS) else {
+                    if interrupted() {
+                        return None;
+                    }
+                    continue;
+                };
+                let near = z[z.len() - 2] / self.mode.omega;
+                let slots = table.harmonics().slots();
+                let moved = table.harmonics().fundamental(&z[self.point * slots..][..slots]);
+                let expected = self.amplitude * self.mode.contact[self.point].norm();
+                if (0.7..1.3).contains(&near) && moved > 0.5 * expected && moved < 3.0 * expected {
+                    return Some(z);
+                }
+            }
+        }
+        None
+    }
+
+    /// The stuck mode beyond the onset of slip by what makes friction dissipate the work of the
+    /// negative damping, by the first harmonic of one slipping contact; nothing if it cannot.
+    fn guess(&self, table: &SampleTable, ratio: f64, factor: f64) -> Option<Vec<f64>> {
+        let (harmonics, mode) = (table.harmonics(), &self.mode);
+        let damping = mode.damping + ratio * mode.negative;
+        let stroke = mode.contact[self.point].norm();
+        let stiffness = self.limit / (stroke * self.amplitude);
+        let force = |excess: f64| {
+            let size = (1.0 + excess) * stroke * self.amplitude;
+            Describing::of_jenkins(stiffness, self.limit, size).stiffness
+        };
+        // Dissipation grows with the excess up to twice the amplitude at the onset.
+        let left = |excess: f64| mode.omega * damping + stroke * stroke * force(excess).im;
+        if left(1.0) < 0.0 {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if left(middle) < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let excess = factor * high;
+        let softening = stroke * stroke * (stiffness - force(excess).re);
+        let omega = (mode.omega * mode.omega - softening).max(0.0).sqrt();
+        let q = self.amplitude * (1.0 + excess);
+        let slots = harmonics.slots();
+        let mut z = vec![0.0; mode.contact.len() * slots];
+        if let Some(slot) = harmonics.slot(1) {
+            for (i, u) in mode.contact.iter().enumerate() {
+                z[i * slots + slot] = q * u.re;
+                z[i * slots + slot + 1] = -q * u.im;
+            }
+        }
+        z.extend([omega, ratio]);
+        Some(z)
+    }
+}

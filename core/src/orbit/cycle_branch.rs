@@ -1,0 +1,377 @@
+//! The branch of limit cycles of a mode: from the stuck limit through the fold to the slipping side.
+
+use super::cycle_survey::{odd_table, survey};
+use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
+use super::limit_cycle::{CycleOrbits, OrbitCurve};
+use super::quadrature::Quadrature;
+use super::stability::{judge, Judge, TRACING};
+use super::traced::{extreme, joined, value, Traced};
+use crate::balance::{CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress};
+use crate::fourier::SampleTable;
+use crate::model::{Model, NegativeDamping, Scalar, SelfExcited};
+use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, End, Steps};
+use crate::timing::Profile;
+use crate::Error;
+use faer::c64;
+use std::cell::Cell;
+use std::time::{Duration, Instant};
+
+/// Of the first point of exact branches.
+const START_HARMONICS: usize = 15;
+/// First ratio beyond the onset, relative to it, where the range does not say.
+const BEYOND_ONSET: f64 = 0.01;
+/// Time that an ended analysis may take to read off what it has traced.
+const PATIENCE: Duration = Duration::from_millis(400);
+/// Motion, relative to the onset of slip, at which a branch counts as going to infinity.
+const ENDLESS: f64 = 1e5;
+
+/// Follows the limit cycles of a mode of `model` with the damping `C + r C_neg`.
+///
+/// # Errors
+/// Settings outside their range, a mode that is not excited or moves no contact, no limit cycle
+/// to begin with.
+pub fn limit_cycles(
+    model: &Model,
+    negative: &NegativeDamping,
+    scalar: &Scalar,
+    ratio: f64,
+    settings: &CycleSettings,
+    progress: &Progress<'_>,
+) -> Result<LimitCycles, Error> {
+    settings.check()?;
+    let begin = Instant::now();
+    let given = SelfExcited::new(model, negative.clone(), Scalar::Ratio, ratio)?;
+    let family = SelfExcited::new(model, negative.clone(), scalar.clone(), ratio)?;
+    let stopped = Cell::new(false);
+    let share = Cell::new(0.0);
+    let interrupted = || {
+        stopped.set(stopped.get() || !progress(share.get()));
+        stopped.get()
+    };
+    let onset = Onset::new(&given, settings.mode, ratio)?;
+    let orbits = CycleOrbits::new(&family)?;
+    let mut finder = Finder { given, family: &family, onset: &onset, settings, ratio };
+    if settings.exact && orbits.is_none() {
+        return Err(Error::TravellingWave);
+    }
+    let found = match (&orbits, settings.exact) {
+        (Some(orbits), true) => finder.exactly(orbits, &interrupted, &share),
+        _ => finder.balanced(orbits.as_ref(), &interrupted, &share),
+    };
+    let mut out = match found {
+        // Nothing was found because nothing more was looked for.
+        Err(_) if stopped.get() => finder.result(&Traced::default(), Vec::new(), 0),
+        other => other?,
+    };
+    out.interrupted = stopped.get();
+    out.profile.total = begin.elapsed();
+    Ok(out)
+}
+
+struct Finder<'a> {
+    /// The family in r, in which every branch begins.
+    given: SelfExcited<'a>,
+    family: &'a SelfExcited<'a>,
+    onset: &'a Onset,
+    settings: &'a CycleSettings,
+    ratio: f64,
+}
+
+impl Finder<'_> {
+    /// By harmonic balance.
+    fn balanced(
+        &mut self,
+        orbits: Option<&CycleOrbits<'_>>,
+        interrupted: &dyn Fn() -> bool,
+        share: &Cell<f64>,
+    ) -> Result<LimitCycles, Error> {
+        let settings = self.settings;
+        let rungs = settings.rungs();
+        let scale = self.onset.mode.omega;
+        let last = rungs.len() - 1;
+        for (rung, &highest) in rungs.iter().enumerate() {
+            let table = odd_table(highest);
+            let traced = match self.trace_balance(&table, interrupted) {
+                Err(_) if rung < last => continue,
+                other => other?,
+            };
+            let start = traced.branch.points.first().cloned().unwrap_or_default();
+            let mut curve = CycleBalance::new(self.family, &table, &start, interrupted);
+            let selected = self.select(&mut curve, &traced);
+            let beyond = odd_table(highest + (highest / 2).max(4));
+            let mut cycles = Vec::with_capacity(selected.len());
+            let mut beyond_tolerance = 0;
+            let mut ended = None;
+            for (slipping, z) in &selected {
+                let stop = interrupted();
+                if stop && *ended.get_or_insert_with(Instant::now) + PATIENCE < Instant::now() {
+                    break;
+                }
+                let mut point = curve.point(z, self.onset.dof);
+                // What is traced is kept; its errors are what takes the time.
+                if stop {
+                    cycles.push(self.cycle(z, *slipping, point));
+                    continue;
+                }
+                let weights = curve.weights(z);
+                let mut ahead = vec![0.0; z.len()];
+                ahead[z.len() - 1] = 1.0;
+                let along = tangent(&mut curve, z, &weights, &ahead).unwrap_or(ahead);
+                point.error_estimate = curve.errors(z, &along, &beyond);
+                beyond_tolerance += usize::from(relative(&point) > settings.tolerance);
+                cycles.push(self.cycle(z, *slipping, point));
+            }
+            let few = beyond_tolerance * RARE <= selected.len();
+            let enough = few || rung == last || interrupted();
+            if settings.harmonics == HarmonicChoice::Auto {
+                for cycle in &mut cycles {
+                    if relative(&cycle.response) > settings.tolerance {
+                        cycle.response.status = PointStatus::HarmonicsLimit;
+                    }
+                }
+                if !enough {
+                    continue;
+                }
+            }
+            share.set(TRACING);
+            let mut out = self.result(&traced, cycles, highest);
+            out.profile.evaluations = curve.evaluations;
+            if let (Some(orbits), true) = (orbits, settings.stability) {
+                let starts = out
+                    .cycles
+                    .iter()
+                    .map(|cycle| orbits.unknowns(&cycle.response, cycle.value, scale).ok())
+                    .collect();
+                judge(&self.judge(orbits, false), starts, &mut out, interrupted, share);
+            }
+            return Ok(out);
+        }
+        Err(self.no_start())
+    }
+
+    fn exactly(
+        &mut self,
+        orbits: &CycleOrbits<'_>,
+        interrupted: &dyn Fn() -> bool,
+        share: &Cell<f64>,
+    ) -> Result<LimitCycles, Error> {
+        let scale = self.onset.mode.omega;
+        let table = odd_table(START_HARMONICS);
+        let start = self.first(&table, interrupted)?;
+        let of_ratio = CycleOrbits::new(&self.given)?.ok_or(Error::TravellingWave)?;
+        let begin = {
+            let mut balance = CycleBalance::new(&self.given, &table, &start, interrupted);
+            let point = balance.point(&start, self.onset.dof);
+            let value = start[start.len() - 1];
+            let guess = of_ratio.unknowns(&point, value, scale)?;
+            let mut curve = OrbitCurve::new(&of_ratio, scale, &guess, interrupted);
+            at_parameter(&mut curve, &guess, value, 40).ok_or_else(|| self.no_start())?.0
+        };
+        let mut of_ratio = OrbitCurve::new(&of_ratio, scale, &begin, interrupted);
+        let mut curve = OrbitCurve::new(orbits, scale, &begin, interrupted);
+        let traced = self.trace(&mut of_ratio, &mut curve, begin)?;
+        let selected = self.select(&mut curve, &traced);
+        let reported = odd_table(self.settings.reported);
+        let mut quadrature = Quadrature::default();
+        let mut cycles = Vec::with_capacity(selected.len());
+        let mut points = Vec::new();
+        let mut ended = None;
+        share.set(TRACING);
+        for (slipping, z) in selected {
+            let late = interrupted()
+                && *ended.get_or_insert_with(Instant::now) + PATIENCE < Instant::now();
+            if late {
+                break;
+            }
+            let found = survey(&curve, &z, self.onset.dof, &reported, &mut quadrature);
+            let Some(found) = found else { continue };
+            let mut cycle = self.cycle(&z, slipping, found.response);
+            cycle.range = found.range;
+            cycle.state = found.state;
+            cycle.viscous = found.viscous;
+            cycle.events = found.events;
+            cycles.push(cycle);
+            points.push(Some(z));
+        }
+        let mut out = self.result(&traced, cycles, self.settings.reported);
+        out.profile.evaluations = curve.flows;
+        out.profile.factorisations = curve.matrices;
+        if self.settings.stability {
+            judge(&self.judge(orbits, true), points, &mut out, interrupted, share);
+        }
+        Ok(out)
+    }
+
+    fn judge<'b>(&self, orbits: &'b CycleOrbits<'b>, exact: bool) -> Judge<'b> {
+        let whole = self.settings.values.is_none();
+        Judge { orbits, scale: self.onset.mode.omega, exact, whole }
+    }
+
+    /// The first limit cycle in r, by harmonic balance.
+    fn first(
+        &self,
+        table: &SampleTable,
+        interrupted: &dyn Fn() -> bool,
+    ) -> Result<Vec<f64>, Error> {
+        let onset = self.onset.ratio;
+        let low = self.lowest_ratio();
+        let ratio = if low > onset { low } else { onset * (1.0 + BEYOND_ONSET) };
+        self.onset
+            .first_point(&self.given, table, ratio, interrupted)
+            .ok_or_else(|| self.no_start())
+    }
+
+    fn lowest_ratio(&self) -> f64 {
+        let settings = self.settings;
+        if *self.family.scalar() == Scalar::Ratio {
+            let values = settings.values.iter().flatten().copied();
+            values.fold(settings.range.0, f64::min)
+        } else {
+            (0.01_f64).min(0.5 * self.ratio)
+        }
+    }
+
+    fn no_start(&self) -> Error {
+        Error::NoLimitCycle {
+            mode: self.settings.mode,
+            onset: self.onset.ratio,
+            omega: self.onset.mode.omega,
+        }
+    }
+
+    fn trace_balance(
+        &self,
+        table: &SampleTable,
+        interrupted: &dyn Fn() -> bool,
+    ) -> Result<Traced, Error> {
+        let start = self.first(table, interrupted)?;
+        let mut of_ratio = CycleBalance::new(&self.given, table, &start, interrupted);
+        let mut curve = CycleBalance::new(self.family, table, &start, interrupted);
+        self.trace(&mut of_ratio, &mut curve, start)
+    }
+
+    /// Walks along the branch: in r at once, or in r to the ratio asked for and from there to both
+    /// sides in the other scalar.
+    fn trace(
+        &self,
+        of_ratio: &mut dyn Curve,
+        curve: &mut dyn Curve,
+        start: Vec<f64>,
+    ) -> Result<Traced, Error> {
+        let settings = self.settings;
+        let steps = Steps::default();
+        let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]);
+        let first = motion(&start);
+        let endless = |z: &[f64]| motion(z) > ENDLESS * first;
+        if *self.family.scalar() == Scalar::Ratio {
+            let lowest = self.lowest_ratio().min(start[start.len() - 1]);
+            let bounds =
+                Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
+            let mut branch = Branch::walk(curve, start, 1.0, steps, &bounds);
+            let limit = extreme(&branch, 1.0);
+            let ends = [End::Range, branch.end];
+            // What lies below the range served to get started.
+            let low = settings.range.0;
+            if settings.values.is_none() && limit.is_some_and(|at| value(&branch.points[at]) > low)
+            {
+                let outside = branch.points.iter().take_while(|z| value(z) < low).count();
+                branch.points.drain(..outside);
+                branch.folds.retain_mut(|fold| {
+                    *fold = fold.wrapping_sub(outside);
+                    *fold < branch.points.len()
+                });
+            }
+            let limit = extreme(&branch, 1.0);
+            return Ok(Traced { branch, limit, ends });
+        }
+        let own = self.family.own_value().ok_or_else(|| {
+            Error::value(
+                "contacts",
+                f64::NAN,
+                "have different values of what is followed; follow a factor on them",
+            )
+        })?;
+        let wanted = self.ratio;
+        let reached = |z: &[f64]| value(z) >= wanted;
+        let bounds = Bounds { range: (0.0, f64::INFINITY), most: settings.most, ends: &reached };
+        let to_ratio = Branch::walk(of_ratio, start, 1.0, steps, &bounds);
+        let Some((_, mut z)) = to_ratio.at(of_ratio, wanted).into_iter().next() else {
+            let largest = to_ratio.points.iter().map(|z| value(z)).fold(0.0, f64::max);
+            let remedy = format!("the mode has limit cycles up to r = {largest:.6} only");
+            return Err(Error::value("ratio", wanted, &remedy));
+        };
+        if let Some(last) = z.last_mut() {
+            *last = own;
+        }
+        let values = settings.values.iter().flatten().copied();
+        let low = values.clone().fold(settings.range.0, f64::min).min(own);
+        let high = values.fold(settings.range.1, f64::max).max(own);
+        let bounds = Bounds { range: (low, high), most: settings.most, ends: &endless };
+        let up = Branch::walk(curve, z.clone(), 1.0, steps, &bounds);
+        let down = Branch::walk(curve, z, -1.0, steps, &bounds);
+        Ok(joined(up, down))
+    }
+
+    /// The points wanted, each with whether it lies on the slipping side.
+    fn select(&self, curve: &mut dyn Curve, traced: &Traced) -> Vec<(bool, Vec<f64>)> {
+        let slipping = |position: usize| traced.limit.is_some_and(|limit| position >= limit);
+        let points = &traced.branch.points;
+        let Some(values) = &self.settings.values else {
+            let beyond = |at: usize| traced.limit.is_some_and(|limit| at > limit);
+            return points.iter().enumerate().map(|(at, z)| (beyond(at), z.clone())).collect();
+        };
+        let mut found: Vec<(usize, Vec<f64>)> =
+            values.iter().flat_map(|value| traced.branch.at(curve, *value)).collect();
+        let progress = |(position, z): &(usize, Vec<f64>)| -> f64 {
+            let from = value(&points[*position]);
+            let to = points.get(position + 1).map_or(from, |z| value(z));
+            let share = (value(z) - from) / (to - from);
+            *position as f64 + if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+        };
+        found.sort_by(|a, b| progress(a).total_cmp(&progress(b)));
+        found.into_iter().map(|(position, z)| (slipping(position), z)).collect()
+    }
+
+    fn cycle(&self, z: &[f64], slipping: bool, response: Point) -> Cycle {
+        let value = value(z);
+        let model = self.family.model();
+        let size = 2 * self.family.destabilised().dofs() + model.contact_stiffness().nrows();
+        Cycle {
+            value,
+            ratio: self.family.ratio_at(value),
+            slipping,
+            range: Vec::new(),
+            state: Vec::new(),
+            viscous: f64::NAN,
+            events: Vec::new(),
+            multipliers: vec![c64::new(f64::NAN, f64::NAN); size.saturating_sub(1)],
+            neutral: 0,
+            closed: false,
+            response,
+        }
+    }
+
+    fn result(&self, traced: &Traced, cycles: Vec<Cycle>, harmonics: usize) -> LimitCycles {
+        let points = &traced.branch.points;
+        let turn = |at: usize| {
+            let z = points.get(at)?;
+            Some(Turn { value: value(z), omega: z[z.len() - 2] })
+        };
+        let ends = [points.first(), points.last()].map(|z| z.map_or(f64::NAN, |z| value(z)));
+        LimitCycles {
+            cycles,
+            limit: traced.limit.and_then(turn),
+            folds: traced.branch.folds.iter().filter_map(|at| turn(*at)).collect(),
+            changes: Vec::new(),
+            ends: traced.ends,
+            end_values: ends,
+            onset: self.onset.ratio,
+            stuck_omega: self.onset.mode.omega,
+            phase_dof: self.onset.dof,
+            harmonics,
+            jumps: traced.branch.jumps,
+            interrupted: false,
+            profile: Profile::default(),
+        }
+    }
+}

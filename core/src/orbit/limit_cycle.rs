@@ -1,0 +1,293 @@
+//! Exact limit cycles by shooting: the state that half a period of unknown length turns into its
+//! mirror image, with a scalar of the model as a further unknown.
+//!
+//! The derivative in the state is the analytic transition matrix of the flow, that in the period
+//! the velocity at its end, and that in the scalar a central difference of the flow: it only
+//! steers Newton's method. The phase is held across the velocity of the last accepted point, which
+//! never fails, and reported orbits begin at a maximum of the DOF that moves most.
+
+use super::shooting::Shooting;
+use super::start::start_of;
+use crate::balance::Point;
+use crate::contact::Residual;
+use crate::model::{Model, SelfExcited};
+use crate::motion::{ModalSystem, Regime, State, Transition};
+use crate::solve::{norm, Curve};
+use crate::Error;
+use faer::{c64, Mat};
+use std::f64::consts::PI;
+
+/// Relative step of the central difference in the scalar: motions that grow by orders of magnitude
+/// over a period bend within 1e-5, and rounding stays far below what Newton's method notices.
+const DIFFERENCE: f64 = 1e-7;
+
+/// A family of self-excited models in the time domain.
+pub struct CycleOrbits<'a> {
+    family: &'a SelfExcited<'a>,
+    system: ModalSystem,
+    /// Modal damping and modal negative damping.
+    damping: Mat<f64>,
+    negative: Mat<f64>,
+}
+
+/// A member of the family.
+pub(super) struct Member<'a> {
+    own: Option<Model>,
+    given: &'a Model,
+    pub(super) system: ModalSystem,
+}
+
+impl Member<'_> {
+    pub(super) fn model(&self) -> &Model {
+        self.own.as_ref().unwrap_or(self.given)
+    }
+}
+
+impl<'a> CycleOrbits<'a> {
+    /// Prepares the family; nothing for a travelling wave, which has no motion of its own in time.
+    ///
+    /// # Errors
+    /// The eigenvalue iteration fails.
+    pub fn new(family: &'a SelfExcited<'a>) -> Result<Option<Self>, Error> {
+        let Some(negative) = family.negative() else { return Ok(None) };
+        let system = ModalSystem::new(family.model())?;
+        let damping = system.project(&family.model().structure().damping().to_owned());
+        let negative = system.project(negative);
+        Ok(Some(Self { family, system, damping, negative }))
+    }
+
+    /// The member at a value of the scalar.
+    pub(super) fn member(&self, value: f64) -> Result<Member<'a>, Error> {
+        let given = self.family.model();
+        let damping = &self.damping + faer::Scale(self.family.ratio_at(value)) * &self.negative;
+        let own = if self.family.rates().is_empty() {
+            None
+        } else {
+            Some(given.with_laws(self.family.laws_at(value)?)?)
+        };
+        let system = self.system.undriven(own.as_ref().unwrap_or(given), damping);
+        Ok(Member { own, given, system })
+    }
+
+    /// Unknowns of [`OrbitCurve`] from a harmonic balance: an eighth of a period behind the start
+    /// of its period, away from the turning points.
+    ///
+    /// # Errors
+    /// A value that a law refuses.
+    pub fn unknowns(&self, point: &Point, value: f64, reference: f64) -> Result<Vec<f64>, Error> {
+        let member = self.member(value)?;
+        let mut later = point.clone();
+        let orders = point.harmonics + 1;
+        for series in [&mut later.displacement, &mut later.contact_displacement] {
+            for row in series.chunks_exact_mut(orders) {
+                for (order, x) in row.iter_mut().enumerate() {
+                    *x *= c64::from_polar(1.0, 0.25 * PI * order as f64);
+                }
+            }
+        }
+        let state = start_of(member.model(), &member.system, Residual::Centred, &later, true);
+        let mut z = Transition::new(&member.system, reference).coordinates(&state);
+        z.extend([point.omega, value]);
+        Ok(z)
+    }
+}
+
+/// What is known of the flow over half a period.
+struct Evaluation {
+    z: Vec<f64>,
+    image: Vec<f64>,
+    /// Rate of the coordinates at the end.
+    end: Vec<f64>,
+    derivative: Mat<f64>,
+}
+
+/// The closing condition in the unknowns `(state, ω, scalar)`.
+pub struct OrbitCurve<'a> {
+    orbits: &'a CycleOrbits<'a>,
+    /// Frequency that scales the coordinates of the state [rad/s].
+    scale: f64,
+    interrupted: &'a dyn Fn() -> bool,
+    reference: Vec<f64>,
+    /// Velocity at the reference over its size.
+    drift: Vec<f64>,
+    size: f64,
+    at: Option<Evaluation>,
+    /// Half periods followed so far.
+    pub flows: usize,
+    /// Transition matrices so far.
+    pub matrices: usize,
+}
+
+impl<'a> OrbitCurve<'a> {
+    /// Equations of a family, starting at `start`; `scale` is a frequency of the motion.
+    #[must_use]
+    pub fn new(
+        orbits: &'a CycleOrbits<'a>,
+        scale: f64,
+        start: &[f64],
+        interrupted: &'a dyn Fn() -> bool,
+    ) -> Self {
+        let mut curve = Self {
+            orbits,
+            scale,
+            interrupted,
+            reference: Vec::new(),
+            drift: Vec::new(),
+            size: 1.0,
+            at: None,
+            flows: 0,
+            matrices: 0,
+        };
+        curve.accept(start);
+        curve
+    }
+
+    /// Has `visit` look at the closing condition of a point.
+    pub(super) fn with_shooting<T>(
+        &self,
+        z: &[f64],
+        visit: impl FnOnce(&Member<'_>, &mut Shooting<'_>, &[f64]) -> Option<T>,
+    ) -> Option<T> {
+        let [y @ .., omega, value] = z else { return None };
+        if !(*omega > 0.0 && omega.is_finite() && value.is_finite() && norm(y).is_finite()) {
+            return None;
+        }
+        let member = self.orbits.member(*value).ok()?;
+        let coordinates = Transition::new(&member.system, self.scale);
+        let mut shooting = Shooting::within(
+            member.model(),
+            &member.system,
+            *omega,
+            true,
+            Some(self.interrupted),
+            coordinates,
+        );
+        visit(&member, &mut shooting, y)
+    }
+
+    /// The mirror image after half a period alone.
+    fn image(&self, z: &[f64]) -> Option<Vec<f64>> {
+        self.with_shooting(z, |_, shooting, y| shooting.image(y))
+    }
+
+    fn evaluate(&mut self, z: &[f64], derivative: bool) -> bool {
+        let known = self.at.as_ref();
+        if known.is_some_and(|at| at.z == z && (!derivative || at.derivative.nrows() > 0)) {
+            return true;
+        }
+        self.flows += 1;
+        self.matrices += usize::from(derivative);
+        self.at = self.with_shooting(z, |member, shooting, y| {
+            let image = shooting.image(y)?;
+            let state = shooting.end.as_ref()?;
+            let regime = Regime::new(member.model(), &state.points);
+            let end = shooting.coordinates.rate(state, &regime);
+            let derivative = if derivative { shooting.derivative() } else { Mat::new() };
+            Some(Evaluation { z: z.to_vec(), image, end, derivative })
+        });
+        self.at.is_some()
+    }
+
+    /// Rate of the coordinates at a point.
+    fn velocity(&self, z: &[f64]) -> Option<Vec<f64>> {
+        self.with_shooting(z, |member, shooting, y| {
+            let (state, _) = shooting.coordinates.state(y);
+            let regime = Regime::new(member.model(), &state.points);
+            Some(shooting.coordinates.rate(&state, &regime))
+        })
+    }
+
+    /// Multipliers over half a period, mirrored, without the one of the phase and those of contacts
+    /// that never slip, by falling modulus; and the number of these contacts.
+    #[must_use]
+    pub fn multipliers(&self, z: &[f64]) -> Option<(Vec<c64>, usize)> {
+        let (mut multipliers, neutral) = self.with_shooting(z, |_, shooting, y| {
+            shooting.image(y)?;
+            shooting.span_multipliers()
+        })?;
+        let one = c64::new(1.0, 0.0);
+        let phase = (0..multipliers.len()).min_by(|&i, &j| {
+            (multipliers[i] - one).norm().total_cmp(&(multipliers[j] - one).norm())
+        })?;
+        multipliers.remove(phase);
+        multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        Some((multipliers, neutral))
+    }
+
+    /// State at a point.
+    pub(super) fn state(&self, z: &[f64]) -> Option<State> {
+        self.with_shooting(z, |_, shooting, y| Some(shooting.coordinates.state(y).0))
+    }
+}
+
+impl Curve for OrbitCurve<'_> {
+    fn unknowns(&self) -> usize {
+        self.reference.len()
+    }
+
+    fn residual(&mut self, z: &[f64], out: &mut [f64]) {
+        if !self.evaluate(z, false) {
+            out.fill(f64::NAN);
+            return;
+        }
+        let size = z.len() - 2;
+        let Some(at) = &self.at else { return };
+        for i in 0..size {
+            out[i] = (at.image[i] - z[i]) / self.size;
+        }
+        let way = z.iter().zip(&self.reference).zip(&self.drift);
+        out[size] = way.map(|((z, known), d)| d * (z - known)).sum::<f64>() / self.size;
+    }
+
+    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+        out.fill(0.0);
+        if !self.evaluate(z, true) {
+            out.fill(f64::NAN);
+            return;
+        }
+        let size = z.len() - 2;
+        let step = DIFFERENCE * z[size + 1].abs().max(f64::MIN_POSITIVE);
+        let mut shifted = z.to_vec();
+        shifted[size + 1] = z[size + 1] + step;
+        let ahead = self.image(&shifted);
+        shifted[size + 1] = z[size + 1] - step;
+        let behind = self.image(&shifted);
+        self.flows += 2;
+        let (Some(ahead), Some(behind), Some(at)) = (ahead, behind, &self.at) else {
+            out.fill(f64::NAN);
+            return;
+        };
+        for i in 0..size {
+            for j in 0..size {
+                let own = f64::from(u8::from(i == j));
+                out[(i, j)] = (at.derivative[(i, j)] - own) / self.size;
+            }
+            // The mirrored end moves with half the period, π/ω.
+            out[(i, size)] = at.end[i] * PI / (z[size] * z[size]) / self.size;
+            out[(i, size + 1)] = (ahead[i] - behind[i]) / (2.0 * step) / self.size;
+        }
+        for (j, d) in self.drift.iter().enumerate() {
+            out[(size, j)] = d / self.size;
+        }
+    }
+
+    fn weights(&self, z: &[f64]) -> Vec<f64> {
+        let size = z.len() - 2;
+        let mut weights = vec![norm(&z[..size]).max(f64::MIN_POSITIVE).recip(); size];
+        weights.extend(z[size..].iter().map(|v| v.abs().max(f64::MIN_POSITIVE).recip()));
+        weights
+    }
+
+    fn accept(&mut self, z: &[f64]) {
+        self.reference = z.to_vec();
+        let size = z.len().saturating_sub(2);
+        self.size = norm(&z[..size]).max(f64::MIN_POSITIVE);
+        let drift = self.velocity(z).unwrap_or_else(|| vec![0.0; size]);
+        let speed = norm(&drift).max(f64::MIN_POSITIVE);
+        self.drift = drift.iter().map(|d| d / speed).collect();
+    }
+
+    fn interrupted(&self) -> bool {
+        (self.interrupted)()
+    }
+}

@@ -1,0 +1,197 @@
+//! Floquet multipliers along a branch of limit cycles, and where its stability changes.
+
+use super::cycles::LimitCycles;
+use super::limit_cycle::{CycleOrbits, OrbitCurve};
+use crate::solve::{across, at_parameter, Curve as _};
+use faer::c64;
+use std::cell::Cell;
+
+/// Share of the progress for the branch, before its stability.
+pub(super) const TRACING: f64 = 0.4;
+/// Newton iterations from a harmonic balance to its exact orbit.
+const ITERATIONS: usize = 12;
+/// Frequency of the exact orbit, relative to that of the balance it belongs to.
+const SAME: f64 = 0.02;
+/// Halvings of the interval in which stability changes.
+const HALVINGS: usize = 26;
+/// Change of the modulus of a multiplier across an interval this short that is a jump.
+const JUMP: f64 = 1e-3;
+/// Angle off the real axis within which a multiplier counts as real.
+const REAL: f64 = 1e-6;
+
+/// What happens where stability changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A multiplier passes 1: the branch turns.
+    Fold,
+    /// A complex pair passes the unit circle: quasi-periodic motion branches off.
+    ComplexPair,
+    /// A multiplier passes 1 with motion that breaks the half-wave symmetry.
+    Symmetry,
+    /// A multiplier jumps: a contact begins or ceases to slip at a further place of the period.
+    Grazing,
+}
+
+/// A change of stability.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Value of the scalar.
+    pub value: f64,
+    /// Frequency [rad/s].
+    pub omega: f64,
+    /// Position of the cycle before it.
+    pub after: usize,
+    /// What happens.
+    pub kind: ChangeKind,
+    /// Multipliers outside the unit circle before and after.
+    pub unstable: (usize, usize),
+}
+
+/// Multipliers of a cycle with the unknowns of its exact orbit.
+#[derive(Debug, Clone)]
+pub(super) struct Floquet {
+    pub(super) z: Vec<f64>,
+    /// Over half a period, mirrored, by falling modulus.
+    pub(super) half: Vec<c64>,
+    pub(super) neutral: usize,
+    /// Whether the orbit is exact.
+    pub(super) closed: bool,
+}
+
+impl Floquet {
+    /// Of the exact orbit next to a start of the same value of the scalar; along the exact flow
+    /// from the start if there is none.
+    pub(super) fn near(curve: &mut OrbitCurve<'_>, start: &[f64]) -> Option<Self> {
+        curve.accept(start);
+        let [.., omega, value] = start else { return None };
+        let found = at_parameter(curve, start, *value, ITERATIONS).map(|(z, _)| z);
+        let found = found.filter(|z| (z[z.len() - 2] / omega - 1.0).abs() < SAME);
+        let closed = found.is_some();
+        Self::of(curve, found.unwrap_or_else(|| start.to_vec()), closed)
+    }
+
+    /// Of the orbit at a point of a curve.
+    pub(super) fn of(curve: &OrbitCurve<'_>, z: Vec<f64>, closed: bool) -> Option<Self> {
+        let (half, neutral) = curve.multipliers(&z)?;
+        Some(Self { z, half, neutral, closed })
+    }
+
+    /// Over the full period, those of contacts that never slip first.
+    pub(super) fn multipliers(&self) -> Vec<c64> {
+        let ones = std::iter::repeat_n(c64::new(1.0, 0.0), self.neutral);
+        ones.chain(self.half.iter().map(|m| m * m)).collect()
+    }
+
+    fn unstable(&self) -> usize {
+        self.half.iter().filter(|m| m.norm() >= 1.0).count()
+    }
+}
+
+/// What a branch is judged by.
+pub(super) struct Judge<'a> {
+    pub(super) orbits: &'a CycleOrbits<'a>,
+    /// Frequency that scales the coordinates of states [rad/s].
+    pub(super) scale: f64,
+    /// Whether the points are exact orbits already.
+    pub(super) exact: bool,
+    /// Whether they are a whole branch, on which changes of stability can be located.
+    pub(super) whole: bool,
+}
+
+/// Multipliers of all cycles, and changes of stability between neighbours on a whole branch.
+pub(super) fn judge(
+    &Judge { orbits, scale, exact, whole }: &Judge<'_>,
+    points: Vec<Option<Vec<f64>>>,
+    out: &mut LimitCycles,
+    interrupted: &dyn Fn() -> bool,
+    share: &Cell<f64>,
+) {
+    let Some(first) = points.iter().flatten().next() else { return };
+    let mut curve = OrbitCurve::new(orbits, scale, first, interrupted);
+    let total = points.len() as f64;
+    let mut known: Vec<(usize, Floquet)> = Vec::new();
+    for (index, point) in points.into_iter().enumerate() {
+        share.set(TRACING + (1.0 - TRACING) * index as f64 / total);
+        if interrupted() {
+            return;
+        }
+        let Some(point) = point else { continue };
+        let floquet = if exact {
+            Floquet::of(&curve, point, true)
+        } else {
+            Floquet::near(&mut curve, &point)
+        };
+        let Some(floquet) = floquet else { continue };
+        let cycle = &mut out.cycles[index];
+        cycle.multipliers = floquet.multipliers();
+        cycle.neutral = floquet.neutral;
+        cycle.closed = floquet.closed;
+        if floquet.closed {
+            known.push((index, floquet));
+        }
+    }
+    if !whole {
+        return;
+    }
+    for pair in known.windows(2) {
+        let [(at, before), (_, after)] = pair else { continue };
+        let [a, b] = [before, after].map(|f| f.half.iter().filter(|m| m.norm() >= 1.0).count());
+        if a != b && !interrupted() {
+            out.changes.push(change(&mut curve, before, after, *at));
+        }
+    }
+}
+
+/// The change of stability between two neighbouring orbits: located by halving, and named by the
+/// multipliers on either side.
+fn change(
+    curve: &mut OrbitCurve<'_>,
+    before: &Floquet,
+    after: &Floquet,
+    position: usize,
+) -> Change {
+    let (mut low, mut high) = (before.clone(), after.clone());
+    for _ in 0..HALVINGS {
+        if curve.interrupted() {
+            break;
+        }
+        curve.accept(&low.z);
+        let Some(z) = across(curve, &low.z, &high.z, 0.5) else { break };
+        let Some(middle) = Floquet::of(curve, z, true) else { break };
+        if middle.unstable() == before.unstable() {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let (omega, value) = match high.z[..] {
+        [.., omega, value] => (omega, value),
+        _ => (f64::NAN, f64::NAN),
+    };
+    Change {
+        value,
+        omega,
+        after: position,
+        kind: kind(&low, &high),
+        unstable: (before.unstable(), after.unstable()),
+    }
+}
+
+/// What happens between two orbits close to each other.
+fn kind(low: &Floquet, high: &Floquet) -> ChangeKind {
+    let off = |m: &c64| (m.norm() - 1.0).abs();
+    let critical =
+        |orbit: &Floquet| orbit.half.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
+    let (Some(a), Some(b)) = (critical(low), critical(high)) else { return ChangeKind::Grazing };
+    if off(&a).max(off(&b)) > JUMP {
+        return ChangeKind::Grazing;
+    }
+    let angle = b.arg().abs();
+    if angle < REAL {
+        ChangeKind::Fold
+    } else if angle > std::f64::consts::PI - REAL {
+        ChangeKind::Symmetry
+    } else {
+        ChangeKind::ComplexPair
+    }
+}

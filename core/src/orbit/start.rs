@@ -1,0 +1,42 @@
+//! The state at the start of the period of a harmonic balance.
+
+use crate::balance::Point;
+use crate::contact::{Motion, Residual};
+use crate::fourier::{Harmonics, SampleTable};
+use crate::model::Model;
+use crate::motion::{ModalSystem, State};
+use faer::c64;
+
+/// State at the start of the period of a harmonic balance of all DOFs.
+pub(super) fn start_of(
+    model: &Model,
+    system: &ModalSystem,
+    residual: Residual,
+    point: &Point,
+    half_wave: bool,
+) -> State {
+    let orders = point.harmonics + 1;
+    let at_start = |factor: &dyn Fn(usize) -> c64| -> Vec<f64> {
+        point
+            .displacement
+            .chunks_exact(orders)
+            .map(|series| series.iter().enumerate().map(|(k, x)| (factor(k) * x).re).sum())
+            .collect()
+    };
+    let mut state = State::rest(system);
+    state.displacement = system.to_modes(&at_start(&|_| c64::new(1.0, 0.0)));
+    state.velocity = system.to_modes(&at_start(&|k| c64::new(0.0, k as f64 * point.omega)));
+    let table = SampleTable::new(Harmonics::new(point.harmonics, half_wave));
+    for (law, points) in model.laws().iter().zip(model.points()) {
+        let slots = table.harmonics().slots();
+        let mut series = vec![0.0; slots * points.len()];
+        for (own, out) in points.clone().zip(series.chunks_exact_mut(slots)) {
+            let amplitudes = &point.contact_displacement[own * orders..(own + 1) * orders];
+            table.harmonics().write_series(amplitudes, out);
+        }
+        let motion = Motion { table: &table, displacement: &series, residual };
+        state.force[points.clone()].copy_from_slice(&law.force_history(motion, 1));
+    }
+    state.settle_points(system);
+    state
+}

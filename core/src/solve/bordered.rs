@@ -1,0 +1,143 @@
+//! Newton's method on a curve of solutions, held by one more condition.
+
+use super::continuation::Curve;
+use super::norm;
+use faer::linalg::solvers::Solve as _;
+use faer::Mat;
+
+/// Weighted step after which one more is taken as the last: Newton's method squares it.
+const CLOSE: f64 = 1e-8;
+/// Shortest damped step.
+const SHORTEST: f64 = 1.0 / 64.0;
+/// Weighted step beyond which the equations say nothing about the point looked for.
+const FAR: f64 = 2.0;
+
+/// What singles out a point of the curve.
+pub(super) enum Condition<'a> {
+    /// It lies on the plane through `at` across `normal`, in the weighted metric.
+    Plane { normal: &'a [f64], at: &'a [f64] },
+    /// It lies at a distance from a point.
+    Sphere { centre: &'a [f64], radius: f64 },
+}
+
+/// Equations and condition.
+pub(super) struct Bordered<'a> {
+    pub(super) weights: &'a [f64],
+    pub(super) condition: Condition<'a>,
+    pub(super) max_iterations: usize,
+}
+
+/// Outcome and effort.
+pub(super) struct BorderedReport {
+    pub(super) converged: bool,
+    pub(super) iterations: usize,
+}
+
+impl Bordered<'_> {
+    /// Solves from `z`, which holds the last iterate on return.
+    pub(super) fn solve(&self, curve: &mut dyn Curve, z: &mut [f64]) -> BorderedReport {
+        let size = z.len();
+        let mut residual = vec![0.0; size];
+        let mut matrix = Mat::<f64>::zeros(size, size);
+        self.evaluate(curve, z, &mut residual);
+        for iteration in 1..=self.max_iterations {
+            let failed = BorderedReport { converged: false, iterations: iteration };
+            let before = norm(&residual);
+            if !before.is_finite() || curve.interrupted() {
+                return failed;
+            }
+            curve.jacobian(z, &mut matrix);
+            self.border(z, &mut matrix);
+            let Some(step) = solve(&mut matrix, &residual, self.weights) else { return failed };
+            let length = norm(&weighted(&step, self.weights));
+            if !length.is_finite() {
+                return failed;
+            }
+            let mut share = (FAR / length).min(1.0);
+            loop {
+                let trial: Vec<f64> = z.iter().zip(&step).map(|(z, s)| z - share * s).collect();
+                self.evaluate(curve, &trial, &mut residual);
+                let after = norm(&residual);
+                // A step this short is rounding, and the residual with it.
+                if after <= (1.0 - 0.1 * share) * before || (after.is_finite() && length <= CLOSE) {
+                    z.copy_from_slice(&trial);
+                    break;
+                }
+                share *= 0.5;
+                if share < SHORTEST {
+                    return failed;
+                }
+            }
+            if share == 1.0 && length <= CLOSE {
+                return BorderedReport { converged: true, iterations: iteration };
+            }
+        }
+        BorderedReport { converged: false, iterations: self.max_iterations }
+    }
+
+    fn evaluate(&self, curve: &mut dyn Curve, z: &[f64], out: &mut [f64]) {
+        let last = out.len() - 1;
+        curve.residual(z, &mut out[..last]);
+        let products = |from: &[f64], along: &dyn Fn(usize) -> f64| -> f64 {
+            (0..z.len()).map(|i| self.weights[i].powi(2) * along(i) * (z[i] - from[i])).sum()
+        };
+        out[last] = match self.condition {
+            Condition::Plane { normal, at } => products(at, &|i| normal[i]),
+            Condition::Sphere { centre, radius } => {
+                let squared = products(centre, &|i| z[i] - centre[i]);
+                0.5 * (squared / radius - radius)
+            }
+        };
+    }
+
+    fn border(&self, z: &[f64], matrix: &mut Mat<f64>) {
+        let last = z.len() - 1;
+        for i in 0..z.len() {
+            let along = match self.condition {
+                Condition::Plane { normal, .. } => normal[i],
+                Condition::Sphere { centre, radius } => (z[i] - centre[i]) / radius,
+            };
+            matrix[(last, i)] = self.weights[i].powi(2) * along;
+        }
+    }
+
+    /// Solution of `J t = 0` with `unit · t = 1`.
+    pub(super) fn tangent(
+        curve: &mut dyn Curve,
+        z: &[f64],
+        weights: &[f64],
+        unit: &[f64],
+    ) -> Option<Vec<f64>> {
+        let size = z.len();
+        let mut right = vec![0.0; size];
+        curve.residual(z, &mut right[..size - 1]);
+        if !norm(&right).is_finite() {
+            return None;
+        }
+        let mut matrix = Mat::<f64>::zeros(size, size);
+        curve.jacobian(z, &mut matrix);
+        let condition = Condition::Plane { normal: unit, at: z };
+        Bordered { weights, condition, max_iterations: 0 }.border(z, &mut matrix);
+        right.fill(0.0);
+        right[size - 1] = 1.0;
+        solve(&mut matrix, &right, weights)
+    }
+}
+
+fn weighted(x: &[f64], weights: &[f64]) -> Vec<f64> {
+    x.iter().zip(weights).map(|(x, w)| x * w).collect()
+}
+
+/// Solves with the columns scaled by the weights; nothing if the matrix is singular.
+fn solve(matrix: &mut Mat<f64>, right: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
+    let size = right.len();
+    for (j, weight) in weights.iter().enumerate() {
+        for i in 0..size {
+            matrix[(i, j)] /= weight;
+        }
+    }
+    let mut x = Mat::from_fn(size, 1, |i, _| right[i]);
+    matrix.partial_piv_lu().solve_in_place(&mut x);
+    let step: Vec<f64> = weights.iter().enumerate().map(|(i, w)| x[(i, 0)] / w).collect();
+    step.iter().all(|s| s.is_finite()).then_some(step)
+}

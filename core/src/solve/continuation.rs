@@ -1,0 +1,380 @@
+//! Continuation of a curve of solutions by arclength, around folds and past corners.
+//!
+//! The curve is given as a [`Curve`]: one equation less than unknowns, of which the last one is the
+//! parameter. Where the equations are only piecewise smooth the curve has corners: its tangent
+//! jumps, and so a turn counts only if the point found lies ahead and the curve passes through it
+//! in the direction of the way there (Allgower and Georg 2003, chapter 6, for the smooth case).
+
+use super::bordered::{Bordered, Condition};
+use super::norm;
+use faer::Mat;
+
+/// Equations that leave one degree of freedom.
+pub trait Curve {
+    /// Number of unknowns, one more than equations.
+    fn unknowns(&self) -> usize;
+
+    /// Residual at `z`, of the order of the relative error of the unknowns; not a number where it
+    /// is not defined.
+    fn residual(&mut self, z: &[f64], out: &mut [f64]);
+
+    /// Jacobian at `z` into the first rows of `out`, unknowns × unknowns.
+    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>);
+
+    /// What the unknowns are multiplied by to be compared with each other, about `z`.
+    fn weights(&self, z: &[f64]) -> Vec<f64>;
+
+    /// Has a point become part of the curve, for what is defined relative to the last one.
+    fn accept(&mut self, z: &[f64]);
+
+    /// Whether the caller wants to end the analysis.
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+/// Steps of a continuation, in the metric of [`Curve::weights`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steps {
+    /// Length of the first step.
+    pub first: f64,
+    /// Shortest step before the curve counts as stalled.
+    pub shortest: f64,
+    /// Longest step.
+    pub longest: f64,
+    /// Newton iterations per point.
+    pub max_iterations: usize,
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self { first: 0.02, shortest: 1e-5, longest: 0.1, max_iterations: 12 }
+    }
+}
+
+/// Iterations up to which the next step may be longer, …
+const EASY: usize = 4;
+/// … and by how much.
+const GROWTH: f64 = 1.6;
+/// Cosine between successive secants below which a step is too long to follow the curve, …
+const BEND: f64 = 0.85;
+/// … unless it is so short, against the longest, that the bend must be a corner.
+const CORNER: f64 = 2e-3;
+/// Cosine at a corner below which the point found lies behind.
+const BEHIND: f64 = -0.95;
+/// Points in a row at steps below a hundredth of the longest after which the walk only crawls: the
+/// equations are worse than their unknowns are known.
+const CRAWL: usize = 150;
+/// Lengths of the jumps over a place where short steps fail, against the longest step.
+const JUMPS: [f64; 6] = [1e-3, 4e-3, 0.02, 0.1, 0.4, 1.0];
+
+/// What a step along the curve gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Advance {
+    /// A new point.
+    Point,
+    /// No point ahead, neither by short steps nor by jumps in any direction.
+    Stalled,
+    /// The caller ended the analysis.
+    Interrupted,
+}
+
+/// A walk along a curve.
+#[derive(Debug, Clone)]
+pub struct Continuation {
+    /// The last point.
+    pub point: Vec<f64>,
+    /// Newton iterations in all.
+    pub iterations: usize,
+    /// Jumps over places where short steps failed.
+    pub jumps: usize,
+    direction: Vec<f64>,
+    step: f64,
+    steps: Steps,
+    /// Short steps in a row.
+    short: usize,
+}
+
+impl Continuation {
+    /// A walk from a point of the curve, towards growing parameter, or falling.
+    ///
+    /// Nothing is returned where the equations are singular at the point.
+    pub fn new(curve: &mut dyn Curve, start: Vec<f64>, sign: f64, steps: Steps) -> Option<Self> {
+        curve.accept(&start);
+        let weights = curve.weights(&start);
+        let mut ahead = vec![0.0; start.len()];
+        *ahead.last_mut()? = sign;
+        let direction = tangent(curve, &start, &weights, &ahead).unwrap_or(ahead);
+        let first = steps.first;
+        Some(Self {
+            point: start,
+            iterations: 0,
+            jumps: 0,
+            direction,
+            step: first,
+            steps,
+            short: 0,
+        })
+    }
+
+    /// Takes one step.
+    pub fn advance(&mut self, curve: &mut dyn Curve) -> Advance {
+        let weights = curve.weights(&self.point);
+        let unit = normalised(&self.direction, &weights);
+        self.short = if self.step < 0.01 * self.steps.longest { self.short + 1 } else { 0 };
+        if self.short > CRAWL {
+            return Advance::Stalled;
+        }
+        while self.step >= self.steps.shortest {
+            if curve.interrupted() {
+                return Advance::Interrupted;
+            }
+            let found = self.correct(curve, &unit, &weights, self.step, false);
+            if let Some((point, iterations)) = found {
+                let (cosine, distance) = self.compare(&point, &unit, &weights);
+                let corner = self.step <= CORNER * self.steps.longest;
+                if distance < 3.0 * self.step && (cosine > BEND || (corner && cosine > 0.0)) {
+                    let turn = self.turn(curve, &point, &weights);
+                    let bend = turn.as_ref().map_or(-1.0, |(cosine, _)| *cosine);
+                    if bend > BEND || corner {
+                        let easy = iterations <= EASY && cosine.min(bend) > 0.5 * (1.0 + BEND);
+                        let factor = if easy { GROWTH } else { 1.0 };
+                        self.move_to(curve, point);
+                        if let Some((_, tangent)) = turn.filter(|_| bend > BEND) {
+                            self.direction = tangent;
+                        }
+                        self.step = (factor * self.step).min(self.steps.longest);
+                        return Advance::Point;
+                    }
+                }
+            }
+            self.step *= 0.5;
+        }
+        self.jump(curve, &unit, &weights)
+    }
+
+    /// Tangent at a new point, and its cosine with the way there: a point of another part of the
+    /// curve that passes nearby has another tangent.
+    fn turn(
+        &self,
+        curve: &mut dyn Curve,
+        point: &[f64],
+        weights: &[f64],
+    ) -> Option<(f64, Vec<f64>)> {
+        let way: Vec<f64> = point.iter().zip(&self.point).map(|(a, b)| a - b).collect();
+        let tangent = tangent(curve, point, weights, &way)?;
+        let rest = vec![0.0; way.len()];
+        let (a, b) = (difference(&way, &rest, weights), difference(&tangent, &rest, weights));
+        let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+        Some((product / norm(&a).max(f64::MIN_POSITIVE), tangent))
+    }
+
+    /// Looks around where short steps fail: on spheres about the last point, along the secant and
+    /// along the tangents here and a little ahead, where other equations may hold.
+    fn jump(&mut self, curve: &mut dyn Curve, unit: &[f64], weights: &[f64]) -> Advance {
+        for share in JUMPS {
+            let radius = share * self.steps.longest;
+            let mut best: Option<(f64, Vec<f64>)> = None;
+            for direction in self.directions(curve, unit, weights, radius) {
+                if curve.interrupted() {
+                    return Advance::Interrupted;
+                }
+                let found = self.correct(curve, &direction, weights, radius, true);
+                let Some((point, _)) = found else { continue };
+                let (cosine, distance) = self.compare(&point, unit, weights);
+                let lies_ahead = cosine > BEHIND && (distance - radius).abs() < 0.5 * radius;
+                if lies_ahead && best.as_ref().is_none_or(|(known, _)| cosine > *known) {
+                    best = Some((cosine, point));
+                }
+            }
+            if let Some((_, point)) = best {
+                self.move_to(curve, point);
+                self.jumps += 1;
+                self.step = (0.5 * radius).max(2.0 * self.steps.shortest);
+                return Advance::Point;
+            }
+        }
+        Advance::Stalled
+    }
+
+    fn directions(
+        &self,
+        curve: &mut dyn Curve,
+        unit: &[f64],
+        weights: &[f64],
+        radius: f64,
+    ) -> Vec<Vec<f64>> {
+        let mut directions = vec![unit.to_vec()];
+        for share in [0.0, 1.0, -1.0] {
+            let at = moved(&self.point, unit, share * radius);
+            if let Some(tangent) = tangent(curve, &at, weights, unit) {
+                directions.push(tangent.iter().map(|t| -t).collect());
+                directions.push(tangent);
+            }
+        }
+        directions
+    }
+
+    /// The point of the curve at a distance along a direction: on a plane across it, or on the
+    /// sphere.
+    fn correct(
+        &mut self,
+        curve: &mut dyn Curve,
+        unit: &[f64],
+        weights: &[f64],
+        step: f64,
+        on_sphere: bool,
+    ) -> Option<(Vec<f64>, usize)> {
+        let mut z = moved(&self.point, unit, step);
+        let condition = if on_sphere {
+            Condition::Sphere { centre: &self.point, radius: step }
+        } else {
+            Condition::Plane { normal: unit, at: &z.clone() }
+        };
+        let report = Bordered { weights, condition, max_iterations: self.steps.max_iterations }
+            .solve(curve, &mut z);
+        self.iterations += report.iterations;
+        report.converged.then_some((z, report.iterations))
+    }
+
+    /// Cosine of the way to a point with the direction so far, and its length.
+    fn compare(&self, point: &[f64], unit: &[f64], weights: &[f64]) -> (f64, f64) {
+        let way = difference(point, &self.point, weights);
+        let along: Vec<f64> = unit.iter().zip(weights).map(|(u, w)| u * w).collect();
+        let length = norm(&way);
+        let product: f64 = way.iter().zip(&along).map(|(a, b)| a * b).sum();
+        (product / length.max(f64::MIN_POSITIVE), length)
+    }
+
+    fn move_to(&mut self, curve: &mut dyn Curve, point: Vec<f64>) {
+        self.direction = point.iter().zip(&self.point).map(|(a, b)| a - b).collect();
+        curve.accept(&point);
+        self.point = point;
+    }
+}
+
+/// `z + step unit`.
+fn moved(z: &[f64], unit: &[f64], step: f64) -> Vec<f64> {
+    z.iter().zip(unit).map(|(z, u)| z + step * u).collect()
+}
+
+/// `a − b`, weighted.
+fn difference(a: &[f64], b: &[f64], weights: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).zip(weights).map(|((a, b), w)| w * (a - b)).collect()
+}
+
+/// A direction of weighted length one.
+fn normalised(direction: &[f64], weights: &[f64]) -> Vec<f64> {
+    let length = norm(&difference(direction, &vec![0.0; direction.len()], weights));
+    direction.iter().map(|d| d / length.max(f64::MIN_POSITIVE)).collect()
+}
+
+/// Tangent of the curve at a point, of length one and on the side of `ahead`.
+#[must_use]
+pub fn tangent(
+    curve: &mut dyn Curve,
+    z: &[f64],
+    weights: &[f64],
+    ahead: &[f64],
+) -> Option<Vec<f64>> {
+    let unit = normalised(ahead, weights);
+    let tangent = Bordered::tangent(curve, z, weights, &unit)?;
+    Some(normalised(&tangent, weights))
+}
+
+/// The point of the curve with its parameter at `value`, from a start nearby.
+#[must_use]
+pub fn at_parameter(
+    curve: &mut dyn Curve,
+    start: &[f64],
+    value: f64,
+    max_iterations: usize,
+) -> Option<(Vec<f64>, usize)> {
+    let weights = curve.weights(start);
+    let mut z = start.to_vec();
+    let last = z.len().checked_sub(1)?;
+    z[last] = value;
+    let mut normal = vec![0.0; z.len()];
+    normal[last] = weights[last].recip();
+    let condition = Condition::Plane { normal: &normal, at: &z.clone() };
+    let report = Bordered { weights: &weights, condition, max_iterations }.solve(curve, &mut z);
+    report.converged.then_some((z, report.iterations))
+}
+
+/// The point of the curve on the plane across the way from `a` to `b`, at a share of it.
+#[must_use]
+pub fn across(curve: &mut dyn Curve, a: &[f64], b: &[f64], share: f64) -> Option<Vec<f64>> {
+    let weights = curve.weights(a);
+    let way: Vec<f64> = a.iter().zip(b).map(|(a, b)| b - a).collect();
+    let normal = normalised(&way, &weights);
+    let mut z = moved(a, &way, share);
+    let condition = Condition::Plane { normal: &normal, at: &z.clone() };
+    let report = Bordered { weights: &weights, condition, max_iterations: 25 }.solve(curve, &mut z);
+    report.converged.then_some(z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `p = 1 − |x| − x²/4`: a fold at a corner; with `smooth`, `p = 1 − x²`.
+    struct Fold {
+        smooth: bool,
+    }
+
+    impl Curve for Fold {
+        fn unknowns(&self) -> usize {
+            2
+        }
+
+        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
+            let x = z[0];
+            let height = if self.smooth { x * x } else { x.abs() + 0.25 * x * x };
+            out[0] = z[1] - 1.0 + height;
+        }
+
+        fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+            let x = z[0];
+            out[(0, 0)] = if self.smooth { 2.0 * x } else { x.signum() + 0.5 * x };
+            out[(0, 1)] = 1.0;
+        }
+
+        fn weights(&self, _: &[f64]) -> Vec<f64> {
+            vec![1.0, 1.0]
+        }
+
+        fn accept(&mut self, _: &[f64]) {}
+    }
+
+    fn walk(smooth: bool) -> Vec<Vec<f64>> {
+        let mut curve = Fold { smooth };
+        let height = if smooth { 1.0 } else { 1.25 };
+        let start = vec![-1.0, 1.0 - height];
+        let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default()).unwrap();
+        let mut points = Vec::new();
+        while walk.point[0] < 1.0 && points.len() < 500 {
+            assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
+            points.push(walk.point.clone());
+        }
+        points
+    }
+
+    #[test]
+    fn a_walk_goes_around_smooth_folds_and_corners() {
+        for smooth in [true, false] {
+            let points = walk(smooth);
+            assert!(points.len() < 200);
+            assert!(points.windows(2).all(|pair| pair[1][0] > pair[0][0]));
+            let top = points.iter().map(|p| p[1]).fold(f64::MIN, f64::max);
+            assert!(top > 0.9 && top <= 1.0, "{top}");
+        }
+    }
+
+    #[test]
+    fn a_point_is_found_at_a_parameter() {
+        let mut curve = Fold { smooth: true };
+        let (z, _) = at_parameter(&mut curve, &[-0.8, 0.4], 0.19, 20).unwrap();
+        assert!((z[0] + 0.9).abs() < 1e-12);
+        assert!(at_parameter(&mut curve, &[-0.3, 0.9], 1.1, 20).is_none());
+    }
+}

@@ -1,0 +1,282 @@
+"""Limit cycles of structures with negative damping, and their stability."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.analyses.arguments import (
+    Progress,
+    Span,
+    require_model,
+    require_progress,
+    require_time,
+)
+from stickslip.analyses.cycle_assumptions import cycle_assumptions
+from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSettings, wanted
+from stickslip.analyses.forced_response import MAX_HARMONICS
+from stickslip.analyses.variation import Common, Parameter, Variation, chosen_contacts
+from stickslip.checks import brief, real_matrix, real_number
+from stickslip.errors import Interrupted, ModelError
+from stickslip.model import ContactRef, Model
+from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
+from stickslip.results.cycle_arrays import CycleArrays
+from stickslip.results.limit_cycles import LimitCycles
+
+if TYPE_CHECKING:
+    from stickslip import _core
+
+__all__ = ["limit_cycles", "negative_damping_of"]
+
+AROUND = 1e3
+"""Factor beyond the values of a parameter of contacts within which the branch is followed."""
+
+MAX_POINTS = 5000
+"""Most points of a branch unless another number is asked for."""
+
+
+def limit_cycles(
+    model: Model,
+    negative_damping: ArrayLike | DampingLaw,
+    *,
+    mode: int = 0,
+    ratio: ArrayLike | Span | None = None,
+    stiffness: ArrayLike | Span | None = None,
+    slip_force: ArrayLike | Span | None = None,
+    contacts: Iterable[ContactRef] | ContactRef | None = None,
+    common: Common = "value",
+    harmonics: int | Literal["auto"] = 31,
+    method: CycleMethod = "newton",
+    tolerance: float = 1e-3,
+    stability: bool = True,
+    progress: Progress = None,
+    max_harmonics: int = MAX_HARMONICS,
+    max_points: int = MAX_POINTS,
+) -> LimitCycles:
+    """Limit cycles under the damping C + r C_neg: friction bounds what flutter feeds.
+
+    The branch of a mode begins where its stuck motion just reaches the slip limit of a contact,
+    turns where friction dissipates as much as it can, and returns with large amplitudes that slip
+    most of the time. It is followed by arclength around every fold and past the corners where a
+    contact begins to slip at a further place of the period.
+
+    Parameters
+    ----------
+    model : Model
+        Structure and contacts; its forces are left out. A tuned `BladedDisk` moves in the wave of
+        nodal diameter `engine_order`.
+    negative_damping : array_like, shape (N, N), or damping law
+        C_neg [kg/s], also unsymmetric; or `Rayleigh` or `ModalDamping` with negative numbers. Of
+        a tuned disk also complex matrices of shape (n, N, N)
+        by nodal diameter, which add i omega r C_neg to the dynamic stiffness.
+    mode : int, optional
+        Mode of the stuck structure, counted from 0; with damping C the branch begins at the ratio
+        at which this mode loses it.
+    ratio : array_like, (float, float) or float, optional
+        A list: exactly these ratios r, on both sides of the branch. A tuple: the branch from its
+        sticking side on, until it leaves this range. Default: the whole branch from r = 0.01 on.
+        If another parameter is followed: the one r, by default 1.
+    stiffness, slip_force : array_like or (float, float), optional
+        Follow this parameter of contacts [N/m], [N] instead of r, at exactly these values, or in
+        a range.
+    contacts, common
+        Which contacts take the value, and whether as their own or as a factor on it; see
+        `stickslip.damper_curve`.
+    harmonics : int or "auto", optional
+        Harmonics kept, odd ones alone, at all points of the branch; "auto": as `tolerance` asks,
+        which one point in twenty may miss, with that status. Of exact orbits the highest reported.
+    method : {"newton", "exact"}, optional
+        Harmonic balance with the frequency as an unknown, or exact orbits by shooting with the
+        period as an unknown.
+    tolerance : float, optional
+        Relative accuracy that automatic harmonics aim at.
+    stability : bool, optional
+        Whether Floquet multipliers are computed: those of the exact orbit to which a point of the
+        harmonic balance belongs, and along the exact flow from the balance where there is none.
+        Not for travelling waves.
+    progress : callable, optional
+        Called about ten times per second with the fraction of the work that is done.
+    max_harmonics : int, optional
+        Highest harmonic that "auto" may keep.
+    max_points : int, optional
+        Most points of a branch.
+
+    Returns
+    -------
+    LimitCycles
+        Along the branch, from its sticking to its slipping side.
+
+    Raises
+    ------
+    ModelError
+        If an argument is of the wrong type or outside its range, the mode is not excited or moves
+        no contact that can slip, or there is no limit cycle at the ratio.
+    Interrupted
+        On Ctrl-C; its `result` holds the cycles that had been computed.
+
+    References
+    ----------
+    Guillen (1999), chapter V, there by Broyden's method without condensation and without
+    stability. Sinha and Griffin (1983), J. Engng Gas Turb. Power 105, 684: limit cycles of one
+    blade.
+    """
+    require_model(model)
+    require_progress(progress)
+    matrix = negative_damping_of(negative_damping, model)
+    settings = _settings(
+        model,
+        {"stiffness": stiffness, "slip_force": slip_force},
+        ratio,
+        contacts,
+        common,
+        mode=mode,
+        harmonics=harmonics,
+        method=method,
+        tolerance=tolerance,
+        stability=stability,
+        max_harmonics=max_harmonics,
+        max_points=max_points,
+    )
+    if settings.method == "exact":
+        require_time(model)
+    solution = solve(model, matrix, settings, progress)
+    arrays = CycleArrays.of(solution)
+    result = LimitCycles(
+        model=model,
+        dofs=model.structure.dofs,
+        settings=settings,
+        arrays=arrays,
+        negative_damping=matrix,
+        interrupted=solution.interrupted,
+        timings=dict(solution.timings),
+        counters={**solution.counters, "jumps": solution.jumps},
+        assumptions=cycle_assumptions(model, settings, arrays, solution),
+    )
+    if result.interrupted:
+        raise Interrupted(
+            f"limit cycles interrupted after {result.ratio.size} points, which the result of this "
+            "exception holds",
+            result,
+        )
+    if progress is not None:
+        progress(1.0)
+    return result
+
+
+def negative_damping_of(given: ArrayLike | DampingLaw, model: Model) -> NDArray[Any]:
+    """Return a matrix of negative damping that fits a model, checked and read-only.
+
+    Parameters
+    ----------
+    given : array_like, Rayleigh or ModalDamping
+        Shape (N, N); of a tuned disk also complex of shape (n, N, N).
+    model : Model
+        The model.
+
+    Raises
+    ------
+    ModelError
+        If it is of another shape, or holds numbers that are not finite.
+    """
+    size = len(model.structure)
+    if isinstance(given, Rayleigh | ModalDamping):
+        given = given.matrix(model.structure.mass, model.structure.stiffness)
+    if not model.travels:
+        matrix: NDArray[Any] = np.array(real_matrix(given, "negative_damping"))
+        if matrix.shape != (size, size):
+            raise ModelError(
+                f"negative_damping: shape {matrix.shape} instead of ({size}, {size}), the degrees "
+                "of freedom of the model"
+            )
+    else:
+        sectors = model.sectors  # type: ignore[attr-defined]
+        try:
+            values = np.asarray(given)
+        except ValueError:
+            raise ModelError("negative_damping: a ragged list; give matrices") from None
+        if values.dtype.kind not in "fiuc" or values.shape not in {
+            (size, size),
+            (sectors, size, size),
+        }:
+            raise ModelError(
+                f"negative_damping: {brief(given)}; give numbers of shape ({size}, {size}) or "
+                f"({sectors}, {size}, {size}), a matrix per nodal diameter"
+            )
+        matrix = np.array(np.broadcast_to(values, (sectors, size, size)), dtype=np.complex128)
+        if not np.isfinite(matrix).all():
+            raise ModelError("negative_damping: every entry must be finite")
+    if not matrix.any():
+        raise ModelError("negative_damping: all zero; without it nothing excites a limit cycle")
+    matrix.flags.writeable = False
+    return matrix
+
+
+def solve(
+    model: Model, matrix: NDArray[Any], settings: CycleSettings, progress: Progress
+) -> _core.LimitCycles:
+    """Return what the core makes of checked settings."""
+    from stickslip import _core
+
+    variation = settings.variation
+    names = () if variation is None else variation.contacts
+    followed: _core.Followed = {
+        "parameter": None if variation is None else variation.parameter,
+        "contacts": [model.contact_index(name) for name in names],
+        "factor": variation is not None and variation.common == "factor",
+        "ratio": settings.ratio,
+        "values": None if settings.values is None else list(settings.values),
+        "range": settings.span,
+    }
+    exact = settings.method == "exact"
+    harmonics = 31 if exact and settings.harmonics == "auto" else settings.harmonics
+    try:
+        return _core.limit_cycles(
+            model.problem,
+            matrix,
+            settings.mode,
+            followed,
+            exact,
+            None if harmonics == "auto" else harmonics,
+            settings.max_harmonics,
+            settings.tolerance,
+            settings.stability,
+            settings.max_points,
+            progress,
+        )
+    except ModelError:
+        raise
+    except ValueError as error:
+        raise ModelError(str(error)) from error
+
+
+def _settings(
+    model: Model,
+    parameters: dict[Parameter, ArrayLike | Span | None],
+    ratio: ArrayLike | Span | None,
+    contacts: Iterable[ContactRef] | ContactRef | None,
+    common: Common,
+    **rest: Any,
+) -> CycleSettings:
+    """Return checked settings."""
+    given = [name for name, values in parameters.items() if values is not None]
+    if len(given) > 1:
+        raise ModelError("stiffness, slip_force: both are given; follow one of them")
+    if not given:
+        if contacts is not None:
+            raise ModelError("contacts: the ratio is no parameter of contacts; leave them out")
+        values, span = wanted(ratio, "ratio", (LOWEST_RATIO, inf))
+        return CycleSettings(values=values, span=span, **rest)
+    (name,) = given
+    variation = Variation(
+        parameter=name, contacts=chosen_contacts(contacts, name, model), common=common
+    )
+    values, span = wanted(parameters[name], name, (inf, 0.0))
+    if values is not None:
+        # The other side of the branch is reached around a fold that may lie far outside.
+        span = (values[0] / AROUND, values[-1] * AROUND)
+    one = 1.0 if ratio is None else real_number(ratio, f"ratio, with {name} followed,")
+    return CycleSettings(variation=variation, ratio=one, values=values, span=span, **rest)

@@ -1,0 +1,163 @@
+"""The negative damping that friction bounds, over stiffness or slip force of the contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip.analyses.arguments import Progress, require_model, require_progress, require_time
+from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSettings, wanted
+from stickslip.analyses.forced_response import MAX_HARMONICS
+from stickslip.analyses.limit_cycles import MAX_POINTS, negative_damping_of, solve
+from stickslip.analyses.variation import Common, Parameter, Variation, chosen_contacts
+from stickslip.errors import Interrupted, ModelError
+from stickslip.model import ContactRef, Model
+from stickslip.results.cycle_arrays import CycleArrays
+from stickslip.results.stability_map import MapArrays, MapSettings, StabilityMap
+
+__all__ = ["stability_map"]
+
+
+def stability_map(
+    model: Model,
+    negative_damping: ArrayLike,
+    *,
+    stiffness: ArrayLike | None = None,
+    slip_force: ArrayLike | None = None,
+    contacts: Iterable[ContactRef] | ContactRef | None = None,
+    common: Common = "value",
+    mode: int = 0,
+    harmonics: int | Literal["auto"] = 31,
+    method: CycleMethod = "exact",
+    progress: Progress = None,
+) -> StabilityMap:
+    """Largest negative damping with limit cycles, and with stable ones, over a contact parameter.
+
+    For every value the whole branch of the mode is followed. `limit` is the ratio at which it
+    turns for good: beyond it friction cannot dissipate what flutter feeds. `stable_limit` is the
+    largest ratio up to which its sticking side is stable without a gap, which is where vibration
+    begins to leave this mode.
+
+    Parameters
+    ----------
+    model : Model
+        Structure and contacts; not a sector of a travelling wave.
+    negative_damping : array_like, shape (N, N)
+        C_neg of the damping C + r C_neg [kg/s].
+    stiffness, slip_force : array_like, shape (n,)
+        Values of one of them, above 0 [N/m], [N]. Limit ratios depend on slip forces only through
+        their proportions, as all displacements grow with them.
+    contacts, common
+        Which contacts take the value, and whether as their own or as a factor on it; see
+        `stickslip.damper_curve`.
+    mode, harmonics, method, progress
+        See `stickslip.limit_cycles`.
+
+    Returns
+    -------
+    StabilityMap
+        One entry per value.
+
+    Raises
+    ------
+    ModelError
+        If not exactly one parameter is given, or an argument is of the wrong type or outside its
+        range.
+    Interrupted
+        On Ctrl-C; its `result` holds the values that had been reached.
+
+    References
+    ----------
+    Guillen (1999), section 5.2.3 for the influence of the stiffness; the dissertation leaves the
+    stability of several degrees of freedom open.
+    """
+    require_model(model)
+    require_time(model)
+    require_progress(progress)
+    matrix = negative_damping_of(negative_damping, model)
+    given: dict[Parameter, ArrayLike | None] = {"stiffness": stiffness, "slip_force": slip_force}
+    names = [name for name, values in given.items() if values is not None]
+    if len(names) != 1:
+        raise ModelError("stiffness, slip_force: give exactly one of them")
+    (name,) = names
+    values, _ = wanted(np.atleast_1d(np.asarray(given[name])), name, (inf, 0.0))
+    assert values is not None
+    variation = Variation(
+        parameter=name, contacts=chosen_contacts(contacts, name, model), common=common
+    )
+    cycles = CycleSettings(
+        mode=mode,
+        harmonics=harmonics,
+        method=method,
+        max_harmonics=MAX_HARMONICS,
+        max_points=MAX_POINTS,
+        span=(LOWEST_RATIO, inf),
+    )
+    rows: list[tuple[float, float, float]] = []
+    causes: list[str] = []
+    interrupted = False
+    for place, value in enumerate(values):
+        share = _share(progress, place, len(values))
+        try:
+            solution = solve(variation.apply(model, value), matrix, cycles, share)
+        except ModelError as error:
+            rows.append((np.nan, np.nan, np.nan))
+            causes.append(f"{name} = {value:.6g}: {error}")
+            continue
+        if solution.interrupted:
+            interrupted = True
+            break
+        arrays = CycleArrays.of(solution)
+        ratio, omega = arrays.turn
+        rows.append((ratio, omega, _stable_limit(arrays)))
+        if np.isnan(ratio):
+            causes.append(f"{name} = {value:.6g}: the branch does not turn")
+    done = len(rows)
+    limit, omega, stable = np.array(rows, dtype=np.float64).reshape(-1, 3).T
+    result = StabilityMap(
+        model=model,
+        dofs=model.structure.dofs,
+        settings=MapSettings(variation=variation, mode=mode, harmonics=harmonics, method=method),
+        arrays=MapArrays(
+            value=np.array(values[:done]), limit=limit, omega=omega, stable_limit=stable
+        ),
+        negative_damping=matrix,
+        interrupted=interrupted,
+        timings={},
+        counters={"branches": done},
+        assumptions=tuple(causes),
+    )
+    if interrupted:
+        raise Interrupted(
+            f"stability map interrupted after {done} of {len(values)} values, which the result of "
+            "this exception holds",
+            result,
+        )
+    if progress is not None:
+        progress(1.0)
+    return result
+
+
+def _share(progress: Progress, place: int, total: int) -> Progress:
+    if progress is None:
+        return None
+    return lambda part: progress((place + part) / total)
+
+
+def _stable_limit(arrays: CycleArrays) -> float:
+    """Return the ratio at which the sticking side first loses stability; 0 if it never has it."""
+    sticking = ~arrays.slipping & arrays.known
+    if not sticking.any():
+        return float("nan")
+    first = int(np.flatnonzero(sticking)[0])
+    size = np.abs(arrays.multipliers[first, arrays.neutral[first] :])
+    if (size >= 1.0).any():
+        return 0.0
+    for (value, _), unstable in zip(arrays.change, arrays.change_unstable, strict=True):
+        if unstable[1] > 0:
+            return float(value)
+    return float(arrays.ratio[sticking].max())

@@ -1,0 +1,396 @@
+"""Limit cycles along a branch, with their stability."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import choice, whole_number
+from stickslip.errors import ModelError
+from stickslip.model import Model, PointRef
+from stickslip.model.state import State
+from stickslip.results.arrays import Bool, Complex, Float, Measure, amplitude_of, constant
+from stickslip.results.cycle_arrays import CHANGE_KINDS, CycleArrays
+from stickslip.results.cycle_dataset import cycle_dataset, cycle_parts
+from stickslip.results.result import Result
+from stickslip.results.status import Status
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+    from stickslip.analyses.cycle_settings import CycleSettings
+    from stickslip.plot.cycles import CycleOptions
+
+__all__ = ["Limit", "LimitCycles", "StabilityChange"]
+
+
+class Limit(NamedTuple):
+    """Where a branch of limit cycles turns."""
+
+    ratio: float
+    """Factor r on the negative damping."""
+    omega: float
+    """Angular frequency [rad/s]."""
+    value: float
+    """Value of what is followed; r itself unless a parameter of contacts is."""
+
+
+class StabilityChange(NamedTuple):
+    """Where the stability of a branch changes."""
+
+    value: float
+    """Value of what is followed."""
+    omega: float
+    """Angular frequency [rad/s]."""
+    kind: str
+    """"fold" (a multiplier passes 1), "complex pair", "symmetry" (a multiplier passes 1 with motion
+    that breaks x(t + T/2) = -x(t)), or "grazing" (multipliers jump with a change in slip)."""
+    after: int
+    """Position of the cycle before it."""
+    unstable_before: int
+    """Multipliers outside the unit circle before it."""
+    unstable_after: int
+    """The same after it."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LimitCycles(Result):
+    """Limit cycles of a mode, from the sticking to the slipping side of their branch.
+
+    Attributes
+    ----------
+    settings : CycleSettings
+        What was followed, and how.
+    arrays : CycleArrays
+        Every number by its name.
+    negative_damping : ndarray
+        C_neg of the damping C + r C_neg [kg/s], shape (N, N); of a tuned disk (n, N, N).
+    """
+
+    kind: ClassVar[str] = "limit_cycles"
+
+    settings: CycleSettings
+    arrays: CycleArrays
+    negative_damping: NDArray[Any]
+
+    def __repr__(self) -> str:
+        limit = self.limit
+        turn = (
+            "no turn" if limit is None else f"turns at {self.settings.followed} {limit.value:.6g}"
+        )
+        return (
+            f"LimitCycles({self.omega.size} cycles of mode {self.settings.mode}, "
+            f"{int(self.stable.sum())} stable, {turn})"
+        )
+
+    @property
+    def values(self) -> Float:
+        """Value of what is followed, shape (n,): r, or a parameter of contacts."""
+        return self.arrays.value
+
+    @property
+    def ratio(self) -> Float:
+        """Factor r on the negative damping, shape (n,)."""
+        return self.arrays.ratio
+
+    @property
+    def omega(self) -> Float:
+        """Angular frequency, shape (n,) [rad/s]."""
+        return self.arrays.omega
+
+    @cached_property
+    def branch(self) -> NDArray[np.str_]:
+        """Side of the branch, "sticking" or "slipping", shape (n,)."""
+        return constant(np.where(self.arrays.slipping, "slipping", "sticking"))
+
+    @property
+    def multipliers(self) -> Complex:
+        """Floquet multipliers over the full period, shape (n, 2 N + n_p - 1).
+
+        The trivial 1 of the phase is left out. First those of contacts that never slip, see
+        `neutral`, then by falling modulus. Not-a-number where they are not known.
+        """
+        return self.arrays.multipliers
+
+    @property
+    def neutral(self) -> NDArray[np.int64]:
+        """How many multipliers are the exact 1 of a contact that never slips, shape (n,)."""
+        return self.arrays.neutral
+
+    @cached_property
+    def stable(self) -> Bool:
+        """Whether all multipliers but the neutral ones lie inside the unit circle, shape (n,)."""
+        size = np.abs(self.multipliers)
+        counted = np.arange(size.shape[1]) >= self.neutral[:, None]
+        return constant(self.arrays.known & ~(counted & ~(size < 1.0)).any(axis=1))
+
+    @property
+    def limit(self) -> Limit | None:
+        """Where the branch turns for good, located to about 1e-9; None if it does not turn."""
+        found = self.arrays.limit
+        return None if found is None else self._turn(*found)
+
+    @property
+    def folds(self) -> tuple[Limit, ...]:
+        """All places where the branch turns, in its order."""
+        return tuple(self._turn(float(value), float(omega)) for value, omega in self.arrays.folds)
+
+    @property
+    def changes(self) -> tuple[StabilityChange, ...]:
+        """Where the stability of a whole branch changes, in its order."""
+        arrays = self.arrays
+        rows = zip(
+            arrays.change,
+            arrays.change_kind,
+            arrays.change_after,
+            arrays.change_unstable,
+            strict=True,
+        )
+        return tuple(
+            StabilityChange(
+                float(at[0]), float(at[1]), CHANGE_KINDS[kind], int(after), int(was), int(now)
+            )
+            for at, kind, after, (was, now) in rows
+        )
+
+    @cached_property
+    def status(self) -> tuple[Status, ...]:
+        """How each point ended; ``status[i].advice`` says what to do about it."""
+        return tuple(Status.from_code(int(code)) for code in self.arrays.status)
+
+    def coefficients(self, dof: str) -> Complex:
+        """Return the harmonics of a displacement.
+
+        Parameters
+        ----------
+        dof : str
+            The degree of freedom.
+
+        Returns
+        -------
+        ndarray of complex128, shape (n, H+1)
+            X_k of x(t) = Re sum_k X_k exp(i k omega t) [m].
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom.
+        """
+        return self.arrays.displacement[:, :, self._column(dof)]
+
+    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitude of a displacement along the branch.
+
+        Parameters
+        ----------
+        dof : str
+            The degree of freedom.
+        measure : {"half_range", "max", "fundamental"}, optional
+            Half the peak-to-peak range over a period, the largest absolute displacement, or the
+            modulus of the first harmonic. The first two are equal for these symmetric motions, and
+            exact for exact orbits.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+            [m].
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom or measure.
+        """
+        choice(measure, "measure", get_args(Measure))
+        column = self._column(dof)
+        if measure != "fundamental" and self.settings.method == "exact":
+            low, high = self.arrays.range[:, column].T
+            return constant(
+                0.5 * (high - low) if measure == "half_range" else np.maximum(high, -low)
+            )
+        return constant(amplitude_of(self.coefficients(dof), measure))
+
+    def error_estimate(self, dof: str) -> Float:
+        """Return what the discarded harmonics could still change in a displacement.
+
+        Parameters
+        ----------
+        dof : str
+            The degree of freedom.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+            [m]; 0 of exact orbits.
+        """
+        return self.arrays.error_estimate[:, self._column(dof)]
+
+    def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
+        """Return one period of a displacement from its harmonics.
+
+        Parameters
+        ----------
+        dof : str
+            The degree of freedom.
+        index : int
+            Position of the cycle; negative ones count from the end.
+        samples : int, optional
+            Number of instants t = j T / samples, j = 0, 1, ...
+
+        Returns
+        -------
+        ndarray of float64, shape (samples,)
+            [m].
+        """
+        series = self.coefficients(dof)[self.position(index)]
+        count = whole_number(samples, "samples", smallest=1)
+        turn = 2j * np.pi * np.outer(np.arange(count) / count, np.arange(series.size))
+        return constant((np.exp(turn) @ series).real)
+
+    def slip_fraction(self, contact: PointRef) -> Float:
+        """Return the share of the period that contact points slip.
+
+        Parameters
+        ----------
+        contact : int, str or (int or str, int)
+            The contact, or one of its points.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, points) or (n,)
+            From 0 to 1.
+        """
+        return self._select(self.arrays.slip_fraction, contact)
+
+    def dissipation(self, contact: PointRef) -> Float:
+        """Return the work lost to friction per cycle, as `slip_fraction` [J]."""
+        return self._select(self.arrays.dissipation, contact)
+
+    def state(self, index: int) -> State:
+        """Return the state at t = 0, from which `stickslip.transient` continues an exact orbit.
+
+        Parameters
+        ----------
+        index : int
+            Position of the cycle; negative ones count from the end.
+
+        Returns
+        -------
+        State
+            Displacements, velocities and contact forces.
+
+        Raises
+        ------
+        ModelError
+            If there is no such cycle, or it is no exact orbit.
+        """
+        values = self.arrays.state[self.position(index)]
+        if not np.isfinite(values).all():
+            raise ModelError(f"state({index}): of exact orbits only; use method='exact'")
+        return State.of_vector(self.model, values)
+
+    def model_at(self, index: int) -> Model:
+        """Return the model whose limit cycle one point is, with the damping C + r C_neg in it.
+
+        Parameters
+        ----------
+        index : int
+            Position of the cycle; negative ones count from the end.
+
+        Returns
+        -------
+        Model
+            Without forces, for `stickslip.transient` and any other analysis.
+
+        Raises
+        ------
+        ModelError
+            If there is no such cycle, or the model is a sector of a travelling wave.
+        """
+        from stickslip.model.structure import Structure
+
+        if self.model.travels:
+            raise ModelError(
+                "model_at: a sector of a travelling wave has no damping matrix of its own"
+            )
+        position = self.position(index)
+        own = self.model.structure
+        structure = Structure(
+            mass=own.mass,
+            stiffness=own.stiffness,
+            damping=own.damping + self.ratio[position] * self.negative_damping,
+            dofs=own.dofs,
+        )
+        model = self.model
+        if self.settings.variation is not None:
+            model = self.settings.variation.apply(model, float(self.values[position]))
+        return Model(structure, model.contacts, [])
+
+    def position(self, index: int) -> int:
+        """Return the position of a cycle, counted from the start.
+
+        Raises
+        ------
+        ModelError
+            If there is no such cycle.
+        """
+        count = self.omega.size
+        position = whole_number(index + count if index < 0 else index, "index")
+        if position >= count:
+            raise ModelError(f"index: {index}; there are {count} cycles")
+        return position
+
+    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+        """Return everything as an xarray dataset with units on every variable.
+
+        Parameters
+        ----------
+        derived : bool, optional
+            Whether to add amplitude and stability, which follow from other variables.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions cycle, harmonic, dof, point and multiplier.
+        """
+        return cycle_dataset(self, derived=derived)
+
+    @classmethod
+    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+        """Return the limit cycles in a dataset; see `Result.from_dataset`."""
+        return cls(**cycle_parts(dataset, model))
+
+    def plot(self, dof: str, **options: Unpack[CycleOptions]) -> Axes:
+        """Draw amplitude and frequency along the branch.
+
+        Parameters
+        ----------
+        dof : str
+            The degree of freedom.
+        **options
+            See `stickslip.plot.limit_cycles`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the amplitude.
+        """
+        from stickslip import plot
+
+        return plot.limit_cycles(self, dof, **options)
+
+    def plot_multipliers(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the Floquet multipliers; see `stickslip.plot.cycle_multipliers`."""
+        from stickslip import plot
+
+        return plot.cycle_multipliers(self, ax=ax)
+
+    def _turn(self, value: float, omega: float) -> Limit:
+        ratio = value if self.settings.variation is None else self.settings.ratio
+        return Limit(ratio, omega, value)
