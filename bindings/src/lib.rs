@@ -3,8 +3,8 @@
 mod arrays;
 mod design;
 mod fates;
-mod mistuning;
 mod limit_cycles;
+mod mistuning;
 mod orbits;
 mod problem;
 mod response;

@@ -113,12 +113,15 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         if close && fresh {
             return report(Outcome::Converged, size_of_residual, x);
         }
+        let before = within;
         within = trial.length == 1.0 && left <= settings.tolerance;
         if within {
             // Newton's own last step would leave hardly more than rounding. One with a Jacobian
-            // kept leaves what the step that would follow tells, at the price of a substitution.
-            let known = keep && system.solve(&residual, &mut step);
-            if !keep || (known && system.relative_size(&step, x) <= OF_KEPT * settings.tolerance) {
+            // kept leaves what the step that would follow tells, at the price of a substitution;
+            // it is taken once.
+            let enough = OF_KEPT * settings.tolerance;
+            let known = keep && !before && system.solve(&residual, &mut step);
+            if !keep || before || (known && system.relative_size(&step, x) <= enough) {
                 return report(Outcome::Converged, size_of_residual, x);
             }
         }
