@@ -13,7 +13,15 @@ from stickslip.reproduce.subjects import SUBJECTS
 
 __all__ = ["CHAPTERS", "SUBJECTS", "chosen", "items"]
 
-CHAPTERS = ("chapter_2", "chapter_4_beam", "chapter_4_cost", "chapter_4_rings")
+CHAPTERS = (
+    "chapter_2",
+    "chapter_4_beam",
+    "chapter_4_cost",
+    "chapter_4_rings",
+    "chapter_5_mass",
+    "chapter_5_modes",
+    "chapter_5_stability",
+)
 """Modules that reproduce something; every `Item` in them counts."""
 
 

@@ -164,6 +164,8 @@ def _look(series: Series, colour: object, place: int, count: int) -> dict[str, A
             "mfc": "none",
             "mew": 1.0,
             "zorder": 3.0,
+            # Whole at the edge, too, where amplitudes start at zero.
+            "clip_on": False,
         }
     if series.kind == "limit":
         return {"color": colour, "lw": 3.2, "alpha": 0.35, "solid_capstyle": "butt"}

@@ -6,13 +6,21 @@ __all__ = [
     "BLADE_FREQUENCIES",
     "BROYDEN",
     "ERROR_ROW",
+    "FIRST_FOLD",
+    "HARMONICS_OF_MODE_1",
     "MISPRINTED_LEVEL",
     "MISPRINTED_STIFFNESS",
+    "MODAL_COEFFICIENTS",
     "OPTIMUM",
     "PHASES",
     "RETURN_MAP",
+    "RIGID",
+    "ROW_OF_MASS",
+    "SINGLE_CYCLE",
     "SINGLE_HARMONIC",
     "SLIPPING_FREQUENCY",
+    "TWO_ORBITS",
+    "UNSIGNED",
 ]
 
 SINGLE_HARMONIC = (
@@ -55,3 +63,36 @@ BLADE_FREQUENCIES = (
     "The text speaks of 7 % deviation of the frequencies, the formula E_i = (1 + S r_i) E_0 gives "
     "7 % to the stiffness; the formula is used."
 )
+
+SINGLE_CYCLE = "Eq. (5.6) repeats the wrong sign of Eq. (2.13)."
+
+RIGID = (
+    "Eqs. (5.16) and (5.20) lack a minus sign, A = 0 does not satisfy (5.18), and 2.65e-4 m is not "
+    "what (5.20) gives at r = 1: corrected 2.5527e-4 m, exactly 2.5533e-4 m."
+)
+
+ROW_OF_MASS = (
+    "Row 1 of Table 5.3 belongs to the single DOF; corrected for the beam: 225.66 and 159.59 rad/s."
+)
+
+FIRST_FOLD = (
+    "The end of mode 1 at 4.9 is a local fold, r = 4.878: the branch dips to 4.775 and turns for "
+    "good at r = 5.169; its 7th harmonic lies near mode 2, so that 3 harmonics are too few."
+)
+
+UNSIGNED = (
+    "That mode 3 is unstable below r = 2 comes from starts without the signs of mode 3 (+, +, −); "
+    "corrected: its sticking orbits are stable up to r = 4.686."
+)
+
+HARMONICS_OF_MODE_1 = (
+    "The 5th and 7th harmonics, said to be missing in the balance, are 4 % and 8 % of the "
+    "fundamental of x₃ there."
+)
+
+MODAL_COEFFICIENTS = (
+    "Eqs. (5.27)-(5.29): T is orthogonal with respect to M only, C = T^(−T) diag(c) T^(−1); (5.30) "
+    "is printed in reverse order. Used as printed: c_3 = −12.095 r on the mode of 2167 rad/s."
+)
+
+TWO_ORBITS = "The solution is not unique: there are two orbits for every r below r_max."
