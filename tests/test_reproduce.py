@@ -99,6 +99,22 @@ KEY_NUMBERS = {
     },
     # of this package alone
     "fig-4.8": {"exact peak at 2.4e+10 N/m": (1.234915e-3, 1e-5)},
+    # examples/turbine-blade/study.json
+    "fig-4.10": {
+        "F_d0": (1.3263, 1e-4),
+        "peak over the stuck one at 0.01 F_d0": (1.124843, 1e-5),
+        "peak over the stuck one at 1 F_d0": (0.0316738, 1e-5),
+        "peak over the stuck one at 5 F_d0": (0.0699760, 1e-5),
+        "peak over the stuck one at 100 F_d0": (1.0, 1e-9),
+    },
+    "fig-4.11": {
+        "peak over the stuck one at 0.01 F_d0": (1.005927, 1e-5),
+        "peak over the stuck one at 1 F_d0": (0.0253961, 1e-5),
+        "its frequency over the stuck one at 1 F_d0": (0.979954, 1e-5),
+        "peak over the stuck one at 100 F_d0": (1.0, 1e-9),
+    },
+    "fig-4.12": {"peak over the stuck one": (0.0316738, 1e-5)},
+    "fig-4.13": {"peak over the stuck one": (0.0253961, 1e-5)},
     "table-4.1": {},
     "fig-4.16": {"peak, 3 harmonics": (8.3035e-5, 1e-5), "peak, converged": (8.4116e-5, 5e-3)},
     # of this package alone
@@ -324,6 +340,13 @@ def test_table_4_1_has_all_methods():
     assert errors["Broyden", 15] == pytest.approx(errors["Newton", 15], abs=1e-6)
     assert abs(errors["Runge-Kutta", None]) < 0.01
     assert errors["Newton", 1] < -2.0
+
+
+def test_blade_at_optimal_damping_against_exact_orbits_and_runge_kutta():
+    for name in ("fig-4.12", "fig-4.13"):
+        assert 0.0 < computed(name).fact("largest difference of Runge-Kutta to exact orbits") < 0.02
+        of_nine = "largest difference of 9 harmonics to exact orbits, over the peak"
+        assert 0.0 < computed(name).fact(of_nine) < 2.0
 
 
 def test_curves_of_one_wave_are_those_of_all_beams():

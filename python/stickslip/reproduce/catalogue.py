@@ -16,6 +16,7 @@ __all__ = ["CHAPTERS", "SUBJECTS", "chosen", "items"]
 CHAPTERS = (
     "chapter_2",
     "chapter_4_beam",
+    "chapter_4_blade",
     "chapter_4_cost",
     "chapter_4_rings",
     "chapter_5_mass",

@@ -34,7 +34,7 @@ _TICKED = 7
 _DENSE = 80
 _SPARSE = 32
 """Rows of more marks than the first number are drawn with about as many as the second."""
-_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z])\b")
+_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]\d?)\b")
 
 
 def draw(plot: Plot) -> Figure:
@@ -85,7 +85,7 @@ def draw(plot: Plot) -> Figure:
 
 def _typeset(text: str) -> str:
     """Write F_d with a subscript."""
-    return _SYMBOL.sub(r"$\1_\2$", text)
+    return _SYMBOL.sub(r"$\1_{\2}$", text)
 
 
 def _thinned(series: Series) -> dict[str, int]:

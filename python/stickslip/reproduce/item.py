@@ -83,7 +83,8 @@ def _with_helpers(function: Compute) -> list[FunctionType]:
     found = [function]
     for one in found:
         for name in _names(one.__code__):
-            other = one.__globals__.get(name)
+            # What keeps its results is shown like any other function.
+            other = inspect.unwrap(one.__globals__.get(name))  # type: ignore[arg-type]
             if (
                 isinstance(other, FunctionType)
                 and other.__module__ == function.__module__
