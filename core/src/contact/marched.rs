@@ -185,7 +185,7 @@ impl Marched {
 }
 
 /// The mean of a series is its sum over the samples, not twice that.
-fn halve_means(harmonics: &Harmonics, points: usize, out: &mut SlipLoad) {
+pub(super) fn halve_means(harmonics: &Harmonics, points: usize, out: &mut SlipLoad) {
     if !harmonics.has_mean() {
         return;
     }

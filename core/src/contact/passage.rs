@@ -1,0 +1,520 @@
+//! The passage of a massless elastic damper through one period, from transition to transition.
+//!
+//! While the set of slipping points stays what it is the forces are affine in the displacements,
+//! `f = T u − κ`, and the slip follows from them: both are trigonometric series, whose limits and
+//! standstills are located exactly. At a transition the states follow from the rates, one point
+//! after the other (Murty's principal pivoting of the rate problem), and the derivative of κ in the
+//! coefficients of u is carried through it.
+
+use super::elastic::Sliding;
+use super::structural::StructuralDamper;
+use super::{Motion, PointState};
+use crate::fourier::Harmonics;
+
+/// Rounds after which a passage is taken as it is: its forces repeat after a few.
+const MOST_ROUNDS: usize = 200;
+/// Change of the forces over a round, relative to the largest, that counts as none.
+const PERIODIC: f64 = 1e-13;
+/// Weight of the elastic forces in that.
+const ELASTIC: f64 = 0.01;
+/// Distance from its limit at which a point is at it, relative to the limit.
+const AT_LIMIT: f64 = 1e-12;
+/// Rate, relative to the sum of its parts, below which it counts as zero.
+const AT_REST: f64 = 1e-10;
+/// Steps of a root search: Newton's method needs a handful, bisection 50.
+const STEPS: usize = 60;
+
+/// A set of slipping points with its stiffness and the series it gives.
+#[derive(Debug)]
+pub(super) struct SlipSet {
+    pub(super) slips: Vec<bool>,
+    pub(super) sliding: Sliding,
+    /// Series of `T u` and of the slip `R u`, point after point.
+    force: Vec<f64>,
+    slip: Vec<f64>,
+}
+
+/// A stretch of the period in one state.
+#[derive(Debug)]
+pub(super) struct Stretch {
+    pub(super) start: f64,
+    pub(super) end: f64,
+    /// Its slip set, by position.
+    pub(super) set: usize,
+    pub(super) states: Vec<PointState>,
+    /// κ.
+    pub(super) offset: Vec<f64>,
+    /// Derivative of κ in the coefficients, row by row; empty unless it was asked for.
+    pub(super) rate: Vec<f64>,
+}
+
+/// The last round of a march from zero slip to forces that repeat.
+#[derive(Debug)]
+pub(super) struct Passage {
+    pub(super) sets: Vec<SlipSet>,
+    pub(super) stretches: Vec<Stretch>,
+    /// Whether anything has slipped since the start of the march.
+    pub(super) slipped: bool,
+    /// Whether every transition was resolved.
+    pub(super) resolved: bool,
+}
+
+/// A march along one motion.
+struct March<'a> {
+    law: &'a StructuralDamper,
+    harmonics: &'a Harmonics,
+    series: &'a [f64],
+    /// Values, slopes and curvatures of each point's displacement on a grid.
+    grid: Vec<[Vec<f64>; 3]>,
+    spacing: f64,
+    sets: Vec<SlipSet>,
+    here: Stretch,
+    done: Vec<Stretch>,
+    tangent: bool,
+    slipped: bool,
+    transitions: usize,
+}
+
+/// Displacements of all points, their slopes and curvatures at an angle.
+struct Jet {
+    theta: f64,
+    value: Vec<f64>,
+    slope: Vec<f64>,
+    curvature: Vec<f64>,
+}
+
+impl Passage {
+    /// Follows a motion until the forces repeat.
+    pub(super) fn new(law: &StructuralDamper, motion: Motion<'_>, tangent: bool) -> Self {
+        let mut march = March::new(law, motion, tangent);
+        let sign = if motion.table.harmonics().half_wave() { -1.0 } else { 1.0 };
+        let mut resolved = true;
+        for round in 0..MOST_ROUNDS {
+            if round > 0 {
+                march.wrap(sign);
+            }
+            let before = march.force_at(&march.jet(0.0));
+            resolved = march.round();
+            let after = march.force_at(&march.jet(motion.table.harmonics().span()));
+            // Forces are differences of elastic ones, which bound their rounding errors.
+            let largest = after.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+            let elastic = march.here.offset.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+            let change =
+                before.iter().zip(&after).map(|(b, a)| (sign * a - b).abs()).fold(0.0, f64::max);
+            if !resolved || change <= PERIODIC * (largest + ELASTIC * elastic) {
+                break;
+            }
+        }
+        let March { sets, mut done, here, slipped, .. } = march;
+        done.push(here);
+        Self { sets, stretches: done, slipped, resolved }
+    }
+
+    /// Stretch that holds an angle of the span.
+    pub(super) fn at(&self, theta: f64) -> Option<&Stretch> {
+        let next = self.stretches.partition_point(|stretch| stretch.end <= theta);
+        self.stretches.get(next).or(self.stretches.last())
+    }
+}
+
+impl<'a> March<'a> {
+    fn new(law: &'a StructuralDamper, motion: Motion<'a>, tangent: bool) -> Self {
+        let harmonics = motion.table.harmonics();
+        let points = law.limits.len();
+        let series = motion.displacement;
+        let grid: Vec<_> =
+            series.chunks_exact(harmonics.slots()).map(|u| motion.table.jets(u)).collect();
+        let here = Stretch {
+            start: 0.0,
+            end: 0.0,
+            set: 0,
+            states: vec![PointState::Stuck; points],
+            offset: vec![0.0; points],
+            rate: Vec::new(),
+        };
+        let spacing = harmonics.span() / motion.table.coarse_samples() as f64;
+        let (sets, done) = (Vec::new(), Vec::new());
+        let mut march = Self {
+            law,
+            harmonics,
+            series,
+            grid,
+            spacing,
+            sets,
+            here,
+            done,
+            tangent,
+            slipped: false,
+            transitions: 0,
+        };
+        march.begin();
+        march
+    }
+
+    /// Forces without slip at the start of the period, as far as the limits admit them.
+    fn begin(&mut self) {
+        let points = self.law.limits.len();
+        self.here.set = self.find_set();
+        let jet = self.jet(0.0);
+        let (mut force, mut gain) = (vec![0.0; points], vec![0.0; points * points]);
+        self.law.increment(&jet.value, &mut force, Some(&mut gain));
+        self.slipped = (0..points).any(|i| gain[i * points + i] == 0.0);
+        let gradient = self.tangent.then(|| {
+            let slots = self.harmonics.slots();
+            let basis = self.basis(0.0);
+            let mut gradient = vec![0.0; points * points * slots];
+            for (i, row) in gradient.chunks_exact_mut(points * slots).enumerate() {
+                for (j, block) in row.chunks_exact_mut(slots).enumerate() {
+                    let stiffness: f64 = (0..points)
+                        .map(|l| gain[i * points + l] * self.law.stiffness[(l, j)])
+                        .sum();
+                    block.iter_mut().zip(&basis).for_each(|(g, b)| *g = stiffness * b);
+                }
+            }
+            gradient
+        });
+        self.settle(&jet, force, gradient);
+    }
+
+    /// Passes once through the span; `false` if transitions pile up without end.
+    fn round(&mut self) -> bool {
+        let cells = self.grid.first().map_or(0, |grid| grid[0].len());
+        self.transitions = 0;
+        let most = 8 * self.law.limits.len() * (cells + 8);
+        let mut from = self.jet(self.here.start);
+        for cell in 0..cells {
+            let to = self.cell_end(cell, cells);
+            while let Some(theta) = self.next_transition(&from, &to) {
+                from = self.jet(theta);
+                let force = self.force_at(&from);
+                let gradient = self.tangent.then(|| self.gradient(theta));
+                self.settle(&from, force, gradient);
+                self.transitions += 1;
+                if self.transitions > most {
+                    return false;
+                }
+            }
+            from = to;
+        }
+        self.here.end = self.harmonics.span();
+        true
+    }
+
+    /// Displacements at the end of a cell of the grid.
+    fn cell_end(&self, cell: usize, cells: usize) -> Jet {
+        let theta = (cell + 1) as f64 * self.spacing;
+        let sign = if cell + 1 == cells && self.harmonics.half_wave() { -1.0 } else { 1.0 };
+        let pick = |of: usize| -> Vec<f64> {
+            self.grid.iter().map(|grid| sign * grid[of][(cell + 1) % cells]).collect()
+        };
+        Jet { theta, value: pick(0), slope: pick(1), curvature: pick(2) }
+    }
+
+    /// Begins the next round where this one has ended.
+    fn wrap(&mut self, sign: f64) {
+        self.done.clear();
+        (self.here.start, self.here.end) = (0.0, 0.0);
+        if sign < 0.0 {
+            self.here.offset.iter_mut().chain(&mut self.here.rate).for_each(|x| *x = -*x);
+            self.here.states.iter_mut().for_each(|state| *state = state.mirrored());
+        }
+    }
+
+    fn jet(&self, theta: f64) -> Jet {
+        let mut jet =
+            Jet { theta, value: Vec::new(), slope: Vec::new(), curvature: Vec::new() };
+        for series in self.series.chunks_exact(self.harmonics.slots()) {
+            let [value, slope, curvature] = self.harmonics.jet(series, theta);
+            jet.value.push(value);
+            jet.slope.push(slope);
+            jet.curvature.push(curvature);
+        }
+        jet
+    }
+
+    fn basis(&self, theta: f64) -> Vec<f64> {
+        let mut basis = vec![0.0; self.harmonics.slots()];
+        self.harmonics.basis(theta, &mut basis);
+        basis
+    }
+
+    fn tangent_row(&self, i: usize, of: &[f64]) -> f64 {
+        let tangent = &self.sets[self.here.set].sliding.tangent;
+        of.iter().enumerate().map(|(j, u)| tangent[(i, j)] * u).sum()
+    }
+
+    fn force_at(&self, jet: &Jet) -> Vec<f64> {
+        (0..jet.value.len()).map(|i| self.tangent_row(i, &jet.value) - self.here.offset[i]).collect()
+    }
+
+    /// Derivative of the forces at an angle in the coefficients.
+    fn gradient(&self, theta: f64) -> Vec<f64> {
+        let mut gradient = vec![0.0; self.here.rate.len()];
+        self.add_tangent(&self.basis(theta), &mut gradient);
+        gradient.iter_mut().zip(&self.here.rate).for_each(|(g, rate)| *g -= rate);
+        gradient
+    }
+
+    /// Adds `T ⊗ basis`.
+    fn add_tangent(&self, basis: &[f64], out: &mut [f64]) {
+        let tangent = &self.sets[self.here.set].sliding.tangent;
+        let size = tangent.nrows() * basis.len();
+        for (i, row) in out.chunks_exact_mut(size).enumerate() {
+            for (j, block) in row.chunks_exact_mut(basis.len()).enumerate() {
+                let stiffness = tangent[(i, j)];
+                block.iter_mut().zip(basis).for_each(|(out, b)| *out += stiffness * b);
+            }
+        }
+    }
+
+    /// Points that are free to move on in the present states.
+    fn slips(&self) -> Vec<bool> {
+        let states = self.here.states.iter().zip(&self.law.limits);
+        states.map(|(state, limit)| *state != PointState::Stuck || *limit == 0.0).collect()
+    }
+
+    /// Position of the slip set of the present states.
+    fn find_set(&mut self) -> usize {
+        let slips = self.slips();
+        if let Some(known) = self.sets.iter().position(|set| set.slips == slips) {
+            return known;
+        }
+        let sliding = self.law.elastic.sliding(&slips);
+        let slots = self.harmonics.slots();
+        let combined = |matrix: &faer::Mat<f64>| {
+            let mut out = vec![0.0; self.series.len()];
+            for (i, out) in out.chunks_exact_mut(slots).enumerate() {
+                for (j, u) in self.series.chunks_exact(slots).enumerate() {
+                    let share = matrix[(i, j)];
+                    out.iter_mut().zip(u).for_each(|(out, u)| *out += share * u);
+                }
+            }
+            out
+        };
+        let (force, slip) = (combined(&sliding.tangent), combined(&sliding.slip_rate));
+        self.sets.push(SlipSet { slips, sliding, force, slip });
+        self.sets.len() - 1
+    }
+
+    /// Finds the states that follow from the rates at an angle and goes on from there with the
+    /// given forces and their derivative.
+    fn settle(&mut self, jet: &Jet, mut force: Vec<f64>, mut gradient: Option<Vec<f64>>) {
+        let points = force.len();
+        let columns = self.series.len();
+        for (i, (force, limit)) in force.iter_mut().zip(&self.law.limits).enumerate() {
+            if *limit > 0.0 && force.abs() >= limit * (1.0 - AT_LIMIT) {
+                *force = limit.copysign(*force);
+            } else {
+                self.here.states[i] = PointState::Stuck;
+            }
+        }
+        let before = (self.here.set, self.here.states.clone());
+        // Time that the onset of slip comes earlier, per coefficient.
+        let mut advance: Option<Vec<f64>> = None;
+        for _ in 0..16 * (points + 1) {
+            let Some(i) = (0..points).find(|&i| self.contradicts(jet, &force, i)) else { break };
+            let old: Vec<f64> = (0..points).map(|r| self.tangent_row(r, &jet.slope)).collect();
+            let onset = self.here.states[i] == PointState::Stuck;
+            let column: Vec<f64> = {
+                let tangent = &self.sets[self.here.set].sliding.tangent;
+                (0..points).map(|r| tangent[(r, i)]).collect()
+            };
+            self.here.states[i] =
+                if onset { PointState::slipping(force[i]) } else { PointState::Stuck };
+            self.here.set = self.find_set();
+            self.slipped |= onset;
+            let Some(gradient) = &mut gradient else { continue };
+            if onset {
+                let own = gradient[i * columns..(i + 1) * columns].to_vec();
+                for (r, row) in gradient.chunks_exact_mut(columns).enumerate() {
+                    let share = if r == i {
+                        1.0
+                    } else if column[i] > 0.0 {
+                        column[r] / column[i]
+                    } else {
+                        0.0
+                    };
+                    row.iter_mut().zip(&own).for_each(|(g, own)| *g -= share * own);
+                }
+                advance = (old[i] != 0.0).then(|| own.iter().map(|g| g / old[i]).collect());
+            } else if let Some(advance) = &advance {
+                // A point sticks because another has begun to slip: the rates jump once more.
+                for (r, row) in gradient.chunks_exact_mut(columns).enumerate() {
+                    let jump = self.tangent_row(r, &jet.slope) - old[r];
+                    row.iter_mut().zip(advance).for_each(|(g, time)| *g += jump * time);
+                }
+            }
+        }
+        let (old_set, old_states) = before;
+        if jet.theta > self.here.start && (self.here.set, &self.here.states) != (old_set, &old_states)
+        {
+            let next = (self.here.set, std::mem::replace(&mut self.here.states, old_states));
+            self.here.set = old_set;
+            self.here.end = jet.theta;
+            self.done.push(self.here.clone_stretch());
+            (self.here.set, self.here.states) = next;
+            self.here.start = jet.theta;
+        }
+        self.here.offset = (0..points).map(|i| self.tangent_row(i, &jet.value) - force[i]).collect();
+        if let Some(gradient) = gradient {
+            let mut rate = vec![0.0; gradient.len()];
+            self.add_tangent(&self.basis(jet.theta), &mut rate);
+            rate.iter_mut().zip(&gradient).for_each(|(rate, g)| *rate -= g);
+            self.here.rate = rate;
+        }
+    }
+
+    /// Whether a point cannot go on as it is: at its limit with the force growing, or slipping
+    /// against its force.
+    fn contradicts(&self, jet: &Jet, force: &[f64], i: usize) -> bool {
+        let limit = self.law.limits[i];
+        if !(limit > 0.0 && limit.is_finite()) {
+            return false;
+        }
+        let set = &self.sets[self.here.set].sliding;
+        let (matrix, sign) = match self.here.states[i] {
+            PointState::Stuck if force[i].abs() < limit => return false,
+            PointState::Stuck => (&set.tangent, force[i].signum()),
+            state => (&set.slip_rate, -state.sign()),
+        };
+        let mut size = 0.0;
+        let mut rate = [0.0; 2];
+        for (j, (slope, curvature)) in jet.slope.iter().zip(&jet.curvature).enumerate() {
+            let part = sign * matrix[(i, j)];
+            rate[0] += part * slope;
+            rate[1] += part * curvature;
+            size += (part * slope).abs();
+        }
+        rate[0] > AT_REST * size || (rate[0] >= -AT_REST * size && rate[1] > 0.0)
+    }
+
+    /// First angle in a cell of the grid at which a point changes its state.
+    fn next_transition(&self, from: &Jet, to: &Jet) -> Option<f64> {
+        let mut first: Option<f64> = None;
+        for i in 0..self.law.limits.len() {
+            let limit = self.law.limits[i];
+            if !(limit > 0.0 && limit.is_finite()) {
+                continue;
+            }
+            let theta = match self.here.states[i] {
+                PointState::Stuck => self.reaches_limit(from, to, i, limit),
+                state => self.stands_still(from, to, i, state.sign()),
+            };
+            first = match (first, theta) {
+                (Some(a), Some(b)) => Some(f64::min(a, b)),
+                (a, b) => a.or(b),
+            };
+        }
+        first
+    }
+
+    /// Where the force of a stuck point leaves its limits.
+    fn reaches_limit(&self, from: &Jet, to: &Jet, i: usize, limit: f64) -> Option<f64> {
+        let force = |jet: &Jet| self.tangent_row(i, &jet.value) - self.here.offset[i];
+        let rate = |jet: &Jet| self.tangent_row(i, &jet.slope);
+        let (start, end) = (force(from), force(to));
+        let most = limit * (1.0 + AT_LIMIT);
+        let series = self.own_series(&self.sets[self.here.set].force, i);
+        let offset = self.here.offset[i];
+        let value = |theta: f64| {
+            let jet = self.harmonics.jet(series, theta);
+            [jet[0] - offset, jet[1]]
+        };
+        let crossing = |until: f64, sign: f64| {
+            root([from.theta, until], &|theta| {
+                let [f, slope] = value(theta);
+                [limit - sign * f, -sign * slope]
+            })
+        };
+        let (fall, rise) = (rate(from), rate(to));
+        if end.abs() > most {
+            return Some(crossing(to.theta, end.signum()));
+        }
+        // A turning point between the two may lie beyond the limit.
+        let reach = 0.5 * (to.theta - from.theta) * fall.abs().max(rise.abs());
+        if fall * rise >= 0.0 || start.abs().max(end.abs()) + reach <= limit {
+            return None;
+        }
+        let top = root([from.theta, to.theta], &|theta| {
+            let jet = self.harmonics.jet(series, theta);
+            [fall.signum() * jet[1], fall.signum() * jet[2]]
+        });
+        let [highest, _] = value(top);
+        (highest.abs() > most).then(|| crossing(top, highest.signum()))
+    }
+
+    /// Where the slip of a point comes to rest.
+    fn stands_still(&self, from: &Jet, to: &Jet, i: usize, sign: f64) -> Option<f64> {
+        let matrix = &self.sets[self.here.set].sliding.slip_rate;
+        let along = |of: &[f64]| -> f64 {
+            sign * of.iter().enumerate().map(|(j, x)| matrix[(i, j)] * x).sum::<f64>()
+        };
+        let (start, end) = (along(&from.slope), along(&to.slope));
+        let series = self.own_series(&self.sets[self.here.set].slip, i);
+        let slope = |theta: f64| {
+            let jet = self.harmonics.jet(series, theta);
+            [sign * jet[1], sign * jet[2]]
+        };
+        if end < 0.0 {
+            return Some(root([from.theta, to.theta], &slope));
+        }
+        // The slip may come to rest and go on between the two.
+        let (fall, rise) = (along(&from.curvature), along(&to.curvature));
+        let reach = 0.5 * (to.theta - from.theta) * fall.abs().max(rise.abs());
+        if !(fall < 0.0 && rise > 0.0) || start.min(end) >= reach {
+            return None;
+        }
+        let (mut low, mut high) = (from.theta, to.theta);
+        for _ in 0..STEPS {
+            let middle = 0.5 * (low + high);
+            if slope(middle)[1] < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let size = along(&from.slope).abs() + reach;
+        (slope(low)[0] < -AT_LIMIT * size).then(|| root([from.theta, low], &slope))
+    }
+
+    fn own_series<'b>(&self, all: &'b [f64], i: usize) -> &'b [f64] {
+        let slots = self.harmonics.slots();
+        &all[i * slots..(i + 1) * slots]
+    }
+}
+
+impl Stretch {
+    fn clone_stretch(&self) -> Self {
+        Self {
+            start: self.start,
+            end: self.end,
+            set: self.set,
+            states: self.states.clone(),
+            offset: self.offset.clone(),
+            rate: self.rate.clone(),
+        }
+    }
+}
+
+/// Zero of a function that falls from its first to its second angle, with its slope: Newton's
+/// method kept inside the bracket.
+fn root([mut low, mut high]: [f64; 2], of: &dyn Fn(f64) -> [f64; 2]) -> f64 {
+    let mut theta = 0.5 * (low + high);
+    for _ in 0..STEPS {
+        let [value, slope] = of(theta);
+        if value > 0.0 {
+            low = theta;
+        } else {
+            high = theta;
+        }
+        let newton = theta - value / slope;
+        let next =
+            if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        let moved = (next - theta).abs();
+        theta = next;
+        if moved <= 4.0 * f64::EPSILON * (1.0 + theta) {
+            break;
+        }
+    }
+    theta
+}
