@@ -28,7 +28,14 @@ if TYPE_CHECKING:
     )
     from stickslip.errors import Interrupted, ModelError
     from stickslip.io import read_matrix
-    from stickslip.model import Force, Jenkins, Model, natural_frequencies
+    from stickslip.model import (
+        Force,
+        Jenkins,
+        Model,
+        StructuralDamper,
+        natural_frequencies,
+        slip_configurations,
+    )
     from stickslip.model.state import State
     from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
     from stickslip.results import ForcedResponse
@@ -57,6 +64,7 @@ __all__ = [
     "Rayleigh",
     "State",
     "Status",
+    "StructuralDamper",
     "Structure",
     "Transient",
     "__version__",
@@ -74,6 +82,7 @@ __all__ = [
     "read_matrix",
     "reference",
     "single_harmonic",
+    "slip_configurations",
     "study",
     "transient",
 ]
@@ -96,6 +105,7 @@ _HOMES = {
     "Rayleigh": "model",
     "State": "model.state",
     "Status": "results",
+    "StructuralDamper": "model",
     "Structure": "model",
     "Transient": "results.transient",
     "__version__": "_core",
@@ -111,6 +121,7 @@ _HOMES = {
     "optimal_damper": "analyses.optimal_damper",
     "read_matrix": "io",
     "single_harmonic": "analyses.single_harmonic",
+    "slip_configurations": "model",
     "transient": "analyses.transient",
 }
 _MODULES = ("plot", "reference", "study")

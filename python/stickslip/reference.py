@@ -15,7 +15,7 @@ import numpy as np
 
 from stickslip.checks import Matrix
 from stickslip.disk import BladedDisk, Coupling
-from stickslip.model import Force, Jenkins, Model
+from stickslip.model import Force, Jenkins, Model, StructuralDamper
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "SNECMA_LOADS",
     "beam_pair",
     "beam_ring",
+    "damped_pair",
     "laxalde_blisk",
     "rubber_beam",
     "single_dof",
@@ -114,6 +115,42 @@ def single_dof(force_ratio: float = 1.0) -> Model:
     """
     mass = Structure(mass=[[944.6]], stiffness=[[2.4e7]], damping=[[7700.0]], dofs=["mass"])
     return Model(mass, [_damper("mass")], [Force("mass", force_ratio * DAMPER_SLIP_FORCE)])
+
+
+def damped_pair(force: float = 35.0) -> Model:
+    """Return two SNECMA beams joined by a structure-like damper, driven in opposition at the tips.
+
+    Parameters
+    ----------
+    force : float, optional
+        Amplitude of the force on either tip [N].
+
+    Returns
+    -------
+    Model
+        6 degrees of freedom "1.damper", "1.tip", ..., "2.mode"; the contact "structural" with four
+        points, at "1.damper", "2.damper", "1.tip" and "2.tip", the last of which never slips.
+        Stuck natural frequencies 541.2619, 1090.2088, 2026.5922, ... rad/s.
+
+    References
+    ----------
+    Guillen (1999), section 6.4, eq. (6.26) and Table 6.3.
+    """
+    damper = StructuralDamper(
+        ["1.damper", "2.damper", "1.tip", "2.tip"],
+        stiffness=[
+            [2.88e7, -2.4e7, 0.0, -4.8e6],
+            [-2.4e7, 2.64e7, -2.4e6, 0.0],
+            [0.0, -2.4e6, 2.64e6, -2.4e5],
+            [-4.8e6, 0.0, -2.4e5, 5.04e6],
+        ],
+        slip_forces=[24.6, 100.0, 246.05, np.inf],
+    )
+    return Model(
+        join({"1": snecma_structure(), "2": snecma_structure()}),
+        [damper],
+        [Force("1.tip", force), Force("2.tip", force, phase=pi)],
+    )
 
 
 def beam_pair(

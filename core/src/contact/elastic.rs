@@ -2,7 +2,7 @@
 //!
 //! With `D = L Lᵀ` the strain `g = Lᵀ (u − s)` holds all that the forces `f = L g` can be: forces
 //! that the body cannot carry (the resultant of one that floats) do not exist in it. Its square is
-//! twice the elastic energy. While the points S slip their rows of L hold g fast: it moves along
+//! twice the elastic energy. While the points S slip, their rows of L hold g fast: it moves along
 //! `P = I − L_Sᵀ (L_Sᵀ)⁺`, and the forces with the tangent `L P Lᵀ`, which is the condensed
 //! stiffness `D_TT − D_TS D_SS⁻¹ D_ST` (Guillen 1999, eqs. 6.14-6.17) wherever D_SS has an inverse
 //! and stays defined where it has none.
@@ -29,8 +29,6 @@ pub(crate) struct Sliding {
     /// Slip per displacement, `s' = R u'`, rows of points that stick zero. Where the slip is not
     /// unique it is the least.
     pub(crate) slip_rate: Mat<f64>,
-    /// `∂g/∂(Lᵀ u)`, rank × rank: an orthogonal projector.
-    pub(crate) projector: Mat<f64>,
 }
 
 impl Elastic {
@@ -87,6 +85,43 @@ impl Elastic {
         &self.inverse
     }
 
+    /// Strains of the forces: the left inverse of L times them.
+    pub(crate) fn strains(&self, force: &[f64]) -> Vec<f64> {
+        let row = |a: usize| force.iter().enumerate().map(move |(i, f)| self.inverse[(a, i)] * f);
+        (0..self.rank()).map(|a| row(a).sum()).collect()
+    }
+
+    /// Forces of the strains.
+    pub(crate) fn forces(&self, strains: &[f64]) -> Vec<f64> {
+        let row = |i: usize| strains.iter().enumerate().map(move |(a, g)| self.root[(i, a)] * g);
+        (0..self.root.nrows()).map(|i| row(i).sum()).collect()
+    }
+
+    /// The part of forces that a deformation can give.
+    pub(crate) fn carried(&self, force: &[f64]) -> Vec<f64> {
+        self.forces(&self.strains(force))
+    }
+
+    /// Orthonormal basis of the strains that move no row of the points marked in `held`.
+    pub(crate) fn unmoved(&self, held: &[bool]) -> Vec<Vec<f64>> {
+        let rows: Vec<usize> = (0..held.len()).filter(|&i| held[i]).collect();
+        let mut basis = self.directions(&rows);
+        let taken = basis.len();
+        for a in 0..self.rank() {
+            let mut unit = vec![0.0; self.rank()];
+            unit[a] = 1.0;
+            for _ in 0..2 {
+                subtract_along(&basis, &mut unit);
+            }
+            let left = norm(&unit);
+            if left > NEGLIGIBLE.sqrt() {
+                unit.iter_mut().for_each(|x| *x /= left);
+                basis.push(unit);
+            }
+        }
+        basis.split_off(taken)
+    }
+
     /// What the body does while the points marked in `slips` slip.
     pub(crate) fn sliding(&self, slips: &[bool]) -> Sliding {
         let (points, rank) = (self.root.nrows(), self.rank());
@@ -107,21 +142,18 @@ impl Elastic {
                 }
             }
         }
-        Sliding { tangent, slip_rate: self.slip_rate(&slipping, &held), projector }
+        Sliding { tangent, slip_rate: self.least_slip(&slipping, &held, &self.root.transpose().to_owned()) }
     }
 
     /// Orthonormal basis of the strains that the rows of some points span.
-    pub(crate) fn directions(&self, points: &[usize]) -> Vec<Vec<f64>> {
+    fn directions(&self, points: &[usize]) -> Vec<Vec<f64>> {
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for &i in points {
             let mut row: Vec<f64> = (0..self.rank()).map(|a| self.root[(i, a)]).collect();
             let size = norm(&row);
             // Twice is enough (Kahan): the first pass may leave rounding along the basis.
             for _ in 0..2 {
-                for q in &basis {
-                    let along: f64 = q.iter().zip(&row).map(|(q, r)| q * r).sum();
-                    row.iter_mut().zip(q).for_each(|(r, q)| *r -= along * q);
-                }
+                subtract_along(&basis, &mut row);
             }
             let left = norm(&row);
             // Its square is the pivot of the stiffness.
@@ -133,26 +165,40 @@ impl Elastic {
         basis
     }
 
-    /// Least solution of `L_Sᵀ s' = Q Qᵀ Lᵀ u'` with Q the basis `held` of the rows S.
-    fn slip_rate(&self, slipping: &[usize], held: &[Vec<f64>]) -> Mat<f64> {
-        let points = self.root.nrows();
-        let mut rate = Mat::zeros(points, points);
+    /// Least slip of the points marked in `slips` that takes these forces off the body.
+    pub(crate) fn slip(&self, slips: &[bool], lost: &[f64]) -> Vec<f64> {
+        let slipping: Vec<usize> = (0..slips.len()).filter(|&i| slips[i]).collect();
+        let strains = self.strains(lost);
+        let column = Mat::from_fn(strains.len(), 1, |a, _| strains[a]);
+        let slip = self.least_slip(&slipping, &self.directions(&slipping), &column);
+        (0..slips.len()).map(|i| slip[(i, 0)]).collect()
+    }
+
+    /// Least solutions of `L_Sᵀ s = Q Qᵀ g` for columns g, with Q the basis `held` of the rows S.
+    fn least_slip(&self, slipping: &[usize], held: &[Vec<f64>], strains: &Mat<f64>) -> Mat<f64> {
+        let mut least = Mat::zeros(self.root.nrows(), strains.ncols());
         if held.is_empty() {
-            return rate;
+            return least;
         }
-        let along = |i: usize, q: &[f64]| -> f64 {
-            q.iter().enumerate().map(|(a, q)| q * self.root[(i, a)]).sum()
-        };
-        let rows = Mat::from_fn(slipping.len(), held.len(), |i, m| along(slipping[i], &held[m]));
-        let strains = Mat::from_fn(held.len(), points, |m, j| along(j, &held[m]));
+        let basis = Mat::from_fn(self.rank(), held.len(), |a, m| held[m][a]);
+        let rows = Mat::from_fn(slipping.len(), self.rank(), |i, a| self.root[(slipping[i], a)]);
+        let rows = rows * &basis;
         let gram = rows.transpose() * &rows;
-        let slip = &rows * gram.partial_piv_lu().solve(&strains);
+        let slip = &rows * gram.partial_piv_lu().solve(basis.transpose() * strains);
         for (row, &i) in slipping.iter().enumerate() {
-            for j in 0..points {
-                rate[(i, j)] = slip[(row, j)];
+            for j in 0..strains.ncols() {
+                least[(i, j)] = slip[(row, j)];
             }
         }
-        rate
+        least
+    }
+}
+
+/// Takes from x what lies along an orthonormal basis.
+fn subtract_along(basis: &[Vec<f64>], x: &mut [f64]) {
+    for q in basis {
+        let along: f64 = q.iter().zip(&*x).map(|(q, x)| q * x).sum();
+        x.iter_mut().zip(q).for_each(|(x, q)| *x -= along * q);
     }
 }
 

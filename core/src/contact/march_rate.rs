@@ -3,6 +3,7 @@
 use faer::Mat;
 
 /// Derivative of the slip loads at one instant in all coefficients, point after point.
+#[derive(Clone)]
 pub(super) struct Rate {
     slots: usize,
     stiffness: Mat<f64>,
@@ -19,6 +20,11 @@ impl Rate {
     /// Multiplies the derivative by a sign.
     pub(super) fn scale(&mut self, sign: f64) {
         self.value.iter_mut().for_each(|rate| *rate *= sign);
+    }
+
+    /// The mean of this derivative and another.
+    pub(super) fn average(&mut self, other: &Self) {
+        self.value.iter_mut().zip(&other.value).for_each(|(a, b)| *a = 0.5 * (*a + b));
     }
 
     /// Takes the derivative through one return map.
@@ -58,12 +64,13 @@ impl Rate {
     }
 }
 
-/// Whether point i of a return map sticks: its force is the trial force.
-pub(super) fn is_unit_row(gain: &[f64], points: usize, i: usize) -> bool {
-    (0..points).all(|j| gain[i * points + j] == f64::from(u8::from(i == j)))
+/// Whether point i of a return map sticks: its own displacement moves its force in full. Others may
+/// take part of it by their slip.
+pub(super) fn sticks(gain: &[f64], points: usize, i: usize) -> bool {
+    gain[i * points + i] == 1.0
 }
 
 /// Whether all points stick.
 pub(super) fn is_identity(gain: &[f64], points: usize) -> bool {
-    (0..points).all(|i| is_unit_row(gain, points, i))
+    (0..points).all(|i| sticks(gain, points, i))
 }

@@ -6,9 +6,10 @@
 //! error is of second order in the distance of the samples. It serves laws that have no closed
 //! form, and comparisons with those that have one.
 
-use super::march_rate::{is_identity, is_unit_row, Rate};
+use super::march_rate::{is_identity, sticks, Rate};
+use super::passage::SLOW;
 use super::samples::Samples;
-use super::{Describing, FrictionLaw, Motion, PointState, PointSummary, Residual, SlipLoad};
+use super::{Describing, Elastic, FrictionLaw, Motion, PointState, PointSummary, Residual, SlipLoad};
 use crate::fourier::Harmonics;
 use crate::Error;
 use faer::Mat;
@@ -39,11 +40,12 @@ pub struct Marched {
 struct Round {
     /// Instant after instant.
     force: Vec<f64>,
-    /// Rounds marched until the forces repeated.
-    rounds: usize,
+    /// Rounds marched until the forces repeated, each with whether its start was the mean of the
+    /// two before.
+    averaged: Vec<bool>,
     /// Steps in slip per point.
     slipping: Vec<usize>,
-    /// Work of every point's force over the span.
+    /// Friction work of every point over the span, if it was asked for.
     work: Vec<f64>,
     /// Whether anything has slipped from the start on.
     slipped: bool,
@@ -113,21 +115,21 @@ impl Marched {
         force
     }
 
-    /// Marches until the forces repeat.
-    fn march(&self, samples: &Samples) -> Round {
+    /// Marches until the forces repeat; with `account` of the friction work.
+    fn march(&self, samples: &Samples, account: bool) -> Round {
         let points = self.points();
         let mut gain = vec![0.0; points * points];
         let mut force = self.start(samples, &mut gain);
         let mut round = Round {
             force: vec![0.0; samples.count * points],
-            rounds: 0,
+            averaged: vec![false],
             slipping: Vec::new(),
             work: Vec::new(),
             slipped: !is_identity(&gain, points),
         };
         let (mut du, mut before) = (vec![0.0; points], vec![0.0; points]);
+        let mut last_change = f64::INFINITY;
         loop {
-            round.rounds += 1;
             round.slipping = vec![0; points];
             round.work = vec![0.0; points];
             before.copy_from_slice(&force);
@@ -138,22 +140,57 @@ impl Marched {
                 self.step(samples, n, &mut du, &mut force, &mut gain);
                 for i in 0..points {
                     largest = largest.max(force[i].abs());
-                    round.slipping[i] += usize::from(!is_unit_row(&gain, points, i));
-                    round.work[i] += 0.5 * (round.force[old + i] + force[i]) * du[i];
+                    round.slipping[i] += usize::from(!sticks(&gain, points, i));
+                }
+                if account {
+                    self.add_work(&round.force[old..old + points], &force, &du, &gain, &mut round.work);
                 }
             }
             force.iter_mut().for_each(|f| *f *= samples.sign);
             round.slipped |= round.slipping.iter().any(|&steps| steps > 0);
             let change = force.iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            if change <= PERIODIC * largest || round.rounds == MOST_ROUNDS {
+            if change <= PERIODIC * largest || round.averaged.len() == MOST_ROUNDS {
                 return round;
+            }
+            let alternates = samples.sign < 0.0 && change > SLOW * last_change;
+            if alternates {
+                force.iter_mut().zip(&before).for_each(|(f, before)| *f = 0.5 * (*f + before));
+            }
+            round.averaged.push(alternates);
+            last_change = change;
+        }
+    }
+
+    /// Adds the friction work of a step. Over a period that of a single point is the work of its
+    /// force; coupled points exchange elastic energy, so that their slip has to be known.
+    fn add_work(&self, before: &[f64], force: &[f64], du: &[f64], gain: &[f64], work: &mut [f64]) {
+        let points = force.len();
+        if points == 1 {
+            work[0] += 0.5 * (before[0] + force[0]) * du[0];
+            return;
+        }
+        let slips: Vec<bool> = (0..points).map(|i| !sticks(gain, points, i)).collect();
+        if !slips.contains(&true) {
+            return;
+        }
+        let stiffness = self.law.stiffness();
+        let lost: Vec<f64> = (0..points)
+            .map(|i| {
+                let elastic: f64 = (0..points).map(|j| stiffness[(i, j)] * du[j]).sum();
+                before[i] + elastic - force[i]
+            })
+            .collect();
+        if let Ok(elastic) = Elastic::new(stiffness.as_ref()) {
+            let slip = elastic.slip(&slips, &lost);
+            for (i, s) in slip.into_iter().enumerate() {
+                work[i] += 0.5 * (before[i] + force[i]) * s;
             }
         }
     }
 
     /// Derivative of the march, start and history included. With trial forces `D u − q` before and
     /// the gain P of the return map, `dq_n = P dq_{n−1} + (I − P) D du_n`.
-    fn differentiate(&self, samples: &Samples, rounds: usize, slots: usize, out: &mut [f64]) {
+    fn differentiate(&self, samples: &Samples, rounds: &[bool], slots: usize, out: &mut [f64]) {
         let points = self.points();
         let mut gain = vec![0.0; points * points];
         let mut force = self.start(samples, &mut gain);
@@ -161,9 +198,16 @@ impl Marched {
         rate.follow(&gain, &samples.basis[..slots]);
         let weight = 2.0 / samples.count as f64;
         let (mut sum, mut du) = (vec![0.0; slots], vec![0.0; points]);
-        for round in 1..=rounds {
+        let mut before = (force.clone(), rate.clone());
+        for (round, averaged) in rounds.iter().enumerate() {
+            let last = round + 1 == rounds.len();
+            if *averaged {
+                force.iter_mut().zip(&before.0).for_each(|(f, before)| *f = 0.5 * (*f + before));
+                rate.average(&before.1);
+            }
+            before = (force.clone(), rate.clone());
             for n in 1..=samples.count {
-                if round == rounds {
+                if last {
                     // While everything sticks q keeps its derivative: instants are summed first.
                     let basis = &samples.basis[(n - 1) * slots..n * slots];
                     sum.iter_mut().zip(basis).for_each(|(sum, b)| *sum += weight * b);
@@ -171,7 +215,7 @@ impl Marched {
                 self.step(samples, n, &mut du, &mut force, &mut gain);
                 let wraps = n == samples.count;
                 if wraps || !is_identity(&gain, points) {
-                    if round == rounds {
+                    if last {
                         rate.add_to(&mut sum, out);
                     }
                     let sign = if wraps { samples.sign } else { 1.0 };
@@ -237,7 +281,7 @@ impl FrictionLaw for Marched {
             }
             return;
         }
-        let round = self.march(&samples);
+        let round = self.march(&samples, false);
         if !round.slipped {
             return;
         }
@@ -253,7 +297,7 @@ impl FrictionLaw for Marched {
             }
         }
         if tangent {
-            self.differentiate(&samples, round.rounds, slots, &mut out.tangent);
+            self.differentiate(&samples, &round.averaged, slots, &mut out.tangent);
         }
         halve_means(harmonics, points, out);
     }
@@ -288,7 +332,7 @@ impl FrictionLaw for Marched {
         if self.stuck(&samples, motion.residual).is_some() {
             return;
         }
-        let round = self.march(&samples);
+        let round = self.march(&samples, true);
         let spans = (self.samples / samples.count) as f64;
         for (i, summary) in out.iter_mut().enumerate() {
             summary.slip_fraction = round.slipping[i] as f64 / samples.count as f64;
@@ -343,7 +387,7 @@ impl FrictionLaw for Marched {
         let (slots, points) = (harmonics.slots(), self.points());
         let grid = Samples::of(motion, self.samples);
         let stuck = self.stuck(&grid, motion.residual);
-        let round = self.march(&grid);
+        let round = self.march(&grid, false);
         let mut history = Vec::with_capacity(samples * points);
         for m in 0..samples {
             let theta = TAU * m as f64 / samples as f64;

@@ -17,6 +17,9 @@ const MOST_ROUNDS: usize = 200;
 const PERIODIC: f64 = 1e-13;
 /// Weight of the elastic forces in that.
 const ELASTIC: f64 = 0.01;
+/// Change over a round of half a period, relative to the one before, that shows a slip which
+/// nothing undoes: mirrored it alternates, and the symmetric motion is the mean of both.
+pub(super) const SLOW: f64 = 0.9;
 /// Distance from its limit at which a point is at it, relative to the limit.
 const AT_LIMIT: f64 = 1e-12;
 /// Rate, relative to the sum of its parts, below which it counts as zero.
@@ -88,12 +91,11 @@ impl Passage {
     pub(super) fn new(law: &StructuralDamper, motion: Motion<'_>, tangent: bool) -> Self {
         let mut march = March::new(law, motion, tangent);
         let sign = if motion.table.harmonics().half_wave() { -1.0 } else { 1.0 };
-        let mut resolved = true;
+        let (mut resolved, mut last_change) = (true, f64::INFINITY);
         for round in 0..MOST_ROUNDS {
-            if round > 0 {
-                march.wrap(sign);
-            }
-            let before = march.force_at(&march.jet(0.0));
+            let start = march.jet(0.0);
+            let before = march.force_at(&start);
+            let gradient = tangent.then(|| march.gradient(0.0));
             resolved = march.round();
             let after = march.force_at(&march.jet(motion.table.harmonics().span()));
             // Forces are differences of elastic ones, which bound their rounding errors.
@@ -101,9 +103,15 @@ impl Passage {
             let elastic = march.here.offset.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
             let change =
                 before.iter().zip(&after).map(|(b, a)| (sign * a - b).abs()).fold(0.0, f64::max);
-            if !resolved || change <= PERIODIC * (largest + ELASTIC * elastic) {
+            let periodic = change <= PERIODIC * (largest + ELASTIC * elastic);
+            if !resolved || periodic || round + 1 == MOST_ROUNDS {
                 break;
             }
+            march.wrap(sign);
+            if sign < 0.0 && change > SLOW * last_change {
+                march.average(&start, &before, gradient);
+            }
+            last_change = change;
         }
         let March { sets, mut done, here, slipped, .. } = march;
         done.push(here);
@@ -218,6 +226,16 @@ impl<'a> March<'a> {
             self.here.offset.iter_mut().chain(&mut self.here.rate).for_each(|x| *x = -*x);
             self.here.states.iter_mut().for_each(|state| *state = state.mirrored());
         }
+    }
+
+    /// Begins the round from the mean of its forces and those of the round before.
+    fn average(&mut self, start: &Jet, before: &[f64], gradient: Option<Vec<f64>>) {
+        let force: Vec<f64> =
+            self.force_at(start).iter().zip(before).map(|(a, b)| 0.5 * (a + b)).collect();
+        let gradient = gradient.map(|before| {
+            self.gradient(0.0).iter().zip(&before).map(|(a, b)| 0.5 * (a + b)).collect()
+        });
+        self.settle(start, force, gradient);
     }
 
     fn jet(&self, theta: f64) -> Jet {

@@ -1,10 +1,12 @@
 //! The equations of motion in the modes of the structure without contacts.
 
-use crate::contact::PointState;
+use crate::contact::{Elastic, FrictionLaw, PointState};
 use crate::model::Model;
 use crate::structure::real_modes;
 use crate::Error;
 use faer::{c64, Mat};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Modal damping.
 #[derive(Debug, Clone)]
@@ -13,6 +15,17 @@ pub(super) enum Damping {
     Diagonal(Vec<f64>),
     /// A full modal matrix.
     Full(Mat<f64>),
+}
+
+/// A contact: its law, its points and what deforms in it.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    pub(crate) law: Arc<dyn FrictionLaw>,
+    /// Its points among those of the model.
+    pub(crate) points: Range<usize>,
+    /// Its strains among those of the model.
+    pub(crate) strains: Range<usize>,
+    pub(crate) elastic: Elastic,
 }
 
 /// `η'' + Φᵀ C Φ η' + Ω² η + (B Φ)ᵀ f = Φᵀ P(t)`, with `x = Φ η` and `u = B Φ η`.
@@ -35,8 +48,8 @@ pub struct ModalSystem {
     rate: f64,
     /// Slip limits of all points [N].
     pub(super) limits: Vec<f64>,
-    /// Diagonal of the contact stiffness D [N/m].
-    stiffness: Vec<f64>,
+    /// The contacts.
+    bodies: Vec<Body>,
 }
 
 impl ModalSystem {
@@ -66,7 +79,6 @@ impl ModalSystem {
             (load.harmonic, modal)
         });
         let stuck = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
-        let total = model.contact_stiffness();
         Ok(Self {
             contacts: contacts.collect(),
             loads: loads.filter(|(_, load): &(_, Vec<c64>)| !is_zero(load)).collect(),
@@ -78,7 +90,7 @@ impl ModalSystem {
             },
             to_modes: modes.shapes.transpose() * structure.mass(),
             limits: model.laws().iter().flat_map(|law| law.limits()).collect(),
-            stiffness: (0..total.nrows()).map(|i| total[(i, i)]).collect(),
+            bodies: bodies(model)?,
             omega_squared: modes.omega_squared,
             shapes: modes.shapes,
         })
@@ -171,11 +183,31 @@ impl ModalSystem {
         &self.limits
     }
 
-    /// Stiffness of each contact point on its own [N/m].
-    #[must_use]
-    pub fn contact_stiffness(&self) -> &[f64] {
-        &self.stiffness
+    /// The contacts.
+    pub(crate) fn bodies(&self) -> &[Body] {
+        &self.bodies
     }
+
+    /// Number of strains of all contacts: forces that deformations cannot give do not count.
+    pub(crate) fn strains(&self) -> usize {
+        self.bodies.last().map_or(0, |body| body.strains.end)
+    }
+}
+
+fn bodies(model: &Model) -> Result<Vec<Body>, Error> {
+    let mut bodies: Vec<Body> = Vec::with_capacity(model.laws().len());
+    for (law, points) in model.laws().iter().zip(model.points()) {
+        let elastic = Elastic::new(law.stiffness().as_ref())?;
+        let first = bodies.last().map_or(0, |body| body.strains.end);
+        let strains = first..first + elastic.rank();
+        bodies.push(Body {
+            law: Arc::from(law.magnified(1.0)),
+            points: points.clone(),
+            strains,
+            elastic,
+        });
+    }
+    Ok(bodies)
 }
 
 /// `∂f/∂u` and slip per displacement of all contacts in given states.

@@ -164,11 +164,7 @@ impl<'a> Survey<'a> {
             .iter()
             .map(|event| Event {
                 time: event.time + half,
-                state: match event.state {
-                    PointState::Stuck => PointState::Stuck,
-                    PointState::Forward => PointState::Backward,
-                    PointState::Backward => PointState::Forward,
-                },
+                state: event.state.mirrored(),
                 ..*event
             })
             .collect();

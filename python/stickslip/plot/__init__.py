@@ -10,6 +10,7 @@ from stickslip.plot.charts import (
     slip,
     waveform,
 )
+from stickslip.plot.contacts import contact_forces
 from stickslip.plot.damper import DamperOptions, damper
 from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
 from stickslip.plot.orbits import MultiplierOptions, events, multipliers
@@ -39,6 +40,7 @@ __all__ = [
     "SpectrumOptions",
     "blade_bars",
     "blade_curves",
+    "contact_forces",
     "contact_history",
     "curves",
     "damper",

@@ -25,6 +25,7 @@ __all__ = [
     "DampingSource",
     "MatrixFile",
     "MatrixSource",
+    "Rows",
     "ModalDampingTable",
     "RayleighDamping",
     "Rows",
