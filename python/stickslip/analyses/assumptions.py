@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.analyses.contact_assumptions import contact_assumptions
+from stickslip.analyses.contact_assumptions import (
+    contact_assumptions,
+    residual_assumption,
+    start_assumption,
+)
 from stickslip.model import Model, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
 from stickslip.results.status import Status
@@ -149,8 +153,8 @@ def orbit_assumptions(
         texts = (
             half,
             f"Harmonics are reported up to {settings.harmonics}; the orbits have no truncation.",
-            _residual(model, settings, arrays),
-            _coupled(model),
+            residual_assumption(model, settings, arrays),
+            start_assumption(model),
             chosen,
             _frequencies(without_span, arrays, missing, interrupted=missing > 0),
             _observed(model, dofs),

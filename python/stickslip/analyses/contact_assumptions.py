@@ -8,21 +8,25 @@ from stickslip.model import Model, StructuralDamper
 from stickslip.results.arrays import Arrays
 
 if TYPE_CHECKING:
+    from stickslip.analyses.exact_response import ExactSettings
     from stickslip.analyses.forced_response import Settings
 
-__all__ = ["contact_assumptions"]
+__all__ = ["contact_assumptions", "residual_assumption", "start_assumption"]
 
 
 def contact_assumptions(model: Model, settings: Settings, arrays: Arrays) -> tuple[str, ...]:
     """Say what was assumed of residual forces, starts and sampling; empty where nothing was."""
     return (
-        _residual(model, settings, arrays),
-        _coupled(model),
+        residual_assumption(model, settings, arrays),
+        start_assumption(model),
         _evaluation(model, settings),
     )
 
 
-def _residual(model: Model, settings: Settings, arrays: Arrays) -> str:
+def residual_assumption(
+    model: Model, settings: Settings | ExactSettings, arrays: Arrays
+) -> str:
+    """Say what contacts that never slip were taken to hold."""
     stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
     if all(contact.points > 1 for contact in model.contacts) or not stuck.any():
         return ""
@@ -37,8 +41,8 @@ def _residual(model: Model, settings: Settings, arrays: Arrays) -> str:
     )
 
 
-def _coupled(model: Model) -> str:
-    """Say how dampers of several points begin, and by what they are held."""
+def start_assumption(model: Model) -> str:
+    """Say how dampers of several points begin, and what holds them."""
     several = [one for one in model.contacts if isinstance(one, StructuralDamper)]
     if not several:
         return ""
