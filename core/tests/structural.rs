@@ -123,7 +123,9 @@ fn two_points_of_which_one_never_slips_are_a_jenkins_element() {
         let expected = jenkins.force_history(rest, 64);
         let mut summary = [PointSummary::default()];
         jenkins.summary(rest, &mut summary);
-        for (limits, moves) in [([limit, f64::INFINITY], 0), ([limit, 1.1 * limit], 0), ([2.0 * limit, limit], 1)] {
+        for (limits, moves) in
+            [([limit, f64::INFINITY], 0), ([limit, 1.1 * limit], 0), ([2.0 * limit, limit], 1)]
+        {
             let law = StructuralDamper::new(spring.as_ref(), &limits).unwrap();
             let force = law.force_history(motion(&table, &u), 64);
             for (pair, f) in force.chunks_exact(2).zip(&expected) {
@@ -186,8 +188,7 @@ fn increments_solve_their_complementarity_problem() {
                 .collect();
             // What slip takes off is no more than the trial forces, along the limits alone.
             let scale = largest(&trial).max(1.0);
-            let slips: Vec<usize> =
-                (0..points).filter(|&i| gain[i * points + i] == 0.0).collect();
+            let slips: Vec<usize> = (0..points).filter(|&i| gain[i * points + i] == 0.0).collect();
             let d = Mat::from_fn(slips.len(), slips.len(), |i, j| stiffness[(slips[i], slips[j])]);
             use faer::linalg::solvers::Solve as _;
             let lost = Mat::from_fn(slips.len(), 1, |i, _| trial[slips[i]] - force[slips[i]]);

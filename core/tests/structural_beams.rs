@@ -77,8 +77,7 @@ fn history(model: &Model, point: &Point) -> (Vec<f64>, Vec<Vec<usize>>) {
 }
 
 fn push_set(states: &[PointState], sets: &mut Vec<Vec<usize>>) {
-    let set: Vec<usize> =
-        (0..states.len()).filter(|&i| states[i] != PointState::Stuck).collect();
+    let set: Vec<usize> = (0..states.len()).filter(|&i| states[i] != PointState::Stuck).collect();
     if !set.is_empty() && !sets.contains(&set) {
         sets.push(set);
     }
@@ -133,7 +132,8 @@ fn natural_frequencies_of_all_eight_configurations() {
         };
         println!("{slipping:?} {found:?}");
         for expected in expected {
-            let nearest = found.iter().fold(f64::INFINITY, |m, w| m.min((w / expected - 1.0).abs()));
+            let nearest =
+                found.iter().fold(f64::INFINITY, |m, w| m.min((w / expected - 1.0).abs()));
             assert!(nearest < 1e-6, "{slipping:?}: {expected} not in {found:?}");
         }
     }
@@ -153,8 +153,7 @@ fn forces_and_slip_sets_of_the_four_time_histories() {
             tolerance: None,
             keep: None,
         };
-        let path =
-            transient(&model, &run, Some(&exact.state), &DOFS, &|_| true).unwrap();
+        let path = transient(&model, &run, Some(&exact.state), &DOFS, &|_| true).unwrap();
         println!("{omega} {force} exact {:?}", peaks(&path.trace.force));
         expect_peaks(peaks(&path.trace.force), expected, 1e-5);
         let expected_sets = sorted(sets.iter().map(|set| set.to_vec()).collect());
@@ -213,9 +212,18 @@ fn curves(model: &Model, grid: &[f64], harmonics: usize) -> Vec<[f64; 4]> {
 #[test]
 fn peaks_of_the_frequency_responses_and_sweeps_from_either_side() {
     for (force, expected) in [
-        (20.0, [(1.9184e-5, 541.44), (1.9093e-5, 541.23), (3.0592e-5, 539.43), (2.4787e-5, 542.54)]),
-        (60.0, [(3.1929e-5, 532.85), (3.2890e-5, 531.06), (6.9382e-5, 531.04), (3.1452e-5, 532.92)]),
-        (120.0, [(4.3601e-5, 526.30), (4.6078e-5, 524.96), (1.1256e-4, 524.95), (3.9010e-5, 561.0)]),
+        (
+            20.0,
+            [(1.9184e-5, 541.44), (1.9093e-5, 541.23), (3.0592e-5, 539.43), (2.4787e-5, 542.54)],
+        ),
+        (
+            60.0,
+            [(3.1929e-5, 532.85), (3.2890e-5, 531.06), (6.9382e-5, 531.04), (3.1452e-5, 532.92)],
+        ),
+        (
+            120.0,
+            [(4.3601e-5, 526.30), (4.6078e-5, 524.96), (1.1256e-4, 524.95), (3.9010e-5, 561.0)],
+        ),
     ] {
         let model = damped_beams(force);
         let mut grid: Vec<f64> = (0..=400).map(|i| 500.0 + 0.5 * f64::from(i)).collect();

@@ -142,7 +142,10 @@ impl Elastic {
                 }
             }
         }
-        Sliding { tangent, slip_rate: self.least_slip(&slipping, &held, &self.root.transpose().to_owned()) }
+        Sliding {
+            tangent,
+            slip_rate: self.least_slip(&slipping, &held, &self.root.transpose().to_owned()),
+        }
     }
 
     /// Orthonormal basis of the strains that the rows of some points span.

@@ -87,8 +87,7 @@ impl<'a> Increment<'a> {
         for i in (0..points).filter(|i| !self.slipping.contains(i)) {
             gain[i * points + i] = 1.0;
             // D_TS D_SS⁻¹, one row at a time.
-            let mut row: Vec<f64> =
-                self.slipping.iter().map(|&j| self.stiffness[(i, j)]).collect();
+            let mut row: Vec<f64> = self.slipping.iter().map(|&j| self.stiffness[(i, j)]).collect();
             self.solve_factored(&mut row, true);
             for (&j, value) in self.slipping.iter().zip(row) {
                 gain[i * points + j] = -value;

@@ -1,5 +1,7 @@
-//! The derivative of a march through a friction law, carried from instant to instant.
+//! What a march through a friction law carries from instant to instant: its derivative, and the
+//! friction work.
 
+use super::{Elastic, FrictionLaw};
 use faer::Mat;
 
 /// Derivative of the slip loads at one instant in all coefficients, point after point.
@@ -73,4 +75,38 @@ pub(super) fn sticks(gain: &[f64], points: usize, i: usize) -> bool {
 /// Whether all points stick.
 pub(super) fn is_identity(gain: &[f64], points: usize) -> bool {
     (0..points).all(|i| sticks(gain, points, i))
+}
+
+/// Adds the friction work of a step. Over a period that of a single point is the work of its
+/// force; coupled points exchange elastic energy, so that their slip has to be known.
+pub(super) fn add_work(
+    law: &dyn FrictionLaw,
+    before: &[f64],
+    force: &[f64],
+    du: &[f64],
+    gain: &[f64],
+    work: &mut [f64],
+) {
+    let points = force.len();
+    if points == 1 {
+        work[0] += 0.5 * (before[0] + force[0]) * du[0];
+        return;
+    }
+    let slips: Vec<bool> = (0..points).map(|i| !sticks(gain, points, i)).collect();
+    if !slips.contains(&true) {
+        return;
+    }
+    let stiffness = law.stiffness();
+    let lost: Vec<f64> = (0..points)
+        .map(|i| {
+            let elastic: f64 = (0..points).map(|j| stiffness[(i, j)] * du[j]).sum();
+            before[i] + elastic - force[i]
+        })
+        .collect();
+    if let Ok(elastic) = Elastic::new(stiffness.as_ref()) {
+        let slip = elastic.slip(&slips, &lost);
+        for (i, s) in slip.into_iter().enumerate() {
+            work[i] += 0.5 * (before[i] + force[i]) * s;
+        }
+    }
 }

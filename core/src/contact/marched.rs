@@ -6,11 +6,11 @@
 //! error is of second order in the distance of the samples. It serves laws that have no closed
 //! form, and comparisons with those that have one.
 
-use super::march_rate::{is_identity, sticks, Rate};
+use super::march_rate::{add_work, is_identity, sticks, Rate};
 use super::passage::SLOW;
 use super::samples::Samples;
-use super::{Describing, Elastic, FrictionLaw, Motion, PointState, PointSummary, Residual, SlipLoad};
-use crate::fourier::Harmonics;
+use super::slip_series::halve_means;
+use super::{Describing, FrictionLaw, Motion, PointState, PointSummary, Residual, SlipLoad};
 use crate::Error;
 use faer::Mat;
 use std::f64::consts::TAU;
@@ -143,7 +143,14 @@ impl Marched {
                     round.slipping[i] += usize::from(!sticks(&gain, points, i));
                 }
                 if account {
-                    self.add_work(&round.force[old..old + points], &force, &du, &gain, &mut round.work);
+                    add_work(
+                        self.law.as_ref(),
+                        &round.force[old..old + points],
+                        &force,
+                        &du,
+                        &gain,
+                        &mut round.work,
+                    );
                 }
             }
             force.iter_mut().for_each(|f| *f *= samples.sign);
@@ -158,33 +165,6 @@ impl Marched {
             }
             round.averaged.push(alternates);
             last_change = change;
-        }
-    }
-
-    /// Adds the friction work of a step. Over a period that of a single point is the work of its
-    /// force; coupled points exchange elastic energy, so that their slip has to be known.
-    fn add_work(&self, before: &[f64], force: &[f64], du: &[f64], gain: &[f64], work: &mut [f64]) {
-        let points = force.len();
-        if points == 1 {
-            work[0] += 0.5 * (before[0] + force[0]) * du[0];
-            return;
-        }
-        let slips: Vec<bool> = (0..points).map(|i| !sticks(gain, points, i)).collect();
-        if !slips.contains(&true) {
-            return;
-        }
-        let stiffness = self.law.stiffness();
-        let lost: Vec<f64> = (0..points)
-            .map(|i| {
-                let elastic: f64 = (0..points).map(|j| stiffness[(i, j)] * du[j]).sum();
-                before[i] + elastic - force[i]
-            })
-            .collect();
-        if let Ok(elastic) = Elastic::new(stiffness.as_ref()) {
-            let slip = elastic.slip(&slips, &lost);
-            for (i, s) in slip.into_iter().enumerate() {
-                work[i] += 0.5 * (before[i] + force[i]) * s;
-            }
         }
     }
 
@@ -224,21 +204,6 @@ impl Marched {
                     rate.follow(&gain, &samples.basis[(n % samples.count) * slots..][..slots]);
                 }
             }
-        }
-    }
-}
-
-/// The mean of a series is its sum over the samples, not twice that.
-pub(super) fn halve_means(harmonics: &Harmonics, points: usize, out: &mut SlipLoad) {
-    if !harmonics.has_mean() {
-        return;
-    }
-    let slots = harmonics.slots();
-    let size = points * slots;
-    for mean in (0..points).map(|i| i * slots) {
-        out.value[mean] *= 0.5;
-        if let Some(row) = out.tangent.get_mut(mean * size..(mean + 1) * size) {
-            row.iter_mut().for_each(|entry| *entry *= 0.5);
         }
     }
 }

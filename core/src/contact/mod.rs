@@ -17,6 +17,7 @@ mod passage;
 mod samples;
 mod slip_series;
 mod structural;
+mod transitions;
 
 pub use describing::Describing;
 pub use elastic::Elastic;

@@ -15,17 +15,13 @@ use crate::fourier::Harmonics;
 const MOST_ROUNDS: usize = 200;
 /// Change of the forces over a round, relative to the largest, that counts as none.
 const PERIODIC: f64 = 1e-13;
-/// Weight of the elastic forces in that.
-const ELASTIC: f64 = 0.01;
+/// Rounding errors of a force, relative to the elastic forces that it is a difference of.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Change over a round of half a period, relative to the one before, that shows a slip which
 /// nothing undoes: mirrored it alternates, and the symmetric motion is the mean of both.
 pub(super) const SLOW: f64 = 0.9;
 /// Distance from its limit at which a point is at it, relative to the limit.
-const AT_LIMIT: f64 = 1e-12;
-/// Rate, relative to the sum of its parts, below which it counts as zero.
-const AT_REST: f64 = 1e-10;
-/// Steps of a root search: Newton's method needs a handful, bisection 50.
-const STEPS: usize = 60;
+pub(super) const AT_LIMIT: f64 = 1e-12;
 
 /// A set of slipping points with its stiffness and the series it gives.
 #[derive(Debug)]
@@ -33,12 +29,12 @@ pub(super) struct SlipSet {
     pub(super) slips: Vec<bool>,
     pub(super) sliding: Sliding,
     /// Series of `T u` and of the slip `R u`, point after point.
-    force: Vec<f64>,
-    slip: Vec<f64>,
+    pub(super) force: Vec<f64>,
+    pub(super) slip: Vec<f64>,
 }
 
 /// A stretch of the period in one state.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Stretch {
     pub(super) start: f64,
     pub(super) end: f64,
@@ -63,15 +59,15 @@ pub(super) struct Passage {
 }
 
 /// A march along one motion.
-struct March<'a> {
-    law: &'a StructuralDamper,
-    harmonics: &'a Harmonics,
+pub(super) struct March<'a> {
+    pub(super) law: &'a StructuralDamper,
+    pub(super) harmonics: &'a Harmonics,
     series: &'a [f64],
     /// Values, slopes and curvatures of each point's displacement on a grid.
     grid: Vec<[Vec<f64>; 3]>,
     spacing: f64,
-    sets: Vec<SlipSet>,
-    here: Stretch,
+    pub(super) sets: Vec<SlipSet>,
+    pub(super) here: Stretch,
     done: Vec<Stretch>,
     tangent: bool,
     slipped: bool,
@@ -79,11 +75,11 @@ struct March<'a> {
 }
 
 /// Displacements of all points, their slopes and curvatures at an angle.
-struct Jet {
-    theta: f64,
-    value: Vec<f64>,
-    slope: Vec<f64>,
-    curvature: Vec<f64>,
+pub(super) struct Jet {
+    pub(super) theta: f64,
+    pub(super) value: Vec<f64>,
+    pub(super) slope: Vec<f64>,
+    pub(super) curvature: Vec<f64>,
 }
 
 impl Passage {
@@ -92,18 +88,17 @@ impl Passage {
         let mut march = March::new(law, motion, tangent);
         let sign = if motion.table.harmonics().half_wave() { -1.0 } else { 1.0 };
         let (mut resolved, mut last_change) = (true, f64::INFINITY);
+        let elastic = march.elastic_forces();
         for round in 0..MOST_ROUNDS {
             let start = march.jet(0.0);
             let before = march.force_at(&start);
             let gradient = tangent.then(|| march.gradient(0.0));
             resolved = march.round();
             let after = march.force_at(&march.jet(motion.table.harmonics().span()));
-            // Forces are differences of elastic ones, which bound their rounding errors.
             let largest = after.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-            let elastic = march.here.offset.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
             let change =
                 before.iter().zip(&after).map(|(b, a)| (sign * a - b).abs()).fold(0.0, f64::max);
-            let periodic = change <= PERIODIC * (largest + ELASTIC * elastic);
+            let periodic = change <= PERIODIC * largest + ROUNDING * elastic;
             if !resolved || periodic || round + 1 == MOST_ROUNDS {
                 break;
             }
@@ -228,6 +223,16 @@ impl<'a> March<'a> {
         }
     }
 
+    /// Bound of the elastic forces without any slip.
+    fn elastic_forces(&self) -> f64 {
+        let far = |grid: &[Vec<f64>; 3]| grid[0].iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let far: Vec<f64> = self.grid.iter().map(far).collect();
+        let row = |i: usize| -> f64 {
+            far.iter().enumerate().map(|(j, u)| self.law.stiffness[(i, j)].abs() * u).sum()
+        };
+        (0..far.len()).map(row).fold(0.0, f64::max)
+    }
+
     /// Begins the round from the mean of its forces and those of the round before.
     fn average(&mut self, start: &Jet, before: &[f64], gradient: Option<Vec<f64>>) {
         let force: Vec<f64> =
@@ -239,8 +244,7 @@ impl<'a> March<'a> {
     }
 
     fn jet(&self, theta: f64) -> Jet {
-        let mut jet =
-            Jet { theta, value: Vec::new(), slope: Vec::new(), curvature: Vec::new() };
+        let mut jet = Jet { theta, value: Vec::new(), slope: Vec::new(), curvature: Vec::new() };
         for series in self.series.chunks_exact(self.harmonics.slots()) {
             let [value, slope, curvature] = self.harmonics.jet(series, theta);
             jet.value.push(value);
@@ -256,13 +260,15 @@ impl<'a> March<'a> {
         basis
     }
 
-    fn tangent_row(&self, i: usize, of: &[f64]) -> f64 {
+    pub(super) fn tangent_row(&self, i: usize, of: &[f64]) -> f64 {
         let tangent = &self.sets[self.here.set].sliding.tangent;
         of.iter().enumerate().map(|(j, u)| tangent[(i, j)] * u).sum()
     }
 
     fn force_at(&self, jet: &Jet) -> Vec<f64> {
-        (0..jet.value.len()).map(|i| self.tangent_row(i, &jet.value) - self.here.offset[i]).collect()
+        (0..jet.value.len())
+            .map(|i| self.tangent_row(i, &jet.value) - self.here.offset[i])
+            .collect()
     }
 
     /// Derivative of the forces at an angle in the coefficients.
@@ -364,16 +370,18 @@ impl<'a> March<'a> {
             }
         }
         let (old_set, old_states) = before;
-        if jet.theta > self.here.start && (self.here.set, &self.here.states) != (old_set, &old_states)
+        if jet.theta > self.here.start
+            && (self.here.set, &self.here.states) != (old_set, &old_states)
         {
             let next = (self.here.set, std::mem::replace(&mut self.here.states, old_states));
             self.here.set = old_set;
             self.here.end = jet.theta;
-            self.done.push(self.here.clone_stretch());
+            self.done.push(self.here.clone());
             (self.here.set, self.here.states) = next;
             self.here.start = jet.theta;
         }
-        self.here.offset = (0..points).map(|i| self.tangent_row(i, &jet.value) - force[i]).collect();
+        self.here.offset =
+            (0..points).map(|i| self.tangent_row(i, &jet.value) - force[i]).collect();
         if let Some(gradient) = gradient {
             let mut rate = vec![0.0; gradient.len()];
             self.add_tangent(&self.basis(jet.theta), &mut rate);
@@ -381,158 +389,4 @@ impl<'a> March<'a> {
             self.here.rate = rate;
         }
     }
-
-    /// Whether a point cannot go on as it is: at its limit with the force growing, or slipping
-    /// against its force.
-    fn contradicts(&self, jet: &Jet, force: &[f64], i: usize) -> bool {
-        let limit = self.law.limits[i];
-        if !(limit > 0.0 && limit.is_finite()) {
-            return false;
-        }
-        let set = &self.sets[self.here.set].sliding;
-        let (matrix, sign) = match self.here.states[i] {
-            PointState::Stuck if force[i].abs() < limit => return false,
-            PointState::Stuck => (&set.tangent, force[i].signum()),
-            state => (&set.slip_rate, -state.sign()),
-        };
-        let mut size = 0.0;
-        let mut rate = [0.0; 2];
-        for (j, (slope, curvature)) in jet.slope.iter().zip(&jet.curvature).enumerate() {
-            let part = sign * matrix[(i, j)];
-            rate[0] += part * slope;
-            rate[1] += part * curvature;
-            size += (part * slope).abs();
-        }
-        rate[0] > AT_REST * size || (rate[0] >= -AT_REST * size && rate[1] > 0.0)
-    }
-
-    /// First angle in a cell of the grid at which a point changes its state.
-    fn next_transition(&self, from: &Jet, to: &Jet) -> Option<f64> {
-        let mut first: Option<f64> = None;
-        for i in 0..self.law.limits.len() {
-            let limit = self.law.limits[i];
-            if !(limit > 0.0 && limit.is_finite()) {
-                continue;
-            }
-            let theta = match self.here.states[i] {
-                PointState::Stuck => self.reaches_limit(from, to, i, limit),
-                state => self.stands_still(from, to, i, state.sign()),
-            };
-            first = match (first, theta) {
-                (Some(a), Some(b)) => Some(f64::min(a, b)),
-                (a, b) => a.or(b),
-            };
-        }
-        first
-    }
-
-    /// Where the force of a stuck point leaves its limits.
-    fn reaches_limit(&self, from: &Jet, to: &Jet, i: usize, limit: f64) -> Option<f64> {
-        let force = |jet: &Jet| self.tangent_row(i, &jet.value) - self.here.offset[i];
-        let rate = |jet: &Jet| self.tangent_row(i, &jet.slope);
-        let (start, end) = (force(from), force(to));
-        let most = limit * (1.0 + AT_LIMIT);
-        let series = self.own_series(&self.sets[self.here.set].force, i);
-        let offset = self.here.offset[i];
-        let value = |theta: f64| {
-            let jet = self.harmonics.jet(series, theta);
-            [jet[0] - offset, jet[1]]
-        };
-        let crossing = |until: f64, sign: f64| {
-            root([from.theta, until], &|theta| {
-                let [f, slope] = value(theta);
-                [limit - sign * f, -sign * slope]
-            })
-        };
-        let (fall, rise) = (rate(from), rate(to));
-        if end.abs() > most {
-            return Some(crossing(to.theta, end.signum()));
-        }
-        // A turning point between the two may lie beyond the limit.
-        let reach = 0.5 * (to.theta - from.theta) * fall.abs().max(rise.abs());
-        if fall * rise >= 0.0 || start.abs().max(end.abs()) + reach <= limit {
-            return None;
-        }
-        let top = root([from.theta, to.theta], &|theta| {
-            let jet = self.harmonics.jet(series, theta);
-            [fall.signum() * jet[1], fall.signum() * jet[2]]
-        });
-        let [highest, _] = value(top);
-        (highest.abs() > most).then(|| crossing(top, highest.signum()))
-    }
-
-    /// Where the slip of a point comes to rest.
-    fn stands_still(&self, from: &Jet, to: &Jet, i: usize, sign: f64) -> Option<f64> {
-        let matrix = &self.sets[self.here.set].sliding.slip_rate;
-        let along = |of: &[f64]| -> f64 {
-            sign * of.iter().enumerate().map(|(j, x)| matrix[(i, j)] * x).sum::<f64>()
-        };
-        let (start, end) = (along(&from.slope), along(&to.slope));
-        let series = self.own_series(&self.sets[self.here.set].slip, i);
-        let slope = |theta: f64| {
-            let jet = self.harmonics.jet(series, theta);
-            [sign * jet[1], sign * jet[2]]
-        };
-        if end < 0.0 {
-            return Some(root([from.theta, to.theta], &slope));
-        }
-        // The slip may come to rest and go on between the two.
-        let (fall, rise) = (along(&from.curvature), along(&to.curvature));
-        let reach = 0.5 * (to.theta - from.theta) * fall.abs().max(rise.abs());
-        if !(fall < 0.0 && rise > 0.0) || start.min(end) >= reach {
-            return None;
-        }
-        let (mut low, mut high) = (from.theta, to.theta);
-        for _ in 0..STEPS {
-            let middle = 0.5 * (low + high);
-            if slope(middle)[1] < 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let size = along(&from.slope).abs() + reach;
-        (slope(low)[0] < -AT_LIMIT * size).then(|| root([from.theta, low], &slope))
-    }
-
-    fn own_series<'b>(&self, all: &'b [f64], i: usize) -> &'b [f64] {
-        let slots = self.harmonics.slots();
-        &all[i * slots..(i + 1) * slots]
-    }
-}
-
-impl Stretch {
-    fn clone_stretch(&self) -> Self {
-        Self {
-            start: self.start,
-            end: self.end,
-            set: self.set,
-            states: self.states.clone(),
-            offset: self.offset.clone(),
-            rate: self.rate.clone(),
-        }
-    }
-}
-
-/// Zero of a function that falls from its first to its second angle, with its slope: Newton's
-/// method kept inside the bracket.
-fn root([mut low, mut high]: [f64; 2], of: &dyn Fn(f64) -> [f64; 2]) -> f64 {
-    let mut theta = 0.5 * (low + high);
-    for _ in 0..STEPS {
-        let [value, slope] = of(theta);
-        if value > 0.0 {
-            low = theta;
-        } else {
-            high = theta;
-        }
-        let newton = theta - value / slope;
-        let next =
-            if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        let moved = (next - theta).abs();
-        theta = next;
-        if moved <= 4.0 * f64::EPSILON * (1.0 + theta) {
-            break;
-        }
-    }
-    theta
 }

@@ -6,11 +6,16 @@
 use super::jenkins::Bounds;
 use super::passage::Passage;
 use super::{Motion, SlipLoad};
-use crate::fourier::IntervalSums;
+use crate::fourier::{Harmonics, IntervalSums};
 use faer::Mat;
 
 /// Writes the series of the slip load of a passage and, if it carries rates, its tangent.
-pub(super) fn write(passage: &Passage, stiffness: &Mat<f64>, motion: Motion<'_>, out: &mut SlipLoad) {
+pub(super) fn write(
+    passage: &Passage,
+    stiffness: &Mat<f64>,
+    motion: Motion<'_>,
+    out: &mut SlipLoad,
+) {
     let harmonics = motion.table.harmonics();
     let (points, slots) = (stiffness.nrows(), harmonics.slots());
     let size = points * slots;
@@ -60,6 +65,21 @@ pub(super) fn write(passage: &Passage, stiffness: &Mat<f64>, motion: Motion<'_>,
                     entries.zip(rate).for_each(|(entry, rate)| *entry += integral * rate);
                 }
             }
+        }
+    }
+}
+
+/// The mean of a series is its sum over the samples, not twice that.
+pub(super) fn halve_means(harmonics: &Harmonics, points: usize, out: &mut SlipLoad) {
+    if !harmonics.has_mean() {
+        return;
+    }
+    let slots = harmonics.slots();
+    let size = points * slots;
+    for mean in (0..points).map(|i| i * slots) {
+        out.value[mean] *= 0.5;
+        if let Some(row) = out.tangent.get_mut(mean * size..(mean + 1) * size) {
+            row.iter_mut().for_each(|entry| *entry *= 0.5);
         }
     }
 }

@@ -9,11 +9,9 @@
 
 use super::elastic::{Elastic, Sliding};
 use super::increment::Increment;
-use super::marched::halve_means;
 use super::passage::{Passage, Stretch};
-use super::{
-    numbers, slip_series, FrictionLaw, Motion, Parameters, Phase, PointState, PointSummary, SlipLoad,
-};
+use super::slip_series::{self, halve_means};
+use super::{numbers, FrictionLaw, Motion, Parameters, Phase, PointState, PointSummary, SlipLoad};
 use crate::Error;
 use faer::{Mat, MatRef, Side};
 use std::f64::consts::TAU;
@@ -228,7 +226,8 @@ impl FrictionLaw for StructuralDamper {
 
     fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
         let passage = Passage::new(self, motion, false);
-        let phase = |stretch: &Stretch| Phase { start: stretch.start, states: stretch.states.clone() };
+        let phase =
+            |stretch: &Stretch| Phase { start: stretch.start, states: stretch.states.clone() };
         let mut phases: Vec<Phase> = passage.stretches.iter().map(phase).collect();
         let span = motion.table.harmonics().span();
         if motion.table.harmonics().half_wave() {

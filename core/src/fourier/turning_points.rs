@@ -137,7 +137,8 @@ impl SampleTable {
             let (of_cos, of_sin) = of(order as f64, series[slot], series[slot + 1]);
             let row = index * all..(index + 1) * all;
             let parity = 2 * (order % 2);
-            for (sum, c) in sums[parity].iter_mut().zip(self.cos[row.clone()].iter().step_by(stride))
+            for (sum, c) in
+                sums[parity].iter_mut().zip(self.cos[row.clone()].iter().step_by(stride))
             {
                 *sum += of_cos * c;
             }

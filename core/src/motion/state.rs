@@ -73,7 +73,8 @@ impl State {
             let own = &force[body.points.clone()];
             let carried = body.elastic.carried(own);
             let size = own.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-            if let Some(i) = (0..own.len()).find(|&i| (own[i] - carried[i]).abs() > PRINTED * size) {
+            if let Some(i) = (0..own.len()).find(|&i| (own[i] - carried[i]).abs() > PRINTED * size)
+            {
                 return Err(Error::value(
                     format!("state: force of contact {}, point {i}", number + 1),
                     own[i],

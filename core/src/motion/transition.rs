@@ -160,7 +160,8 @@ impl<'a> Transition<'a> {
             let first = 2 * modes + body.strains.start;
             for number in 0..basis.len() {
                 let size = |a: usize| basis[number][a].abs();
-                let pivot = (0..body.elastic.rank()).fold(0, |p, a| if size(a) > size(p) { a } else { p });
+                let pivot =
+                    (0..body.elastic.rank()).fold(0, |p, a| if size(a) > size(p) { a } else { p });
                 let strains = basis[number].clone();
                 for other in &mut basis[number + 1..] {
                     let share = other[pivot] / strains[pivot];
@@ -199,7 +200,9 @@ impl<'a> Transition<'a> {
         let (size, first) = (self.size(), 2 * self.weight.len());
         let mut total = Mat::<f64>::identity(size, size);
         for body in self.system.bodies() {
-            let slips = |i: usize| legs.first().is_some_and(|leg| leg.regime.points[i] != PointState::Stuck);
+            let slips = |i: usize| {
+                legs.first().is_some_and(|leg| leg.regime.points[i] != PointState::Stuck)
+            };
             let held: Vec<bool> = body
                 .points
                 .clone()
@@ -223,11 +226,15 @@ impl<'a> Transition<'a> {
     fn jump(&self, onset: &Onset, total: &mut Mat<f64>) {
         let first = 2 * self.weight.len();
         let bodies = self.system.bodies();
-        let Some(own) = bodies.iter().find(|body| body.points.contains(&onset.point)) else { return };
+        let Some(own) = bodies.iter().find(|body| body.points.contains(&onset.point)) else {
+            return;
+        };
         let row = onset.point - own.points.start;
         for column in 0..total.ncols() {
             let force: f64 = (0..own.elastic.rank())
-                .map(|a| own.elastic.root()[(row, a)] * total[(first + own.strains.start + a, column)])
+                .map(|a| {
+                    own.elastic.root()[(row, a)] * total[(first + own.strains.start + a, column)]
+                })
                 .sum();
             for body in bodies {
                 let jump = body.elastic.strains(&onset.jump[body.points.clone()]);

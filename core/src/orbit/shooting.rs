@@ -69,8 +69,7 @@ impl<'a> Shooting<'a> {
         self.legs.clear();
         self.derivative = None;
         let legs = &mut self.legs;
-        let run =
-            self.flow.run(&mut state, self.span, &mut |passage| Leg::record(legs, &passage));
+        let run = self.flow.run(&mut state, self.span, &mut |passage| Leg::record(legs, &passage));
         self.slipped = (0..self.limits.len())
             .map(|i| !self.free[i] || self.legs.iter().any(|leg| leg.slips(i)))
             .collect();

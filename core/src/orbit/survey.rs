@@ -162,11 +162,7 @@ impl<'a> Survey<'a> {
         let mirrored: Vec<Event> = self
             .events
             .iter()
-            .map(|event| Event {
-                time: event.time + half,
-                state: event.state.mirrored(),
-                ..*event
-            })
+            .map(|event| Event { time: event.time + half, state: event.state.mirrored(), ..*event })
             .collect();
         self.events.extend(mirrored);
     }

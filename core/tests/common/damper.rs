@@ -102,7 +102,11 @@ impl Random {
         let limits: Vec<f64> = (0..points)
             .map(|_| {
                 let limit = limit * 10f64.powf(self.between(-1.0, 1.0));
-                if self.next() > 0.8 { f64::INFINITY } else { limit }
+                if self.next() > 0.8 {
+                    f64::INFINITY
+                } else {
+                    limit
+                }
             })
             .collect();
         StructuralDamper::new(d.as_ref(), &limits).unwrap()

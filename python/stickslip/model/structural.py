@@ -7,8 +7,16 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from stickslip.checks import Matrix, MatrixLike, brief, members, real_matrix, real_number, text
-from stickslip.checks import unknown as unknown_name
+from stickslip.checks import (
+    Matrix,
+    MatrixLike,
+    brief,
+    members,
+    real_matrix,
+    real_number,
+    text,
+    unknown,
+)
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.structure import Structure
@@ -17,6 +25,9 @@ __all__ = ["StructuralDamper"]
 
 _PRINTED = 1e-8
 """Asymmetry, or row sum, relative to the largest stiffness, that printed digits may leave."""
+
+_ROUNDING = 1e-12
+"""Condensed stiffness, relative to the largest entry, that is none."""
 
 
 class StructuralDamper(Contact):
@@ -156,6 +167,7 @@ class StructuralDamper(Contact):
         condensed[np.ix_(sticks, sticks)] = (
             self.stiffness[np.ix_(sticks, sticks)] - across.T @ inverse @ across
         )
+        condensed[np.abs(condensed) <= _ROUNDING * np.abs(self.stiffness).max()] = 0.0
         return type(self)(
             self._dofs, stiffness=condensed, slip_forces=[np.inf] * self.points, name=self.name
         )
@@ -252,7 +264,7 @@ class StructuralDamper(Contact):
         known = ("stiffness", "slip_forces")
         for key in parameters:
             if key not in known:
-                raise ModelError(f"structural contact: {unknown_name('parameter', key, known)}")
+                raise ModelError(f"structural contact: {unknown('parameter', key, known)}")
         for key in known:
             if key not in parameters:
                 raise ModelError(f"structural contact: {key} is missing; give {key}")

@@ -30,7 +30,7 @@ class StructuralTable(Table):
     )
     slip_forces: Annotated[tuple[SlipForce, ...], Strict(False)] = Field(
         description="Slip limit of each contact; inf: it never slips.",
-        examples=[["25 N", "inf N"]],
+        examples=[["25 N", 1e3]],
     )
     name: Text | None = Field(default=None, description="Name; left out: that of the law.")
 

@@ -22,7 +22,6 @@ from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure
 from stickslip.study.analysis_entries import level_name
 from stickslip.study.complaint import complaint
-from stickslip.study.structural_table import StructuralTable
 from stickslip.study.structure_table import MatrixFile, ModalDampingTable, RayleighDamping
 from stickslip.study.tables import StudyTables
 
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from stickslip.results.result import Result
     from stickslip.study.disk_table import DiskTable, InterfaceTable
     from stickslip.study.structural_table import StructuralTable
-from stickslip.study.structure_table import Rows, StructureTable
+    from stickslip.study.structure_table import Rows, StructureTable
     from stickslip.study.tables import ForceTable, JenkinsTable
 
 __all__ = ["Case", "Study", "json_schema", "notable_dofs"]
