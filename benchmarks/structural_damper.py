@@ -40,7 +40,9 @@ def procedure_2(u: Float, stiffness: Float, limits: Float, *, corrected: bool) -
         z = moved.copy()
         if slips.any():
             sticks = ~slips
-            wanted = np.where(slips, np.sign(force) * limits - force, 0.0) if corrected else 0 * u[0]
+            wanted = (
+                np.where(slips, np.sign(force) * limits - force, 0.0) if corrected else 0 * u[0]
+            )
             right = wanted[slips] - stiffness[np.ix_(slips, sticks)] @ moved[sticks]
             z[slips] = np.linalg.lstsq(stiffness[np.ix_(slips, slips)], right, rcond=None)[0]
         force = force + stiffness @ z
@@ -60,7 +62,9 @@ def accuracy() -> None:
     frf = ss.forced_response(model, [550.0], HARMONICS)
     series = np.ascontiguousarray(frf.arrays.contact_displacement[0].T)
     print("largest error of a force, relative to the largest force; largest force of contact 0 [N]")
-    print(f"{'samples':>8} {'procedure 2':>12} {'implicit':>10}   {'procedure 2':>11} {'implicit':>9}")
+    print(
+        f"{'samples':>8} {'procedure 2':>12} {'implicit':>10}   {'procedure 2':>11} {'implicit':>9}"
+    )
     errors: dict[str, list[float]] = {"procedure 2": [], "implicit": []}
     for count in SAMPLES:
         exact = frf.contact_force("structural", 0, count)

@@ -126,9 +126,7 @@ def test_two_points_are_a_jenkins_element_in_every_analysis(analysis, slip_force
     if isinstance(jenkins, ss.Transient):
         pairs = [(one.displacement("1.tip"), one.contact_force(0)) for one in (jenkins, damper)]
     else:
-        pairs = [
-            (one.coefficients("1.tip"), one.contact_force(0, 0)) for one in (jenkins, damper)
-        ]
+        pairs = [(one.coefficients("1.tip"), one.contact_force(0, 0)) for one in (jenkins, damper)]
         assert damper.dissipation(0)[:, 0] == pytest.approx(jenkins.dissipation(0)[:, 0], rel=1e-9)
         assert not damper.slip_fraction(0)[:, 1].any()
     (motion, force), (ours, pair) = pairs
@@ -179,7 +177,9 @@ def test_damper_between_blades_travels_as_the_whole_disk_does():
 def test_contacts_may_touch_the_ground():
     beam = reference.snecma_structure()
     damper = ss.StructuralDamper(
-        ["damper", None], stiffness=[[2.4e7, -2.4e7], [-2.4e7, 2.4e7]], slip_forces=[246.048, np.inf]
+        ["damper", None],
+        stiffness=[[2.4e7, -2.4e7], [-2.4e7, 2.4e7]],
+        slip_forces=[246.048, np.inf],
     )
     model = ss.Model(beam, [damper], [ss.Force("tip", 20.313)])
     plain = ss.forced_response(reference.snecma_beam(), [170.0, 200.0], harmonics=9)
@@ -215,7 +215,7 @@ def test_figures_of_forces_and_states(strong, exact):
         # errata.md: without slip the force would be far above its limit
         assert np.abs(dashed).max() > 24.6
         strips = plot.events(result, 0)
-        assert [text.get_text() for text in strips.get_yticklabels()][0].startswith("structural")
+        assert next(text.get_text() for text in strips.get_yticklabels()).startswith("structural")
     weak = ss.forced_response(reference.damped_pair(15.0), [250.0], harmonics=5)
     axes = plot.contact_forces(weak, 0, 0)
     for panel in axes[:4]:
@@ -291,3 +291,47 @@ def test_unknown_dofs_and_impossible_states_are_refused():
                 [ss.Jenkins("1.tip", stiffness=1.0, slip_force=1.0) for _ in range(13)],
             )
         )
+
+
+def random_model(seed):
+    """A passive structure of 3 to 6 DOFs with a random damper of 2 to 6 contacts."""
+    rng = np.random.default_rng(seed)
+    size, points = int(rng.integers(3, 7)), int(rng.integers(2, 7))
+    basis = rng.normal(size=(2, size, size))
+    mass = basis[0] @ basis[0].T + 2.0 * np.eye(size)
+    stiffness = 30.0 * (basis[1] @ basis[1].T + np.eye(size))
+    structure = ss.Structure(mass, stiffness, damping=ss.ModalDamping(10 ** rng.uniform(-3, -1.3)))
+    links = np.triu(10 ** rng.uniform(0.0, 2.5, (points, points)), 1)
+    links = links + links.T
+    own = np.diag(links.sum(axis=1)) - links
+    limits = 10 ** rng.uniform(-1.5, 0.5, points)
+    limits[rng.random(points) < 0.2] = np.inf
+    dofs = [str(dof) for dof in rng.integers(0, size, points)]
+    if rng.random() < 0.3:
+        dofs[-1] = None
+    damper = ss.StructuralDamper(dofs, stiffness=own, slip_forces=limits)
+    forces = [ss.Force(str(dof), rng.uniform(0.5, 5.0), rng.uniform(0, 6)) for dof in (0, size - 1)]
+    model = ss.Model(structure, [damper], forces)
+    return model, ss.natural_frequencies(model)[0] * rng.uniform(0.4, 1.6)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_random_dampers_on_random_structures_are_solved(seed):
+    model, omega = random_model(seed)
+    frf = ss.forced_response(model, [omega], harmonics=9)
+    assert frf.converged.all()
+    work = frf.dissipation(0)
+    assert (work >= -1e-12 * np.abs(work).max(initial=1e-300)).all()
+    free = [point for point, dof in enumerate(model.contacts[0].dofs) if dof is None]
+    forces = frf.contact_force(0, 0, 256)
+    largest = np.abs(forces).max()
+    assert np.abs(forces.sum(axis=1)).max() <= 1e-9 * max(largest, 1e-12)
+    assert len(free) <= 1
+    if seed < 8:
+        exact = ss.exact_response(model, [omega])
+        assert exact.converged.all()
+        assert exact.energy.friction[0] == pytest.approx(
+            exact.energy.work[0] - exact.energy.viscous[0], abs=1e-7 * exact.energy.work[0]
+        )
+        moving = np.abs(exact.multipliers[0, exact.neutral[0] :])
+        assert (moving < 1.0).all()

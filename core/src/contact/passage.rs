@@ -8,6 +8,7 @@
 
 use super::elastic::Sliding;
 use super::structural::StructuralDamper;
+use super::transitions::Jet;
 use super::{Motion, PointState};
 use crate::fourier::Harmonics;
 
@@ -72,14 +73,6 @@ pub(super) struct March<'a> {
     tangent: bool,
     slipped: bool,
     transitions: usize,
-}
-
-/// Displacements of all points, their slopes and curvatures at an angle.
-pub(super) struct Jet {
-    pub(super) theta: f64,
-    pub(super) value: Vec<f64>,
-    pub(super) slope: Vec<f64>,
-    pub(super) curvature: Vec<f64>,
 }
 
 impl Passage {
@@ -176,7 +169,7 @@ impl<'a> March<'a> {
             }
             gradient
         });
-        self.settle(&jet, force, gradient);
+        self.settle(&jet, force, gradient, None);
     }
 
     /// Passes once through the span; `false` if transitions pile up without end.
@@ -187,11 +180,16 @@ impl<'a> March<'a> {
         let mut from = self.jet(self.here.start);
         for cell in 0..cells {
             let to = self.cell_end(cell, cells);
-            while let Some(theta) = self.next_transition(&from, &to) {
+            while let Some((theta, point)) = self.next_transition(&from, &to) {
                 from = self.jet(theta);
+                let before = (self.here.set, self.here.states.clone());
                 let force = self.force_at(&from);
                 let gradient = self.tangent.then(|| self.gradient(theta));
-                self.settle(&from, force, gradient);
+                self.settle(&from, force, gradient, Some(point));
+                if (self.here.set, &self.here.states) == (before.0, &before.1) {
+                    // A touch that changes nothing: go on beyond it.
+                    from = self.jet(0.5 * (theta + to.theta));
+                }
                 self.transitions += 1;
                 if self.transitions > most {
                     return false;
@@ -240,7 +238,7 @@ impl<'a> March<'a> {
         let gradient = gradient.map(|before| {
             self.gradient(0.0).iter().zip(&before).map(|(a, b)| 0.5 * (a + b)).collect()
         });
-        self.settle(start, force, gradient);
+        self.settle(start, force, gradient, None);
     }
 
     fn jet(&self, theta: f64) -> Jet {
@@ -321,18 +319,26 @@ impl<'a> March<'a> {
     }
 
     /// Finds the states that follow from the rates at an angle and goes on from there with the
-    /// given forces and their derivative.
-    fn settle(&mut self, jet: &Jet, mut force: Vec<f64>, mut gradient: Option<Vec<f64>>) {
+    /// given forces and their derivative. `arrived` is at its limit, whatever rounding says.
+    fn settle(
+        &mut self,
+        jet: &Jet,
+        mut force: Vec<f64>,
+        mut gradient: Option<Vec<f64>>,
+        arrived: Option<usize>,
+    ) {
         let points = force.len();
         let columns = self.series.len();
+        let before = (self.here.set, self.here.states.clone());
         for (i, (force, limit)) in force.iter_mut().zip(&self.law.limits).enumerate() {
-            if *limit > 0.0 && force.abs() >= limit * (1.0 - AT_LIMIT) {
+            let at_limit = arrived == Some(i) || force.abs() >= limit * (1.0 - AT_LIMIT);
+            if *limit > 0.0 && at_limit {
                 *force = limit.copysign(*force);
             } else {
                 self.here.states[i] = PointState::Stuck;
             }
         }
-        let before = (self.here.set, self.here.states.clone());
+        self.here.set = self.find_set();
         // Time that the onset of slip comes earlier, per coefficient.
         let mut advance: Option<Vec<f64>> = None;
         for _ in 0..16 * (points + 1) {

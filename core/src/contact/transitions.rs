@@ -4,13 +4,21 @@
 //! trigonometric series: a limit or a standstill is bracketed by their values and slopes at both
 //! ends, and located by Newton's method.
 
-use super::passage::{Jet, March, AT_LIMIT};
+use super::passage::{March, AT_LIMIT};
 use super::PointState;
 
 /// Rate, relative to the sum of its parts, below which it counts as zero.
 const AT_REST: f64 = 1e-10;
 /// Steps of a root search: Newton's method needs a handful, bisection 50.
 const STEPS: usize = 60;
+
+/// Displacements of all points, their slopes and curvatures at an angle.
+pub(super) struct Jet {
+    pub(super) theta: f64,
+    pub(super) value: Vec<f64>,
+    pub(super) slope: Vec<f64>,
+    pub(super) curvature: Vec<f64>,
+}
 
 impl March<'_> {
     /// Whether a point cannot go on as it is: at its limit with the force growing, or slipping
@@ -37,9 +45,9 @@ impl March<'_> {
         rate[0] > AT_REST * size || (rate[0] >= -AT_REST * size && rate[1] > 0.0)
     }
 
-    /// First angle in a cell of the grid at which a point changes its state.
-    pub(super) fn next_transition(&self, from: &Jet, to: &Jet) -> Option<f64> {
-        let mut first: Option<f64> = None;
+    /// First angle in a cell of the grid at which a point changes its state, and the point.
+    pub(super) fn next_transition(&self, from: &Jet, to: &Jet) -> Option<(f64, usize)> {
+        let mut first: Option<(f64, usize)> = None;
         for i in 0..self.law.limits.len() {
             let limit = self.law.limits[i];
             if !(limit > 0.0 && limit.is_finite()) {
@@ -49,10 +57,10 @@ impl March<'_> {
                 PointState::Stuck => self.reaches_limit(from, to, i, limit),
                 state => self.stands_still(from, to, i, state.sign()),
             };
-            first = match (first, theta) {
-                (Some(a), Some(b)) => Some(f64::min(a, b)),
-                (a, b) => a.or(b),
-            };
+            if let Some(theta) = theta.filter(|theta| first.is_none_or(|(least, _)| *theta < least))
+            {
+                first = Some((theta, i));
+            }
         }
         first
     }

@@ -23,9 +23,7 @@ def contact_assumptions(model: Model, settings: Settings, arrays: Arrays) -> tup
     )
 
 
-def residual_assumption(
-    model: Model, settings: Settings | ExactSettings, arrays: Arrays
-) -> str:
+def residual_assumption(model: Model, settings: Settings | ExactSettings, arrays: Arrays) -> str:
     """Say what contacts that never slip were taken to hold."""
     stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
     if all(contact.points > 1 for contact in model.contacts) or not stuck.any():
@@ -52,13 +50,16 @@ def start_assumption(model: Model) -> str:
         for one in several
         if one.grounding
     ]
-    return "; ".join(
-        [
-            "The march through a damper of several points begins without slip, so that points "
-            "which never slip hold what they built up from zero displacement",
-            *held,
-        ]
-    ) + "."
+    return (
+        "; ".join(
+            [
+                "The march through a damper of several points begins without slip, so that points "
+                "which never slip hold what they built up from zero displacement",
+                *held,
+            ]
+        )
+        + "."
+    )
 
 
 def _evaluation(model: Model, settings: Settings) -> str:

@@ -287,9 +287,7 @@ def _stiffness(value: MatrixLike, points: int) -> Matrix:
     matrix = real_matrix(value, entry)
     if matrix.shape != (points, points):
         rows, columns = matrix.shape
-        raise ModelError(
-            f"{entry}: {rows} x {columns} for {points} dofs; give {points} x {points}"
-        )
+        raise ModelError(f"{entry}: {rows} x {columns} for {points} dofs; give {points} x {points}")
     if not np.isfinite(matrix).all():
         row, column = np.argwhere(~np.isfinite(matrix))[0]
         raise ModelError(

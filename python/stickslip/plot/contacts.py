@@ -69,7 +69,7 @@ def contact_forces(
     linear = _stuck_forces(result, number, index, time) if stuck else None
     states = result.contact_states(number, index)
     panels = one.points + (one.points > 1)
-    figure, grid = pyplot.subplots(
+    _figure, grid = pyplot.subplots(
         panels,
         figsize=(_SIZE[0], 0.6 + _SIZE[1] * panels),
         sharex=True,

@@ -25,7 +25,6 @@ __all__ = [
     "DampingSource",
     "MatrixFile",
     "MatrixSource",
-    "Rows",
     "ModalDampingTable",
     "RayleighDamping",
     "Rows",
