@@ -26,7 +26,7 @@ PERIODS = 12
 
 
 def procedure_2(u: Float, stiffness: Float, limits: Float, *, corrected: bool) -> Float:
-    """Forces of the last of several periods, shape (samples, points), by the explicit update.
+    """Return the forces of the last of several periods, shape (samples, points), by Procedure 2.
 
     All contacts stick without force at the start. The states of a step follow from the step
     before; `corrected` sets the force of slipping contacts to their limits, eq. (6.21).

@@ -279,7 +279,7 @@ def test_unknown_dofs_and_impossible_states_are_refused():
     damper = ss.StructuralDamper(["1.tip", "2.tpi"], stiffness=D, slip_forces=[1.0, 2.0])
     with pytest.raises(ss.ModelError, match=r"2\.tpi.*2\.tip"):
         model.replaced(contacts=[damper])
-    with pytest.raises(ss.ModelError, match="exceeds its slip force of 24.6"):
+    with pytest.raises(ss.ModelError, match="exceeds its slip force of 24"):
         ss.State(model, contact_force={("structural", 0): 30.0})
     lone = ss.State(model, contact_force={("structural", 0): 20.0})
     with pytest.raises(ss.ModelError, match="no deformation of the contact gives"):
