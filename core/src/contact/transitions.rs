@@ -34,15 +34,17 @@ impl March<'_> {
             PointState::Stuck => (&set.tangent, force[i].signum()),
             state => (&set.slip_rate, -state.sign()),
         };
-        let mut size = 0.0;
-        let mut rate = [0.0; 2];
+        // Where contacts share a DOF the parts of a rate may cancel: what is left then is none.
+        let (mut size, mut rate) = ([0.0; 2], [0.0; 2]);
         for (j, (slope, curvature)) in jet.slope.iter().zip(&jet.curvature).enumerate() {
             let part = sign * matrix[(i, j)];
             rate[0] += part * slope;
             rate[1] += part * curvature;
-            size += (part * slope).abs();
+            size[0] += (part * slope).abs();
+            size[1] += (part * curvature).abs();
         }
-        rate[0] > AT_REST * size || (rate[0] >= -AT_REST * size && rate[1] > 0.0)
+        rate[0] > AT_REST * size[0]
+            || (rate[0] >= -AT_REST * size[0] && rate[1] > AT_REST * size[1])
     }
 
     /// First angle in a cell of the grid at which a point changes its state, and the point.
@@ -112,7 +114,9 @@ impl March<'_> {
             let jet = self.harmonics.jet(series, theta);
             [sign * jet[1], sign * jet[2]]
         };
-        if end < 0.0 {
+        let parts = to.slope.iter().enumerate();
+        let size: f64 = parts.map(|(j, x)| (matrix[(i, j)] * x).abs()).sum();
+        if end < -AT_REST * size {
             return Some(root([from.theta, to.theta], &slope));
         }
         // The slip may come to rest and go on between the two.
