@@ -40,7 +40,8 @@ impl March<'_> {
             let part = sign * matrix[(i, j)];
             rate[0] += part * slope;
             rate[1] += part * curvature;
-            size[0] += (part * slope).abs();
+            // At a standstill the curvature says what the rounding of the angle is worth.
+            size[0] += (part * slope).abs() + (part * curvature).abs();
             size[1] += (part * curvature).abs();
         }
         rate[0] > AT_REST * size[0]
