@@ -71,20 +71,19 @@ class Contact(ABC):
         """
 
     @property
-    @abstractmethod
     def limits(self) -> tuple[float, ...]:
         """Slip limit of each contact point [N]."""
+        return (self.parameters().get("slip_force", np.inf),) * self.points
 
     @abstractmethod
     def parameters(self) -> dict[str, float]:
         """Return the parameters that are single numbers, by name, in SI units."""
 
     @property
-    @abstractmethod
     def stuck_stiffness(self) -> Matrix:
         """Stiffness while every point sticks [N/m], shape (points, points)."""
+        raise self._without_limits()
 
-    @abstractmethod
     def held(self, *, stuck: bool) -> Contact | None:
         """Return what is left of the contact in a linear limit, as one that never slips.
 
@@ -98,7 +97,19 @@ class Contact(ABC):
         -------
         Contact or None
             Without slip; None if nothing is left.
+
+        Raises
+        ------
+        ModelError
+            If the law has no linear limits.
         """
+        raise self._without_limits()
+
+    def _without_limits(self) -> ModelError:
+        return ModelError(
+            f"contact {self.name!r}: the law {self.law!r} has no single stiffness for the linear "
+            "limits; draw with stuck=False, free=False"
+        )
 
     def law_parameters(self) -> dict[str, float | list[float]]:
         """Return all parameters of the law as the compiled core takes them, in SI units."""
