@@ -130,7 +130,8 @@ def events(result: ForcedResponse, index: int, *, ax: Axes | None = None) -> Axe
     shown: set[str] = set()
     count = 0
     for row, strips in enumerate(_strips(result, index)):
-        count += len(strips) if len(strips) > 1 else 0
+        # A phase may go on over the end of the period.
+        count += len(strips) - (strips[0][2] == strips[-1][2])
         for begin, length, kind in strips:
             ax.broken_barh(
                 [(begin, length)],
