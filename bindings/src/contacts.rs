@@ -64,6 +64,7 @@ pub fn contact_force<'py>(
 /// Stretches of the period in which no point changes its state: their starts as angles, and the
 /// direction of slip of every point, 0 in stick.
 #[pyfunction]
+#[allow(clippy::type_complexity)]
 pub fn contact_phases<'py>(
     py: Python<'py>,
     problem: &Problem,

@@ -15,7 +15,9 @@ use stickslip_core::motion::{transient, Scheme, TransientSettings};
 use stickslip_core::orbit::{orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits};
 
 /// Frequency [rad/s], force [N], largest forces at the contacts [N] and the slip sets.
-const HISTORIES: [(f64, f64, [f64; 4], &[&[usize]]); 4] = [
+type Case = (f64, f64, [f64; 4], &'static [&'static [usize]]);
+
+const HISTORIES: [Case; 4] = [
     (250.0, 15.0, [2.6372, 2.8400, 15.0410, 14.8381], &[]),
     (550.0, 35.0, [24.6, 22.2518, 36.1656, 52.3142], &[&[0]]),
     (550.0, 140.0, [24.6, f64::NAN, f64::NAN, f64::NAN], &[&[0]]),

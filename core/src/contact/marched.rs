@@ -138,9 +138,9 @@ impl Marched {
                 let old = (n - 1) * points;
                 round.force[old..old + points].copy_from_slice(&force);
                 self.step(samples, n, &mut du, &mut force, &mut gain);
-                for i in 0..points {
-                    largest = largest.max(force[i].abs());
-                    round.slipping[i] += usize::from(!sticks(&gain, points, i));
+                for (i, (f, steps)) in force.iter().zip(&mut round.slipping).enumerate() {
+                    largest = largest.max(f.abs());
+                    *steps += usize::from(!sticks(&gain, points, i));
                 }
                 if account {
                     add_work(

@@ -88,10 +88,8 @@ impl SampleTable {
     fn sample_slope(&self, series: &[f64]) -> Vec<f64> {
         let mut slope = self.sampled(series, 1, |k, a, b| (k * b, -k * a));
         let sign = if self.harmonics.half_wave() { -1.0 } else { 1.0 };
-        for i in 0..2 {
-            if slope[i] == 0.0 {
-                slope[i] = -f64::MIN_POSITIVE;
-            }
+        for slope in slope.iter_mut().take(2).filter(|slope| **slope == 0.0) {
+            *slope = -f64::MIN_POSITIVE;
         }
         slope.extend([sign * slope[0], sign * slope[1]]);
         slope
