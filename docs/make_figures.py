@@ -43,6 +43,14 @@ def snecma_beam(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "snecma-beam.png")
 
 
+def structural_damper(folder: Path = ASSETS) -> Path:
+    """Draw the forces at the four contacts of the beam pair."""
+    orbit = ss.exact_response(ss.reference.damped_pair(550.0), [550.0])
+    figure = plot.contact_forces(orbit, "structural", 0)[0].figure
+    assert isinstance(figure, Figure)
+    return _save(figure, folder / "structural-damper.png")
+
+
 def error_estimates(folder: Path = ASSETS) -> Path:
     """Tabulate true truncation errors of the beam tip against their estimates.
 
@@ -338,6 +346,7 @@ def _save(figure: Figure, file: Path) -> Path:
 
 if __name__ == "__main__":
     print(snecma_beam())
+    print(structural_damper())
     print(error_estimates())
     print(*harmonics_errors())
     print(exact_orbits())

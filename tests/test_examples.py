@@ -114,3 +114,25 @@ def test_the_flutter_beam_has_the_limit_of_exact_orbits():
     assert branch.limit.ratio == pytest.approx(6.3604, rel=1e-4)
     assert branch.changes[0].value == pytest.approx(4.686, rel=1e-3)
     assert branch.changes[0].kind == "complex pair"
+
+
+def test_the_pair_peaks_and_slips_as_the_dissertation_corrected(tmp_path, monkeypatch, capsys):
+    study = Study.load(EXAMPLES / "beam-pair" / "study.toml")
+    curves = dict(zip([case.level for case in study.cases], study.run(), strict=True))
+    # errata.md, section 6
+    for level, peaks in {
+        20.0: {"1.damper": 1.9184e-5, "1.tip": 3.0592e-5, "2.tip": 2.4787e-5},
+        60.0: {"1.damper": 3.1929e-5, "2.damper": 3.2890e-5, "1.tip": 6.9382e-5},
+        120.0: {"2.damper": 4.6078e-5, "1.tip": 1.1256e-4},
+    }.items():
+        assert curves[level].converged.all()
+        for dof, peak in peaks.items():
+            assert curves[level].peak(dof).amplitude == pytest.approx(peak, rel=2e-3)
+    monkeypatch.chdir(tmp_path)
+    pyplot.switch_backend("agg")
+    runpy.run_path(os.fspath(EXAMPLES / "beam-pair" / "pair.py"), run_name="__main__")
+    pyplot.close("all")
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith("slip sets []")
+    assert lines[1].endswith("slip sets [(0,)]")
+    assert sorted(path.name for path in tmp_path.glob("*.png"))[-1] == "beam-pair-550.png"

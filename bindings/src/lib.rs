@@ -1,6 +1,7 @@
 //! Python skin of `stickslip-core`: arrays in, arrays out. No mathematics here.
 
 mod arrays;
+mod contacts;
 mod design;
 mod fates;
 mod limit_cycles;
@@ -24,7 +25,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(response::forced_response, module)?)?;
     module.add_function(wrap_pyfunction!(response::peak, module)?)?;
     module.add_function(wrap_pyfunction!(response::amplitude, module)?)?;
-    module.add_function(wrap_pyfunction!(response::contact_force, module)?)?;
+    module.add_function(wrap_pyfunction!(contacts::contact_force, module)?)?;
+    module.add_function(wrap_pyfunction!(contacts::contact_phases, module)?)?;
     module.add_function(wrap_pyfunction!(settings::automatic_samples, module)?)?;
     module.add_function(wrap_pyfunction!(single_harmonic::single_harmonic, module)?)?;
     module.add_class::<design::Peaks>()?;

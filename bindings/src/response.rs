@@ -13,7 +13,6 @@ use stickslip_core::balance::{
     self, refine_peak, sweep, sweep_range, ForcedBalance, Point, PointStatus, Progress,
     HIGHEST_ORDER,
 };
-use stickslip_core::contact::Motion;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::orbit::Rescue;
 use stickslip_core::timing::Profile;
@@ -299,40 +298,4 @@ pub fn amplitude<'py>(
         fourier::amplitude(&table, &row, measure)
     });
     Ok(vector(py, amplitudes))
-}
-
-/// Contact force over one period as the law gives it for displacements `(points, H+1)`.
-#[pyfunction]
-pub fn contact_force<'py>(
-    py: Python<'py>,
-    problem: &Problem,
-    contact: usize,
-    displacement: PyReadonlyArray2<'py, Complex64>,
-    residual: ResidualArgument,
-    march: Option<usize>,
-    samples: usize,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let model = evaluated(problem, march)?;
-    let Some(law) = model.laws().get(contact) else {
-        return Err(PyValueError::new_err(format!(
-            "contact = {contact}: the model has {} contacts",
-            problem.model.laws().len()
-        )));
-    };
-    let view = displacement.as_array();
-    let (points, orders) = (view.nrows(), view.ncols());
-    if points != law.points() || orders < 2 {
-        return Err(PyValueError::new_err(format!(
-            "displacement: expected {} rows of at least X_0 and X_1, got {points} x {orders}",
-            law.points()
-        )));
-    }
-    let residual = residual.parse()?;
-    let half_wave =
-        residual.is_symmetric() && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
-    let sample_table = SampleTable::new(Harmonics::new(orders - 1, half_wave));
-    let coefficients: Vec<f64> =
-        (0..points).flat_map(|n| series(sample_table.harmonics(), |k| view[[n, k]])).collect();
-    let motion = Motion { table: &sample_table, displacement: &coefficients, residual };
-    table(py, samples, points, law.force_history(motion, samples))
 }

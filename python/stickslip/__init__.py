@@ -38,7 +38,14 @@ if TYPE_CHECKING:
     from stickslip.fe import Reduction, Solid, craig_bampton
     from stickslip.html.report import report
     from stickslip.io import Frf, read_dofs, read_frf, read_matrix, write_frf
-    from stickslip.model import Force, Jenkins, Model, natural_frequencies
+    from stickslip.model import (
+        Force,
+        Jenkins,
+        Model,
+        StructuralDamper,
+        natural_frequencies,
+        slip_configurations,
+    )
     from stickslip.model.damping import modal_damping
     from stickslip.model.destabilised import destabilised
     from stickslip.model.state import State
@@ -83,6 +90,7 @@ __all__ = [
     "StabilityMap",
     "State",
     "Status",
+    "StructuralDamper",
     "Structure",
     "Transient",
     "__version__",
@@ -114,6 +122,7 @@ __all__ = [
     "rigid_limit_cycle",
     "single_harmonic",
     "single_harmonic_cycles",
+    "slip_configurations",
     "stability_map",
     "study",
     "transient",
@@ -147,6 +156,7 @@ _HOMES = {
     "StabilityMap": "results.stability_map",
     "State": "model.state",
     "Status": "results",
+    "StructuralDamper": "model",
     "Structure": "model",
     "Transient": "results.transient",
     "__version__": "_core",
@@ -176,6 +186,7 @@ _HOMES = {
     "single_harmonic": "analyses.single_harmonic",
     "single_harmonic_cycles": "analyses.flutter_formulas",
     "stability_map": "analyses.stability_map",
+    "slip_configurations": "model",
     "transient": "analyses.transient",
     "write_frf": "io",
 }

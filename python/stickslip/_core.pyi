@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 Float = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Contact = tuple[str, Float, Mapping[str, float]]
-SectorContact = tuple[str, Float, Float, Mapping[str, float]]
+Parameters = Mapping[str, float | list[float]]
+Contact = tuple[str, Float, Parameters]
+SectorContact = tuple[str, Float, Float, Parameters]
 Residual = str | float
 
 __version__: str
@@ -119,6 +120,13 @@ def contact_force(
     march: int | None,
     samples: int,
 ) -> Float: ...
+def contact_phases(
+    problem: Problem,
+    contact: int,
+    displacement: Complex,
+    residual: Residual,
+    march: int | None,
+) -> tuple[Float, Float]: ...
 def automatic_samples(highest: int) -> int: ...
 def single_harmonic(
     problem: Problem,

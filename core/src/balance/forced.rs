@@ -244,6 +244,13 @@ impl<'a> ForcedBalance<'a> {
             |unknowns| unknowns.recast(harmonics),
         );
         let mut report = self.iterate(equations, &mut x);
+        if has_failed(&report) && start.is_some() {
+            // A neighbour in another state of the contacts may mislead.
+            let spent = report.iterations;
+            x = equations.stuck_response().to_vec();
+            report = self.iterate(equations, &mut x);
+            report.iterations += spent;
+        }
         if has_failed(&report) {
             self.start_again(equations, omega, &mut x, &mut report);
         }

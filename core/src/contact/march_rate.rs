@@ -1,8 +1,11 @@
-//! The derivative of a march through a friction law, carried from instant to instant.
+//! What a march through a friction law carries from instant to instant: its derivative, and the
+//! friction work.
 
+use super::{Elastic, FrictionLaw};
 use faer::Mat;
 
 /// Derivative of the slip loads at one instant in all coefficients, point after point.
+#[derive(Clone)]
 pub(super) struct Rate {
     slots: usize,
     stiffness: Mat<f64>,
@@ -19,6 +22,11 @@ impl Rate {
     /// Multiplies the derivative by a sign.
     pub(super) fn scale(&mut self, sign: f64) {
         self.value.iter_mut().for_each(|rate| *rate *= sign);
+    }
+
+    /// The mean of this derivative and another.
+    pub(super) fn average(&mut self, other: &Self) {
+        self.value.iter_mut().zip(&other.value).for_each(|(a, b)| *a = 0.5 * (*a + b));
     }
 
     /// Takes the derivative through one return map.
@@ -58,12 +66,47 @@ impl Rate {
     }
 }
 
-/// Whether point i of a return map sticks: its force is the trial force.
-pub(super) fn is_unit_row(gain: &[f64], points: usize, i: usize) -> bool {
-    (0..points).all(|j| gain[i * points + j] == f64::from(u8::from(i == j)))
+/// Whether point i of a return map sticks: its own displacement moves its force in full. Others may
+/// take part of it by their slip.
+pub(super) fn sticks(gain: &[f64], points: usize, i: usize) -> bool {
+    gain[i * points + i] == 1.0
 }
 
 /// Whether all points stick.
 pub(super) fn is_identity(gain: &[f64], points: usize) -> bool {
-    (0..points).all(|i| is_unit_row(gain, points, i))
+    (0..points).all(|i| sticks(gain, points, i))
+}
+
+/// Adds the friction work of a step. Over a period that of a single point is the work of its
+/// force; coupled points exchange elastic energy, so that their slip has to be known.
+pub(super) fn add_work(
+    law: &dyn FrictionLaw,
+    before: &[f64],
+    force: &[f64],
+    du: &[f64],
+    gain: &[f64],
+    work: &mut [f64],
+) {
+    let points = force.len();
+    if points == 1 {
+        work[0] += 0.5 * (before[0] + force[0]) * du[0];
+        return;
+    }
+    let slips: Vec<bool> = (0..points).map(|i| !sticks(gain, points, i)).collect();
+    if !slips.contains(&true) {
+        return;
+    }
+    let stiffness = law.stiffness();
+    let lost: Vec<f64> = (0..points)
+        .map(|i| {
+            let elastic: f64 = (0..points).map(|j| stiffness[(i, j)] * du[j]).sum();
+            before[i] + elastic - force[i]
+        })
+        .collect();
+    if let Ok(elastic) = Elastic::new(stiffness.as_ref()) {
+        let slip = elastic.slip(&slips, &lost);
+        for (i, s) in slip.into_iter().enumerate() {
+            work[i] += 0.5 * (before[i] + force[i]) * s;
+        }
+    }
 }

@@ -6,10 +6,11 @@
 //! error is of second order in the distance of the samples. It serves laws that have no closed
 //! form, and comparisons with those that have one.
 
-use super::march_rate::{is_identity, is_unit_row, Rate};
+use super::march_rate::{add_work, is_identity, sticks, Rate};
+use super::passage::SLOW;
 use super::samples::Samples;
+use super::slip_series::halve_means;
 use super::{Describing, FrictionLaw, Motion, PointState, PointSummary, Residual, SlipLoad};
-use crate::fourier::Harmonics;
 use crate::Error;
 use faer::Mat;
 use std::f64::consts::TAU;
@@ -39,11 +40,12 @@ pub struct Marched {
 struct Round {
     /// Instant after instant.
     force: Vec<f64>,
-    /// Rounds marched until the forces repeated.
-    rounds: usize,
+    /// Rounds marched until the forces repeated, each with whether its start was the mean of the
+    /// two before.
+    averaged: Vec<bool>,
     /// Steps in slip per point.
     slipping: Vec<usize>,
-    /// Work of every point's force over the span.
+    /// Friction work of every point over the span, if it was asked for.
     work: Vec<f64>,
     /// Whether anything has slipped from the start on.
     slipped: bool,
@@ -113,21 +115,21 @@ impl Marched {
         force
     }
 
-    /// Marches until the forces repeat.
-    fn march(&self, samples: &Samples) -> Round {
+    /// Marches until the forces repeat; with `account` of the friction work.
+    fn march(&self, samples: &Samples, account: bool) -> Round {
         let points = self.points();
         let mut gain = vec![0.0; points * points];
         let mut force = self.start(samples, &mut gain);
         let mut round = Round {
             force: vec![0.0; samples.count * points],
-            rounds: 0,
+            averaged: vec![false],
             slipping: Vec::new(),
             work: Vec::new(),
             slipped: !is_identity(&gain, points),
         };
         let (mut du, mut before) = (vec![0.0; points], vec![0.0; points]);
+        let mut last_change = f64::INFINITY;
         loop {
-            round.rounds += 1;
             round.slipping = vec![0; points];
             round.work = vec![0.0; points];
             before.copy_from_slice(&force);
@@ -136,24 +138,39 @@ impl Marched {
                 let old = (n - 1) * points;
                 round.force[old..old + points].copy_from_slice(&force);
                 self.step(samples, n, &mut du, &mut force, &mut gain);
-                for i in 0..points {
-                    largest = largest.max(force[i].abs());
-                    round.slipping[i] += usize::from(!is_unit_row(&gain, points, i));
-                    round.work[i] += 0.5 * (round.force[old + i] + force[i]) * du[i];
+                for (i, (f, steps)) in force.iter().zip(&mut round.slipping).enumerate() {
+                    largest = largest.max(f.abs());
+                    *steps += usize::from(!sticks(&gain, points, i));
+                }
+                if account {
+                    add_work(
+                        self.law.as_ref(),
+                        &round.force[old..old + points],
+                        &force,
+                        &du,
+                        &gain,
+                        &mut round.work,
+                    );
                 }
             }
             force.iter_mut().for_each(|f| *f *= samples.sign);
             round.slipped |= round.slipping.iter().any(|&steps| steps > 0);
             let change = force.iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            if change <= PERIODIC * largest || round.rounds == MOST_ROUNDS {
+            if change <= PERIODIC * largest || round.averaged.len() == MOST_ROUNDS {
                 return round;
             }
+            let alternates = samples.sign < 0.0 && change > SLOW * last_change;
+            if alternates {
+                force.iter_mut().zip(&before).for_each(|(f, before)| *f = 0.5 * (*f + before));
+            }
+            round.averaged.push(alternates);
+            last_change = change;
         }
     }
 
     /// Derivative of the march, start and history included. With trial forces `D u − q` before and
     /// the gain P of the return map, `dq_n = P dq_{n−1} + (I − P) D du_n`.
-    fn differentiate(&self, samples: &Samples, rounds: usize, slots: usize, out: &mut [f64]) {
+    fn differentiate(&self, samples: &Samples, rounds: &[bool], slots: usize, out: &mut [f64]) {
         let points = self.points();
         let mut gain = vec![0.0; points * points];
         let mut force = self.start(samples, &mut gain);
@@ -161,9 +178,16 @@ impl Marched {
         rate.follow(&gain, &samples.basis[..slots]);
         let weight = 2.0 / samples.count as f64;
         let (mut sum, mut du) = (vec![0.0; slots], vec![0.0; points]);
-        for round in 1..=rounds {
+        let mut before = (force.clone(), rate.clone());
+        for (round, averaged) in rounds.iter().enumerate() {
+            let last = round + 1 == rounds.len();
+            if *averaged {
+                force.iter_mut().zip(&before.0).for_each(|(f, before)| *f = 0.5 * (*f + before));
+                rate.average(&before.1);
+            }
+            before = (force.clone(), rate.clone());
             for n in 1..=samples.count {
-                if round == rounds {
+                if last {
                     // While everything sticks q keeps its derivative: instants are summed first.
                     let basis = &samples.basis[(n - 1) * slots..n * slots];
                     sum.iter_mut().zip(basis).for_each(|(sum, b)| *sum += weight * b);
@@ -171,7 +195,7 @@ impl Marched {
                 self.step(samples, n, &mut du, &mut force, &mut gain);
                 let wraps = n == samples.count;
                 if wraps || !is_identity(&gain, points) {
-                    if round == rounds {
+                    if last {
                         rate.add_to(&mut sum, out);
                     }
                     let sign = if wraps { samples.sign } else { 1.0 };
@@ -180,21 +204,6 @@ impl Marched {
                     rate.follow(&gain, &samples.basis[(n % samples.count) * slots..][..slots]);
                 }
             }
-        }
-    }
-}
-
-/// The mean of a series is its sum over the samples, not twice that.
-fn halve_means(harmonics: &Harmonics, points: usize, out: &mut SlipLoad) {
-    if !harmonics.has_mean() {
-        return;
-    }
-    let slots = harmonics.slots();
-    let size = points * slots;
-    for mean in (0..points).map(|i| i * slots) {
-        out.value[mean] *= 0.5;
-        if let Some(row) = out.tangent.get_mut(mean * size..(mean + 1) * size) {
-            row.iter_mut().for_each(|entry| *entry *= 0.5);
         }
     }
 }
@@ -237,7 +246,7 @@ impl FrictionLaw for Marched {
             }
             return;
         }
-        let round = self.march(&samples);
+        let round = self.march(&samples, false);
         if !round.slipped {
             return;
         }
@@ -253,7 +262,7 @@ impl FrictionLaw for Marched {
             }
         }
         if tangent {
-            self.differentiate(&samples, round.rounds, slots, &mut out.tangent);
+            self.differentiate(&samples, &round.averaged, slots, &mut out.tangent);
         }
         halve_means(harmonics, points, out);
     }
@@ -288,7 +297,7 @@ impl FrictionLaw for Marched {
         if self.stuck(&samples, motion.residual).is_some() {
             return;
         }
-        let round = self.march(&samples);
+        let round = self.march(&samples, true);
         let spans = (self.samples / samples.count) as f64;
         for (i, summary) in out.iter_mut().enumerate() {
             summary.slip_fraction = round.slipping[i] as f64 / samples.count as f64;
@@ -343,7 +352,7 @@ impl FrictionLaw for Marched {
         let (slots, points) = (harmonics.slots(), self.points());
         let grid = Samples::of(motion, self.samples);
         let stuck = self.stuck(&grid, motion.residual);
-        let round = self.march(&grid);
+        let round = self.march(&grid, false);
         let mut history = Vec::with_capacity(samples * points);
         for m in 0..samples {
             let theta = TAU * m as f64 / samples as f64;

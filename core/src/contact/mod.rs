@@ -7,15 +7,23 @@
 
 mod cycle;
 mod describing;
+mod elastic;
+mod increment;
 mod jenkins;
 mod jenkins_parameters;
 mod march_rate;
 mod marched;
+mod passage;
 mod samples;
+mod slip_series;
+mod structural;
+mod transitions;
 
 pub use describing::Describing;
+pub use elastic::Elastic;
 pub use jenkins::Jenkins;
 pub use marched::Marched;
+pub use structural::StructuralDamper;
 
 use crate::fourier::SampleTable;
 use crate::Error;
@@ -108,6 +116,16 @@ impl PointState {
         }
     }
 
+    /// The state in the mirror image of the motion.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::Stuck => Self::Stuck,
+            Self::Forward => Self::Backward,
+            Self::Backward => Self::Forward,
+        }
+    }
+
     /// Slip in the direction of `sign`.
     #[must_use]
     pub fn slipping(sign: f64) -> Self {
@@ -118,6 +136,18 @@ impl PointState {
         }
     }
 }
+
+/// A stretch of the period in which no point changes its state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phase {
+    /// Angle θ = ωt from which on, up to the start of the next one.
+    pub start: f64,
+    /// States of the points. A point without friction counts as stuck: it carries no force.
+    pub states: Vec<PointState>,
+}
+
+/// Instants at which a law that keeps no account of its phases is asked.
+const INSTANTS: usize = 4096;
 
 /// A friction law between one or several relative displacements and their forces.
 pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
@@ -178,6 +208,30 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
     /// Contact forces at `samples` equidistant instants, instant after instant [N].
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
 
+    /// What the points do over a period, from change to change; from the forces at instants unless
+    /// the law knows better.
+    fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
+        let points = self.points();
+        let limits = self.limits();
+        let mut phases: Vec<Phase> = Vec::new();
+        let forces = self.force_history(motion, INSTANTS);
+        for (n, force) in forces.chunks_exact(points).enumerate() {
+            let states: Vec<PointState> = force
+                .iter()
+                .zip(&limits)
+                .map(|(f, limit)| match *limit {
+                    limit if limit > 0.0 && f.abs() >= limit => PointState::slipping(*f),
+                    _ => PointState::Stuck,
+                })
+                .collect();
+            let start = std::f64::consts::TAU * n as f64 / INSTANTS as f64;
+            if phases.last().is_none_or(|last| last.states != states) {
+                phases.push(Phase { start, states });
+            }
+        }
+        phases
+    }
+
     /// Names and values of the parameters, each addressed by its position; none by default.
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         Vec::new()
@@ -214,8 +268,18 @@ pub type Parameters = BTreeMap<String, Vec<f64>>;
 pub fn law(name: &str, parameters: &Parameters) -> Result<Box<dyn FrictionLaw>, Error> {
     match name {
         "jenkins" => Ok(Box::new(Jenkins::from_parameters(parameters)?)),
-        other => Err(Error::UnknownLaw { name: other.to_owned(), known: "jenkins".to_owned() }),
+        "structural" => Ok(Box::new(StructuralDamper::from_parameters(parameters)?)),
+        other => Err(Error::UnknownLaw {
+            name: other.to_owned(),
+            known: "jenkins, structural".to_owned(),
+        }),
     }
+}
+
+/// The numbers a law expects under `name`.
+fn numbers<'a>(law: &str, parameters: &'a Parameters, name: &str) -> Result<&'a [f64], Error> {
+    let found = parameters.get(name).map(Vec::as_slice);
+    found.ok_or_else(|| Error::shape(&format!("{law}: {name}"), "numbers", "nothing"))
 }
 
 /// The single number a law expects under `name`.

@@ -9,6 +9,9 @@ const SAMPLES_PER_HARMONIC: usize = 64;
 /// Samples that are looked at together.
 const BLOCK: usize = 32;
 
+/// Distance of the samples of [`SampleTable::jets`] on that grid.
+const COARSER: usize = 4;
+
 /// Angles closer than this are the same.
 const ROUNDING: f64 = 1e-12;
 
@@ -36,6 +39,7 @@ impl SampleTable {
     #[must_use]
     pub fn new(harmonics: Harmonics) -> Self {
         let quarter = (SAMPLES_PER_HARMONIC * harmonics.highest().max(4)).div_ceil(4);
+        let quarter = quarter.next_multiple_of(COARSER);
         let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
         let (mut cos, mut sin) = (Vec::new(), Vec::new());
         for &order in harmonics.oscillating() {
@@ -92,62 +96,90 @@ impl SampleTable {
     /// Slope of the series on the grid of `[0, span)` and at the first two points beyond, no
     /// sample exactly zero at the seam, so that its mirror image has the other sign.
     fn sample_slope(&self, series: &[f64]) -> Vec<f64> {
-        let q = self.quarter;
+        let mut slope = self.sampled(series, 1, |k, a, b| (k * b, -k * a));
+        let sign = if self.harmonics.half_wave() { -1.0 } else { 1.0 };
+        for slope in slope.iter_mut().take(2).filter(|slope| **slope == 0.0) {
+            *slope = -f64::MIN_POSITIVE;
+        }
+        slope.extend([sign * slope[0], sign * slope[1]]);
+        slope
+    }
+
+    /// Number of samples of [`SampleTable::jets`] over the span.
+    #[must_use]
+    pub fn coarse_samples(&self) -> usize {
+        self.coarse_quarter() * if self.harmonics.half_wave() { 2 } else { 4 }
+    }
+
+    fn coarse_quarter(&self) -> usize {
+        self.quarter / COARSER
+    }
+
+    /// Values, slopes and curvatures of a series at equidistant angles of `[0, span)`, a quarter
+    /// as many as turning points are bracketed on.
+    #[must_use]
+    pub fn jets(&self, series: &[f64]) -> [Vec<f64>; 3] {
+        let mut value = self.sampled(series, COARSER, |_, a, b| (a, b));
+        let mean = self.harmonics.mean(series);
+        value.iter_mut().for_each(|value| *value += mean);
+        let slope = self.sampled(series, COARSER, |k, a, b| (k * b, -k * a));
+        let curvature = self.sampled(series, COARSER, |k, a, b| (-k * k * a, -k * k * b));
+        [value, slope, curvature]
+    }
+
+    /// Sum of `c cos kθ + s sin kθ` on every `stride`-th point of the grid of `[0, span)`, with
+    /// (c, s) made of order and coefficients of each harmonic.
+    fn sampled(
+        &self,
+        series: &[f64],
+        stride: usize,
+        of: impl Fn(f64, f64, f64) -> (f64, f64),
+    ) -> Vec<f64> {
+        let (all, q) = (padded(self.quarter + 1), self.quarter / stride);
         // Even and odd orders apart: they reflect with opposite sign about π/2.
         let length = padded(q + 1);
         let mut sums = vec![0.0; 4 * length];
         let (even, odd) = sums.split_at_mut(2 * length);
-        self.add_slopes(series, 1, odd);
-        if !self.harmonics.half_wave() {
-            self.add_slopes(series, 0, even);
+        for (index, &order) in self.harmonics.oscillating().iter().enumerate() {
+            let slot = self.harmonics.offset() + 2 * index;
+            let (of_cos, of_sin) = of(order as f64, series[slot], series[slot + 1]);
+            let row = index * all..(index + 1) * all;
+            let (cos, sin) = (&self.cos[row.clone()], &self.sin[row]);
+            let (cosines, sines) =
+                if order % 2 == 0 { &mut *even } else { &mut *odd }.split_at_mut(length);
+            if stride == 1 {
+                add_multiples([(of_cos, cos, cosines), (of_sin, sin, sines)]);
+            } else {
+                for (sum, row, factor) in [(cosines, cos, of_cos), (sines, sin, of_sin)] {
+                    for (sum, value) in sum.iter_mut().zip(row.iter().step_by(stride)) {
+                        *sum += factor * value;
+                    }
+                }
+            }
         }
         let ([even_cos, even_sin], [odd_cos, odd_sin]) =
             (halves(even, length), halves(odd, length));
         let half_wave = self.harmonics.half_wave();
-        let count = if half_wave { 2 * q } else { 4 * q };
-        let mut slope = vec![0.0; count + 2];
+        let mut out = vec![0.0; if half_wave { 2 * q } else { 4 * q } + 1];
         if half_wave {
             for i in 0..=q {
-                slope[i] = odd_cos[i] + odd_sin[i];
-                slope[2 * q - i] = odd_sin[i] - odd_cos[i];
+                out[i] = odd_cos[i] + odd_sin[i];
+                out[2 * q - i] = odd_sin[i] - odd_cos[i];
             }
-            slope[q] = odd_cos[q] + odd_sin[q];
+            out[q] = odd_cos[q] + odd_sin[q];
         } else {
             for i in 0..=q {
-                slope[2 * q - i] = even_cos[i] - odd_cos[i] - even_sin[i] + odd_sin[i];
-                slope[2 * q + i] = even_cos[i] - odd_cos[i] + even_sin[i] - odd_sin[i];
-                slope[4 * q - i] = even_cos[i] + odd_cos[i] - even_sin[i] - odd_sin[i];
+                out[2 * q - i] = even_cos[i] - odd_cos[i] - even_sin[i] + odd_sin[i];
+                out[2 * q + i] = even_cos[i] - odd_cos[i] + even_sin[i] - odd_sin[i];
+                out[4 * q - i] = even_cos[i] + odd_cos[i] - even_sin[i] - odd_sin[i];
             }
             for i in 0..=q {
-                slope[i] = even_cos[i] + odd_cos[i] + even_sin[i] + odd_sin[i];
+                out[i] = even_cos[i] + odd_cos[i] + even_sin[i] + odd_sin[i];
             }
         }
-        let sign = if half_wave { -1.0 } else { 1.0 };
-        for i in 0..2 {
-            if slope[i] == 0.0 {
-                slope[i] = -f64::MIN_POSITIVE;
-            }
-            slope[count + i] = sign * slope[i];
-        }
-        slope
-    }
-
-    /// Adds the slopes of the even or of the odd harmonics on the quarter period to `out`: those
-    /// of the sines, which are cosines, and those of the cosines.
-    fn add_slopes(&self, series: &[f64], parity: usize, out: &mut [f64]) {
-        let length = padded(self.quarter + 1);
-        let (of_sines, of_cosines) = out.split_at_mut(length);
-        let offset = self.harmonics.offset();
-        for (index, &order) in self.harmonics.oscillating().iter().enumerate() {
-            if order % 2 == parity {
-                let (slot, k) = (offset + 2 * index, order as f64);
-                let row = index * length..(index + 1) * length;
-                add_multiples([
-                    (k * series[slot + 1], &self.cos[row.clone()], &mut *of_sines),
-                    (-k * series[slot], &self.sin[row], &mut *of_cosines),
-                ]);
-            }
-        }
+        // The last one repeats the first, or its mirror image.
+        out.pop();
+        out
     }
 
     /// Looks for two turning points between samples of equal sign: where the slope comes close to

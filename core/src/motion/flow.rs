@@ -5,7 +5,7 @@
 
 use super::modal_system::{ModalSystem, Regime};
 use super::polynomial::first_zero;
-use super::power_series::{PowerSeries, DEGREE};
+use super::power_series::{sum_of_products, PowerSeries, DEGREE};
 use super::state::State;
 use crate::contact::PointState;
 use crate::model::Model;
@@ -226,16 +226,11 @@ impl<'a> Flow<'a> {
     fn fill_slip_velocity(&mut self, regime: &Regime, point: usize, sign: f64, natural: f64) {
         self.scratch.clear();
         self.scratch.resize(DEGREE, 0.0);
-        for other in 0..self.system.points() {
-            let rate = sign * regime.slip_rate[(point, other)];
-            if rate == 0.0 {
-                continue;
-            }
-            for (n, (a, u)) in
-                self.scratch.iter_mut().zip(&self.series.contact(other)[1..]).enumerate()
-            {
-                *a += rate * (n + 1) as f64 * u;
-            }
+        for (n, a) in self.scratch.iter_mut().enumerate() {
+            let parts = (0..self.system.points()).map(|other| {
+                (sign * regime.slip_rate[(point, other)], self.series.contact(other)[n + 1])
+            });
+            *a = (n + 1) as f64 * sum_of_products(parts);
         }
         rescale(&mut self.scratch, natural);
     }

@@ -1,10 +1,12 @@
 //! The equations of motion in the modes of the structure without contacts.
 
-use crate::contact::PointState;
+use crate::contact::{Elastic, FrictionLaw, PointState};
 use crate::model::Model;
 use crate::structure::real_modes;
 use crate::Error;
 use faer::{c64, Mat};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Modal damping.
 #[derive(Debug, Clone)]
@@ -13,6 +15,17 @@ pub(super) enum Damping {
     Diagonal(Vec<f64>),
     /// A full modal matrix.
     Full(Mat<f64>),
+}
+
+/// A contact: its law, its points and what deforms in it.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    pub(crate) law: Arc<dyn FrictionLaw>,
+    /// Its points among those of the model.
+    pub(crate) points: Range<usize>,
+    /// Its strains among those of the model.
+    pub(crate) strains: Range<usize>,
+    pub(crate) elastic: Elastic,
 }
 
 /// `η'' + Φᵀ C Φ η' + Ω² η + (B Φ)ᵀ f = Φᵀ P(t)`, with `x = Φ η` and `u = B Φ η`.
@@ -35,8 +48,8 @@ pub struct ModalSystem {
     rate: f64,
     /// Slip limits of all points [N].
     pub(super) limits: Vec<f64>,
-    /// Diagonal of the contact stiffness D [N/m].
-    stiffness: Vec<f64>,
+    /// The contacts.
+    bodies: Vec<Body>,
 }
 
 impl ModalSystem {
@@ -68,7 +81,7 @@ impl ModalSystem {
             damping: Damping::of(damping),
             to_modes: modes.shapes.transpose() * structure.mass(),
             limits: limits_of(model),
-            stiffness: stiffness_of(model),
+            bodies: bodies(model)?,
             omega_squared: modes.omega_squared,
             shapes: modes.shapes,
         })
@@ -76,15 +89,18 @@ impl ModalSystem {
 
     /// The same structure without loads, with another modal damping and the contacts of another
     /// model of it.
-    pub(crate) fn undriven(&self, model: &Model, damping: Mat<f64>) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// A contact whose stiffness has no eigenvalues.
+    pub(crate) fn undriven(&self, model: &Model, damping: Mat<f64>) -> Result<Self, Error> {
+        Ok(Self {
             loads: Vec::new(),
             rate: rate_of(model, &damping),
             damping: Damping::of(damping),
             limits: limits_of(model),
-            stiffness: stiffness_of(model),
+            bodies: bodies(model)?,
             ..self.clone()
-        }
+        })
     }
 
     /// `Φᵀ A Φ` of a matrix over the DOFs.
@@ -195,11 +211,31 @@ impl ModalSystem {
         &self.limits
     }
 
-    /// Stiffness of each contact point on its own [N/m].
-    #[must_use]
-    pub fn contact_stiffness(&self) -> &[f64] {
-        &self.stiffness
+    /// The contacts.
+    pub(crate) fn bodies(&self) -> &[Body] {
+        &self.bodies
     }
+
+    /// Number of strains of all contacts: forces that deformations cannot give do not count.
+    pub(crate) fn strains(&self) -> usize {
+        self.bodies.last().map_or(0, |body| body.strains.end)
+    }
+}
+
+fn bodies(model: &Model) -> Result<Vec<Body>, Error> {
+    let mut bodies: Vec<Body> = Vec::with_capacity(model.laws().len());
+    for (law, points) in model.laws().iter().zip(model.points()) {
+        let elastic = Elastic::new(law.stiffness().as_ref())?;
+        let first = bodies.last().map_or(0, |body| body.strains.end);
+        let strains = first..first + elastic.rank();
+        bodies.push(Body {
+            law: Arc::from(law.magnified(1.0)),
+            points: points.clone(),
+            strains,
+            elastic,
+        });
+    }
+    Ok(bodies)
 }
 
 /// `∂f/∂u` and slip per displacement of all contacts in given states.
@@ -259,11 +295,6 @@ fn rate_of(model: &Model, damping: &Mat<f64>) -> f64 {
 
 fn limits_of(model: &Model) -> Vec<f64> {
     model.laws().iter().flat_map(|law| law.limits()).collect()
-}
-
-fn stiffness_of(model: &Model) -> Vec<f64> {
-    let total = model.contact_stiffness();
-    (0..total.nrows()).map(|i| total[(i, i)]).collect()
 }
 
 fn is_zero(load: &[c64]) -> bool {

@@ -15,6 +15,9 @@ const LONGEST: f64 = 12.0;
 /// Truncation error of a step relative to the motion in it.
 const TRUNCATION: f64 = 1e-17;
 
+/// Sum relative to its parts that is rounding.
+const CANCELLED: f64 = 1e-14;
+
 /// Power series of modes, contact displacements and contact forces about the start of a step, in
 /// the time `τ = ρ (t − t_start)`.
 #[derive(Debug, Clone)]
@@ -139,14 +142,9 @@ impl PowerSeries {
             return;
         }
         for i in 0..points {
-            let mut f = 0.0;
-            for j in 0..points {
-                let tangent = regime.tangent[(i, j)];
-                if tangent != 0.0 {
-                    f += tangent * self.contact[j * (DEGREE + 1) + power];
-                }
-            }
-            self.force[i * (DEGREE + 1) + power] = f;
+            let parts = (0..points)
+                .map(|j| (regime.tangent[(i, j)], self.contact[j * (DEGREE + 1) + power]));
+            self.force[i * (DEGREE + 1) + power] = sum_of_products(parts);
         }
     }
 
@@ -218,5 +216,20 @@ impl PowerSeries {
             out.push(scale * sum);
             scale *= length;
         }
+    }
+}
+
+/// Sum of products, 0 where they cancel up to rounding: coupled points that share a DOF have rates
+/// that vanish identically.
+pub(super) fn sum_of_products(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (mut sum, mut size) = (0.0, 0.0_f64);
+    for (a, b) in pairs.filter(|(a, _)| *a != 0.0) {
+        sum += a * b;
+        size += (a * b).abs();
+    }
+    if sum.abs() <= CANCELLED * size {
+        0.0
+    } else {
+        sum
     }
 }

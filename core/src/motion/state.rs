@@ -1,11 +1,17 @@
 //! The state of a motion: modal displacements and velocities, contact forces.
 
-use super::modal_system::{dot, ModalSystem};
+use super::modal_system::{Body, ModalSystem};
 use crate::contact::PointState;
 use crate::Error;
+use faer::Mat;
 
 /// Force beyond its slip limit that printed digits may leave in a given state.
 const ROUNDING: f64 = 1e-9;
+/// Share of a contact's forces that no deformation gives which printed digits may leave.
+const PRINTED: f64 = 1e-6;
+
+/// Changes of state per point after which the states are taken as they are.
+const FLIPS: usize = 8;
 
 /// State at an instant.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +69,22 @@ impl State {
                 ));
             }
         }
+        for (number, body) in system.bodies().iter().enumerate() {
+            let own = &force[body.points.clone()];
+            let carried = body.elastic.carried(own);
+            let size = own.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+            if let Some(i) = (0..own.len()).find(|&i| (own[i] - carried[i]).abs() > PRINTED * size)
+            {
+                return Err(Error::value(
+                    format!("state: force of contact {}, point {i}", number + 1),
+                    own[i],
+                    &format!(
+                        "no deformation of the contact gives these forces; the nearest that one gives is {}",
+                        carried[i]
+                    ),
+                ));
+            }
+        }
         let mut state = Self::rest(system);
         state.displacement = system.to_modes(&motion[..modes]);
         state.velocity = system.to_modes(&motion[modes..]);
@@ -81,24 +103,53 @@ impl State {
     }
 
     /// Keeps the forces within their limits, and has points at their limit slip if they move on.
-    pub(crate) fn settle_points(&mut self, system: &ModalSystem) {
-        for point in 0..self.force.len() {
-            let limit = system.limits()[point];
-            let force = self.force[point].clamp(-limit, limit);
-            self.force[point] = force;
-            let speed = dot(system.contact_shape(point), &self.velocity);
-            let at_limit = limit > 0.0 && force.abs() == limit;
-            self.points[point] = if at_limit && speed * force > 0.0 {
-                PointState::slipping(force)
-            } else {
-                PointState::Stuck
-            };
+    /// Of every point, whether its force was free to vary there.
+    pub(crate) fn settle_points(&mut self, system: &ModalSystem) -> Vec<bool> {
+        let speed = system.contact_displacement(&self.velocity);
+        let mut free = vec![true; self.force.len()];
+        for body in system.bodies() {
+            let range = body.points.clone();
+            let size = range.len();
+            let force = &mut self.force[range.clone()];
+            let states = &mut self.points[range.clone()];
+            let mut gain = vec![0.0; size * size];
+            body.law.advance(&vec![0.0; size], force, Some(&mut gain));
+            states.fill(PointState::Stuck);
+            settle(body, force, &speed[range.clone()], &system.limits()[range.clone()], states);
+            for (i, free) in free[range].iter_mut().enumerate() {
+                *free = gain[i * size + i] == 1.0;
+            }
         }
+        free
     }
 
     /// Whether every number is finite and of a size whose square is.
     #[must_use]
     pub fn is_bounded(&self) -> bool {
         self.displacement.iter().chain(&self.velocity).all(|v| v.abs() < 1e100)
+    }
+}
+
+/// Finds the states that follow from the velocities of a contact's points, one after the other:
+/// at its limit a point slips if its force would grow, and sticks if it would slip against it.
+fn settle(body: &Body, force: &[f64], speed: &[f64], limits: &[f64], states: &mut [PointState]) {
+    let along = |matrix: &Mat<f64>, i: usize| -> f64 {
+        speed.iter().enumerate().map(|(j, v)| matrix[(i, j)] * v).sum()
+    };
+    for _ in 0..FLIPS * (states.len() + 1) {
+        if (0..force.len()).all(|i| force[i].abs() < limits[i] || limits[i] == 0.0) {
+            return;
+        }
+        let (tangent, slip_rate) = (body.law.tangent(states), body.law.slip_rate(states));
+        let contradicts = |i: usize| match states[i] {
+            _ if limits[i] == 0.0 || force[i].abs() < limits[i] => false,
+            PointState::Stuck => along(&tangent, i) * force[i] > 0.0,
+            state => along(&slip_rate, i) * state.sign() < 0.0,
+        };
+        let Some(i) = (0..states.len()).find(|&i| contradicts(i)) else { return };
+        states[i] = match states[i] {
+            PointState::Stuck => PointState::slipping(force[i]),
+            _ => PointState::Stuck,
+        };
     }
 }

@@ -20,8 +20,17 @@ pub(crate) struct Leg {
     regime: Regime,
     /// Duration [s].
     duration: f64,
-    /// Point that begins to slip at the end, with the jump of all forces per force of that point.
-    onset: Option<(usize, Vec<f64>)>,
+    onset: Option<Onset>,
+}
+
+/// What the onset of slip at a point does to the derivative of the forces.
+#[derive(Debug, Clone)]
+struct Onset {
+    point: usize,
+    /// Rate of its force before [N/s].
+    rate: f64,
+    /// Jump of all forces per force of that point.
+    jump: Vec<f64>,
 }
 
 impl Leg {
@@ -38,27 +47,27 @@ impl Leg {
                     onset: None,
                 }),
             },
+            // Changes before the first arc find the states to begin with.
+            Passage::Event { .. } if legs.is_empty() => {}
             Passage::Event { event, speed, before, after } => {
-                if event.state == PointState::Stuck {
-                    return;
-                }
                 let rate = |regime: &Regime, i: usize| -> f64 {
                     speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
                 };
-                let own = rate(before, event.point);
-                let jump = (0..speed.len())
-                    .map(|i| {
-                        if i == event.point {
-                            -1.0
-                        } else if own == 0.0 {
-                            0.0
-                        } else {
-                            (rate(after, i) - rate(before, i)) / own
+                let jumps = (0..speed.len()).map(|i| rate(after, i) - rate(before, i));
+                let last = legs.last_mut();
+                if event.state == PointState::Stuck {
+                    // Ordinarily the rates do not jump here; at the onset of slip of a coupled
+                    // point they do.
+                    if let Some(onset) = last.and_then(|leg| leg.onset.as_mut()) {
+                        if onset.rate != 0.0 {
+                            let own = onset.rate;
+                            onset.jump.iter_mut().zip(jumps).for_each(|(to, by)| *to += by / own);
                         }
-                    })
-                    .collect();
-                let onset = Some((event.point, jump));
-                match legs.last_mut() {
+                    }
+                    return;
+                }
+                let onset = Some(Onset::new(event.point, rate(before, event.point), before));
+                match last {
                     Some(leg) if leg.onset.is_none() && leg.regime.points == before.points => {
                         leg.onset = onset;
                     }
@@ -67,40 +76,58 @@ impl Leg {
             }
         }
     }
+
+    /// Whether a point slips in it.
+    pub(crate) fn slips(&self, point: usize) -> bool {
+        self.regime.points[point] != PointState::Stuck
+            || self.onset.as_ref().is_some_and(|onset| onset.point == point)
+    }
 }
 
-/// Transition matrices in the coordinates `(w η, η', f/√k)`, in whose norm passive systems
-/// contract: kinetic and elastic energy.
+impl Onset {
+    /// The jump while other points keep their states: the point's force is taken out of all.
+    fn new(point: usize, rate: f64, before: &Regime) -> Self {
+        let own = before.tangent[(point, point)];
+        let jump = (0..before.points.len())
+            .map(|i| match i {
+                i if i == point => -1.0,
+                i if own > 0.0 => -before.tangent[(i, point)] / own,
+                _ => 0.0,
+            })
+            .collect();
+        Self { point, rate, jump }
+    }
+}
+
+/// Transition matrices in the coordinates `(w η, η', g)` with the strains g of the contacts
+/// (`f = L g`, of a single spring `f/√k`), in whose norm passive systems contract: kinetic and
+/// elastic energy.
 pub(crate) struct Transition<'a> {
     system: &'a ModalSystem,
     /// w per mode [rad/s].
     weight: Vec<f64>,
-    /// √k per contact point.
-    root: Vec<f64>,
 }
 
 impl<'a> Transition<'a> {
     /// Coordinates that suit a motion at `omega` [rad/s].
     pub(crate) fn new(system: &'a ModalSystem, omega: f64) -> Self {
         let weight = system.omega_squared().iter().map(|w| w.abs().sqrt().max(omega)).collect();
-        let root = system
-            .contact_stiffness()
-            .iter()
-            .map(|k| if *k > 0.0 { k.sqrt() } else { 1.0 })
-            .collect();
-        Self { system, weight, root }
+        Self { system, weight }
     }
 
-    /// Number of coordinates, 2N + points.
+    /// Number of coordinates, 2N + strains.
     pub(crate) fn size(&self) -> usize {
-        2 * self.weight.len() + self.root.len()
+        2 * self.weight.len() + self.system.strains()
     }
 
     /// Coordinates of a state.
     pub(crate) fn coordinates(&self, state: &State) -> Vec<f64> {
         let displacement = state.displacement.iter().zip(&self.weight).map(|(x, w)| w * x);
-        let force = state.force.iter().zip(&self.root).map(|(f, root)| f / root);
-        displacement.chain(state.velocity.iter().copied()).chain(force).collect()
+        let mut y: Vec<f64> = displacement.chain(state.velocity.iter().copied()).collect();
+        for body in self.system.bodies() {
+            y.extend(body.elastic.strains(&state.force[body.points.clone()]));
+        }
+        y
     }
 
     /// Rate of change of the coordinates of a state without loads, in its regime.
@@ -109,10 +136,14 @@ impl<'a> Transition<'a> {
         let speed = system.contact_displacement(&state.velocity);
         let displacement = state.velocity.iter().zip(&self.weight).map(|(v, w)| w * v);
         let velocity = system.acceleration(&state.displacement, &state.velocity, &state.force);
-        let force = self.root.iter().enumerate().map(|(i, root)| {
-            speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum::<f64>() / root
-        });
-        displacement.chain(velocity).chain(force).collect()
+        let mut y: Vec<f64> = displacement.chain(velocity).collect();
+        let force =
+            |i: usize| speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum();
+        let force: Vec<f64> = (0..speed.len()).map(force).collect();
+        for body in system.bodies() {
+            y.extend(body.elastic.strains(&force[body.points.clone()]));
+        }
+        y
     }
 
     /// State of coordinates, and whether the force of each point is free to vary there.
@@ -123,68 +154,116 @@ impl<'a> Transition<'a> {
             state.displacement[j] = y[j] / self.weight[j];
             state.velocity[j] = y[modes + j];
         }
-        for (i, root) in self.root.iter().enumerate() {
-            state.force[i] = y[2 * modes + i] * root;
+        for body in self.system.bodies() {
+            let strains = &y[2 * modes + body.strains.start..2 * modes + body.strains.end];
+            state.force[body.points.clone()].copy_from_slice(&body.elastic.forces(strains));
         }
-        let wanted = state.force.clone();
-        state.settle_points(self.system);
-        let free = (0..wanted.len())
-            .map(|i| state.points[i] == PointState::Stuck && wanted[i] == state.force[i])
-            .collect();
+        let free = state.settle_points(self.system);
         (state, free)
     }
 
-    /// Coordinates of the slip loads `q_i = (D u)_i − f_i`: rows whose product with the
-    /// coordinates is q over √k.
-    pub(crate) fn slip_load_row(&self, point: usize, stuck: &Regime) -> Vec<f64> {
+    /// Linear forms that a motion conserves whose points `slipped` alone have slipped, each with a
+    /// coordinate that it determines: strains w that no force at a slipping point feels keep
+    /// `wᵀ (Lᵀ u − g)`, the slip of the other points. Of a single spring, its slip load over √k.
+    pub(crate) fn conserved(&self, slipped: &[bool]) -> Vec<(usize, Vec<f64>)> {
         let modes = self.weight.len();
-        let mut row = vec![0.0; self.size()];
-        for other in 0..self.root.len() {
-            let stiffness = stuck.tangent[(point, other)] / self.root[point];
-            if stiffness == 0.0 {
-                continue;
-            }
-            let shape = self.system.contact_shape(other);
-            for j in 0..modes {
-                row[j] += stiffness * shape[j] / self.weight[j];
+        let limits = self.system.limits();
+        let mut forms = Vec::new();
+        for body in self.system.bodies() {
+            let held: Vec<bool> =
+                body.points.clone().map(|i| slipped[i] || limits[i] == 0.0).collect();
+            let mut basis = body.elastic.unmoved(&held);
+            let first = 2 * modes + body.strains.start;
+            for number in 0..basis.len() {
+                let size = |a: usize| basis[number][a].abs();
+                let pivot =
+                    (0..body.elastic.rank()).fold(0, |p, a| if size(a) > size(p) { a } else { p });
+                let strains = basis[number].clone();
+                for other in &mut basis[number + 1..] {
+                    let share = other[pivot] / strains[pivot];
+                    other.iter_mut().zip(&strains).for_each(|(o, w)| *o -= share * w);
+                }
+                let mut row = vec![0.0; self.size()];
+                for (i, f) in body.points.clone().zip(body.elastic.forces(&strains)) {
+                    let shape = self.system.contact_shape(i).iter().zip(&self.weight);
+                    row.iter_mut().zip(shape).for_each(|(row, (b, w))| *row += f * b / w);
+                }
+                for (a, w) in strains.iter().enumerate() {
+                    row[first + a] = -w;
+                }
+                forms.push((first + pivot, row));
             }
         }
-        row[2 * modes + point] = -1.0;
-        row
+        forms
     }
 
     /// Derivative of the end state in the start state along the legs of a motion.
     pub(crate) fn along(&self, legs: &[Leg], free: &[bool]) -> Mat<f64> {
-        let (size, modes) = (self.size(), self.weight.len());
-        let mut total = Mat::<f64>::identity(size, size);
-        for (i, free) in free.iter().enumerate() {
-            total[(2 * modes + i, 2 * modes + i)] = f64::from(u8::from(*free));
-        }
+        let mut total = self.start(legs, free);
         for leg in legs {
             if leg.duration > 0.0 {
                 total = self.exponential(&leg.regime, leg.duration) * total;
             }
-            if let Some((point, jump)) = &leg.onset {
-                self.jump(*point, jump, &mut total);
+            if let Some(onset) = &leg.onset {
+                self.jump(onset, &mut total);
             }
         }
         total
     }
 
-    /// `S = I + Δf' e_iᵀ / f_i'` from the left.
-    fn jump(&self, point: usize, jump: &[f64], total: &mut Mat<f64>) {
+    /// Derivative at the start: points that slip, and forces that their limits hold, do not vary.
+    fn start(&self, legs: &[Leg], free: &[bool]) -> Mat<f64> {
+        let (size, first) = (self.size(), 2 * self.weight.len());
+        let mut total = Mat::<f64>::identity(size, size);
+        for body in self.system.bodies() {
+            let slips = |i: usize| {
+                legs.first().is_some_and(|leg| leg.regime.points[i] != PointState::Stuck)
+            };
+            let held: Vec<bool> = body
+                .points
+                .clone()
+                .map(|i| !free[i] || slips(i) || self.system.limits()[i] == 0.0)
+                .collect();
+            if !held.contains(&true) {
+                continue;
+            }
+            let basis = body.elastic.unmoved(&held);
+            for a in 0..body.elastic.rank() {
+                for b in 0..body.elastic.rank() {
+                    total[(first + body.strains.start + a, first + body.strains.start + b)] =
+                        basis.iter().map(|w| w[a] * w[b]).sum();
+                }
+            }
+        }
+        total
+    }
+
+    /// `S = I + Δf' e_iᵀ / f_i'` from the left, in strains.
+    fn jump(&self, onset: &Onset, total: &mut Mat<f64>) {
         let first = 2 * self.weight.len();
+        let bodies = self.system.bodies();
+        let Some(own) = bodies.iter().find(|body| body.points.contains(&onset.point)) else {
+            return;
+        };
+        let row = onset.point - own.points.start;
         for column in 0..total.ncols() {
-            let own = total[(first + point, column)];
-            for (i, jump) in jump.iter().enumerate() {
-                total[(first + i, column)] += jump * self.root[point] / self.root[i] * own;
+            let force: f64 = (0..own.elastic.rank())
+                .map(|a| {
+                    own.elastic.root()[(row, a)] * total[(first + own.strains.start + a, column)]
+                })
+                .sum();
+            for body in bodies {
+                let jump = body.elastic.strains(&onset.jump[body.points.clone()]);
+                for (a, jump) in body.strains.clone().zip(jump) {
+                    total[(first + a, column)] += jump * force;
+                }
             }
         }
     }
 
     /// Exponential of the linear equations over a duration [s], by scaling and squaring.
     fn exponential(&self, regime: &Regime, duration: f64) -> Mat<f64> {
-        let (size, modes, points) = (self.size(), self.weight.len(), self.root.len());
+        let (size, modes) = (self.size(), self.weight.len());
         let mut a = Mat::<f64>::zeros(size, size);
         for j in 0..modes {
             a[(j, modes + j)] = duration * self.weight[j];
@@ -204,18 +283,23 @@ impl<'a> Transition<'a> {
                 }
             }
         }
-        for i in 0..points {
-            let shape = self.system.contact_shape(i);
-            for (j, b) in shape.iter().enumerate() {
-                a[(modes + j, 2 * modes + i)] = -duration * b * self.root[i];
-            }
-            for other in 0..points {
-                let tangent = duration * regime.tangent[(i, other)] / self.root[i];
-                if tangent == 0.0 {
-                    continue;
+        for body in self.system.bodies() {
+            for i in body.points.clone() {
+                let row = i - body.points.start;
+                for (own, strain) in body.strains.clone().enumerate() {
+                    let root = duration * body.elastic.root()[(row, own)];
+                    for (j, b) in self.system.contact_shape(i).iter().enumerate() {
+                        a[(modes + j, 2 * modes + strain)] -= b * root;
+                    }
                 }
-                for (j, b) in self.system.contact_shape(other).iter().enumerate() {
-                    a[(2 * modes + i, modes + j)] += tangent * b;
+                // g' = L⁺ T u', with column i of T.
+                let column: Vec<f64> =
+                    body.points.clone().map(|r| duration * regime.tangent[(r, i)]).collect();
+                let rates = body.elastic.strains(&column);
+                for (strain, rate) in body.strains.clone().zip(rates) {
+                    for (j, b) in self.system.contact_shape(i).iter().enumerate() {
+                        a[(2 * modes + strain, modes + j)] += rate * b;
+                    }
                 }
             }
         }

@@ -65,7 +65,7 @@ impl<'a> CycleOrbits<'a> {
         } else {
             Some(given.with_laws(self.family.laws_at(value)?)?)
         };
-        let system = self.system.undriven(own.as_ref().unwrap_or(given), damping);
+        let system = self.system.undriven(own.as_ref().unwrap_or(given), damping)?;
         Ok(Member { own, given, system })
     }
 

@@ -2,7 +2,8 @@
 //!
 //! Constant forces move the structure statically and change nothing else: a slipping contact
 //! answers to changes of its displacement alone. So the assumed residual is reached by one linear
-//! solution after the orbit has closed.
+//! solution after the orbit has closed. Laws of several points keep the slip that they have: their
+//! motion starts without any.
 
 use crate::contact::Residual;
 use crate::motion::{ModalSystem, State};
@@ -11,6 +12,19 @@ use faer::Mat;
 
 /// Static stiffness relative to the largest below which rigid-body motion cannot carry a force.
 const RIGID_BODY: f64 = 1e-13;
+
+/// A constant force that an orbit leaves open: of a spring, or of a strain of a coupled law.
+struct Open {
+    /// Points that it acts on, each with its share.
+    forces: Vec<(usize, f64)>,
+    /// Displacement that works against it, per modal coordinate.
+    shape: Vec<f64>,
+    spring: f64,
+    /// Force at mid-range and room within the limit; `None` if the slip is to stay.
+    at_middle: Option<(f64, f64)>,
+    /// Elastic force at mid-range of the displacement.
+    elastic: f64,
+}
 
 /// Shifts a state so that the points `neutral` hold the assumed force at mid-range; `middle` and
 /// `half_range` are those of all contact displacements over the orbit. `None` if nothing has to
@@ -25,51 +39,56 @@ pub(super) fn shifted(
 ) -> Option<State> {
     let stiffness = system.omega_squared();
     let largest = stiffness.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
-    if neutral.is_empty() || stiffness.iter().any(|w| w.abs() <= RIGID_BODY * largest) {
+    if stiffness.iter().any(|w| w.abs() <= RIGID_BODY * largest) {
         return None;
     }
-    let spring = |i: usize| system.contact_stiffness()[i];
-    let u = system.contact_displacement(&state.displacement);
-    // Static displacement of one contact per force on another.
+    let open = open_forces(system, neutral, middle, half_range, state);
+    if open.iter().all(|one| one.at_middle.is_none()) {
+        return None;
+    }
+    // Static displacement against one force per another.
     let flexibility = |i: usize, j: usize| -> f64 {
-        let (row, column) = (system.contact_shape(i), system.contact_shape(j));
-        row.iter().zip(column).zip(stiffness).map(|((a, b), w)| a * b / w).sum()
+        let pairs = open[i].shape.iter().zip(&open[j].shape);
+        pairs.zip(stiffness).map(|((a, b), w)| a * b / w).sum()
     };
-    let at_middle: Vec<f64> =
-        neutral.iter().map(|&i| state.force[i] + spring(i) * (middle[i] - u[i])).collect();
-    let room: Vec<f64> = neutral
-        .iter()
-        .map(|&i| (system.limits()[i] - spring(i) * half_range[i]).max(0.0))
-        .collect();
     // Which points are held back by their limit is found by repetition; it is rare.
-    let mut held = vec![0.0; neutral.len()];
-    let mut added = vec![0.0; neutral.len()];
-    for _ in 0..=neutral.len() {
-        let size = neutral.len();
+    let size = open.len();
+    let mut held = vec![0.0; size];
+    let mut added = vec![0.0; size];
+    for _ in 0..=size {
         let mut matrix = Mat::<f64>::identity(size, size);
         let mut right = Mat::zeros(size, 1);
-        for (row, &i) in neutral.iter().enumerate() {
-            if held[row] != 0.0 {
-                right[(row, 0)] = held[row] * room[row] - at_middle[row];
-                continue;
-            }
-            match residual {
-                Residual::Centred => right[(row, 0)] = -at_middle[row],
-                Residual::Value(force) => right[(row, 0)] = force - at_middle[row],
-                Residual::FromRest => {
-                    right[(row, 0)] = spring(i) * middle[i] - at_middle[row];
-                    for (column, &j) in neutral.iter().enumerate() {
-                        matrix[(row, column)] += spring(i) * flexibility(i, j);
-                    }
+        for (row, one) in open.iter().enumerate() {
+            let follows = match (one.at_middle, residual) {
+                (Some((force, room)), _) if held[row] != 0.0 => {
+                    right[(row, 0)] = held[row] * room - force;
+                    false
                 }
+                (Some((force, _)), Residual::Centred) => {
+                    right[(row, 0)] = -force;
+                    false
+                }
+                (Some((force, _)), Residual::Value(value)) => {
+                    right[(row, 0)] = value - force;
+                    false
+                }
+                (Some((force, _)), Residual::FromRest) => {
+                    right[(row, 0)] = one.elastic - force;
+                    true
+                }
+                (None, _) => true,
+            };
+            for column in 0..if follows { size } else { 0 } {
+                matrix[(row, column)] += one.spring * flexibility(row, column);
             }
         }
         matrix.partial_piv_lu().solve_in_place(&mut right);
         added = (0..size).map(|row| right[(row, 0)]).collect();
         let mut settled = true;
-        for row in 0..size {
-            let force = at_middle[row] + added[row];
-            if held[row] == 0.0 && force.abs() > room[row] * (1.0 + 1e-12) {
+        for (row, one) in open.iter().enumerate() {
+            let Some((force, room)) = one.at_middle else { continue };
+            let force = force + added[row];
+            if held[row] == 0.0 && force.abs() > room * (1.0 + 1e-12) {
                 held[row] = force.signum();
                 settled = false;
             }
@@ -79,13 +98,56 @@ pub(super) fn shifted(
         }
     }
     let mut shifted = state.clone();
-    for (&i, force) in neutral.iter().zip(&added) {
-        shifted.force[i] += force;
-        for ((x, b), w) in
-            shifted.displacement.iter_mut().zip(system.contact_shape(i)).zip(stiffness)
-        {
+    for (one, force) in open.iter().zip(&added) {
+        for &(point, share) in &one.forces {
+            shifted.force[point] += share * force;
+        }
+        for ((x, b), w) in shifted.displacement.iter_mut().zip(&one.shape).zip(stiffness) {
             *x -= b * force / w;
         }
     }
     Some(shifted)
+}
+
+/// The constant forces that are open, contact after contact.
+fn open_forces(
+    system: &ModalSystem,
+    neutral: &[usize],
+    middle: &[f64],
+    half_range: &[f64],
+    state: &State,
+) -> Vec<Open> {
+    let u = system.contact_displacement(&state.displacement);
+    let mut open = Vec::new();
+    for body in system.bodies() {
+        if body.points.len() == 1 {
+            let point = body.points.start;
+            if body.elastic.rank() == 0 || !neutral.contains(&point) {
+                continue;
+            }
+            let spring = body.elastic.root()[(0, 0)].powi(2);
+            let force = state.force[point] + spring * (middle[point] - u[point]);
+            let room = (system.limits()[point] - spring * half_range[point]).max(0.0);
+            open.push(Open {
+                forces: vec![(point, 1.0)],
+                shape: system.contact_shape(point).to_vec(),
+                spring,
+                at_middle: Some((force, room)),
+                elastic: spring * middle[point],
+            });
+            continue;
+        }
+        let held: Vec<bool> = body.points.clone().map(|i| !neutral.contains(&i)).collect();
+        for strains in body.elastic.unmoved(&held) {
+            let forces: Vec<(usize, f64)> =
+                body.points.clone().zip(body.elastic.forces(&strains)).collect();
+            let mut shape = vec![0.0; system.modes()];
+            for (point, share) in &forces {
+                let own = system.contact_shape(*point);
+                shape.iter_mut().zip(own).for_each(|(shape, b)| *shape += share * b);
+            }
+            open.push(Open { forces, shape, spring: 1.0, at_middle: None, elastic: 0.0 });
+        }
+    }
+    open
 }

@@ -1,9 +1,8 @@
 //! Shooting: the start state that the flow brings back after a period, or to its mirror image
 //! after half a period.
 
-use crate::contact::PointState;
 use crate::model::Model;
-use crate::motion::{Flow, Leg, ModalSystem, Passage, Regime, State, Transition};
+use crate::motion::{Flow, Leg, ModalSystem, State, Transition};
 use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
@@ -17,8 +16,9 @@ const SINGULAR: f64 = 1e-13;
 pub(super) struct Shooting<'a> {
     pub(super) flow: Flow<'a>,
     pub(super) coordinates: Transition<'a>,
-    stuck: Regime,
     limits: &'a [f64],
+    /// Contact points beyond the number of strains.
+    idle: usize,
     half_wave: bool,
     span: f64,
     interrupted: Option<&'a dyn Fn() -> bool>,
@@ -59,8 +59,8 @@ impl<'a> Shooting<'a> {
         Self {
             flow: Flow::new(model, system, omega),
             coordinates,
-            stuck: Regime::new(model, &vec![PointState::Stuck; system.points()]),
             limits: system.limits(),
+            idle: system.points() - system.strains(),
             half_wave,
             span: if half_wave { 0.5 * period } else { period },
             interrupted,
@@ -81,18 +81,14 @@ impl<'a> Shooting<'a> {
     /// Coordinates after the span, mirrored under half-wave symmetry.
     pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
         let (mut state, free) = self.coordinates.state(y);
-        self.free =
-            free.iter().zip(self.limits).map(|(free, limit)| *free && *limit > 0.0).collect();
-        self.slipped = state.points.iter().map(|point| *point != PointState::Stuck).collect();
+        self.free = free;
         self.legs.clear();
         self.derivative = None;
-        let (legs, slipped) = (&mut self.legs, &mut self.slipped);
-        let run = self.flow.run(&mut state, self.span, &mut |passage| {
-            if let Passage::Event { event, .. } = &passage {
-                slipped[event.point] = true;
-            }
-            Leg::record(legs, &passage);
-        });
+        let legs = &mut self.legs;
+        let run = self.flow.run(&mut state, self.span, &mut |passage| Leg::record(legs, &passage));
+        self.slipped = (0..self.limits.len())
+            .map(|i| !self.free[i] || self.legs.iter().any(|leg| leg.slips(i)))
+            .collect();
         run.ok()?;
         let mut y = self.coordinates.coordinates(&state);
         self.end = Some(state);
@@ -116,12 +112,6 @@ impl<'a> Shooting<'a> {
         true
     }
 
-    /// Points that carry a force, have a limit and have not slipped: each keeps its slip load for
-    /// ever.
-    fn neutral(&self) -> Vec<usize> {
-        (0..self.limits.len()).filter(|&i| self.limits[i] > 0.0 && !self.slipped[i]).collect()
-    }
-
     /// Derivative of the image at the last evaluation.
     pub(super) fn derivative(&mut self) -> Mat<f64> {
         if let Some(derivative) = &self.derivative {
@@ -143,30 +133,30 @@ impl<'a> Shooting<'a> {
         }
         multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         let ones = std::iter::repeat_n(c64::new(1.0, 0.0), neutral);
-        Some((ones.chain(multipliers).collect(), neutral))
+        // Forces that no deformation gives do not exist: what would be left of them is 0.
+        let none = std::iter::repeat_n(c64::new(0.0, 0.0), self.idle);
+        Some((ones.chain(multipliers).chain(none).collect(), neutral))
     }
 
     /// Multipliers over the span, mirrored under half-wave symmetry, without those of contacts
     /// that never slip; and the number of these.
     pub(super) fn span_multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
-        let neutral = self.neutral();
-        let mut matrix = self.derivative();
+        let conserved = self.coordinates.conserved(&self.slipped);
+        let matrix = self.derivative();
         let size = matrix.nrows();
-        let first = size - self.limits.len();
         let mut change = Mat::<f64>::identity(size, size);
-        for &point in &neutral {
-            let row = self.coordinates.slip_load_row(point, &self.stuck);
+        for (target, row) in &conserved {
             for (j, value) in row.iter().enumerate() {
-                change[(first + point, j)] = *value;
+                change[(*target, j)] = *value;
             }
         }
-        // From forces to slip loads and back is the same change; slip loads of contacts that
-        // never slip stay what they are and leave the eigenvalue problem.
-        matrix = &change * matrix * &change;
+        // In coordinates that hold the conserved forms these leave the eigenvalue problem.
+        let changed = &change * matrix;
+        let matrix = change.transpose().partial_piv_lu().solve(changed.transpose());
         let kept: Vec<usize> =
-            (0..size).filter(|i| *i < first || !neutral.contains(&(i - first))).collect();
-        let rest = Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[i], kept[j])]);
-        Some((rest.eigenvalues().ok()?, neutral.len()))
+            (0..size).filter(|i| conserved.iter().all(|(target, _)| target != i)).collect();
+        let rest = Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[j], kept[i])]);
+        Some((rest.eigenvalues().ok()?, conserved.len()))
     }
 }
 
@@ -199,10 +189,8 @@ impl System for Shooting<'_> {
         }
         let mut right = Mat::from_fn(size, 1, |i, _| rhs[i]);
         if !self.half_wave {
-            // The slip load of a contact that never slips is free: it stays as it is.
-            for point in self.neutral() {
-                let target = size - self.limits.len() + point;
-                let row = self.coordinates.slip_load_row(point, &self.stuck);
+            // The slip of a contact that never slips is free: it stays as it is.
+            for (target, row) in self.coordinates.conserved(&self.slipped) {
                 for (j, value) in row.iter().enumerate() {
                     matrix[(target, j)] = *value;
                 }

@@ -162,15 +162,7 @@ impl<'a> Survey<'a> {
         let mirrored: Vec<Event> = self
             .events
             .iter()
-            .map(|event| Event {
-                time: event.time + half,
-                state: match event.state {
-                    PointState::Stuck => PointState::Stuck,
-                    PointState::Forward => PointState::Backward,
-                    PointState::Backward => PointState::Forward,
-                },
-                ..*event
-            })
+            .map(|event| Event { time: event.time + half, state: event.state.mirrored(), ..*event })
             .collect();
         self.events.extend(mirrored);
     }

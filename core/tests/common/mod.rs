@@ -2,6 +2,7 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 pub mod coupled;
+pub mod damper;
 pub mod passive;
 
 use faer::{c64, mat, Mat};

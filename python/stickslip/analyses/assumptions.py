@@ -9,6 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.analyses.contact_assumptions import (
+    contact_assumptions,
+    residual_assumption,
+    start_assumption,
+)
 from stickslip.analyses.uniqueness import damping_assumption
 from stickslip.model import Model, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
@@ -98,8 +103,7 @@ def assumptions_of(
     with np.errstate(all="ignore"):
         texts = (
             "" if single else _harmonics(settings, arrays, half_wave),
-            _residual(model, settings, arrays),
-            _evaluation(model, settings),
+            *contact_assumptions(model, settings, arrays),
             _BASES.get(base, f"The compliance is evaluated by {base}."),
             _frequencies(settings, arrays, missing, interrupted=interrupted),
             _observed(model, dofs),
@@ -149,7 +153,8 @@ def orbit_assumptions(
         texts = (
             half,
             f"Harmonics are reported up to {settings.harmonics}; the orbits have no truncation.",
-            _residual(model, settings, arrays),
+            residual_assumption(model, settings, arrays),
+            start_assumption(model),
             chosen,
             _frequencies(without_span, arrays, missing, interrupted=missing > 0),
             _observed(model, dofs),
@@ -280,30 +285,6 @@ def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> str:
             "friction laws are half-wave symmetric."
         )
     return f"All harmonics from 0 to {most} were solved for{chosen}."
-
-
-def _residual(model: Model, settings: Settings, arrays: Arrays) -> str:
-    stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
-    if not model.contacts or not stuck.any():
-        return ""
-    held = {
-        "centred": "no force at mid-range of its displacement",
-        "from_rest": "the force it built up from zero displacement",
-    }.get(str(settings.residual), f"{settings.residual} N at mid-range of its displacement")
-    return (
-        f"A contact that never slips was taken to hold {held} (residual={settings.residual!r}, "
-        f"of effect at {stuck.sum()} of {stuck.size} points); residual_bounds gives what it could "
-        "hold."
-    )
-
-
-def _evaluation(model: Model, settings: Settings) -> str:
-    if settings.march is None or not model.contacts:
-        return ""
-    return (
-        f"The contact forces were marched through {settings.march} samples per period; the error "
-        "of the sampling, of second order in their distance, is not part of the error estimate."
-    )
 
 
 def _frequencies(settings: Settings, arrays: Arrays, missing: int, *, interrupted: bool) -> str:

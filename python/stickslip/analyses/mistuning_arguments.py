@@ -76,7 +76,8 @@ def dofs_of(dofs: Iterable[str] | str | None, disk: BladedDisk) -> tuple[str, ..
     """Return degrees of freedom of a sector, each known and named once."""
     known = disk.structure.dofs
     if dofs is None:
-        touched = [dof.removeprefix(NEXT) for contact in disk.contacts for dof in contact.dofs]
+        ends = (dof for contact in disk.contacts for dof in contact.dofs)
+        touched = [dof.removeprefix(NEXT) for dof in ends if dof is not None]
         loaded = [force.dof for force in disk.forces]
         return tuple(dict.fromkeys([*loaded, *touched])) or known
     if not isinstance(dofs, Iterable):

@@ -155,10 +155,10 @@ class BladedDisk(Model):
         for number, contact in enumerate(self.contacts, 1):
             entry = f"contact {number} ({brief(contact.name)})"
             for dof in contact.dofs:
-                if dof not in known:
+                if dof is not None and dof not in known:
                     raise ModelError(f"{entry}: {unknown('dof', dof, known)}")
             if not any(dof in own for dof in contact.dofs):
-                names = [dof.removeprefix(NEXT) for dof in contact.dofs]
+                names = [dof.removeprefix(NEXT) for dof in contact.dofs if dof is not None]
                 raise ModelError(
                     f"{entry}: it touches the next sector only; write "
                     f"{', '.join(map(brief, names))}"
@@ -346,7 +346,7 @@ class BladedDisk(Model):
         from stickslip import _core
 
         contacts = [
-            (contact.law, *self.contact_rows(contact), contact.parameters())
+            (contact.law, *self.contact_rows(contact), contact.law_parameters())
             for contact in self.contacts
         ]
         try:

@@ -353,10 +353,7 @@ def _stuck(disk: BladedDisk, slips: set[tuple[int, int]], delta: float) -> AnyMa
         own, following = disk.contact_rows(contact)
         rows = own + np.exp(1j * delta) * following
         sticks = [point for point in range(contact.points) if (number, point) not in slips]
-        stiffness = np.asarray(contact.parameters()["stiffness"], dtype=np.float64)
-        spring = np.eye(contact.points) * stiffness if stiffness.ndim == 0 else stiffness
-        spring = spring.reshape(contact.points, contact.points)
-        total += rows.conj().T @ _condensed(spring, sticks) @ rows
+        total += rows.conj().T @ _condensed(contact.stuck_stiffness, sticks) @ rows
     return total
 
 

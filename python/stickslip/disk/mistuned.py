@@ -140,7 +140,7 @@ class MistunedDisk(Model):
         contacts = tuple(
             SectorContact(place // len(places), one.law, *places[place % len(places)], parameters)
             for place, one in enumerate(self.contacts)
-            for parameters in [one.parameters()]
+            for parameters in [one.law_parameters()]
         )
         shape = self.sectors, len(self.disk.structure)
         loads = tuple((harmonic, load.reshape(shape)) for harmonic, load in self._loads())
@@ -217,9 +217,8 @@ def rebuilt(
 
 def _contacts(disk: BladedDisk) -> tuple[Contact, ...]:
     return tuple(
-        type(contact).from_parameters(
-            tuple(_placed(dof, sector, disk.sectors) for dof in contact.dofs),
-            contact.parameters(),
+        contact.moved(
+            [_placed(dof, sector, disk.sectors) for dof in contact.dofs],
             f"{sector}.{contact.name}",
         )
         for sector in range(disk.sectors)
@@ -235,7 +234,9 @@ def _forces(disk: BladedDisk) -> tuple[Force, ...]:
     )
 
 
-def _placed(dof: str, sector: int, sectors: int) -> str:
+def _placed(dof: str | None, sector: int, sectors: int) -> str | None:
+    if dof is None:
+        return None
     if dof.startswith(NEXT):
         return f"{(sector + 1) % sectors}.{dof.removeprefix(NEXT)}"
     return f"{sector}.{dof}"

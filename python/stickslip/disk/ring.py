@@ -26,7 +26,7 @@ class SectorContact(NamedTuple):
     """(points, N) Part of B on the sector itself."""
     next: Matrix
     """(points, N) Part of B on the next sector."""
-    parameters: Mapping[str, float]
+    parameters: Mapping[str, float | list[float]]
     """Parameters of the law."""
 
 

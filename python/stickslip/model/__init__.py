@@ -1,8 +1,11 @@
 """The problem in the user's words: structure, contacts, forces."""
 
-from stickslip.model.contact import LAWS, Contact, Jenkins, contact_from_spec
+from stickslip.model.configurations import SlipConfigurations, slip_configurations
+from stickslip.model.contact import Contact, Jenkins
 from stickslip.model.force import Force, force_from_spec
+from stickslip.model.laws import LAWS, contact_from_spec
 from stickslip.model.model import ContactRef, Model, PointRef, natural_frequencies
+from stickslip.model.structural import StructuralDamper
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 __all__ = [
@@ -15,9 +18,12 @@ __all__ = [
     "Model",
     "PointRef",
     "Rayleigh",
+    "SlipConfigurations",
+    "StructuralDamper",
     "Structure",
     "contact_from_spec",
     "force_from_spec",
     "join",
     "natural_frequencies",
+    "slip_configurations",
 ]

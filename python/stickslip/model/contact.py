@@ -1,12 +1,13 @@
 """Friction contacts: where they act and their parameters; the mathematics of a law is compiled.
 
-A new law is one class here, with its line in `LAWS`, and one file in the core.
+A new law is one class here or in a module of its own, with its line in `LAWS` (`laws.py`), and one
+file in the core.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
@@ -16,7 +17,7 @@ from stickslip.checks import Matrix, brief, real_number, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
 
-__all__ = ["LAWS", "Contact", "Jenkins", "contact_from_spec"]
+__all__ = ["Contact", "Jenkins"]
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class Contact(ABC):
 
     @property
     @abstractmethod
-    def dofs(self) -> tuple[str, ...]:
-        """Names of the degrees of freedom it acts on."""
+    def dofs(self) -> tuple[str | None, ...]:
+        """Names of the degrees of freedom it acts on; None is the ground."""
 
     @property
     @abstractmethod
@@ -69,9 +70,62 @@ class Contact(ABC):
             If the structure lacks a degree of freedom.
         """
 
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Slip limit of each contact point [N]."""
+        return (self.parameters().get("slip_force", np.inf),) * self.points
+
     @abstractmethod
     def parameters(self) -> dict[str, float]:
-        """Return the parameters of the law by name, in SI units."""
+        """Return the parameters that are single numbers, by name, in SI units."""
+
+    @property
+    def stuck_stiffness(self) -> Matrix:
+        """Stiffness while every point sticks [N/m], shape (points, points)."""
+        raise self._without_limits()
+
+    def held(self, *, stuck: bool) -> Contact | None:
+        """Return what is left of the contact in a linear limit, as one that never slips.
+
+        Parameters
+        ----------
+        stuck : bool
+            At small amplitude everything sticks that has friction; else, at large amplitude, only
+            what never slips.
+
+        Returns
+        -------
+        Contact or None
+            Without slip; None if nothing is left.
+
+        Raises
+        ------
+        ModelError
+            If the law has no linear limits.
+        """
+        raise self._without_limits()
+
+    def _without_limits(self) -> ModelError:
+        return ModelError(
+            f"contact {self.name!r}: the law {self.law!r} has no single stiffness for the linear "
+            "limits; draw with stuck=False, free=False"
+        )
+
+    def law_parameters(self) -> dict[str, float | list[float]]:
+        """Return all parameters of the law as the compiled core takes them, in SI units."""
+        return dict(self.parameters())
+
+    def described(self) -> str:
+        """Return the parameters in words, in SI units."""
+        return ", ".join(f"{name} {value:g}" for name, value in self.parameters().items())
+
+    def named(self, name: str) -> Self:
+        """Return the contact with another name."""
+        return replace(self, name=name)
+
+    def moved(self, dofs: Sequence[str | None], name: str | None) -> Self:
+        """Return the contact at other degrees of freedom."""
+        return self.from_parameters(tuple(dofs), self.parameters(), name)
 
     @abstractmethod
     def scaled(self, slip_force: float) -> Self:
@@ -80,7 +134,7 @@ class Contact(ABC):
     @classmethod
     @abstractmethod
     def from_parameters(
-        cls, dofs: tuple[str, ...], parameters: Mapping[str, object], name: str | None
+        cls, dofs: tuple[str | None, ...], parameters: Mapping[str, object], name: str | None
     ) -> Self:
         """Build the contact from what `dofs`, `parameters` and `name` hold."""
 
@@ -91,7 +145,7 @@ class Contact(ABC):
         -------
         dict
             `law`, `dofs` (list), `parameters` (dict; infinity is the text "inf", which JSON has no
-            number for) and `name`. See `contact_from_spec`.
+            number for) and `name`. See `laws.contact_from_spec`.
         """
         parameters = {
             key: value if np.isfinite(value) else str(value)
@@ -180,6 +234,11 @@ class Jenkins(Contact):
         """Number of contact points: one."""
         return 1
 
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Slip force [N]."""
+        return (self.slip_force,)
+
     def rows(self, structure: Structure) -> Matrix:
         """Return B of u = B x.
 
@@ -204,6 +263,16 @@ class Jenkins(Contact):
             rows[0, structure.index(self.other)] = -1.0
         return rows
 
+    @property
+    def stuck_stiffness(self) -> Matrix:
+        """k_d [N/m], shape (1, 1)."""
+        return np.array([[self.stiffness]])
+
+    def held(self, *, stuck: bool) -> Jenkins | None:
+        """Return the element without slip if it sticks in a linear limit; see `Contact.held`."""
+        sticks = self.slip_force > 0.0 if stuck else np.isinf(self.slip_force)
+        return replace(self, slip_force=np.inf) if sticks else None
+
     def parameters(self) -> dict[str, float]:
         """Return `stiffness` [N/m] and `slip_force` [N]."""
         return {"stiffness": self.stiffness, "slip_force": self.slip_force}
@@ -216,7 +285,7 @@ class Jenkins(Contact):
 
     @classmethod
     def from_parameters(
-        cls, dofs: tuple[str, ...], parameters: Mapping[str, object], name: str | None
+        cls, dofs: tuple[str | None, ...], parameters: Mapping[str, object], name: str | None
     ) -> Self:
         """Build the contact from what `dofs`, `parameters` and `name` hold.
 
@@ -233,50 +302,11 @@ class Jenkins(Contact):
                     f"jenkins contact: {unknown('parameter', key, ['stiffness', 'slip_force'])}"
                 )
         return cls(
-            *dofs,
+            *(text(dof, "jenkins contact: dof") for dof in dofs),
             stiffness=_parameter(parameters, "stiffness", "jenkins contact"),
             slip_force=_parameter(parameters, "slip_force", "jenkins contact"),
             name=name,
         )
-
-
-LAWS: Mapping[str, type[Contact]] = {law.law: law for law in (Jenkins,)}
-"""Every law by its name."""
-
-
-def contact_from_spec(spec: Mapping[str, object]) -> Contact:
-    """Build a contact from the plain values of `Contact.to_spec`.
-
-    Parameters
-    ----------
-    spec : mapping
-        `law`, `dofs`, `parameters` and, optionally, `name`.
-
-    Returns
-    -------
-    Contact
-        Of the class that `LAWS` holds for the law.
-
-    Raises
-    ------
-    ModelError
-        If a key is unknown or missing, the law is unknown, or a value is refused by the law.
-    """
-    keys = ("law", "dofs", "parameters", "name")
-    for key in spec:
-        if key not in keys:
-            raise ModelError(f"contact: {unknown('key', key, keys)}")
-    law, dofs, parameters = (spec.get(key) for key in keys[:3])
-    if not isinstance(law, str) or law not in LAWS:
-        raise ModelError(f"contact: {unknown('law', law, LAWS)}")
-    if not isinstance(dofs, list | tuple):
-        raise ModelError(f"{law} contact: dofs {brief(dofs)} is not a list of names")
-    if not isinstance(parameters, Mapping):
-        raise ModelError(f"{law} contact: parameters {brief(parameters)} is not a table")
-    name = spec.get("name")
-    if name is not None:
-        name = text(name, f"{law} contact: name")
-    return LAWS[law].from_parameters(tuple(dofs), parameters, name)
 
 
 def _parameter(parameters: Mapping[str, object], key: str, entry: str) -> float:

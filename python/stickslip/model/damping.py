@@ -176,10 +176,7 @@ def held_stiffness(structure: Structure, contacts: Iterable[Contact]) -> Matrix:
     held = structure.stiffness
     for contact in contacts:
         rows = contact.rows(structure)
-        own = np.asarray(contact.parameters()["stiffness"], dtype=np.float64)
-        # One number for every point, or the matrix of a damper that is a structure.
-        spring = np.diag(np.full(len(rows), own)) if own.ndim == 0 else own
-        held = held + rows.T @ spring.reshape(len(rows), len(rows)) @ rows
+        held = held + rows.T @ contact.stuck_stiffness @ rows
     return held
 
 
@@ -270,7 +267,7 @@ def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:
     ModelError
         If there is no such law, or it refuses a number.
     """
-    from stickslip.model.contact import contact_from_spec
+    from stickslip.model.laws import contact_from_spec
 
     values = {key: value for key, value in spec.items() if key != "law"}
     if isinstance(values.get("stuck"), list):

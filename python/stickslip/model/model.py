@@ -96,7 +96,7 @@ class Model:
         known = self.structure.dofs
         for number, contact in enumerate(self.contacts, 1):
             for dof in contact.dofs:
-                if dof not in known:
+                if dof is not None and dof not in known:
                     reason = unknown("dof", dof, known)
                     raise ModelError(f"contact {number} ({brief(contact.name)}): {reason}")
         for number, force in enumerate(self.forces, 1):
@@ -268,7 +268,7 @@ class Model:
 
         structure = self.structure
         contacts = [
-            (contact.law, contact.rows(structure), contact.parameters())
+            (contact.law, contact.rows(structure), contact.law_parameters())
             for contact in self.contacts
         ]
         try:
@@ -357,7 +357,7 @@ def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
     for contact in contacts:
         name = contact.name or _free_name(contact.law, taken.keys() | set(names))
         names.append(name)
-    return tuple(replace(contact, name=name) for contact, name in zip(contacts, names, strict=True))
+    return tuple(contact.named(name) for contact, name in zip(contacts, names, strict=True))
 
 
 def _free_name(law: str, taken: Set[str]) -> str:

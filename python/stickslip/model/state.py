@@ -212,8 +212,8 @@ def _require_held(model: Model, forces: Float, entry: str) -> None:
     """Refuse forces beyond what their contact can hold."""
     place = 0
     for name, contact in zip(model.contact_names, model.contacts, strict=True):
-        limit = contact.parameters().get("slip_force", np.inf)
-        for force in forces[place : place + contact.points]:
+        own = forces[place : place + contact.points]
+        for force, limit in zip(own, contact.limits, strict=True):
             if abs(force) > limit * (1.0 + _ROUNDING):
                 raise ModelError(
                     f"{entry}: {force:g} N at contact {name!r} exceeds its slip force of "

@@ -11,6 +11,7 @@ from stickslip.plot.charts import (
     slip,
     waveform,
 )
+from stickslip.plot.contacts import contact_forces
 from stickslip.plot.cycles import CycleOptions, cycle_multipliers, limit_cycles
 from stickslip.plot.damper import DamperOptions, damper
 from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
@@ -58,6 +59,7 @@ __all__ = [
     "basins",
     "blade_bars",
     "blade_curves",
+    "contact_forces",
     "contact_history",
     "curves",
     "cycle_multipliers",

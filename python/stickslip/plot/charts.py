@@ -332,8 +332,9 @@ def _draw_limits(
 
 def _draw_slip_limits(ax: Axes, result: ForcedResponse, contact: PointRef) -> None:
     """Draw the forces that the contact cannot exceed, where the law has one such force."""
-    number, _ = result.locate(contact)
-    limit = result.model.contacts[number].parameters().get("slip_force", np.inf)
+    number, point = result.locate(contact)
+    limits = result.model.contacts[number].limits
+    limit = limits[point or 0] if point is not None or len(limits) == 1 else np.inf
     if np.isfinite(limit):
         for side in (-limit, limit):
             ax.axhline(side, color=GREY, lw=0.9, ls=STUCK, zorder=1.5)

@@ -7,7 +7,6 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from stickslip.analyses.forced_response import forced_response
-from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.structure import Structure
 from stickslip.results.arrays import Float, Measure
@@ -42,31 +41,20 @@ def limit_model(model: Model, *, stuck: bool) -> Model:
     Model
         Without contacts, the stiffness of stuck ones being in its structure; of a `BladedDisk`, one
         with contacts that never slip.
-
-    Raises
-    ------
-    ModelError
-        If a law has no single stiffness.
     """
     structure = model.structure
     stiffness = structure.stiffness.copy()
     sticking = []
-    for contact, name in zip(model.contacts, model.contact_names, strict=True):
-        parameters = contact.parameters()
-        if "stiffness" not in parameters:
-            raise ModelError(
-                f"contact {name!r}: the law {contact.law!r} has no single stiffness for the linear "
-                "limits; draw with stuck=False, free=False"
-            )
-        slip_force = parameters.get("slip_force", np.nan)
-        if slip_force > 0.0 if stuck else np.isinf(slip_force):
-            sticking.append(contact)
+    for contact in model.contacts:
+        held = contact.held(stuck=stuck)
+        if held is not None:
+            sticking.append(held)
     if model.travels:
         # A contact between sectors has no place in the matrices of one: it never slips instead.
-        return model.replaced(contacts=[contact.scaled(np.inf) for contact in sticking])
+        return model.replaced(contacts=sticking)
     for contact in sticking:
         rows = contact.rows(structure)
-        stiffness += contact.parameters()["stiffness"] * rows.T @ rows
+        stiffness += rows.T @ contact.stuck_stiffness @ rows
     linear = Structure(structure.mass, stiffness, structure.damping, structure.dofs)
     return Model(linear, forces=model.forces)
 
@@ -99,8 +87,7 @@ def limit_curve(
     Raises
     ------
     ModelError
-        If a law has no single stiffness, or the measure is "max" and a static load pushes the
-        limit structure away.
+        If the measure is "max" and a static load pushes the limit structure away.
     """
     linear, natural = _linear(model, stuck=stuck, static=measure == "max")
     harmonics = max((force.harmonic for force in linear.forces), default=1)

@@ -9,9 +9,9 @@ import numpy as np
 
 from stickslip.checks import brief
 from stickslip.errors import ModelError
-from stickslip.plot.arguments import at, require_solved
+from stickslip.plot.arguments import at, require_solved, result_of
 from stickslip.plot.style import GREY, OmegaUnit, finish, new_axes, omega_scale
-from stickslip.results.events import KINDS
+from stickslip.results import ForcedResponse
 from stickslip.results.exact_response import ExactResponse
 from stickslip.results.variables import point_names
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["MultiplierOptions", "events", "multipliers"]
 
 _COLOURS = {"sticks": "0.85", "slips forward": "#31688e", "slips backward": "#d8863b"}
+_KIND_OF = {0: "sticks", 1: "slips forward", -1: "slips backward"}
 _STATES = {"sticks": "stuck", "slips forward": "slips forward", "slips backward": "slips backward"}
 
 
@@ -98,13 +99,13 @@ def multipliers(
     return ax
 
 
-def events(result: ExactResponse, index: int, *, ax: Axes | None = None) -> Axes:
+def events(result: ForcedResponse, index: int, *, ax: Axes | None = None) -> Axes:
     """Draw when contact points stick and slip, one strip each over the period.
 
     Parameters
     ----------
-    result : ExactResponse
-        The orbits.
+    result : ForcedResponse
+        Harmonic balance, or exact orbits, whose events are drawn.
     index : int
         Position of a solved point of the sweep; see `ForcedResponse.index`.
     ax : matplotlib.axes.Axes, optional
@@ -118,17 +119,20 @@ def events(result: ExactResponse, index: int, *, ax: Axes | None = None) -> Axes
     Raises
     ------
     ModelError
-        If the result has no orbits, no solved point of that position, or no contact.
+        If there is no solved point of that position, or no contact.
     """
-    result = _orbits_of(result)
+    result = result_of(result)
     require_solved(result, [index])
     names = point_names(result.model)
     if not names:
         raise ModelError("result: the model has no contact, so that nothing sticks or slips")
     made, ax = ax is None, new_axes(ax)
     shown: set[str] = set()
-    for row in range(len(names)):
-        for begin, length, kind in _strips(result, index, row):
+    count = 0
+    for row, strips in enumerate(_strips(result, index)):
+        # A phase may go on over the end of the period.
+        count += len(strips) - (strips[0][2] == strips[-1][2])
+        for begin, length, kind in strips:
             ax.broken_barh(
                 [(begin, length)],
                 (row - 0.35, 0.7),
@@ -141,25 +145,21 @@ def events(result: ExactResponse, index: int, *, ax: Axes | None = None) -> Axes
     ax.set_ylim(len(names) - 0.4, -0.6)
     ax.set_yticks(range(len(names)), names)
     ax.set_xlabel("time over period t/T")
-    count = len(result.events(index))
     ax.set_title(f"{at(result, index)}: {count} events per period", fontsize="medium")
     finish(ax, made=made)
     return ax
 
 
-def _strips(result: ExactResponse, index: int, point: int) -> Iterator[tuple[float, float, str]]:
-    """Give begin and length, in periods, and kind of every stick or slip phase of a point."""
-    listed = result.events(index)
-    own = listed.number == point
-    period = 2.0 * np.pi / result.omega[index]
-    times, kinds = listed.time[own] / period, [KINDS[code] for code in listed.code[own]]
-    if not kinds:
-        yield 0.0, 1.0, "sticks"
-        return
-    # The last phase goes on over the end of the period.
-    yield 0.0, float(times[0]), kinds[-1]
-    for begin, end, kind in zip(times, [*times[1:], 1.0], kinds, strict=True):
-        yield float(begin), float(end - begin), kind
+def _strips(result: ForcedResponse, index: int) -> Iterator[list[tuple[float, float, str]]]:
+    """Give begin and length, in periods, and kind of the stick and slip phases of every point."""
+    for contact in range(len(result.model.contacts)):
+        states = result.contact_states(contact, index)
+        for directions in states.direction.T:
+            changed = np.flatnonzero(np.diff(directions, prepend=directions[0] - 1))
+            starts = states.start[changed]
+            lengths = np.diff(starts, append=1.0)
+            kinds = [_KIND_OF[int(direction)] for direction in directions[changed]]
+            yield list(zip(starts.tolist(), lengths.tolist(), kinds, strict=True))
 
 
 def _orbits_of(result: object) -> ExactResponse:

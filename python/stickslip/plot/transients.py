@@ -151,7 +151,8 @@ def contact_history(
     for point, colour in enumerate(colours(forces.shape[1])):
         label = name if forces.shape[1] == 1 and only is None else f"{name}[{point + (only or 0)}]"
         ax.plot(result.time[part], forces[:, point], color=colour, lw=1.0, label=label)
-    limit = result.model.contacts[number].parameters().get("slip_force", np.inf)
+    limits = result.model.contacts[number].limits
+    limit = limits[only or 0] if forces.shape[1] == 1 else np.inf
     if np.isfinite(limit):
         for side in (-limit, limit):
             ax.axhline(side, color=GREY, lw=0.9, ls=STUCK, zorder=1.5)

@@ -6,8 +6,9 @@ import numpy as np
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
-from stickslip.model import PointRef
+from stickslip.model import ContactRef, PointRef
 from stickslip.results.arrays import Complex, Float, amplitude_of, constant, mean_forces
+from stickslip.results.contact_states import ContactStates
 from stickslip.results.sweep import Sweep
 
 __all__ = ["ContactMotion"]
@@ -64,6 +65,74 @@ class ContactMotion(Sweep):
             except ValueError as error:
                 raise ModelError(str(error)) from error
         return constant(forces if point is None else np.ascontiguousarray(forces[:, point]))
+
+    def resultant(self, contact: ContactRef, index: int, samples: int = 512) -> Float:
+        """Return one period of the sum of the forces of a contact.
+
+        It vanishes for a damper of several points that nothing else holds.
+
+        Parameters
+        ----------
+        contact : int or str
+            The contact.
+        index : int
+            Position of the point of the sweep; negative ones count from the end.
+        samples : int, optional
+            Number of instants t = j T / samples, j = 0, 1, ...
+
+        Returns
+        -------
+        ndarray of float64, shape (samples,)
+            [N].
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point of the sweep.
+        """
+        number = self.model.contact_index(contact)
+        forces = self.contact_force(number, index, samples)
+        return constant(forces.reshape(len(forces), -1).sum(axis=1))
+
+    def contact_states(self, contact: ContactRef, index: int) -> ContactStates:
+        """Return when the points of a contact stick and slip over one period.
+
+        Parameters
+        ----------
+        contact : int or str
+            The contact.
+        index : int
+            Position of a solved point of the sweep; negative ones count from the end.
+
+        Returns
+        -------
+        ContactStates
+            The phases, and the sets of points that slip at once.
+
+        Raises
+        ------
+        ModelError
+            If there is no such contact or point, or the point was not solved.
+        """
+        from stickslip import _core
+
+        position = self.position(index)
+        number = self.model.contact_index(contact)
+        if not self.arrays.solved[position]:
+            raise ModelError(
+                f"index: {position} was not solved, so that its contacts have no states; choose a "
+                "solved point"
+            )
+        kept = int(self.arrays.harmonics[position]) + 1
+        series = self.arrays.contact_displacement[position, :kept, self._columns(number, None)].T
+        start, direction = _core.contact_phases(
+            self.model.problem,
+            number,
+            np.ascontiguousarray(series),
+            self.settings.residual,
+            self.settings.march,
+        )
+        return ContactStates(constant(start / (2.0 * np.pi)), direction.astype(np.int8))
 
     def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:
         """Return one period of the relative displacement at the contacts.

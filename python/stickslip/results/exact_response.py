@@ -11,9 +11,10 @@ import numpy as np
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
-from stickslip.model import Model, PointRef
+from stickslip.model import ContactRef, Model, PointRef
 from stickslip.model.state import State
 from stickslip.results.arrays import Bool, Complex, Float, Int, Measure, constant
+from stickslip.results.contact_states import ContactStates, states_of
 from stickslip.results.dataset import CURVE_VARIABLES, curve_dataset, curve_parts, curve_settings
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
@@ -257,6 +258,14 @@ class ExactResponse(ForcedResponse):
         Parameters and errors are those of `ForcedResponse.contact_force`.
         """
         return self._orbit(3, self._places(contact), index, samples)
+
+    def contact_states(self, contact: ContactRef, index: int) -> ContactStates:
+        """Return when the points of a contact stick and slip, by the events of the orbit.
+
+        Parameters and errors are those of `ForcedResponse.contact_states`.
+        """
+        columns = self._columns(self.model.contact_index(contact), None)
+        return states_of(self.events(index), columns, 2.0 * np.pi / self.omega[index])
 
     def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
         """Return the highest point of the response curve, refined on exact orbits.

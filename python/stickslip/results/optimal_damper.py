@@ -10,8 +10,8 @@ import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.model.contact import contact_from_spec
 from stickslip.model.force import force_from_spec
+from stickslip.model.laws import contact_from_spec
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
 from stickslip.results.result import Result
 from stickslip.results.status import Status

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip.model import Model
-from stickslip.model.contact import contact_from_spec
 from stickslip.model.damping import law_from_spec
 from stickslip.model.force import force_from_spec
+from stickslip.model.laws import contact_from_spec
 from stickslip.model.structure import Structure
 
 if TYPE_CHECKING:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from stickslip.model.structure import DampingLaw
     from stickslip.results.result import Result
     from stickslip.study.disk_table import DiskTable, InterfaceTable
+    from stickslip.study.structural_table import StructuralTable
     from stickslip.study.structure_table import Rows, StructureTable
     from stickslip.study.tables import ForceTable, JenkinsTable
 
@@ -215,7 +216,7 @@ def notable_dofs(model: Model, observed: Sequence[str]) -> tuple[str, ...]:
         Up to four that carry a force or a contact, in this order, or else the first ones.
     """
     loaded = [force.dof for force in model.forces]
-    touching = [dof for contact in model.contacts for dof in contact.dofs]
+    touching = [dof for contact in model.contacts for dof in contact.dofs if dof]
     notable = [dof for dof in dict.fromkeys((*loaded, *touching)) if dof in observed]
     return tuple(notable or observed)[:_SHOWN_DOFS]
 
@@ -267,7 +268,7 @@ def _model(tables: StudyTables, folder: Path) -> Model:
 
 def _check_parts(tables: StudyTables, structure: Structure) -> None:
     """Say in which contact or force a DOF or a number is wrong."""
-    parts: list[tuple[str, ForceTable | JenkinsTable]] = [
+    parts: list[tuple[str, ForceTable | JenkinsTable | StructuralTable]] = [
         *((f"contact {number}", contact) for number, contact in enumerate(tables.contact, 1)),
         *((f"force {number}", force) for number, force in enumerate(tables.force, 1)),
     ]

@@ -28,6 +28,7 @@ from stickslip.study.entries import (
     Text,
     chosen_by,
 )
+from stickslip.study.structural_table import StructuralTable
 from stickslip.study.structure_table import StructureTable
 
 __all__ = ["ForceTable", "JenkinsTable", "OutputTable", "StudyTables"]
@@ -111,7 +112,10 @@ class ForceTable(Table):
         return Force(self.dof, self.amplitude, phase=self.phase, harmonic=self.harmonic)
 
 
-ContactTable = Annotated[JenkinsTable, Tag("<jenkins>"), chosen_by("law", "jenkins")]
+ContactTable = Annotated[
+    Annotated[JenkinsTable, Tag("<jenkins>")] | Annotated[StructuralTable, Tag("<structural>")],
+    chosen_by("law", "jenkins", "structural"),
+]
 """Each further friction law joins this union with a table of its own."""
 
 

@@ -42,9 +42,8 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
         order = f"engine order {model.disk.engine_order}"
         rows.append(("disk", f"{model.sectors} sectors of their own, {order}"))
     for contact in model.contacts[:_SHOWN_PARTS]:
-        values = ", ".join(f"{name} {value:g}" for name, value in contact.parameters().items())
-        place = " - ".join(contact.dofs)
-        rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {values}"))
+        place = " - ".join(dof or "ground" for dof in contact.dofs)
+        rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {contact.described()}"))
     for force in model.forces[:_SHOWN_PARTS]:
         values = f"amplitude {force.amplitude:g} N, phase {force.phase:g} rad"
         rows.append(("force", f"{force.dof}: harmonic {force.harmonic}, {values}"))

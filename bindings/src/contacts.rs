@@ -1,0 +1,82 @@
+//! What a friction law does along a given motion.
+
+use crate::arrays::{is_half_wave, series, table, vector};
+use crate::problem::Problem;
+use crate::settings::{evaluated, ResidualArgument};
+use numpy::{Complex64, PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use stickslip_core::contact::{FrictionLaw, Motion};
+use stickslip_core::fourier::{Harmonics, SampleTable};
+
+/// Hands the law of a contact and its motion to `work`, for displacements `(points, H+1)`.
+fn along<R>(
+    problem: &Problem,
+    contact: usize,
+    displacement: &PyReadonlyArray2<'_, Complex64>,
+    residual: &ResidualArgument,
+    march: Option<usize>,
+    work: impl FnOnce(&dyn FrictionLaw, Motion<'_>) -> R,
+) -> PyResult<R> {
+    let model = evaluated(problem, march)?;
+    let Some(law) = model.laws().get(contact) else {
+        return Err(PyValueError::new_err(format!(
+            "contact = {contact}: the model has {} contacts",
+            problem.model.laws().len()
+        )));
+    };
+    let view = displacement.as_array();
+    let (points, orders) = (view.nrows(), view.ncols());
+    if points != law.points() || orders < 2 {
+        return Err(PyValueError::new_err(format!(
+            "displacement: expected {} rows of at least X_0 and X_1, got {points} x {orders}",
+            law.points()
+        )));
+    }
+    let residual = residual.parse()?;
+    let half_wave =
+        residual.is_symmetric() && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
+    let sample_table = SampleTable::new(Harmonics::new(orders - 1, half_wave));
+    let coefficients: Vec<f64> =
+        (0..points).flat_map(|n| series(sample_table.harmonics(), |k| view[[n, k]])).collect();
+    let motion = Motion { table: &sample_table, displacement: &coefficients, residual };
+    Ok(work(law.as_ref(), motion))
+}
+
+/// Contact force over one period as the law gives it for displacements `(points, H+1)`.
+#[pyfunction]
+pub fn contact_force<'py>(
+    py: Python<'py>,
+    problem: &Problem,
+    contact: usize,
+    displacement: PyReadonlyArray2<'py, Complex64>,
+    residual: ResidualArgument,
+    march: Option<usize>,
+    samples: usize,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let points = displacement.as_array().nrows();
+    let force = along(problem, contact, &displacement, &residual, march, |law, motion| {
+        law.force_history(motion, samples)
+    })?;
+    table(py, samples, points, force)
+}
+
+/// Stretches of the period in which no point changes its state: their starts as angles, and the
+/// direction of slip of every point, 0 in stick.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn contact_phases<'py>(
+    py: Python<'py>,
+    problem: &Problem,
+    contact: usize,
+    displacement: PyReadonlyArray2<'py, Complex64>,
+    residual: ResidualArgument,
+    march: Option<usize>,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {
+    let points = displacement.as_array().nrows();
+    let phases =
+        along(problem, contact, &displacement, &residual, march, |law, motion| law.phases(motion))?;
+    let states = phases.iter().flat_map(|phase| phase.states.iter().map(|state| state.sign()));
+    let states = table(py, phases.len(), points, states.collect())?;
+    Ok((vector(py, phases.iter().map(|phase| phase.start)), states))
+}

@@ -1,0 +1,398 @@
+//! The passage of a massless elastic damper through one period, from transition to transition.
+//!
+//! While the set of slipping points stays what it is the forces are affine in the displacements,
+//! `f = T u − κ`, and the slip follows from them: both are trigonometric series, whose limits and
+//! standstills are located exactly. At a transition the states follow from the rates, one point
+//! after the other (Murty's principal pivoting of the rate problem), and the derivative of κ in the
+//! coefficients of u is carried through it.
+
+use super::elastic::Sliding;
+use super::structural::StructuralDamper;
+use super::transitions::Jet;
+use super::{Motion, PointState};
+use crate::fourier::Harmonics;
+
+/// Rounds after which a passage is taken as it is: its forces repeat after a few.
+const MOST_ROUNDS: usize = 200;
+/// Change of the forces over a round, relative to the largest, that counts as none.
+const PERIODIC: f64 = 1e-13;
+/// Rounding errors of a force, relative to the elastic forces that it is a difference of.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Change over a round of half a period, relative to the one before, that shows a slip which
+/// nothing undoes: mirrored it alternates, and the symmetric motion is the mean of both.
+pub(super) const SLOW: f64 = 0.9;
+/// Distance from its limit at which a point is at it, relative to the limit.
+pub(super) const AT_LIMIT: f64 = 1e-12;
+
+/// A set of slipping points with its stiffness and the series it gives.
+#[derive(Debug)]
+pub(super) struct SlipSet {
+    pub(super) slips: Vec<bool>,
+    pub(super) sliding: Sliding,
+    /// Series of `T u` and of the slip `R u`, point after point.
+    pub(super) force: Vec<f64>,
+    pub(super) slip: Vec<f64>,
+}
+
+/// A stretch of the period in one state.
+#[derive(Debug, Clone)]
+pub(super) struct Stretch {
+    pub(super) start: f64,
+    pub(super) end: f64,
+    /// Its slip set, by position.
+    pub(super) set: usize,
+    pub(super) states: Vec<PointState>,
+    /// κ.
+    pub(super) offset: Vec<f64>,
+    /// Derivative of κ in the coefficients, row by row; empty unless it was asked for.
+    pub(super) rate: Vec<f64>,
+}
+
+/// The last round of a march from zero slip to forces that repeat.
+#[derive(Debug)]
+pub(super) struct Passage {
+    pub(super) sets: Vec<SlipSet>,
+    pub(super) stretches: Vec<Stretch>,
+    /// Whether anything has slipped since the start of the march.
+    pub(super) slipped: bool,
+    /// Whether every transition was resolved.
+    pub(super) resolved: bool,
+}
+
+/// A march along one motion.
+pub(super) struct March<'a> {
+    pub(super) law: &'a StructuralDamper,
+    pub(super) harmonics: &'a Harmonics,
+    series: &'a [f64],
+    /// Values, slopes and curvatures of each point's displacement on a grid.
+    grid: Vec<[Vec<f64>; 3]>,
+    spacing: f64,
+    pub(super) sets: Vec<SlipSet>,
+    pub(super) here: Stretch,
+    done: Vec<Stretch>,
+    tangent: bool,
+    slipped: bool,
+    transitions: usize,
+}
+
+impl Passage {
+    /// Follows a motion until the forces repeat.
+    pub(super) fn new(law: &StructuralDamper, motion: Motion<'_>, tangent: bool) -> Self {
+        let mut march = March::new(law, motion, tangent);
+        let sign = if motion.table.harmonics().half_wave() { -1.0 } else { 1.0 };
+        let (mut resolved, mut last_change) = (true, f64::INFINITY);
+        let elastic = march.elastic_forces();
+        for round in 0..MOST_ROUNDS {
+            let start = march.jet(0.0);
+            let before = march.force_at(&start);
+            let gradient = tangent.then(|| march.gradient(0.0));
+            resolved = march.round();
+            let after = march.force_at(&march.jet(motion.table.harmonics().span()));
+            let largest = after.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+            let change =
+                before.iter().zip(&after).map(|(b, a)| (sign * a - b).abs()).fold(0.0, f64::max);
+            let periodic = change <= PERIODIC * largest + ROUNDING * elastic;
+            if !resolved || periodic || round + 1 == MOST_ROUNDS {
+                break;
+            }
+            march.wrap(sign);
+            if sign < 0.0 && change > SLOW * last_change {
+                march.average(&start, &before, gradient);
+            }
+            last_change = change;
+        }
+        let March { sets, mut done, here, slipped, .. } = march;
+        done.push(here);
+        Self { sets, stretches: done, slipped, resolved }
+    }
+
+    /// Stretch that holds an angle of the span.
+    pub(super) fn at(&self, theta: f64) -> Option<&Stretch> {
+        let next = self.stretches.partition_point(|stretch| stretch.end <= theta);
+        self.stretches.get(next).or(self.stretches.last())
+    }
+}
+
+impl<'a> March<'a> {
+    fn new(law: &'a StructuralDamper, motion: Motion<'a>, tangent: bool) -> Self {
+        let harmonics = motion.table.harmonics();
+        let points = law.limits.len();
+        let series = motion.displacement;
+        let grid: Vec<_> =
+            series.chunks_exact(harmonics.slots()).map(|u| motion.table.jets(u)).collect();
+        let here = Stretch {
+            start: 0.0,
+            end: 0.0,
+            set: 0,
+            states: vec![PointState::Stuck; points],
+            offset: vec![0.0; points],
+            rate: Vec::new(),
+        };
+        let spacing = harmonics.span() / motion.table.coarse_samples() as f64;
+        let (sets, done) = (Vec::new(), Vec::new());
+        let mut march = Self {
+            law,
+            harmonics,
+            series,
+            grid,
+            spacing,
+            sets,
+            here,
+            done,
+            tangent,
+            slipped: false,
+            transitions: 0,
+        };
+        march.begin();
+        march
+    }
+
+    /// Forces without slip at the start of the period, as far as the limits admit them.
+    fn begin(&mut self) {
+        let points = self.law.limits.len();
+        self.here.set = self.find_set();
+        let jet = self.jet(0.0);
+        let (mut force, mut gain) = (vec![0.0; points], vec![0.0; points * points]);
+        self.law.increment(&jet.value, &mut force, Some(&mut gain));
+        self.slipped = (0..points).any(|i| gain[i * points + i] == 0.0);
+        let gradient = self.tangent.then(|| {
+            let slots = self.harmonics.slots();
+            let basis = self.basis(0.0);
+            let mut gradient = vec![0.0; points * points * slots];
+            for (i, row) in gradient.chunks_exact_mut(points * slots).enumerate() {
+                for (j, block) in row.chunks_exact_mut(slots).enumerate() {
+                    let stiffness: f64 = (0..points)
+                        .map(|l| gain[i * points + l] * self.law.stiffness[(l, j)])
+                        .sum();
+                    block.iter_mut().zip(&basis).for_each(|(g, b)| *g = stiffness * b);
+                }
+            }
+            gradient
+        });
+        self.settle(&jet, force, gradient, None);
+    }
+
+    /// Passes once through the span; `false` if transitions pile up without end.
+    fn round(&mut self) -> bool {
+        let cells = self.grid.first().map_or(0, |grid| grid[0].len());
+        self.transitions = 0;
+        let most = 8 * self.law.limits.len() * (cells + 8);
+        let mut from = self.jet(self.here.start);
+        for cell in 0..cells {
+            let to = self.cell_end(cell, cells);
+            while let Some((theta, point)) = self.next_transition(&from, &to) {
+                from = self.jet(theta);
+                let before = (self.here.set, self.here.states.clone());
+                let force = self.force_at(&from);
+                let gradient = self.tangent.then(|| self.gradient(theta));
+                self.settle(&from, force, gradient, Some(point));
+                if (self.here.set, &self.here.states) == (before.0, &before.1) {
+                    // A touch that changes nothing: go on beyond it.
+                    from = self.jet(0.5 * (theta + to.theta));
+                }
+                self.transitions += 1;
+                if self.transitions > most {
+                    return false;
+                }
+            }
+            from = to;
+        }
+        self.here.end = self.harmonics.span();
+        true
+    }
+
+    /// Displacements at the end of a cell of the grid.
+    fn cell_end(&self, cell: usize, cells: usize) -> Jet {
+        let theta = (cell + 1) as f64 * self.spacing;
+        let sign = if cell + 1 == cells && self.harmonics.half_wave() { -1.0 } else { 1.0 };
+        let pick = |of: usize| -> Vec<f64> {
+            self.grid.iter().map(|grid| sign * grid[of][(cell + 1) % cells]).collect()
+        };
+        Jet { theta, value: pick(0), slope: pick(1), curvature: pick(2) }
+    }
+
+    /// Begins the next round where this one has ended.
+    fn wrap(&mut self, sign: f64) {
+        self.done.clear();
+        (self.here.start, self.here.end) = (0.0, 0.0);
+        if sign < 0.0 {
+            self.here.offset.iter_mut().chain(&mut self.here.rate).for_each(|x| *x = -*x);
+            self.here.states.iter_mut().for_each(|state| *state = state.mirrored());
+        }
+    }
+
+    /// Bound of the elastic forces without any slip.
+    fn elastic_forces(&self) -> f64 {
+        let far = |grid: &[Vec<f64>; 3]| grid[0].iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let far: Vec<f64> = self.grid.iter().map(far).collect();
+        let row = |i: usize| -> f64 {
+            far.iter().enumerate().map(|(j, u)| self.law.stiffness[(i, j)].abs() * u).sum()
+        };
+        (0..far.len()).map(row).fold(0.0, f64::max)
+    }
+
+    /// Begins the round from the mean of its forces and those of the round before.
+    fn average(&mut self, start: &Jet, before: &[f64], gradient: Option<Vec<f64>>) {
+        let force: Vec<f64> =
+            self.force_at(start).iter().zip(before).map(|(a, b)| 0.5 * (a + b)).collect();
+        let gradient = gradient.map(|before| {
+            self.gradient(0.0).iter().zip(&before).map(|(a, b)| 0.5 * (a + b)).collect()
+        });
+        self.settle(start, force, gradient, None);
+    }
+
+    fn jet(&self, theta: f64) -> Jet {
+        let mut jet = Jet { theta, value: Vec::new(), slope: Vec::new(), curvature: Vec::new() };
+        for series in self.series.chunks_exact(self.harmonics.slots()) {
+            let [value, slope, curvature] = self.harmonics.jet(series, theta);
+            jet.value.push(value);
+            jet.slope.push(slope);
+            jet.curvature.push(curvature);
+        }
+        jet
+    }
+
+    fn basis(&self, theta: f64) -> Vec<f64> {
+        let mut basis = vec![0.0; self.harmonics.slots()];
+        self.harmonics.basis(theta, &mut basis);
+        basis
+    }
+
+    pub(super) fn tangent_row(&self, i: usize, of: &[f64]) -> f64 {
+        let tangent = &self.sets[self.here.set].sliding.tangent;
+        of.iter().enumerate().map(|(j, u)| tangent[(i, j)] * u).sum()
+    }
+
+    fn force_at(&self, jet: &Jet) -> Vec<f64> {
+        (0..jet.value.len())
+            .map(|i| self.tangent_row(i, &jet.value) - self.here.offset[i])
+            .collect()
+    }
+
+    /// Derivative of the forces at an angle in the coefficients.
+    fn gradient(&self, theta: f64) -> Vec<f64> {
+        let mut gradient = vec![0.0; self.here.rate.len()];
+        self.add_tangent(&self.basis(theta), &mut gradient);
+        gradient.iter_mut().zip(&self.here.rate).for_each(|(g, rate)| *g -= rate);
+        gradient
+    }
+
+    /// Adds `T ⊗ basis`.
+    fn add_tangent(&self, basis: &[f64], out: &mut [f64]) {
+        let tangent = &self.sets[self.here.set].sliding.tangent;
+        let size = tangent.nrows() * basis.len();
+        for (i, row) in out.chunks_exact_mut(size).enumerate() {
+            for (j, block) in row.chunks_exact_mut(basis.len()).enumerate() {
+                let stiffness = tangent[(i, j)];
+                block.iter_mut().zip(basis).for_each(|(out, b)| *out += stiffness * b);
+            }
+        }
+    }
+
+    /// Points that are free to move on in the present states.
+    fn slips(&self) -> Vec<bool> {
+        let states = self.here.states.iter().zip(&self.law.limits);
+        states.map(|(state, limit)| *state != PointState::Stuck || *limit == 0.0).collect()
+    }
+
+    /// Position of the slip set of the present states.
+    fn find_set(&mut self) -> usize {
+        let slips = self.slips();
+        if let Some(known) = self.sets.iter().position(|set| set.slips == slips) {
+            return known;
+        }
+        let sliding = self.law.elastic.sliding(&slips);
+        let slots = self.harmonics.slots();
+        let combined = |matrix: &faer::Mat<f64>| {
+            let mut out = vec![0.0; self.series.len()];
+            for (i, out) in out.chunks_exact_mut(slots).enumerate() {
+                for (j, u) in self.series.chunks_exact(slots).enumerate() {
+                    let share = matrix[(i, j)];
+                    out.iter_mut().zip(u).for_each(|(out, u)| *out += share * u);
+                }
+            }
+            out
+        };
+        let (force, slip) = (combined(&sliding.tangent), combined(&sliding.slip_rate));
+        self.sets.push(SlipSet { slips, sliding, force, slip });
+        self.sets.len() - 1
+    }
+
+    /// Finds the states that follow from the rates at an angle and goes on from there with the
+    /// given forces and their derivative. `arrived` is at its limit, whatever rounding says.
+    fn settle(
+        &mut self,
+        jet: &Jet,
+        mut force: Vec<f64>,
+        mut gradient: Option<Vec<f64>>,
+        arrived: Option<usize>,
+    ) {
+        let points = force.len();
+        let columns = self.series.len();
+        let before = (self.here.set, self.here.states.clone());
+        for (i, (force, limit)) in force.iter_mut().zip(&self.law.limits).enumerate() {
+            let at_limit = arrived == Some(i) || force.abs() >= limit * (1.0 - AT_LIMIT);
+            if *limit > 0.0 && at_limit {
+                *force = limit.copysign(*force);
+            } else {
+                self.here.states[i] = PointState::Stuck;
+            }
+        }
+        self.here.set = self.find_set();
+        // Time that the onset of slip comes earlier, per coefficient.
+        let mut advance: Option<Vec<f64>> = None;
+        for _ in 0..16 * (points + 1) {
+            let Some(i) = (0..points).find(|&i| self.contradicts(jet, &force, i)) else { break };
+            let old: Vec<f64> = (0..points).map(|r| self.tangent_row(r, &jet.slope)).collect();
+            let onset = self.here.states[i] == PointState::Stuck;
+            let column: Vec<f64> = {
+                let tangent = &self.sets[self.here.set].sliding.tangent;
+                (0..points).map(|r| tangent[(r, i)]).collect()
+            };
+            self.here.states[i] =
+                if onset { PointState::slipping(force[i]) } else { PointState::Stuck };
+            self.here.set = self.find_set();
+            self.slipped |= onset;
+            let Some(gradient) = &mut gradient else { continue };
+            if onset {
+                let own = gradient[i * columns..(i + 1) * columns].to_vec();
+                for (r, row) in gradient.chunks_exact_mut(columns).enumerate() {
+                    let share = if r == i {
+                        1.0
+                    } else if column[i] > 0.0 {
+                        column[r] / column[i]
+                    } else {
+                        0.0
+                    };
+                    row.iter_mut().zip(&own).for_each(|(g, own)| *g -= share * own);
+                }
+                advance = (old[i] != 0.0).then(|| own.iter().map(|g| g / old[i]).collect());
+            } else if let Some(advance) = &advance {
+                // A point sticks because another has begun to slip: the rates jump once more.
+                for (r, row) in gradient.chunks_exact_mut(columns).enumerate() {
+                    let jump = self.tangent_row(r, &jet.slope) - old[r];
+                    row.iter_mut().zip(advance).for_each(|(g, time)| *g += jump * time);
+                }
+            }
+        }
+        let (old_set, old_states) = before;
+        if jet.theta > self.here.start
+            && (self.here.set, &self.here.states) != (old_set, &old_states)
+        {
+            let next = (self.here.set, std::mem::replace(&mut self.here.states, old_states));
+            self.here.set = old_set;
+            self.here.end = jet.theta;
+            self.done.push(self.here.clone());
+            (self.here.set, self.here.states) = next;
+            self.here.start = jet.theta;
+        }
+        self.here.offset =
+            (0..points).map(|i| self.tangent_row(i, &jet.value) - force[i]).collect();
+        if let Some(gradient) = gradient {
+            let mut rate = vec![0.0; gradient.len()];
+            self.add_tangent(&self.basis(jet.theta), &mut rate);
+            rate.iter_mut().zip(&gradient).for_each(|(rate, g)| *rate -= g);
+            self.here.rate = rate;
+        }
+    }
+}

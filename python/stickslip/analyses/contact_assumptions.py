@@ -1,0 +1,71 @@
+"""What a harmonic balance took for granted at the contacts, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from stickslip.model import Model, StructuralDamper
+from stickslip.results.arrays import Arrays
+
+if TYPE_CHECKING:
+    from stickslip.analyses.exact_response import ExactSettings
+    from stickslip.analyses.forced_response import Settings
+
+__all__ = ["contact_assumptions", "residual_assumption", "start_assumption"]
+
+
+def contact_assumptions(model: Model, settings: Settings, arrays: Arrays) -> tuple[str, ...]:
+    """Say what was assumed of residual forces, starts and sampling; empty where nothing was."""
+    return (
+        residual_assumption(model, settings, arrays),
+        start_assumption(model),
+        _evaluation(model, settings),
+    )
+
+
+def residual_assumption(model: Model, settings: Settings | ExactSettings, arrays: Arrays) -> str:
+    """Say what contacts that never slip were taken to hold."""
+    stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
+    if all(contact.points > 1 for contact in model.contacts) or not stuck.any():
+        return ""
+    held = {
+        "centred": "no force at mid-range of its displacement",
+        "from_rest": "the force it built up from zero displacement",
+    }.get(str(settings.residual), f"{settings.residual} N at mid-range of its displacement")
+    return (
+        f"A contact that never slips was taken to hold {held} (residual={settings.residual!r}, "
+        f"of effect at {stuck.sum()} of {stuck.size} points); residual_bounds gives what it could "
+        "hold."
+    )
+
+
+def start_assumption(model: Model) -> str:
+    """Say how dampers of several points begin, and what holds them."""
+    several = [one for one in model.contacts if isinstance(one, StructuralDamper)]
+    if not several:
+        return ""
+    held = [
+        f"the rows of the stiffness of {one.name!r} do not sum to zero ({one.grounding:.3g} N/m): "
+        "it is also held by the ground, and its forces have a resultant"
+        for one in several
+        if one.grounding
+    ]
+    return (
+        "; ".join(
+            [
+                "The march through a damper of several points begins without slip, so that points "
+                "which never slip hold what they built up from zero displacement",
+                *held,
+            ]
+        )
+        + "."
+    )
+
+
+def _evaluation(model: Model, settings: Settings) -> str:
+    if settings.march is None or not model.contacts:
+        return ""
+    return (
+        f"The contact forces were marched through {settings.march} samples per period; the error "
+        "of the sampling, of second order in their distance, is not part of the error estimate."
+    )

@@ -1,0 +1,180 @@
+"""Beams with friction dampers, and the single mass."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from stickslip.model import Force, Jenkins, Model, StructuralDamper
+from stickslip.model.structure import Rayleigh, Structure, join
+
+__all__ = [
+    "DAMPER_SLIP_FORCE",
+    "DAMPER_STIFFNESS",
+    "SNECMA_LOADS",
+    "beam_pair",
+    "damped_pair",
+    "damper",
+    "single_dof",
+    "snecma_beam",
+    "snecma_structure",
+]
+
+SNECMA_LOADS = (0.938, 2.188, 6.563, 16.563, 20.313, 25.0, 31.475, 38.438)
+"""The eight excitation levels of Table 2.3 [N]."""
+
+DAMPER_STIFFNESS = 2.4e7
+"""Stiffness k_d of the damper of eq. (2.32) and Table 2.2 [N/m]."""
+
+DAMPER_SLIP_FORCE = 246.048
+"""Slip force F_d of the damper of eq. (2.32) and Table 2.2 [N]."""
+
+
+def snecma_structure() -> Structure:
+    """Return the SNECMA beam without its damper.
+
+    Returns
+    -------
+    Structure
+        Degrees of freedom "damper" (deflection at the damper), "tip" (deflection at the tip) and
+        "mode" (first mode with both fixed). Natural frequencies 159.5927, 901.7589 and
+        2167.5410 rad/s.
+
+    References
+    ----------
+    Guillen (1999), eq. (2.32); Berthillier et al. (1998).
+    """
+    return Structure(
+        mass=[
+            [6.67959, 1.02115, 0.6343],
+            [1.02115, 1.22168, 0.232108],
+            [0.6343, 0.232108, 0.121809],
+        ],
+        stiffness=[
+            [4.43203e6, -3.77514e5, 0.0],
+            [-3.77514e5, 6.9626e4, 0.0],
+            [0.0, 0.0, 1.85323e5],
+        ],
+        damping=Rayleigh(mass=7.49, stiffness=2.6e-5),
+        dofs=["damper", "tip", "mode"],
+    )
+
+
+def snecma_beam(force: float = 20.313) -> Model:
+    """Return the SNECMA beam with one damper to ground, driven at its tip.
+
+    Parameters
+    ----------
+    force : float, optional
+        Amplitude of the force [N]; see `SNECMA_LOADS` for those of the dissertation.
+
+    Returns
+    -------
+    Model
+        3 degrees of freedom; stuck natural frequencies 225.6623, 1404.3759 and 3273.7922 rad/s.
+
+    References
+    ----------
+    Guillen (1999), eq. (2.32) and Table 2.3.
+    """
+    return Model(snecma_structure(), [damper("damper")], [Force("tip", force)])
+
+
+def single_dof(force_ratio: float = 1.0) -> Model:
+    """Return one mass on a spring with a damper to ground.
+
+    Parameters
+    ----------
+    force_ratio : float, optional
+        Force amplitude over the slip force of the damper, P / F_d.
+
+    Returns
+    -------
+    Model
+        Degree of freedom "mass"; natural frequencies 159.3976 rad/s slipping, 225.4222 stuck.
+
+    References
+    ----------
+    Guillen (1999), Table 2.2.
+    """
+    mass = Structure(mass=[[944.6]], stiffness=[[2.4e7]], damping=[[7700.0]], dofs=["mass"])
+    return Model(mass, [damper("mass")], [Force("mass", force_ratio * DAMPER_SLIP_FORCE)])
+
+
+def beam_pair(
+    force: float = 20.313,
+    *,
+    phase: float = pi / 9,
+    stiffness: float = 1e6,
+    slip_force: float = 50.0,
+) -> Model:
+    """Return two SNECMA beams rubbing against each other at their tips.
+
+    Parameters
+    ----------
+    force : float, optional
+        Amplitude of the force on either tip [N].
+    phase : float, optional
+        Phase lead of the force on beam "2" [rad]. Default: engine order 2 on 36 blades.
+    stiffness : float, optional
+        Stiffness of the contact between the tips [N/m].
+    slip_force : float, optional
+        Slip force of the contact between the tips [N].
+
+    Returns
+    -------
+    Model
+        6 degrees of freedom "1.damper", "1.tip", ..., "2.mode"; contacts "damper-1" and "damper-2"
+        to ground, as of `snecma_beam`, and "tips".
+    """
+    return Model(
+        join({"1": snecma_structure(), "2": snecma_structure()}),
+        [
+            damper("1.damper", "damper-1"),
+            damper("2.damper", "damper-2"),
+            Jenkins("1.tip", "2.tip", stiffness=stiffness, slip_force=slip_force, name="tips"),
+        ],
+        [Force("1.tip", force), Force("2.tip", force, phase)],
+    )
+
+
+def damped_pair(force: float = 35.0) -> Model:
+    """Return two SNECMA beams joined by a structure-like damper, driven in opposition at the tips.
+
+    Parameters
+    ----------
+    force : float, optional
+        Amplitude of the force on either tip [N].
+
+    Returns
+    -------
+    Model
+        6 degrees of freedom "1.damper", "1.tip", ..., "2.mode"; the contact "structural" with four
+        points, at "1.damper", "2.damper", "1.tip" and "2.tip", the last of which never slips.
+        Stuck natural frequencies 541.2619, 1090.2088, 2026.5922, ... rad/s.
+
+    References
+    ----------
+    Guillen (1999), section 6.4, eq. (6.26) and Table 6.3.
+    """
+    damper = StructuralDamper(
+        ["1.damper", "2.damper", "1.tip", "2.tip"],
+        stiffness=[
+            [2.88e7, -2.4e7, 0.0, -4.8e6],
+            [-2.4e7, 2.64e7, -2.4e6, 0.0],
+            [0.0, -2.4e6, 2.64e6, -2.4e5],
+            [-4.8e6, 0.0, -2.4e5, 5.04e6],
+        ],
+        slip_forces=[24.6, 100.0, 246.05, np.inf],
+    )
+    return Model(
+        join({"1": snecma_structure(), "2": snecma_structure()}),
+        [damper],
+        [Force("1.tip", force), Force("2.tip", force, phase=pi)],
+    )
+
+
+def damper(dof: str, name: str | None = None) -> Jenkins:
+    """Return the damper of Table 2.2, from a degree of freedom to ground."""
+    return Jenkins(dof, stiffness=DAMPER_STIFFNESS, slip_force=DAMPER_SLIP_FORCE, name=name)
