@@ -141,7 +141,7 @@ KEY_NUMBERS = {
         "r_max, exact": (5.147991, 1e-6),
         "ω there, exact": (190.1742, 1e-6),
         "stable share of the sticking side, exact": (100.0, 0),
-        "stable cycles of the slipping side, exact": (0.0, 0),
+        "stable share of the slipping side, exact": (0.0, 0),
     },
     "fig-5.2": {
         "at r = 0.01, sticking": (225.4222, 1e-5),
@@ -263,8 +263,73 @@ KEY_NUMBERS = {
     },
     # exact orbits and 101 harmonics agree on 3.118601; errata.md has 3.118469
     **{
-        name: {"r_max, exact": (3.1186012, 1e-7), "r_max, H = 9": (3.118469, 1e-4)}
+        name: {
+            "r_max, exact": (3.1186012, 1e-7),
+            "r_max, H = 9": (3.118469, 1e-4),
+            "sticking branch stable up to r": (3.1186012, 1e-7),
+            "stable share of the slipping side": (0.0, 0),
+        }
         for name in ("fig-5.25", "fig-5.26", "fig-5.27", "fig-5.28")
+    },
+    # errata.md, section 6
+    "fig-6.4": {
+        "largest force f1": (2.6372, 2e-5),
+        "largest force f2": (2.8400, 2e-5),
+        "largest force f3": (15.0410, 2e-5),
+        "largest force f4": (14.8381, 2e-5),
+        "contacts that slip at all": (0, 0),
+    },
+    "fig-6.5": {
+        "largest force f1": (24.6, 1e-9),
+        "largest force f2": (22.2518, 5e-4),
+        "largest force f3": (36.1656, 1e-4),
+        "largest force f4": (52.3142, 1e-5),
+        "contacts that slip at all": (1, 0),
+    },
+    "fig-6.6": {"largest force f1": (24.6, 1e-9), "contacts that slip at all": (1, 0)},
+    "fig-6.7": {
+        "largest force f1": (24.6, 1e-9),
+        "largest force f2": (100.0, 1e-9),
+        "largest force f3": (246.05, 1e-9),
+        "largest force f4": (370.65, 1e-9),
+        "contacts that slip at once": (3, 0),
+    },
+    "fig-6.8": {
+        "exact peak at contact 1, 20 N": (1.9184e-5, 3e-5),
+        "exact peak at contact 2, 20 N": (1.9093e-5, 3e-5),
+        "exact peak at contact 1, 60 N": (3.1929e-5, 3e-5),
+        "exact peak at contact 2, 60 N": (3.2890e-5, 3e-5),
+    },
+    "fig-6.9": {
+        "exact peak at contact 1, 120 N": (4.3601e-5, 3e-5),
+        "exact peak at contact 2, 120 N": (4.6078e-5, 3e-5),
+        # of this package alone, agrees with the exact flow from rest
+        "exact at contact 1, 120 N, 700 rad/s": (1.08360584e-4, 1e-7),
+        "natural frequency with contact 1 slipping": (715.1364, 1e-6),
+    },
+    "fig-6.10": {
+        "exact peak at contact 3, 20 N": (3.0592e-5, 3e-5),
+        "exact peak at contact 4, 20 N": (2.4787e-5, 3e-5),
+        "exact peak at contact 3, 60 N": (6.9382e-5, 3e-5),
+        "exact peak at contact 4, 60 N": (3.1452e-5, 3e-5),
+    },
+    "fig-6.11": {
+        "exact peak at contact 3, 120 N": (1.1256e-4, 5e-5),
+        "exact peak at contact 4, 120 N": (3.9010e-5, 2e-4),
+    },
+    # condensed: errata.md; links cut: as printed
+    "table-6.4": {
+        "slipping 1: second": (715.1364, 1e-6),
+        "slipping 2: second": (725.7708, 1e-6),
+        "slipping 3: second": (678.9080, 1e-6),
+        "slipping 1 and 2: second": (695.4112, 1e-6),
+        "slipping 2 and 3: second": (665.8486, 1e-6),
+        "slipping 1 and 3: second": (547.5404, 1e-6),
+        "links of 1 cut: second": (680.84, 1e-5),
+        "links of 2 cut: second": (693.58, 1e-5),
+        "links of 3 cut: second": (678.17, 1e-5),
+        "links of 1 and 2 cut: second": (512.98, 1e-5),
+        "links of 2 and 3 cut: second": (664.94, 1e-5),
     },
 }
 

@@ -22,6 +22,7 @@ CHAPTERS = (
     "chapter_5_mass",
     "chapter_5_modes",
     "chapter_5_stability",
+    "chapter_6",
 )
 """Modules that reproduce something; every `Item` in them counts."""
 

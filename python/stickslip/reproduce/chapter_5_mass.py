@@ -16,6 +16,7 @@ from stickslip.reproduce.cycles import (
     quantity,
     sides,
     smooth,
+    stable_share,
     turn,
 )
 from stickslip.reproduce.item import reproduces
@@ -91,13 +92,12 @@ def _one_harmonic(dof: str, resolution: Resolution) -> Numbers:
 def _limits(branch: ss.LimitCycles) -> tuple[Fact, ...]:
     """Return where a branch turns, and where the exact one does."""
     exact = ss.limit_cycles(branch.model, branch.negative_damping, method="exact")
-    stuck = exact.stable[exact.branch == "sticking"]
     return (
         Fact("r_max", turn(branch).ratio),
         Fact("r_max, exact", turn(exact).ratio),
         Fact("ω there, exact", turn(exact).omega, "rad/s"),
-        Fact("stable share of the sticking side, exact", 100.0 * float(stuck.mean()), "%"),
-        Fact("stable cycles of the slipping side, exact", float(exact.stable.sum() - stuck.sum())),
+        Fact("stable share of the sticking side, exact", stable_share(exact, "sticking"), "%"),
+        Fact("stable share of the slipping side, exact", stable_share(exact, "slipping"), "%"),
     )
 
 

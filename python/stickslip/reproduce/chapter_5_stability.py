@@ -20,6 +20,7 @@ from stickslip.reproduce.cycles import (
     quantity,
     sides,
     smooth,
+    stable_share,
     turn,
 )
 from stickslip.reproduce.item import reproduces
@@ -292,13 +293,12 @@ def _one_mode(dof: str) -> Numbers:
     ordered = ss.limit_cycles(
         *ss.reference.flutter_beam(mode=2, reading="ordered"), mode=2, method="exact"
     )
-    slipping = exact.stable[exact.branch == "slipping"]
     facts = (
         Fact("r_max, H = 9", turn(branch).ratio),
         Fact("r_max, exact", turn(exact).ratio),
         Fact("ω there, exact", turn(exact).omega, "rad/s"),
         Fact("sticking branch stable up to r", exact.changes[0].value),
-        Fact("stable cycles of the slipping side", float(slipping.sum())),
+        Fact("stable share of the slipping side", stable_share(exact, "slipping"), "%"),
         Fact("r_max if mode 3 has the coefficient 5.789", turn(ordered).ratio),
     )
     every = Series("exact", exact.ratio, quantity(exact, dof), "limit")

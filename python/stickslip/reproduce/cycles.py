@@ -27,6 +27,7 @@ __all__ = [
     "quantity",
     "sides",
     "smooth",
+    "stable_share",
     "turn",
 ]
 
@@ -73,6 +74,15 @@ def turn(cycles: ss.LimitCycles) -> Limit:
     if cycles.limit is None:
         raise ModelError(f"limit cycles: the branch of mode {cycles.settings.mode} does not turn")
     return cycles.limit
+
+
+def stable_share(cycles: ss.LimitCycles, side: str) -> float:
+    """Return how many of the cycles of a side are stable [%], without the fold itself.
+
+    There a multiplier is 1, and rounding decides on which side of the unit circle it is found.
+    """
+    counted = (cycles.branch == side) & (cycles.values < (1.0 - 1e-6) * turn(cycles).value)
+    return 100.0 * float(cycles.stable[counted].mean())
 
 
 def smooth(model: ss.Model, negative: Float, *, harmonics: int, mode: int = 0) -> ss.LimitCycles:

@@ -5,6 +5,7 @@ from __future__ import annotations
 __all__ = [
     "BLADE_FREQUENCIES",
     "BROYDEN",
+    "CUT_LINKS",
     "ERROR_ROW",
     "FIRST_FOLD",
     "HARMONICS_OF_MODE_1",
@@ -13,6 +14,7 @@ __all__ = [
     "MODAL_COEFFICIENTS",
     "OPTIMUM",
     "PHASES",
+    "PRELOAD",
     "RETURN_MAP",
     "RIGID",
     "ROW_OF_MASS",
@@ -96,3 +98,13 @@ MODAL_COEFFICIENTS = (
 )
 
 TWO_ORBITS = "The solution is not unique: there are two orbits for every r below r_max."
+
+PRELOAD = (
+    "Section 6.3.4: f(0) = 0 with x(0) ≠ 0 freezes a spurious preload in contacts that never slip, "
+    "which makes the printed offsets and slip sets; corrected: no force without displacement."
+)
+
+CUT_LINKS = (
+    "The printed values delete the links of slipping contacts, against Eqs. (6.14)-(6.17); "
+    "corrected: condensed. With 1 and 3 slipping the beams are not independent (547.54 rad/s)."
+)
