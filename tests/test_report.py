@@ -97,7 +97,7 @@ def results():
             *ss.reference.flutter_mass(), stiffness=[1.2e7, 2.4e7, 4.8e7], method="exact"
         ),
         "settled": ss.classify(FLUTTER, {"mass": 5e-5}),
-        "starts": ss.basin_map(FLUTTER, {"mass": [1e-5, 1e-4]}),
+        "starts": ss.basin_map(FLUTTER, {"mass": [1e-5, 1e-4], 0: [2e-5, 2e-4]}),
     }
 
 
