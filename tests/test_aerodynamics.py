@@ -280,3 +280,31 @@ def test_the_s_curve():
 def test_nonsense_is_refused(call, message):
     with pytest.raises(ss.ModelError, match=message):
         call()
+
+
+def test_the_least_stable_wave_has_a_limit_cycle():
+    beam = ss.reference.snecma_structure()
+    light = ss.Structure(beam.mass, beam.stiffness, ss.Rayleigh(mass=0.2), beam.dofs)
+    coupling = ss.Coupling("tip", stiffness=2e4)
+    damper = ss.Jenkins("damper", stiffness=2.4e7, slip_force=246.048)
+    disk = ss.BladedDisk(light, 7, [coupling], [damper], engine_order=2)
+    flow = ss.InfluenceCoefficients({0: -200 - 600j, 1: 600 + 2200j, -1: -500 - 1800j}, dof="tip")
+    waves = ss.aerodynamic_waves(disk, flow)
+    assert waves.ratio[waves.least_stable] < 0.0
+    bare, fed = waves.disk_of(ratio=0.0), waves.negative_damping()
+    cycles = ss.limit_cycles(bare, fed, harmonics=9)
+
+    # With all contacts stuck the wave is undamped where its limit cycles begin.
+    delta = 2.0 * np.pi * waves.least_stable / 7
+    blocks, begin = bare.matrices, float(cycles.ratio[0])
+    stiffness = blocks.stiffness.wave(delta) + np.diag([2.4e7, 0.0, 0.0])
+    damping = blocks.damping.wave(delta) + begin * fed[waves.least_stable]
+    lower = -np.linalg.solve(blocks.mass.wave(delta), np.hstack([stiffness, damping]))
+    poles = np.linalg.eigvals(np.vstack([np.eye(3, 6, 3), lower]))
+    critical = poles[np.argmin(np.abs(poles - 1j * cycles.omega[0]))]
+    assert abs(critical - 1j * cycles.omega[0]) < 2e-4 * cycles.omega[0]
+
+    # The flow as it is: one cycle on either side of the turn.
+    assert cycles.limit.ratio > 1.0
+    actual = ss.limit_cycles(bare, fed, harmonics=9, ratio=[1.0])
+    assert list(actual.branch) == ["sticking", "slipping"]
