@@ -37,7 +37,7 @@ def coefficients(values):
 def test_the_printed_coefficients_stand_in_reverse_order():
     shapes, omega = unit_shapes()
     projected = np.diag(shapes.T @ snecma_beam().structure.damping @ shapes)
-    # errata.md, section 2, on (5.30): printed as c_1 = 5.789, c_2 = 27.627, c_3 = 12.095
+    # of (5.30), printed as c_1 = 5.789, c_2 = 27.627, c_3 = 12.095
     assert projected == pytest.approx([12.0954, 27.6267, 5.7892], rel=1e-5)
     assert omega == pytest.approx([159.5927, 901.7589, 2167.5410], rel=1e-6)
 
@@ -55,9 +55,9 @@ def test_modal_damping_is_5_29_corrected():
     np.testing.assert_array_equal(same.damping, model.structure.damping)
 
 
-# The three readings of errata.md, section 2: which mode is driven, and with what coefficient.
+# The three readings of (5.30): which mode is driven, and with what coefficient.
 READINGS = {
-    # as printed: c_3 = -12.095 on the third mode. errata.md, section 5: r_max = 3.118469
+    # as printed: c_3 = -12.095 on the third mode. r_max computed beforehand: 3.118469
     "literal": (lambda r: [5.78919, 27.6267, -12.09545 * r], 2, 3.1184, 3.119),
     # the coefficient -12.095 on the mode it belongs to, the first
     "first mode": (lambda r: [-12.0954 * r, 27.6267, 5.7892], 0, None, None),
