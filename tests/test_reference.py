@@ -20,7 +20,7 @@ def frequencies(model: Model, *, stuck: bool) -> np.ndarray:
     return np.sqrt(scipy.linalg.eigvalsh(stiffness, model.structure.mass))
 
 
-# Each to its last printed digit: rad/s, computed independently; of the RubBeR beam, published in Hz.
+# Each to its last printed digit: rad/s, computed independently; of the RubBeR beam, Hz, published.
 # Its first stuck frequency is printed as 80.368; computed 80.36748.
 PUBLISHED = [
     (reference.snecma_beam, False, 1.0, [159.5927, 901.7589, 2167.5410], 5.01e-5),
