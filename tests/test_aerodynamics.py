@@ -37,7 +37,7 @@ def coefficients(values):
 def test_the_printed_coefficients_stand_in_reverse_order():
     shapes, omega = unit_shapes()
     projected = np.diag(shapes.T @ snecma_beam().structure.damping @ shapes)
-    # errata.md, section 2, on (5.30): printed as c_1 = 5.789, c_2 = 27.627, c_3 = 12.095
+    # of (5.30), printed as c_1 = 5.789, c_2 = 27.627, c_3 = 12.095
     assert projected == pytest.approx([12.0954, 27.6267, 5.7892], rel=1e-5)
     assert omega == pytest.approx([159.5927, 901.7589, 2167.5410], rel=1e-6)
 
@@ -55,9 +55,9 @@ def test_modal_damping_is_5_29_corrected():
     np.testing.assert_array_equal(same.damping, model.structure.damping)
 
 
-# The three readings of errata.md, section 2: which mode is driven, and with what coefficient.
+# The three readings of (5.30): which mode is driven, and with what coefficient.
 READINGS = {
-    # as printed: c_3 = -12.095 on the third mode. errata.md, section 5: r_max = 3.118469
+    # as printed: c_3 = -12.095 on the third mode. r_max computed beforehand: 3.118469
     "literal": (lambda r: [5.78919, 27.6267, -12.09545 * r], 2, 3.1184, 3.119),
     # the coefficient -12.095 on the mode it belongs to, the first
     "first mode": (lambda r: [-12.0954 * r, 27.6267, 5.7892], 0, None, None),
@@ -280,3 +280,31 @@ def test_the_s_curve():
 def test_nonsense_is_refused(call, message):
     with pytest.raises(ss.ModelError, match=message):
         call()
+
+
+def test_the_least_stable_wave_has_a_limit_cycle():
+    beam = ss.reference.snecma_structure()
+    light = ss.Structure(beam.mass, beam.stiffness, ss.Rayleigh(mass=0.2), beam.dofs)
+    coupling = ss.Coupling("tip", stiffness=2e4)
+    damper = ss.Jenkins("damper", stiffness=2.4e7, slip_force=246.048)
+    disk = ss.BladedDisk(light, 7, [coupling], [damper], engine_order=2)
+    flow = ss.InfluenceCoefficients({0: -200 - 600j, 1: 600 + 2200j, -1: -500 - 1800j}, dof="tip")
+    waves = ss.aerodynamic_waves(disk, flow)
+    assert waves.ratio[waves.least_stable] < 0.0
+    bare, fed = waves.disk_of(ratio=0.0), waves.negative_damping()
+    cycles = ss.limit_cycles(bare, fed, harmonics=9)
+
+    # With all contacts stuck the wave is undamped where its limit cycles begin.
+    delta = 2.0 * np.pi * waves.least_stable / 7
+    blocks, begin = bare.matrices, float(cycles.ratio[0])
+    stiffness = blocks.stiffness.wave(delta) + np.diag([2.4e7, 0.0, 0.0])
+    damping = blocks.damping.wave(delta) + begin * fed[waves.least_stable]
+    lower = -np.linalg.solve(blocks.mass.wave(delta), np.hstack([stiffness, damping]))
+    poles = np.linalg.eigvals(np.vstack([np.eye(3, 6, 3), lower]))
+    critical = poles[np.argmin(np.abs(poles - 1j * cycles.omega[0]))]
+    assert abs(critical - 1j * cycles.omega[0]) < 2e-4 * cycles.omega[0]
+
+    # The flow as it is: one cycle on either side of the turn.
+    assert cycles.limit.ratio > 1.0
+    actual = ss.limit_cycles(bare, fed, harmonics=9, ratio=[1.0])
+    assert list(actual.branch) == ["sticking", "slipping"]

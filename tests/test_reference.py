@@ -20,8 +20,8 @@ def frequencies(model: Model, *, stuck: bool) -> np.ndarray:
     return np.sqrt(scipy.linalg.eigvalsh(stiffness, model.structure.mass))
 
 
-# Published, each to its last printed digit: rad/s in errata.md, Hz for the RubBeR beam. Its first
-# stuck frequency is printed as 80.368; computed 80.36748.
+# Each to its last printed digit: rad/s, computed independently; of the RubBeR beam, Hz, published.
+# Its first stuck frequency is printed as 80.368; computed 80.36748.
 PUBLISHED = [
     (reference.snecma_beam, False, 1.0, [159.5927, 901.7589, 2167.5410], 5.01e-5),
     (reference.snecma_beam, True, 1.0, [225.6623, 1404.3759, 3273.7922], 5.01e-5),

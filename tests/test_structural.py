@@ -24,7 +24,7 @@ def no_window():
 
 @pytest.fixture(scope="module")
 def strong():
-    """All slip sets occur: errata.md, section 6, 550 rad/s and 550 N."""
+    """All slip sets occur: 550 rad/s and 550 N."""
     return ss.forced_response(reference.damped_pair(550.0), [550.0], harmonics=25)
 
 
@@ -212,7 +212,7 @@ def test_figures_of_forces_and_states(strong, exact):
         assert len(axes) == 5
         assert "sum" in axes[-1].get_ylabel()
         dashed = axes[0].lines[0].get_ydata()
-        # errata.md: without slip the force would be far above its limit
+        # Without slip the force would be far above its limit
         assert np.abs(dashed).max() > 24.6
         strips = plot.events(result, 0)
         assert next(text.get_text() for text in strips.get_yticklabels()).startswith("structural")

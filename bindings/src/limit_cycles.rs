@@ -197,6 +197,7 @@ impl LimitCycles {
             End::Condition => "unbounded",
             End::Points => "points",
             End::Stalled => "stalled",
+            End::Returned => "returned",
             End::Interrupted => "interrupted",
         };
         self.inner.ends.iter().zip(self.inner.end_values).map(|(e, v)| (name(*e), v)).collect()

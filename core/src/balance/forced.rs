@@ -62,12 +62,10 @@ impl<'a> ForcedBalance<'a> {
         let forced = model.compliance().forced_harmonics();
         settings.check(&forced)?;
         settings.check_resolution(model.resolves())?;
-        if let Some(&dof) = observe.iter().find(|&&dof| dof >= model.compliance().dofs()) {
-            return Err(Error::value(
-                "observe",
-                dof as f64,
-                &format!("the structure has {} DOFs", model.compliance().dofs()),
-            ));
+        let known = model.compliance().dofs();
+        if let Some(&dof) = observe.iter().find(|&&dof| dof >= known) {
+            let remedy = format!("the structure has {known} DOFs");
+            return Err(Error::value("observe", dof as f64, &remedy));
         }
         let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
         if !half_wave {

@@ -281,7 +281,8 @@ impl Finder<'_> {
                     *fold < branch.points.len()
                 });
             }
-            let limit = extreme(&branch, 1.0);
+            // Where the walk has come back, a farther turn may have been missed.
+            let limit = extreme(&branch, 1.0).filter(|_| branch.end != End::Returned);
             return Ok(Traced { branch, limit, ends });
         }
         let own = self.family.own_value().ok_or_else(|| {

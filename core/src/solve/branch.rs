@@ -15,6 +15,8 @@ pub enum End {
     Points,
     /// No point ahead was found.
     Stalled,
+    /// The walk came back to where it had been: it has lost its direction, or the curve is closed.
+    Returned,
     /// The caller ended the analysis.
     Interrupted,
 }
@@ -49,6 +51,8 @@ const ITERATIONS: usize = 25;
 /// Accuracy along the curve to which a fold is located, relative to its surroundings: the
 /// parameter is accurate to the square of it.
 const AT_FOLD: f64 = 1e-7;
+/// Relative difference of the last two unknowns of two folds that are the same.
+const SAME_FOLD: f64 = 1e-7;
 /// Golden section.
 const GOLDEN: f64 = 0.381_966_011_250_105;
 
@@ -84,6 +88,9 @@ impl Branch {
             }
             branch.push(curve, walk.point.clone());
             curve.accept(&walk.point);
+            if branch.returned() {
+                break End::Returned;
+            }
             if (bounds.ends)(&walk.point) {
                 break End::Condition;
             }
@@ -112,6 +119,34 @@ impl Branch {
             }
         }
         self.points.push(point);
+    }
+
+    /// Whether the last fold has been met before. What was walked backwards is cut off.
+    fn returned(&mut self) -> bool {
+        let Some((&last, earlier)) = self.folds.split_last() else { return false };
+        // A point behind the fold has just been added; look once.
+        if last + 2 != self.points.len() && last + 3 != self.points.len() {
+            return false;
+        }
+        // The last two unknowns tell: periodic motions may have been shifted in time since.
+        let pair = |at: usize| self.points[at].iter().rev().take(2);
+        let apart = |at: usize| {
+            let ways = pair(at).zip(pair(last)).map(|(a, b)| (a / b - 1.0).abs());
+            ways.fold(0.0, f64::max)
+        };
+        let Some(first) = earlier.iter().position(|at| apart(*at) <= SAME_FOLD) else {
+            return false;
+        };
+        let between = &earlier[first + 1..];
+        // Folds as close as that to each other are a wiggle of the curve.
+        if between.is_empty() || between.iter().any(|at| apart(*at) <= 100.0 * SAME_FOLD) {
+            return false;
+        }
+        if let [turn] = *between {
+            self.points.truncate(turn + 1);
+            self.folds.truncate(first + 1);
+        }
+        true
     }
 
     /// The point between two others at which the parameter is largest or least: smooth or a corner.

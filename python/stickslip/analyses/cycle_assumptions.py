@@ -43,6 +43,12 @@ def cycle_assumptions(
         texts.append("Stability is not decided: one sector of a wave has no motion of its own.")
     side = ("sticking", "slipping")
     for name, (end, value) in zip(side, solution.ends, strict=True):
+        if end == "returned":
+            texts.append(
+                f"Stalled: at {settings.followed} = {value:.6g} the walk turned back on itself, or "
+                "closed a loop: no way ahead was found at a corner of the branch, which may go on "
+                "to a farther limit; try method='newton' with more harmonics, or 'exact'."
+            )
         if end == "stalled":
             texts.append(
                 f"Stalled: the {name} side ends at {settings.followed} = {value:.6g}, where no "
@@ -54,7 +60,8 @@ def cycle_assumptions(
             texts.append(
                 f"The {name} side grows without bound towards {settings.followed} = {value:.6g}."
             )
-    if arrays.limit is None and not solution.interrupted:
+    returned = any(end == "returned" for end, _ in solution.ends)
+    if arrays.limit is None and not solution.interrupted and not returned:
         texts.append("No turn: the branch does not turn in the range, and has one side alone.")
     if solution.jumps:
         texts.append(

@@ -20,10 +20,11 @@ from stickslip.analyses.cycle_assumptions import cycle_assumptions
 from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSettings, wanted
 from stickslip.analyses.forced_response import MAX_HARMONICS
 from stickslip.analyses.variation import Common, Parameter, Variation, chosen_contacts
-from stickslip.checks import brief, real_matrix, real_number
+from stickslip.checks import brief, real_number
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import ContactRef, Model
-from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
+from stickslip.model.damping import DampingLaw
+from stickslip.model.destabilised import negative_matrix
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.limit_cycles import LimitCycles
 
@@ -183,16 +184,10 @@ def negative_damping_of(given: ArrayLike | DampingLaw, model: Model) -> NDArray[
         If it is of another shape, or holds numbers that are not finite.
     """
     size = len(model.structure)
-    if isinstance(given, Rayleigh | ModalDamping):
-        given = given.matrix(model.structure.mass, model.structure.stiffness)
-    if not model.travels:
-        matrix: NDArray[Any] = np.array(real_matrix(given, "negative_damping"))
-        if matrix.shape != (size, size):
-            raise ModelError(
-                f"negative_damping: shape {matrix.shape} instead of ({size}, {size}), the degrees "
-                "of freedom of the model"
-            )
-    else:
+    if not model.travels or isinstance(given, DampingLaw):
+        given = negative_matrix(given, model.structure)
+    matrix: NDArray[Any] = np.array(given) if not model.travels else np.empty(0)
+    if model.travels:
         sectors = model.sectors  # type: ignore[attr-defined]
         try:
             values = np.asarray(given)

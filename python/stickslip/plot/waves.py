@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 
 from stickslip.checks import brief
-from stickslip.disk.influence import AerodynamicWaves
+from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
 from stickslip.plot.style import GREY, finish, new_axes
 

@@ -20,7 +20,7 @@ from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
 from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
-from stickslip.results.peaks import RIVAL, Bracket, Peak, highest
+from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
 from stickslip.results.variables import Variable, coordinate, names, read, state_names
 
 if TYPE_CHECKING:
@@ -274,7 +274,7 @@ class ExactResponse(ForcedResponse):
         """
         key = key_of(dof, measure)
         if key not in self._peaks:
-            self._peaks[key] = highest(self, dof, measure, _refined)
+            self._peaks[key] = highest(self, dof, measure, of_orbits)
         return self._peaks[key]
 
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
@@ -381,26 +381,3 @@ class ExactResponse(ForcedResponse):
             except ValueError as error:
                 raise ModelError(str(error)) from error
         return constant(np.ascontiguousarray(motion[:, places]))
-
-
-def _refined(
-    result: ForcedResponse, dof: str, measure: Measure, bracket: Bracket
-) -> tuple[float, float]:
-    """Return frequency and amplitude of the maximum inside a bracket, by exact orbits."""
-    from stickslip import _core
-
-    settings = result.settings
-    low, high, guess = bracket
-    try:
-        return _core.exact_peak(
-            result.model.problem,
-            low,
-            high,
-            guess,
-            result.model.structure.index(dof),
-            measure,
-            settings.residual,
-            settings.max_iterations,
-        )
-    except ValueError as error:
-        raise ModelError(f"peak of {dof!r}: {error}") from error

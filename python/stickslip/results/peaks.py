@@ -15,7 +15,7 @@ from stickslip.results.arrays import Bool, Float, Int, Measure
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
 
-__all__ = ["Peak", "Summary", "highest", "highest_of", "refined", "rows"]
+__all__ = ["Peak", "Summary", "highest", "highest_of", "of_orbits", "refined", "rows"]
 
 RIVAL = 0.9
 """Local maxima from this share of the largest may be the true peak once they are refined."""
@@ -266,6 +266,29 @@ def refined(
             settings.jacobian,
             settings.march,
             settings.max_harmonics,
+            settings.max_iterations,
+        )
+    except ValueError as error:
+        raise ModelError(f"peak of {dof!r}: {error}") from error
+
+
+def of_orbits(
+    result: ForcedResponse, dof: str, measure: Measure, bracket: Bracket
+) -> tuple[float, float]:
+    """Return frequency and amplitude of the maximum inside a bracket, by exact orbits."""
+    from stickslip import _core
+
+    settings = result.settings
+    low, high, guess = bracket
+    try:
+        return _core.exact_peak(
+            result.model.problem,
+            low,
+            high,
+            guess,
+            result.model.structure.index(dof),
+            measure,
+            settings.residual,
             settings.max_iterations,
         )
     except ValueError as error:
