@@ -204,6 +204,7 @@ def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> 
     else:
         tell(f"results: {first.with_name(f'{study.name}-*.nc')} ({len(curves)} files)")
     tell(f"details: stickslip show {first}")
+    tell(f"page:    stickslip report {first}")
 
 
 def _warn(results: Sequence[tuple[str, Result]]) -> None:
