@@ -335,3 +335,20 @@ def test_random_dampers_on_random_structures_are_solved(seed):
         )
         moving = np.abs(exact.multipliers[0, exact.neutral[0] :])
         assert (moving < 1.0).all()
+
+
+def test_limit_cycles_that_turn_back_at_a_corner_say_so():
+    pair = ss.reference.damped_pair()
+    free = pair.structure
+    bare = ss.Structure(free.mass, free.stiffness, None, free.dofs)
+    negative = ss.reference.negative_damping(free)
+    branch = ss.limit_cycles(
+        ss.Model(bare, pair.contacts, []), negative, method="exact", stability=False
+    )
+    # the walk used to go back to its start and to take the turn on the way for the limit
+    assert branch.limit is None
+    assert any("turned back on itself" in text for text in branch.assumptions)
+    below = branch.amplitude("1.tip")[branch.ratio < 0.02]
+    assert below.size > 0
+    assert np.ptp(below) < 0.1 * below.max()
+    assert branch.ratio[-1] > 1.0
