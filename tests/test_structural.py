@@ -315,6 +315,14 @@ def random_model(seed):
     return model, ss.natural_frequencies(model)[0] * rng.uniform(0.4, 1.6)
 
 
+def test_three_hundred_random_dampers_need_no_homotopy():
+    for seed in range(300):
+        model, omega = random_model(seed)
+        frf = ss.forced_response(model, [omega], harmonics=9)
+        assert frf.converged.all(), seed
+        assert frf.counters["homotopies"] == 0, seed
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_random_dampers_on_random_structures_are_solved(seed):
     model, omega = random_model(seed)

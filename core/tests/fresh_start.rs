@@ -40,8 +40,10 @@ fn stiff_dampers_on_lightly_damped_structures_are_solved() {
         Some(start)
     };
     for highest in [7, 9, 15] {
-        let settings =
+        let mut settings =
             Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() };
+        // Enough from a good start alone.
+        settings.newton.max_iterations = 12;
         let balance = ForcedBalance::new(&model, settings, &[0, 1]).unwrap();
         let solution = sweep(balance.rescued(&fresh_start), &omega).unwrap();
         for point in &solution.points {

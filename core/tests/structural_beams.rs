@@ -257,42 +257,25 @@ fn peaks_of_the_frequency_responses_and_sweeps_from_either_side() {
     }
 }
 
-/// Points of Figs 6.8-6.11 that are not solved from the linear solution, the number of those that
-/// the homotopies have solved, and of all.
-fn unsolved(steps: u32) -> (Vec<(f64, usize, f64)>, usize, usize) {
-    let (mut failed, mut followed, mut count) = (Vec::new(), 0, 0);
+/// At every 2 rad/s of Figs 6.8-6.11, without a neighbour, an exact orbit or a homotopy to help.
+#[test]
+fn newton_s_method_solves_every_point_from_the_linear_solution() {
+    let mut most = 0;
     for force in [20.0, 30.0, 40.0, 50.0, 55.0, 60.0, 70.0, 80.0, 90.0, 100.0, 110.0, 120.0] {
         let model = damped_beams(force);
         for harmonics in [5, 9, 15, 25] {
-            for i in 0..=steps {
-                let omega = 500.0 + 200.0 * f64::from(i) / f64::from(steps);
+            for i in 0..=100 {
+                let omega = 500.0 + 2.0 * f64::from(i);
                 let balance = ForcedBalance::new(&model, settings(harmonics), &[]).unwrap();
                 let solution = sweep(balance, &[omega]).unwrap();
-                count += 1;
-                followed += solution.profile.homotopies;
-                if solution.points[0].status != PointStatus::Converged {
-                    failed.push((force, harmonics, omega));
-                }
+                let case = format!("{force} N, H = {harmonics}, {omega} rad/s");
+                assert_eq!(solution.points[0].status, PointStatus::Converged, "{case}");
+                assert_eq!(solution.profile.homotopies, 0, "{case}");
+                most = most.max(solution.points[0].iterations);
             }
         }
     }
-    (failed, followed, count)
-}
-
-#[test]
-fn the_balance_is_solved_from_the_linear_solution() {
-    let (failed, followed, count) = unsolved(8);
-    println!("{followed} of {count} by homotopy");
-    assert!(failed.is_empty(), "{failed:?}");
-}
-
-/// As the one above, at every 2 rad/s.
-#[test]
-#[ignore = "takes minutes"]
-fn the_balance_is_solved_from_the_linear_solution_everywhere() {
-    let (failed, followed, count) = unsolved(100);
-    println!("{} of {count} points fail, {followed} by homotopy: {failed:?}", failed.len());
-    assert!(failed.is_empty());
+    println!("at most {most} iterations");
 }
 
 #[test]

@@ -108,6 +108,9 @@ impl<'a> Equations<'a> {
             return Ok(point);
         };
         let start = std::time::Instant::now();
+        // The describing functions at the solution, and not where the last Jacobian was.
+        let mut residual = vec![0.0; x.len()];
+        self.residual(&x, &mut residual);
         let mut point = self.recover(balance, omega, &x)?;
         (point.residual, point.iterations) = (report.residual, report.iterations);
         if estimate {
@@ -208,6 +211,12 @@ impl System for Equations<'_> {
                 r[1] += u.im;
             }
         }
+    }
+
+    fn value(&mut self, x: &[f64], out: &mut [f64]) {
+        let (describing, active) = (self.describing.clone(), self.active.clone());
+        self.residual(x, out);
+        (self.describing, self.active) = (describing, active);
     }
 
     fn relative_size(&self, step: &[f64], x: &[f64]) -> f64 {

@@ -17,7 +17,7 @@ pub struct OrbitSettings {
 
 impl Default for OrbitSettings {
     fn default() -> Self {
-        Self { harmonics: 32, residual: Residual::Centred, max_iterations: 50 }
+        Self { harmonics: 32, residual: Residual::Centred, max_iterations: 100 }
     }
 }
 

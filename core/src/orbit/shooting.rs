@@ -176,6 +176,12 @@ impl System for Shooting<'_> {
         }
     }
 
+    fn value(&mut self, x: &[f64], out: &mut [f64]) {
+        let (derivative, slipped) = (self.derivative(), std::mem::take(&mut self.slipped));
+        self.residual(x, out);
+        (self.derivative, self.slipped) = (Some(derivative), slipped);
+    }
+
     fn interrupted(&self) -> bool {
         self.interrupted.is_some_and(|ask| ask())
     }

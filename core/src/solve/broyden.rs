@@ -2,7 +2,6 @@
 //! corrected along every step (Guillen 1999, section 3.4.2).
 
 use super::line_search::LineSearch;
-use super::newton::SHORTEST_STEP;
 use super::qr::Qr;
 use super::{norm, NewtonSettings, Outcome, Report, System};
 use faer::Mat;
@@ -28,6 +27,8 @@ pub struct BroydenEffort {
 
 /// Relative step of the forward differences: half the digits.
 const DIFFERENCE: f64 = 1.5e-8;
+/// Shortest step along a direction: below it it is no descent direction in practice.
+const SHORTEST_STEP: f64 = 1.0 / 256.0;
 /// Shortest step along a direction of an updated Jacobian, which a fresh one replaces rather than
 /// a longer search.
 const SHORTEST_UPDATED_STEP: f64 = 0.5;
@@ -162,6 +163,10 @@ mod tests {
         }
 
         fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+            self.value(x, out);
+        }
+
+        fn value(&mut self, x: &[f64], out: &mut [f64]) {
             out[0] = x[0] * x[0] + x[1] * x[1] - 2.0;
             out[1] = x[0] - x[1].powi(3);
         }
@@ -200,6 +205,10 @@ mod tests {
         }
 
         fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+            self.value(x, out);
+        }
+
+        fn value(&mut self, x: &[f64], out: &mut [f64]) {
             out[0] = 1.0 + x[0] * x[0];
         }
 

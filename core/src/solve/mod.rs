@@ -5,6 +5,7 @@ mod branch;
 mod broyden;
 mod continuation;
 mod cyclic_tridiagonal;
+mod damping;
 mod homotopy;
 mod kernels;
 mod line_search;
@@ -32,9 +33,7 @@ pub trait System {
     fn residual(&mut self, x: &[f64], out: &mut [f64]);
 
     /// Residual at `x` alone; [`System::solve`] goes on with the Jacobian it has.
-    fn value(&mut self, x: &[f64], out: &mut [f64]) {
-        self.residual(x, out);
-    }
+    fn value(&mut self, x: &[f64], out: &mut [f64]);
 
     /// Residual and whole Jacobian at `x`; by forward differences unless the system knows better.
     fn jacobian(&mut self, x: &[f64], residual: &mut [f64], out: &mut Mat<f64>) {

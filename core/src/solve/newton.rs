@@ -1,6 +1,7 @@
-//! Newton's method with a line search on the residual norm. Its last steps, which are small, share
-//! one Jacobian.
+//! Newton's method. Full steps are taken as long as the residual falls, damped ones where it does
+//! not; the last steps, which are small, share one Jacobian.
 
+use super::damping::{Damped, Damping};
 use super::line_search::LineSearch;
 use super::{norm, System};
 
@@ -15,7 +16,7 @@ pub struct NewtonSettings {
 
 impl Default for NewtonSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-11, max_iterations: 50 }
+        Self { tolerance: 1e-11, max_iterations: 100 }
     }
 }
 
@@ -43,8 +44,8 @@ pub struct Report {
     pub residual: f64,
 }
 
-/// Shortest step of the line search: below it the direction is no descent direction in practice.
-pub(super) const SHORTEST_STEP: f64 = 1.0 / 256.0;
+/// A small step that leaves no more than this share of itself needs no damping any more.
+const CONTRACTS: f64 = 0.1;
 
 /// Behind a step this small the Jacobian has hardly changed, and serves for another step: one with
 /// it leaves about this share of the error.
@@ -59,6 +60,9 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
     let size = system.size();
     let (mut residual, mut step) = (vec![0.0; size], vec![0.0; size]);
     let mut trial = LineSearch::new(size);
+    let mut damping = Damping::new(size);
+    // Whether a full step has failed.
+    let mut damped = false;
     system.residual(x, &mut residual);
     let mut size_of_residual = norm(&residual);
     // Whether the Jacobian is that at x.
@@ -84,6 +88,20 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         let relative_step = system.relative_size(&step, x);
         let close = relative_step <= 1e-9;
         let keep = relative_step <= SERVES_AGAIN;
+        if damped && !close {
+            let taken = damping.advance(system, x, &step);
+            system.residual(x, &mut residual);
+            size_of_residual = norm(&residual);
+            match taken {
+                Damped::Full(left) => damped = !keep || left > CONTRACTS,
+                Damped::Part => {}
+                Damped::Stuck => {
+                    let outcome = if within { Outcome::Converged } else { Outcome::Stalled };
+                    return report(outcome, size_of_residual, x);
+                }
+            }
+            continue;
+        }
         let evaluate = |x: &[f64], out: &mut [f64]| {
             if keep {
                 system.value(x, out);
@@ -91,15 +109,15 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
                 system.residual(x, out);
             }
         };
-        let shortest = if fresh { SHORTEST_STEP } else { 1.0 };
-        if !trial.along(evaluate, x, &step, size_of_residual, shortest, close) {
+        if !trial.along(evaluate, x, &step, size_of_residual, 1.0, close) {
+            // The Jacobian at x again, for damped steps if it was not to blame.
             system.residual(x, &mut residual);
-            if !fresh {
-                fresh = true;
-                continue;
+            if fresh {
+                damping.forget();
+                damped = true;
             }
-            let outcome = if within { Outcome::Converged } else { Outcome::Stalled };
-            return report(outcome, size_of_residual, x);
+            fresh = true;
+            continue;
         }
         // Where Newton's method converges, the error shrinks as the residual does: the error left
         // is the step times the contraction just seen.
@@ -152,6 +170,10 @@ mod tests {
 
         fn residual(&mut self, x: &[f64], out: &mut [f64]) {
             self.0 = 1.0 / (1.0 + x[0] * x[0]);
+            self.value(x, out);
+        }
+
+        fn value(&mut self, x: &[f64], out: &mut [f64]) {
             out[0] = x[0].atan() - 0.5;
         }
 
@@ -169,6 +191,41 @@ mod tests {
         assert!((x[0] - 0.5_f64.tan()).abs() < 1e-12);
     }
 
+    /// A narrow valley along a parabola: the first equation weighs a million times the second.
+    struct Valley(f64);
+
+    impl System for Valley {
+        fn size(&self) -> usize {
+            2
+        }
+
+        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+            self.0 = x[0];
+            self.value(x, out);
+        }
+
+        fn value(&mut self, x: &[f64], out: &mut [f64]) {
+            out[0] = 1e6 * (x[1] - x[0] * x[0]);
+            out[1] = x[0] - 1.0;
+        }
+
+        fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
+            step[0] = rhs[1];
+            step[1] = 1e-6 * rhs[0] + 2.0 * self.0 * rhs[1];
+            true
+        }
+    }
+
+    /// Along steps that lower the residual the way takes dozens of iterations.
+    #[test]
+    fn steps_are_judged_by_the_error_and_not_by_the_residual() {
+        let mut x = [-1.2, 1.0];
+        let report = newton(&mut Valley(0.0), &mut x, NewtonSettings::default());
+        assert_eq!(report.outcome, Outcome::Converged);
+        assert!((x[0] - 1.0).abs() < 1e-12 && (x[1] - 1.0).abs() < 1e-12, "{x:?}");
+        assert!(report.iterations <= 6, "{}", report.iterations);
+    }
+
     struct Rootless;
 
     impl System for Rootless {
@@ -177,6 +234,10 @@ mod tests {
         }
 
         fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+            self.value(x, out);
+        }
+
+        fn value(&mut self, x: &[f64], out: &mut [f64]) {
             out[0] = 1.0 + x[0] * x[0];
         }
 

@@ -55,7 +55,7 @@ EVALUATIONS = ("exact", "marched")
 """How the friction laws are evaluated."""
 
 MAX_HARMONICS = 255
-MAX_ITERATIONS = 50
+MAX_ITERATIONS = 100
 
 
 @dataclass(frozen=True, kw_only=True)
