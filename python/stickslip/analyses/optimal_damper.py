@@ -12,6 +12,7 @@ from stickslip.analyses.damper_curve import curve_of, settings_for
 from stickslip.analyses.damper_settings import DamperSettings
 from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS, forced_response
 from stickslip.analyses.variation import (
+    Chosen,
     Common,
     Contacts,
     Parameter,
@@ -23,6 +24,7 @@ from stickslip.analyses.variation import (
 from stickslip.checks import choice, real_number
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
+from stickslip.model.contact import Contact
 from stickslip.results.arrays import Measure, amplitude_of
 from stickslip.results.damper_curve import DamperArrays, LeastPeak
 from stickslip.results.optimal_damper import OptimalDamper
@@ -190,7 +192,7 @@ def _default_bounds(
     if settings is None:
         stiffness = local_stiffness(model, variation.contacts)
         if variation.common == "factor":
-            stiffness /= max(_own_stiffness(model, ref) for ref in variation.contacts)
+            stiffness = _factor(model, variation.contacts)
         return STIFFNESSES[0] * stiffness, STIFFNESSES[1] * stiffness
     load, ratio = _stuck_forces(model, variation, settings)
     if not ratio > 0.0:
@@ -204,12 +206,36 @@ def _default_bounds(
     return (1.0 / high, 1.0 / low) if variation.parameter == "level" else (low, high)
 
 
-def _own_stiffness(model: Model, ref: str | tuple[str, int]) -> float:
-    """Return the stiffness of a contact that a factor of one stands for [N/m]."""
-    contact = model.contacts[located(model, ref)[0]]
-    if "stiffness" in contact.factors:
-        return float(contact.stuck_stiffness.diagonal().max())
-    return contact.adjustable()["stiffness"][0]
+def _factor(model: Model, contacts: tuple[Chosen, ...]) -> float:
+    """Return the factor that makes contacts as stiff as the structure."""
+    factors, springs = [], []
+    for ref in contacts:
+        contact = model.contacts[located(model, ref)[0]]
+        if "stiffness" in contact.factors:
+            factors.append(_matrix_factor(model, ref, contact))
+        else:
+            springs.append(contact.adjustable()["stiffness"][0])
+    stiffest = max(springs, default=0.0)
+    if stiffest > 0.0:
+        factors.append(local_stiffness(model, contacts) / stiffest)
+    if not factors or not 0.0 < max(factors) < np.inf:
+        raise ModelError("bounds: no factor on a stiffness of 0 changes it; vary its value")
+    return max(factors)
+
+
+def _matrix_factor(model: Model, ref: Chosen, contact: Contact) -> float:
+    """Return the inverse of the largest product of a stiffness matrix with a flexibility."""
+    held = local_stiffness(model, [ref]) / max(
+        float(contact.stuck_stiffness.diagonal().max()), 1e-300
+    )
+    rows = contact.rows(model.structure)
+    try:
+        flexibility = rows @ np.linalg.solve(model.structure.stiffness, rows.T)
+    except np.linalg.LinAlgError:
+        return held
+    product = float(np.linalg.eigvals(contact.stuck_stiffness @ flexibility).real.max())
+    # Of a structure that is nearly free, rounding decides.
+    return 1.0 / product if 0.0 < product * held < 1e10 else held
 
 
 def _stuck_forces(
