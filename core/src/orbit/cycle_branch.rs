@@ -292,6 +292,10 @@ impl Finder<'_> {
                 "have different values of what is followed; follow a factor on them",
             )
         })?;
+        if own.is_infinite() {
+            let remedy = "never slip; give the model a finite slip force, from which to follow it";
+            return Err(Error::value("contacts", own, remedy));
+        }
         let wanted = self.ratio;
         let reached = |z: &[f64]| value(z) >= wanted;
         let bounds = Bounds { range: (0.0, f64::INFINITY), most: settings.most, ends: &reached };

@@ -124,7 +124,9 @@ def damper_curve(
     require_progress(progress)
     parameter, values = _one_of(slip_force=slip_force, stiffness=stiffness, level=level)
     if parameter == "stiffness" and common == "factor" and np.isinf(values).any():
-        raise ModelError('stiffness: an infinite factor has no meaning; use common="value"')
+        raise ModelError(
+            "stiffness: an infinite factor has no meaning; give finite ones, or values"
+        )
     settings = settings_for(
         model,
         Variation(
