@@ -314,6 +314,38 @@ def test_limit_cycles_from_what_never_slips_say_so(fluttering, pair):
         cycles(damper, stiffness=[1e6])
 
 
+def test_disks_with_either_law_are_the_same():
+    springs = ss.Jenkins("damper", "next.damper", stiffness=SPRING, slip_force=30.0)
+    body = ss.StructuralDamper(
+        ["damper", "next.damper"],
+        stiffness=SPRING * np.array([[1, -1], [-1, 1]]),
+        slip_forces=[30.0, np.inf],
+    )
+    disks = [
+        ss.BladedDisk(
+            reference.snecma_structure(),
+            sectors=5,
+            couplings=[ss.Coupling("tip", stiffness=1e5)],
+            contacts=[contact],
+            forces=[ss.Force("tip", 20.0)],
+            engine_order=1,
+        )
+        for contact in (springs, body)
+    ]
+    one, other = (
+        ss.damper_curve(disk, slip_force=[10.0, 100.0], dof="tip", harmonics=5) for disk in disks
+    )
+    np.testing.assert_allclose(other.amplitude, one.amplitude, rtol=1e-9)
+    np.testing.assert_allclose(other.sensitivity, one.sensitivity, rtol=1e-8)
+    one, other = (
+        ss.mistuning_study(
+            disk, deviation=0.05, patterns=2, omega=(140, 230), seed=1, harmonics=3
+        ).factors("tip")
+        for disk in disks
+    )
+    np.testing.assert_allclose(other, one, rtol=1e-7)
+
+
 STUDY = """
 [structure]
 mass = [[1.0, 0.0], [0.0, 1.0]]

@@ -119,7 +119,7 @@ fn slopes_of_the_curve_match_differences() {
         slip_force(&[0, 2], Common::Factor),
         Variation::Law {
             parameter: "stiffness".to_owned(),
-            contacts: vec![1],
+            contacts: vec![(1, None)],
             common: Common::Value,
         },
         Variation::Level,
