@@ -160,6 +160,9 @@ def test_the_curve_of_the_pair_ends_in_its_linear_limits(pair, curve):
     assert curve.model_at(2.0).contacts[0].slip_forces == (49.2, 200.0, 492.1, np.inf)
     assert any("structural[2]" in text and "times the factor" in text for text in curve.assumptions)
     curve.plot()
+    frfs = [ss.forced_response(curve.model_at(factor), [531.0], harmonics=1) for factor in (1, 2)]
+    told = [text.get_text() for text in ss.plot.curves(frfs, "1.tip").get_legend().get_texts()]
+    assert "$F_d$ = 49.2, 200, 492.1, inf N" in told
 
 
 def test_the_best_factor_lies_where_two_resonances_are_equally_high(pair):
