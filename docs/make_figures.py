@@ -51,6 +51,18 @@ def structural_damper(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "structural-damper.png")
 
 
+def structural_curve(folder: Path = ASSETS) -> Path:
+    """Draw the peak of the beam pair against a factor on all slip limits of its damper."""
+    model = ss.reference.damped_pair(60.0)
+    factors = np.unique(
+        [*np.geomspace(0.02, 0.2, 12), *np.geomspace(0.2, 0.3, 15), *np.geomspace(0.3, 10, 20)]
+    )
+    curve = ss.damper_curve(model, slip_force=factors, common="factor", dof="1.tip")
+    figure = Figure(figsize=(7.5, 4.4), layout="constrained")
+    plot.damper(curve, length_unit="um", ax=figure.subplots())
+    return _save(figure, folder / "structural-curve.png")
+
+
 def error_estimates(folder: Path = ASSETS) -> Path:
     """Tabulate true truncation errors of the beam tip against their estimates.
 
@@ -347,6 +359,7 @@ def _save(figure: Figure, file: Path) -> Path:
 if __name__ == "__main__":
     print(snecma_beam())
     print(structural_damper())
+    print(structural_curve())
     print(error_estimates())
     print(*harmonics_errors())
     print(exact_orbits())

@@ -4,6 +4,7 @@ use crate::arrays::{refused, series, table, vector};
 use crate::problem::Problem;
 use crate::response::{status_code, ResidualArgument};
 use crate::settings::{evaluated, settings};
+use crate::variation::Varied;
 use crate::watch::Watch;
 use numpy::{
     Complex64, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods as _,
@@ -12,8 +13,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_core::balance::{Cause, Linearised, Method, Settings, Unknowns};
-use stickslip_core::design::{optimum, peak_curve, Common, Curve, Peak, Target, Variation};
+use stickslip_core::design::{optimum, peak_curve, Curve, Peak, Target};
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
+use stickslip_core::model::Variation;
 use stickslip_core::Model;
 
 /// Peaks along a parameter.
@@ -104,13 +106,11 @@ impl Peaks {
     }
 }
 
-/// What is varied, and which peak is followed: `parameter` is "level" or one of the laws'.
+/// What is varied, and which peak is followed.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Design {
-    parameter: String,
-    contacts: Vec<usize>,
-    factor: bool,
+    variation: Varied,
     dof: usize,
     measure: String,
     omega: (f64, f64),
@@ -123,15 +123,7 @@ pub struct Design {
 
 impl Design {
     fn parse(self) -> PyResult<(Variation, Target, Settings)> {
-        let variation = if self.parameter == "level" {
-            Variation::Level
-        } else {
-            Variation::Law {
-                parameter: self.parameter,
-                contacts: self.contacts,
-                common: if self.factor { Common::Factor } else { Common::Value },
-            }
-        };
+        let variation = self.variation.into();
         let measure: Measure = self.measure.parse().map_err(refused)?;
         let target = Target { dof: self.dof, measure, span: self.omega };
         let settings = settings(
@@ -193,11 +185,12 @@ pub fn optimal_damper(
     Ok((minima, found.curve.into()))
 }
 
-/// What amplitudes are differentiated by: "omega", "level", or a contact's parameter.
+/// What amplitudes are differentiated by: "omega", "level", or a parameter of a contact or of one of
+/// its points.
 #[derive(FromPyObject)]
 pub enum CauseArgument {
     Named(String),
-    Law((usize, String)),
+    Law((usize, Option<usize>, String)),
 }
 
 impl CauseArgument {
@@ -207,10 +200,14 @@ impl CauseArgument {
             Self::Named(name) if name == "omega" => Ok(Cause::Frequency),
             Self::Named(name) if name == "level" => Ok(Cause::Load),
             Self::Named(name) => Err(unknown(name.clone())),
-            Self::Law((contact, name)) => {
+            Self::Law((contact, point, name)) => {
                 let law = model.laws().get(*contact);
                 let parameters = law.map(|law| law.parameters()).unwrap_or_default();
-                let parameter = parameters.iter().position(|(known, _)| known == name);
+                let mut found = (0..parameters.len()).filter(|&at| {
+                    let known = parameters[at];
+                    known.name == name && (point.is_none() || known.point == *point)
+                });
+                let parameter = found.next().filter(|_| found.next().is_none());
                 parameter
                     .map(|parameter| Cause::Law { contact: *contact, parameter })
                     .ok_or_else(|| unknown(format!("parameter {name} of contact {contact}")))

@@ -12,6 +12,7 @@ mod response;
 mod settings;
 mod single_harmonic;
 mod transient;
+mod variation;
 mod watch;
 
 use pyo3::prelude::*;

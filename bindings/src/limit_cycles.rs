@@ -3,13 +3,14 @@
 use crate::arrays::{matrix, padded, refused, table, vector};
 use crate::problem::Problem;
 use crate::response::{counters, status_code, timings};
+use crate::variation::Varied;
 use crate::watch::Watch;
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_core::balance::{HarmonicChoice, Point};
-use stickslip_core::model::{NegativeDamping, Scalar};
+use stickslip_core::model::{NegativeDamping, Variation};
 use stickslip_core::orbit::{self, ChangeKind, Cycle, CycleSettings};
 use stickslip_core::solve::End;
 
@@ -256,15 +257,11 @@ impl Negative<'_> {
     }
 }
 
-/// What is followed: a parameter of some contacts as a value or a factor, or r.
+/// What is followed.
 #[derive(FromPyObject)]
 pub struct Followed {
     #[pyo3(item)]
-    parameter: Option<String>,
-    #[pyo3(item)]
-    contacts: Vec<usize>,
-    #[pyo3(item)]
-    factor: bool,
+    variation: Varied,
     #[pyo3(item)]
     ratio: f64,
     #[pyo3(item)]
@@ -273,7 +270,7 @@ pub struct Followed {
     range: (f64, f64),
 }
 
-/// Limit cycles of a mode along a scalar.
+/// Limit cycles of a mode along what is varied.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn limit_cycles(
@@ -294,9 +291,8 @@ pub fn limit_cycles(
         return Err(PyValueError::new_err("max_points: must be at least 2"));
     }
     let negative = negative_damping.damping();
-    let Followed { parameter, contacts, factor, ratio, values, range } = followed;
-    let scalar =
-        parameter.map_or(Scalar::Ratio, |parameter| Scalar::Law { parameter, contacts, factor });
+    let Followed { variation, ratio, values, range } = followed;
+    let variation = Variation::from(variation);
     let settings = CycleSettings {
         mode,
         values,
@@ -311,7 +307,7 @@ pub fn limit_cycles(
     };
     let model = &problem.model;
     let (inner, watch) = Watch::during(py, progress.as_ref(), |look| {
-        orbit::limit_cycles(model, &negative, &scalar, ratio, &settings, look)
+        orbit::limit_cycles(model, &negative, &variation, ratio, &settings, look)
     });
     watch.raise_unless_interrupt(py)?;
     Ok(LimitCycles {

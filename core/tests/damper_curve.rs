@@ -8,8 +8,9 @@ use common::{beam_pair, snecma_beam, System};
 use stickslip_core::balance::{
     refine_peak, sweep, ForcedBalance, HarmonicChoice, PointStatus, Settings,
 };
-use stickslip_core::design::{optimum, peak_curve, Common, Target, Variation};
+use stickslip_core::design::{optimum, peak_curve, Target};
 use stickslip_core::fourier::Measure;
+use stickslip_core::model::{Common, Variation};
 use stickslip_core::Model;
 
 const SPAN: (f64, f64) = (150.0, 240.0);
@@ -19,7 +20,8 @@ fn fixed(highest: usize) -> Settings {
 }
 
 fn slip_force(contacts: &[usize], common: Common) -> Variation {
-    Variation::Law { parameter: "slip_force".to_owned(), contacts: contacts.to_vec(), common }
+    let contacts = contacts.iter().map(|&contact| (contact, None)).collect();
+    Variation::Law { parameter: "slip_force".to_owned(), contacts, common }
 }
 
 fn geometric(low: f64, high: f64, count: usize) -> Vec<f64> {
@@ -117,7 +119,7 @@ fn slopes_of_the_curve_match_differences() {
         slip_force(&[0, 2], Common::Factor),
         Variation::Law {
             parameter: "stiffness".to_owned(),
-            contacts: vec![1],
+            contacts: vec![(1, None)],
             common: Common::Value,
         },
         Variation::Level,

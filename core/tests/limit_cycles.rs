@@ -8,7 +8,7 @@ use common::snecma_beam;
 use faer::{mat, Mat};
 use stickslip_core::balance::HarmonicChoice;
 use stickslip_core::contact::Jenkins;
-use stickslip_core::model::{Contact, Model, NegativeDamping, Scalar};
+use stickslip_core::model::{Common, Contact, Model, NegativeDamping, Variation};
 use stickslip_core::orbit::{limit_cycles, ChangeKind, Cycle, CycleSettings, LimitCycles};
 use stickslip_core::solve::End;
 use stickslip_core::structure::Structure;
@@ -33,7 +33,7 @@ fn beam() -> (Model, Mat<f64>) {
 
 fn follow((model, negative): &(Model, Mat<f64>), settings: &CycleSettings) -> LimitCycles {
     let negative = NegativeDamping::Whole(negative.clone());
-    limit_cycles(model, &negative, &Scalar::Ratio, 1.0, settings, &|_| true).unwrap()
+    limit_cycles(model, &negative, &Variation::Ratio, 1.0, settings, &|_| true).unwrap()
 }
 
 fn exact(mode: usize, values: Option<Vec<f64>>) -> CycleSettings {
@@ -129,8 +129,11 @@ fn automatic_harmonics_meet_the_tolerance() {
 fn the_stiffness_of_the_single_mass_can_be_followed() {
     let (model, negative) = single_dof();
     let negative = NegativeDamping::Whole(negative);
-    let stiffness =
-        Scalar::Law { parameter: "stiffness".to_owned(), contacts: vec![0], factor: true };
+    let stiffness = Variation::Law {
+        parameter: "stiffness".to_owned(),
+        contacts: vec![(0, None)],
+        common: Common::Factor,
+    };
     let settings =
         CycleSettings { values: Some(vec![10.0, 1000.0]), range: (0.01, 1001.0), ..exact(0, None) };
     let cycles = limit_cycles(&model, &negative, &stiffness, 1.0, &settings, &|_| true).unwrap();
@@ -150,8 +153,11 @@ fn the_stiffness_of_the_single_mass_can_be_followed() {
 fn the_slip_force_scales_the_motion_alone() {
     let (model, negative) = single_dof();
     let negative = NegativeDamping::Whole(negative);
-    let force =
-        Scalar::Law { parameter: "slip_force".to_owned(), contacts: vec![0], factor: false };
+    let force = Variation::Law {
+        parameter: "slip_force".to_owned(),
+        contacts: vec![(0, None)],
+        common: Common::Value,
+    };
     let settings = CycleSettings {
         values: Some(vec![100.0, 492.096]),
         range: (50.0, 500.0),
@@ -232,7 +238,7 @@ fn modes_that_are_not_excited_are_refused() {
     let positive = NegativeDamping::Whole(faer::Scale(-1.0) * &negative);
     let settings = CycleSettings::default();
     let run = |negative: &NegativeDamping, settings: &CycleSettings| {
-        limit_cycles(&model, negative, &Scalar::Ratio, 1.0, settings, &|_| true).unwrap_err()
+        limit_cycles(&model, negative, &Variation::Ratio, 1.0, settings, &|_| true).unwrap_err()
     };
     let error = run(&positive, &settings);
     assert!(error.to_string().contains("mind the sign"), "{error}");
@@ -253,6 +259,7 @@ fn a_caller_can_end_the_analysis() {
         calls.get() < 300
     };
     let cycles =
-        limit_cycles(&model, &negative, &Scalar::Ratio, 1.0, &exact(0, None), &progress).unwrap();
+        limit_cycles(&model, &negative, &Variation::Ratio, 1.0, &exact(0, None), &progress)
+            .unwrap();
     assert!(cycles.interrupted);
 }

@@ -4,7 +4,7 @@
 use faer::Mat;
 use stickslip_core::balance::HarmonicChoice;
 use stickslip_core::contact::Jenkins;
-use stickslip_core::model::{Contact, Model, NegativeDamping, Scalar};
+use stickslip_core::model::{Contact, Model, NegativeDamping, Variation};
 use stickslip_core::orbit::{limit_cycles, CycleSettings, LimitCycles};
 use stickslip_core::solve::End;
 use stickslip_core::structure::Structure;
@@ -93,7 +93,7 @@ fn study(seeds: std::ops::Range<u64>, exact: bool) -> (usize, Vec<String>) {
             ..CycleSettings::default()
         };
         let negative = NegativeDamping::Whole(negative);
-        match limit_cycles(&model, &negative, &Scalar::Ratio, 1.0, &settings, &|_| true) {
+        match limit_cycles(&model, &negative, &Variation::Ratio, 1.0, &settings, &|_| true) {
             Ok(cycles) if complete(&cycles) => solved += 1,
             Ok(cycles) => causes.push(format!(
                 "{seed}: {:?} at {:?}, limit {:?}",

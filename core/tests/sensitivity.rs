@@ -182,7 +182,8 @@ fn law_error(
     };
     let law = Jenkins::new(stiffness, slip_force).unwrap();
     let mut worst = 0.0_f64;
-    for (index, (_, value)) in law.parameters().into_iter().enumerate() {
+    for (index, parameter) in law.parameters().into_iter().enumerate() {
+        let value = parameter.value;
         let mut slope = vec![0.0; u.len()];
         law.parameter_slope(motion, index, &mut slope);
         // One-sided at zero, where no smaller value exists.

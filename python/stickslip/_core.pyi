@@ -286,10 +286,13 @@ def transient(
     progress: Callable[[float], None] | None,
 ) -> History: ...
 
-class Design(TypedDict):
+class Varied(TypedDict):
     parameter: str
-    contacts: list[int]
+    contacts: list[tuple[int, int | None]]
     factor: bool
+
+class Design(TypedDict):
+    variation: Varied
     dof: int
     measure: str
     omega: tuple[float, float]
@@ -344,14 +347,12 @@ def sensitivity(
     residual: Residual,
     dof: int,
     measure: str,
-    causes: Sequence[str | tuple[int, str]],
+    causes: Sequence[str | tuple[int, int | None, str]],
     march: int | None,
 ) -> Float: ...
 
 class Followed(TypedDict):
-    parameter: str | None
-    contacts: list[int]
-    factor: bool
+    variation: Varied
     ratio: float
     values: list[float] | None
     range: tuple[float, float]

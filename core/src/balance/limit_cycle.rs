@@ -138,11 +138,14 @@ impl<'a> CycleBalance<'a> {
         let (slots, points) = (self.slots(), self.family.model().points());
         let mut rate = vec![0.0; u.len()];
         let Some(at) = &self.at else { return rate };
-        for (contact, index, factor) in self.family.rates() {
-            let range = points[contact].start * slots..points[contact].end * slots;
-            let mut own = vec![0.0; range.len()];
-            at.laws[contact].parameter_slope(self.motion(contact, u), index, &mut own);
-            rate[range].iter_mut().zip(own).for_each(|(rate, own)| *rate = factor * own);
+        for change in self.family.changes() {
+            let own = &points[change.contact];
+            let range = own.start * slots..own.end * slots;
+            let mut slope = vec![0.0; range.len()];
+            let motion = self.motion(change.contact, u);
+            at.laws[change.contact].parameter_slope(motion, change.parameter, &mut slope);
+            let share = change.rate();
+            rate[range].iter_mut().zip(slope).for_each(|(rate, slope)| *rate += share * slope);
         }
         rate
     }
@@ -241,7 +244,7 @@ impl Curve for CycleBalance<'_> {
         self.fill(at, out);
         let load = self.slip_load();
         let by_omega = self.product(|answer| &answer.by_omega, &load);
-        let by_value = if self.family.rates().is_empty() {
+        let by_value = if self.family.changes().is_empty() {
             self.product(|answer| &answer.by_ratio, &load)
         } else {
             // dG Q + G dQ with dG = −G dD G and dQ = dD U − dF: at a solution, −G dF.
@@ -281,7 +284,7 @@ impl Curve for CycleBalance<'_> {
 mod tests {
     use super::*;
     use crate::contact::Jenkins;
-    use crate::model::{Contact, Model, NegativeDamping, Scalar};
+    use crate::model::{Common, Contact, Model, NegativeDamping, Variation};
     use crate::structure::Structure;
     use faer::mat;
 
@@ -303,21 +306,21 @@ mod tests {
 
     #[test]
     fn jacobians_match_differences_of_the_residual() {
-        let law = |name: &str| Scalar::Law {
+        let law = |name: &str| Variation::Law {
             parameter: name.to_owned(),
-            contacts: vec![0, 1],
-            factor: true,
+            contacts: vec![(0, None), (1, None)],
+            common: Common::Factor,
         };
-        for (coupled, scalar) in [
-            (false, Scalar::Ratio),
-            (true, Scalar::Ratio),
+        for (coupled, variation) in [
+            (false, Variation::Ratio),
+            (true, Variation::Ratio),
             (false, law("stiffness")),
             (true, law("slip_force")),
         ] {
             let (model, negative) = model(coupled);
-            let by_law = scalar != Scalar::Ratio;
+            let by_law = variation != Variation::Ratio;
             let family =
-                SelfExcited::new(&model, NegativeDamping::Whole(negative), scalar, 0.7).unwrap();
+                SelfExcited::new(&model, NegativeDamping::Whole(negative), variation, 0.7).unwrap();
             let table = SampleTable::new(Harmonics::new(5, true));
             let size = 2 * table.harmonics().slots();
             let mut z: Vec<f64> =

@@ -8,8 +8,8 @@
 
 use super::cycle::{Cycle, Slip, Stick};
 use super::{
-    scalar, Describing, FrictionLaw, Motion, Parameters, PointState, PointSummary, Residual,
-    SlipLoad,
+    scalar, Describing, FrictionLaw, Motion, Parameter, Parameters, PointState, PointSummary,
+    Residual, SlipLoad,
 };
 use crate::fourier::{Harmonics, IntervalSums};
 use crate::Error;
@@ -227,8 +227,8 @@ impl FrictionLaw for Jenkins {
             .collect()
     }
 
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
-        vec![("stiffness", self.stiffness), ("slip_force", self.slip_force)]
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::stiffness(self.stiffness), Parameter::slip_force(0, self.slip_force)]
     }
 
     fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn FrictionLaw>, Error> {

@@ -10,7 +10,9 @@ use super::march_rate::{add_work, is_identity, sticks, Rate};
 use super::passage::SLOW;
 use super::samples::Samples;
 use super::slip_series::halve_means;
-use super::{Describing, FrictionLaw, Motion, PointState, PointSummary, Residual, SlipLoad};
+use super::{
+    Describing, FrictionLaw, Motion, Parameter, PointState, PointSummary, Residual, SlipLoad,
+};
 use crate::Error;
 use faer::Mat;
 use std::f64::consts::TAU;
@@ -307,7 +309,7 @@ impl FrictionLaw for Marched {
         }
     }
 
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
+    fn parameters(&self) -> Vec<Parameter> {
         self.law.parameters()
     }
 
@@ -323,7 +325,7 @@ impl FrictionLaw for Marched {
     /// By central differences: a march has no derivative in a parameter that would serve all laws.
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         out.fill(0.0);
-        let value = self.law.parameters()[index].1;
+        let value = self.law.parameters()[index].value;
         let step = DIFFERENCE * value;
         if !(step > 0.0 && step.is_finite()) {
             return;

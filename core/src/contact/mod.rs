@@ -6,6 +6,7 @@
 //! [`law`].
 
 mod cycle;
+mod derivative;
 mod describing;
 mod elastic;
 mod increment;
@@ -13,16 +14,19 @@ mod jenkins;
 mod jenkins_parameters;
 mod march_rate;
 mod marched;
+mod parameter;
 mod passage;
 mod samples;
 mod slip_series;
 mod structural;
+mod structural_parameters;
 mod transitions;
 
 pub use describing::Describing;
 pub use elastic::Elastic;
 pub use jenkins::Jenkins;
 pub use marched::Marched;
+pub use parameter::Parameter;
 pub use structural::StructuralDamper;
 
 use crate::fourier::SampleTable;
@@ -232,8 +236,8 @@ pub trait FrictionLaw: Send + Sync + std::fmt::Debug {
         phases
     }
 
-    /// Names and values of the parameters, each addressed by its position; none by default.
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
+    /// The parameters, each addressed by its position; none by default.
+    fn parameters(&self) -> Vec<Parameter> {
         Vec::new()
     }
 

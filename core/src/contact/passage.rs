@@ -6,6 +6,7 @@
 //! after the other (Murty's principal pivoting of the rate problem), and the derivative of κ in the
 //! coefficients of u is carried through it.
 
+use super::derivative::Derivative;
 use super::elastic::Sliding;
 use super::structural::StructuralDamper;
 use super::transitions::Jet;
@@ -44,7 +45,7 @@ pub(super) struct Stretch {
     pub(super) states: Vec<PointState>,
     /// κ.
     pub(super) offset: Vec<f64>,
-    /// Derivative of κ in the coefficients, row by row; empty unless it was asked for.
+    /// Derivative of κ, row by row; empty unless it was asked for.
     pub(super) rate: Vec<f64>,
 }
 
@@ -57,6 +58,8 @@ pub(super) struct Passage {
     pub(super) slipped: bool,
     /// Whether every transition was resolved.
     pub(super) resolved: bool,
+    /// Bound of the elastic forces without any slip.
+    pub(super) elastic: f64,
 }
 
 /// A march along one motion.
@@ -70,22 +73,22 @@ pub(super) struct March<'a> {
     pub(super) sets: Vec<SlipSet>,
     pub(super) here: Stretch,
     done: Vec<Stretch>,
-    tangent: bool,
+    derivative: Derivative,
     slipped: bool,
     transitions: usize,
 }
 
 impl Passage {
     /// Follows a motion until the forces repeat.
-    pub(super) fn new(law: &StructuralDamper, motion: Motion<'_>, tangent: bool) -> Self {
-        let mut march = March::new(law, motion, tangent);
+    pub(super) fn new(law: &StructuralDamper, motion: Motion<'_>, derivative: Derivative) -> Self {
+        let mut march = March::new(law, motion, derivative);
         let sign = if motion.table.harmonics().half_wave() { -1.0 } else { 1.0 };
         let (mut resolved, mut last_change) = (true, f64::INFINITY);
         let elastic = march.elastic_forces();
         for round in 0..MOST_ROUNDS {
             let start = march.jet(0.0);
             let before = march.force_at(&start);
-            let gradient = tangent.then(|| march.gradient(0.0));
+            let gradient = (derivative != Derivative::None).then(|| march.gradient(0.0));
             resolved = march.round();
             let after = march.force_at(&march.jet(motion.table.harmonics().span()));
             let largest = after.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
@@ -103,7 +106,7 @@ impl Passage {
         }
         let March { sets, mut done, here, slipped, .. } = march;
         done.push(here);
-        Self { sets, stretches: done, slipped, resolved }
+        Self { sets, stretches: done, slipped, resolved, elastic }
     }
 
     /// Stretch that holds an angle of the span.
@@ -114,7 +117,7 @@ impl Passage {
 }
 
 impl<'a> March<'a> {
-    fn new(law: &'a StructuralDamper, motion: Motion<'a>, tangent: bool) -> Self {
+    fn new(law: &'a StructuralDamper, motion: Motion<'a>, derivative: Derivative) -> Self {
         let harmonics = motion.table.harmonics();
         let points = law.limits.len();
         let series = motion.displacement;
@@ -139,7 +142,7 @@ impl<'a> March<'a> {
             sets,
             here,
             done,
-            tangent,
+            derivative,
             slipped: false,
             transitions: 0,
         };
@@ -155,20 +158,7 @@ impl<'a> March<'a> {
         let (mut force, mut gain) = (vec![0.0; points], vec![0.0; points * points]);
         self.law.increment(&jet.value, &mut force, Some(&mut gain));
         self.slipped = (0..points).any(|i| gain[i * points + i] == 0.0);
-        let gradient = self.tangent.then(|| {
-            let slots = self.harmonics.slots();
-            let basis = self.basis(0.0);
-            let mut gradient = vec![0.0; points * points * slots];
-            for (i, row) in gradient.chunks_exact_mut(points * slots).enumerate() {
-                for (j, block) in row.chunks_exact_mut(slots).enumerate() {
-                    let stiffness: f64 = (0..points)
-                        .map(|l| gain[i * points + l] * self.law.stiffness[(l, j)])
-                        .sum();
-                    block.iter_mut().zip(&basis).for_each(|(g, b)| *g = stiffness * b);
-                }
-            }
-            gradient
-        });
+        let gradient = self.derivative.start(self.law, &self.basis(0.0), &force, &gain);
         self.settle(&jet, force, gradient, None);
     }
 
@@ -184,7 +174,7 @@ impl<'a> March<'a> {
                 from = self.jet(theta);
                 let before = (self.here.set, self.here.states.clone());
                 let force = self.force_at(&from);
-                let gradient = self.tangent.then(|| self.gradient(theta));
+                let gradient = (self.derivative != Derivative::None).then(|| self.gradient(theta));
                 self.settle(&from, force, gradient, Some(point));
                 if (self.here.set, &self.here.states) == (before.0, &before.1) {
                     // A touch that changes nothing: go on beyond it.
@@ -269,7 +259,7 @@ impl<'a> March<'a> {
             .collect()
     }
 
-    /// Derivative of the forces at an angle in the coefficients.
+    /// Derivative of the forces at an angle.
     fn gradient(&self, theta: f64) -> Vec<f64> {
         let mut gradient = vec![0.0; self.here.rate.len()];
         self.add_tangent(&self.basis(theta), &mut gradient);
@@ -277,8 +267,11 @@ impl<'a> March<'a> {
         gradient
     }
 
-    /// Adds `T ⊗ basis`.
+    /// Adds `T ⊗ basis`, the derivative of `T u`, which the limits do not change.
     fn add_tangent(&self, basis: &[f64], out: &mut [f64]) {
+        if self.derivative == Derivative::Limits {
+            return;
+        }
         let tangent = &self.sets[self.here.set].sliding.tangent;
         let size = tangent.nrows() * basis.len();
         for (i, row) in out.chunks_exact_mut(size).enumerate() {
@@ -328,7 +321,7 @@ impl<'a> March<'a> {
         arrived: Option<usize>,
     ) {
         let points = force.len();
-        let columns = self.series.len();
+        let columns = gradient.as_ref().map_or(0, Vec::len) / points;
         let before = (self.here.set, self.here.states.clone());
         for (i, (force, limit)) in force.iter_mut().zip(&self.law.limits).enumerate() {
             let at_limit = arrived == Some(i) || force.abs() >= limit * (1.0 - AT_LIMIT);
@@ -339,7 +332,7 @@ impl<'a> March<'a> {
             }
         }
         self.here.set = self.find_set();
-        // Time that the onset of slip comes earlier, per coefficient.
+        // Time that the onset of slip comes earlier, per column.
         let mut advance: Option<Vec<f64>> = None;
         for _ in 0..16 * (points + 1) {
             let Some(i) = (0..points).find(|&i| self.contradicts(jet, &force, i)) else { break };
@@ -355,7 +348,10 @@ impl<'a> March<'a> {
             self.slipped |= onset;
             let Some(gradient) = &mut gradient else { continue };
             if onset {
-                let own = gradient[i * columns..(i + 1) * columns].to_vec();
+                let mut own = gradient[i * columns..(i + 1) * columns].to_vec();
+                if self.derivative == Derivative::Limits {
+                    own[i] -= force[i].signum();
+                }
                 for (r, row) in gradient.chunks_exact_mut(columns).enumerate() {
                     let share = if r == i {
                         1.0

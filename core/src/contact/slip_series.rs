@@ -69,7 +69,14 @@ pub(super) fn write(
     }
 }
 
-/// The mean of a series is its sum over the samples, not twice that.
+/// The mean of a series is its integral over the period, not twice that.
+pub(super) fn halve_mean(harmonics: &Harmonics, series: &mut [f64]) {
+    if harmonics.has_mean() {
+        series.iter_mut().step_by(harmonics.slots()).for_each(|mean| *mean *= 0.5);
+    }
+}
+
+/// As [`halve_mean`], of the slip loads of all points and their derivative.
 pub(super) fn halve_means(harmonics: &Harmonics, points: usize, out: &mut SlipLoad) {
     if !harmonics.has_mean() {
         return;

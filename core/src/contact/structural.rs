@@ -7,11 +7,14 @@
 //! transition, each located exactly (`passage`), and an increment solves the implicit problem
 //! (`increment`).
 
+use super::derivative::Derivative;
 use super::elastic::{Elastic, Sliding};
 use super::increment::Increment;
 use super::passage::{Passage, Stretch};
 use super::slip_series::{self, halve_means};
-use super::{numbers, FrictionLaw, Motion, Parameters, Phase, PointState, PointSummary, SlipLoad};
+use super::{
+    numbers, FrictionLaw, Motion, Parameter, Parameters, Phase, PointState, PointSummary, SlipLoad,
+};
 use crate::Error;
 use faer::{Mat, MatRef, Side};
 use std::f64::consts::TAU;
@@ -26,6 +29,9 @@ pub struct StructuralDamper {
     pub(super) stiffness: Mat<f64>,
     pub(super) limits: Vec<f64>,
     pub(super) elastic: Elastic,
+    /// The stiffness that it was built with, and the factor on it.
+    pub(super) unit: Mat<f64>,
+    pub(super) factor: f64,
 }
 
 impl StructuralDamper {
@@ -45,15 +51,7 @@ impl StructuralDamper {
             let expected = format!("{points}, one per contact");
             return Err(Error::shape("structural: slip_forces", expected, limits.len()));
         }
-        for (i, limit) in limits.iter().enumerate() {
-            if limit.is_nan() || *limit < 0.0 {
-                return Err(Error::value(
-                    format!("structural: slip_forces[{i}]"),
-                    *limit,
-                    "must not be negative; infinity means that the contact never slips",
-                ));
-            }
-        }
+        let limits = Self::checked(limits)?;
         let at = |i: usize, j: usize| stiffness[(i, j)];
         let pairs = || (0..points).flat_map(|i| (0..points).map(move |j| (i, j)));
         if let Some((i, j)) = pairs().find(|&(i, j)| !at(i, j).is_finite()) {
@@ -81,7 +79,22 @@ impl StructuralDamper {
             ));
         }
         let elastic = Elastic::new(symmetric.as_ref())?;
-        Ok(Self { stiffness: symmetric, limits: limits.to_vec(), elastic })
+        Ok(Self { unit: symmetric.clone(), stiffness: symmetric, limits, elastic, factor: 1.0 })
+    }
+
+    /// Slip limits as they may be.
+    pub(super) fn checked(limits: &[f64]) -> Result<Vec<f64>, Error> {
+        let bad = limits.iter().position(|limit| limit.is_nan() || *limit < 0.0);
+        bad.map_or_else(
+            || Ok(limits.to_vec()),
+            |i| {
+                Err(Error::value(
+                    format!("structural: slip_forces[{i}]"),
+                    limits[i],
+                    "must not be negative; infinity means that the contact never slips",
+                ))
+            },
+        )
     }
 
     pub(super) fn from_parameters(parameters: &Parameters) -> Result<Self, Error> {
@@ -135,6 +148,8 @@ impl FrictionLaw for StructuralDamper {
             stiffness: faer::Scale(share) * &self.stiffness,
             limits: self.limits.clone(),
             elastic: self.elastic.softened(share),
+            unit: faer::Scale(share) * &self.unit,
+            factor: self.factor,
         })
     }
 
@@ -143,7 +158,11 @@ impl FrictionLaw for StructuralDamper {
         if motion.displacement.iter().any(|u| !u.is_finite()) {
             return;
         }
-        let passage = Passage::new(self, motion, tangent);
+        let passage = Passage::new(
+            self,
+            motion,
+            if tangent { Derivative::Coefficients } else { Derivative::None },
+        );
         if !passage.resolved {
             out.value.fill(f64::NAN);
             return;
@@ -175,7 +194,7 @@ impl FrictionLaw for StructuralDamper {
         out.fill(PointSummary::default());
         let harmonics = motion.table.harmonics();
         let span = harmonics.span();
-        let passage = Passage::new(self, motion, false);
+        let passage = Passage::new(self, motion, Derivative::None);
         let displacement = |theta: f64| -> Vec<f64> {
             let series = motion.displacement.chunks_exact(harmonics.slots());
             series.map(|series| harmonics.jet(series, theta)[0]).collect()
@@ -203,7 +222,7 @@ impl FrictionLaw for StructuralDamper {
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
         let harmonics = motion.table.harmonics();
         let span = harmonics.span();
-        let passage = Passage::new(self, motion, false);
+        let passage = Passage::new(self, motion, Derivative::None);
         let mut history = Vec::with_capacity(samples * self.points());
         for n in 0..samples {
             let theta = TAU * n as f64 / samples as f64;
@@ -225,7 +244,7 @@ impl FrictionLaw for StructuralDamper {
     }
 
     fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
-        let passage = Passage::new(self, motion, false);
+        let passage = Passage::new(self, motion, Derivative::None);
         let phase =
             |stretch: &Stretch| Phase { start: stretch.start, states: stretch.states.clone() };
         let mut phases: Vec<Phase> = passage.stretches.iter().map(phase).collect();
@@ -242,6 +261,18 @@ impl FrictionLaw for StructuralDamper {
         }
         phases.dedup_by(|next, last| next.states == last.states);
         phases
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        self.own_parameters()
+    }
+
+    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn FrictionLaw>, Error> {
+        Ok(Box::new(self.changed(index, value)?))
+    }
+
+    fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
+        self.slope(motion, index, out);
     }
 
     fn magnified(&self, factor: f64) -> Box<dyn FrictionLaw> {

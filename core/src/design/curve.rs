@@ -1,13 +1,13 @@
 //! The damper curve: peak amplitude and frequency along a parameter.
 
+use super::member::Member;
 use super::samples::Sample;
 use super::search::{first_look, Aim, Found, Search};
-use super::variation::{Member, Variation};
 use crate::balance::{
     ForcedBalance, HarmonicChoice, Linearised, Memory, PointStatus, Progress, Settings,
 };
 use crate::fourier::Measure;
-use crate::model::Model;
+use crate::model::{Model, Variation};
 use crate::timing::Profile;
 use crate::Error;
 use std::time::Instant;
@@ -165,7 +165,7 @@ impl<'a> Follower<'a> {
         if self.interrupted {
             return Ok(Peak::missing(value, PointStatus::NotComputed));
         }
-        let member = self.variation.member(self.model, self.settings.residual, value)?;
+        let member = Member::new(self.variation, self.model, self.settings.residual, value)?;
         if self.order == 0 {
             // The order of a first search is what the middle of the range asks for.
             let middle = 0.5 * (self.target.span.0 + self.target.span.1);

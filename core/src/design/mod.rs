@@ -3,17 +3,16 @@
 
 mod curve;
 mod interpolant;
+mod member;
 mod mistuned;
 mod optimum;
 mod patterns;
 mod samples;
 mod search;
 mod summit;
-mod variation;
 
 pub use curve::{peak_curve, Curve, Peak, Target};
 pub use mistuned::TunedDisk;
 pub use optimum::{optimum, Optimum};
 pub use patterns::{study, Pattern};
 pub use summit::{summits, Quest, Summit, Summits};
-pub use variation::{Common, Variation};

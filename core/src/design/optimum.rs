@@ -5,9 +5,9 @@
 //! on which side of a minimum a value lies.
 
 use super::curve::{Curve, Follower, Peak, Target};
-use super::variation::Variation;
+use super::member::objective;
 use crate::balance::{HarmonicChoice, PointStatus, Progress, Settings};
-use crate::model::Model;
+use crate::model::{Model, Variation};
 use crate::Error;
 use std::time::Instant;
 
@@ -114,7 +114,7 @@ fn try_value(follower: &mut Follower<'_>, value: f64, share: f64) -> Result<Opti
         }
         return Ok(None);
     }
-    let (height, slope) = follower.variation.objective(value, peak.amplitude, peak.slope);
+    let (height, slope) = objective(follower.variation, value, peak.amplitude, peak.slope);
     Ok(Some(Trial { peak, height, slope }))
 }
 

@@ -3,8 +3,10 @@
 mod gathered;
 mod self_excited;
 mod slipping;
+mod variation;
 
-pub use self_excited::{NegativeDamping, Scalar, SelfExcited};
+pub use self_excited::{NegativeDamping, SelfExcited};
+pub use variation::{Change, Common, Variation};
 
 use crate::contact::{FrictionLaw, Marched};
 use crate::structure::{

@@ -1,27 +1,11 @@
-//! A family of self-excited models: a structure with friction and the damping `C + r C_neg`, with r
-//! or a parameter of its contacts to be followed.
+//! A family of self-excited models: a structure with friction and the damping `C + r C_neg`, in r or
+//! in a parameter of its contacts.
 
-use super::{Body, Model};
+use super::{Body, Change, Common, Model, Variation};
 use crate::contact::FrictionLaw;
 use crate::structure::Destabilised;
 use crate::Error;
 use faer::{c64, Mat};
-
-/// What the limit cycles are followed in.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Scalar {
-    /// The factor r of the negative damping.
-    Ratio,
-    /// A parameter of the laws of some contacts, by its name.
-    Law {
-        /// Name of the parameter.
-        parameter: String,
-        /// Positions of the contacts.
-        contacts: Vec<usize>,
-        /// Whether they multiply their own value by the scalar, or take it.
-        factor: bool,
-    },
-}
 
 /// The negative damping of a model.
 #[derive(Debug, Clone)]
@@ -39,19 +23,20 @@ pub struct SelfExcited<'a> {
     negative: NegativeDamping,
     destabilised: Destabilised,
     ratio: f64,
-    scalar: Scalar,
+    variation: Variation,
+    changes: Vec<Change>,
 }
 
 impl<'a> SelfExcited<'a> {
-    /// A model with its negative damping; `ratio` is r where another scalar is followed.
+    /// A model with its negative damping; `ratio` is r where a parameter of contacts is varied.
     ///
     /// # Errors
     /// Laws that are not odd, a ring of sectors, a matrix that does not fit, a contact or
-    /// parameter that does not exist.
+    /// parameter that does not exist, a level: limit cycles bear no loads.
     pub fn new(
         model: &'a Model,
         negative: NegativeDamping,
-        scalar: Scalar,
+        variation: Variation,
         ratio: f64,
     ) -> Result<Self, Error> {
         if let Some(index) = model.laws().iter().position(|law| !law.is_odd()) {
@@ -84,13 +69,12 @@ impl<'a> SelfExcited<'a> {
                 return Err(Error::shape("negative_damping", "one matrix", "one per diameter"));
             }
         };
-        let family = Self { model, negative, destabilised, ratio, scalar };
-        if let Scalar::Law { contacts, parameter, .. } = &family.scalar {
-            for &contact in contacts {
-                family.parameter_of(contact, parameter)?;
-            }
+        if variation == Variation::Level {
+            let remedy = "limit cycles bear no loads; vary r or a parameter of contacts";
+            return Err(Error::value("level", ratio, remedy));
         }
-        Ok(family)
+        let changes = variation.changes(model)?;
+        Ok(Self { model, negative, destabilised, ratio, variation, changes })
     }
 
     /// The model as it is given.
@@ -99,10 +83,10 @@ impl<'a> SelfExcited<'a> {
         self.model
     }
 
-    /// What is followed.
+    /// What is varied.
     #[must_use]
-    pub fn scalar(&self) -> &Scalar {
-        &self.scalar
+    pub fn variation(&self) -> &Variation {
+        &self.variation
     }
 
     /// The compliance.
@@ -121,71 +105,40 @@ impl<'a> SelfExcited<'a> {
         }
     }
 
-    /// r at a value of the scalar.
+    /// r at a value of the number that is varied.
     #[must_use]
     pub fn ratio_at(&self, value: f64) -> f64 {
-        if self.scalar == Scalar::Ratio {
+        if self.variation == Variation::Ratio {
             value
         } else {
             self.ratio
         }
     }
 
-    /// The friction laws at a value of the scalar.
+    /// The friction laws at a value of the number that is varied.
     ///
     /// # Errors
     /// A value that a law refuses.
     pub fn laws_at(&self, value: f64) -> Result<Vec<Box<dyn FrictionLaw>>, Error> {
-        let mut laws: Vec<Box<dyn FrictionLaw>> =
-            self.model.laws().iter().map(|law| law.magnified(1.0)).collect();
-        if let Scalar::Law { parameter, contacts, factor } = &self.scalar {
-            for &contact in contacts {
-                let (index, own) = self.parameter_of(contact, parameter)?;
-                let new = if *factor { value * own } else { value };
-                laws[contact] = laws[contact].with_parameter(index, new)?;
-            }
-        }
-        Ok(laws)
+        self.variation.laws(self.model, value)
     }
 
-    /// What the scalar changes: positions of contacts and of their parameter, and how fast.
+    /// The parameters of the laws that it changes; none of the ratio.
     #[must_use]
-    pub fn rates(&self) -> Vec<(usize, usize, f64)> {
-        let Scalar::Law { parameter, contacts, factor } = &self.scalar else { return Vec::new() };
-        let rate = |&contact: &usize| {
-            let (index, own) = self.parameter_of(contact, parameter).ok()?;
-            Some((contact, index, if *factor { own } else { 1.0 }))
-        };
-        contacts.iter().filter_map(rate).collect()
+    pub fn changes(&self) -> &[Change] {
+        &self.changes
     }
 
-    /// Value of the scalar at which the model is as given; nothing where contacts differ.
+    /// Value at which the model is as given; nothing where contacts differ.
     #[must_use]
     pub fn own_value(&self) -> Option<f64> {
-        let Scalar::Law { parameter, contacts, factor } = &self.scalar else {
+        if self.variation == Variation::Ratio {
             return Some(self.ratio);
-        };
-        if *factor {
+        }
+        let first = self.changes.first()?;
+        if first.common == Common::Factor {
             return Some(1.0);
         }
-        let mut values = contacts
-            .iter()
-            .filter_map(|&contact| Some(self.parameter_of(contact, parameter).ok()?.1));
-        let first = values.next()?;
-        values.all(|value| value == first).then_some(first)
-    }
-
-    /// Position and value of a parameter of a contact.
-    fn parameter_of(&self, contact: usize, name: &str) -> Result<(usize, f64), Error> {
-        let Some(law) = self.model.laws().get(contact) else {
-            let remedy = format!("the model has {} contacts", self.model.laws().len());
-            return Err(Error::value("contacts", contact as f64, &remedy));
-        };
-        let parameters = law.parameters();
-        let found = parameters.iter().position(|(known, _)| *known == name);
-        found.map(|index| (index, parameters[index].1)).ok_or_else(|| {
-            let known: Vec<&str> = parameters.iter().map(|(known, _)| *known).collect();
-            Error::shape(&format!("contact {}: parameter", contact + 1), known.join(" or "), name)
-        })
+        self.changes.iter().all(|change| change.own == first.own).then_some(first.own)
     }
 }

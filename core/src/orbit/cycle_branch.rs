@@ -8,7 +8,7 @@ use super::stability::{judge, Judge, TRACING};
 use super::traced::{extreme, joined, value, Traced};
 use crate::balance::{CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress};
 use crate::fourier::SampleTable;
-use crate::model::{Model, NegativeDamping, Scalar, SelfExcited};
+use crate::model::{Model, NegativeDamping, SelfExcited, Variation};
 use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, End, Steps};
 use crate::timing::Profile;
 use crate::Error;
@@ -33,15 +33,15 @@ const ENDLESS: f64 = 1e5;
 pub fn limit_cycles(
     model: &Model,
     negative: &NegativeDamping,
-    scalar: &Scalar,
+    variation: &Variation,
     ratio: f64,
     settings: &CycleSettings,
     progress: &Progress<'_>,
 ) -> Result<LimitCycles, Error> {
     settings.check()?;
     let begin = Instant::now();
-    let given = SelfExcited::new(model, negative.clone(), Scalar::Ratio, ratio)?;
-    let family = SelfExcited::new(model, negative.clone(), scalar.clone(), ratio)?;
+    let given = SelfExcited::new(model, negative.clone(), Variation::Ratio, ratio)?;
+    let family = SelfExcited::new(model, negative.clone(), variation.clone(), ratio)?;
     let stopped = Cell::new(false);
     let share = Cell::new(0.0);
     let interrupted = || {
@@ -223,7 +223,7 @@ impl Finder<'_> {
 
     fn lowest_ratio(&self) -> f64 {
         let settings = self.settings;
-        if *self.family.scalar() == Scalar::Ratio {
+        if *self.family.variation() == Variation::Ratio {
             let values = settings.values.iter().flatten().copied();
             values.fold(settings.range.0, f64::min)
         } else {
@@ -263,7 +263,7 @@ impl Finder<'_> {
         let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]);
         let first = motion(&start);
         let endless = |z: &[f64]| motion(z) > ENDLESS * first;
-        if *self.family.scalar() == Scalar::Ratio {
+        if *self.family.variation() == Variation::Ratio {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);
             let bounds =
                 Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
@@ -292,6 +292,10 @@ impl Finder<'_> {
                 "have different values of what is followed; follow a factor on them",
             )
         })?;
+        if own.is_infinite() {
+            let remedy = "never slip; give the model a finite slip force, from which to follow it";
+            return Err(Error::value("contacts", own, remedy));
+        }
         let wanted = self.ratio;
         let reached = |z: &[f64]| value(z) >= wanted;
         let bounds = Bounds { range: (0.0, f64::INFINITY), most: settings.most, ends: &reached };

@@ -60,7 +60,7 @@ impl<'a> CycleOrbits<'a> {
     pub(super) fn member(&self, value: f64) -> Result<Member<'a>, Error> {
         let given = self.family.model();
         let damping = &self.damping + faer::Scale(self.family.ratio_at(value)) * &self.negative;
-        let own = if self.family.rates().is_empty() {
+        let own = if self.family.changes().is_empty() {
             None
         } else {
             Some(given.with_laws(self.family.laws_at(value)?)?)

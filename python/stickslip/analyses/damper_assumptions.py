@@ -69,7 +69,7 @@ def _common(settings: DamperSettings) -> str:
         return "The level multiplies every force, static ones included."
     if len(variation.contacts) < 2:
         return ""
-    names = listed(variation.contacts)
+    names = listed(variation.names)
     if variation.common == "factor":
         return f"Each of {names} has its own {variation.parameter} times the factor."
     return f"All of {names} have the same {variation.parameter}."

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import fields
 from typing import TYPE_CHECKING, Literal
 
@@ -24,6 +23,7 @@ from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS
 from stickslip.analyses.variation import (
     PARAMETERS,
     Common,
+    Contacts,
     Parameter,
     Variation,
     chosen_contacts,
@@ -31,7 +31,7 @@ from stickslip.analyses.variation import (
     resonance_range,
 )
 from stickslip.errors import Interrupted, ModelError
-from stickslip.model import ContactRef, Model
+from stickslip.model import Model
 from stickslip.results.arrays import Bool, Float, Measure
 from stickslip.results.damper_curve import DamperArrays, DamperCurve
 from stickslip.results.status import Status
@@ -56,7 +56,7 @@ def damper_curve(
     slip_force: ArrayLike | None = None,
     stiffness: ArrayLike | None = None,
     level: ArrayLike | None = None,
-    contacts: Iterable[ContactRef] | ContactRef | None = None,
+    contacts: Contacts | None = None,
     common: Common = "value",
     omega: Span | None = None,
     mode: int = 0,
@@ -84,11 +84,13 @@ def damper_curve(
         of the contacts, or factors on all forces. An infinite slip force never slips; an infinite
         stiffness is the limit of a rigid contact, and common values above 500 times the stiffness
         of the structure lie on the line in 1/k_d towards it.
-    contacts : iterable of int or str, optional
-        The contacts that take the value. Default: all; of slip forces those that are finite,
-        unless none is.
+    contacts : int, str, (contact, int), or iterable of these, optional
+        The contacts that take the value, or points of them as (contact, point). Of a contact with
+        several points the slip forces that are finite, unless none is. Default: all contacts; of
+        slip forces those that are finite, unless none is.
     common : {"value", "factor"}, optional
-        Whether the contacts all take the value, or multiply their own by it.
+        Whether they all take the value, or multiply their own by it. The stiffness of a
+        structure-like damper is a matrix, and takes a factor alone.
     omega : (float, float), optional
         Range of frequencies in which the peak is the highest point [rad/s]. Default: from 5 %
         below the free to 5 % above the highest stuck natural frequency of `mode`, over the lowest
@@ -122,11 +124,15 @@ def damper_curve(
     require_progress(progress)
     parameter, values = _one_of(slip_force=slip_force, stiffness=stiffness, level=level)
     if parameter == "stiffness" and common == "factor" and np.isinf(values).any():
-        raise ModelError('stiffness: an infinite factor has no meaning; use common="value"')
+        raise ModelError(
+            "stiffness: an infinite factor has no meaning; give finite ones, or values"
+        )
     settings = settings_for(
         model,
         Variation(
-            parameter=parameter, contacts=chosen_contacts(contacts, parameter, model), common=common
+            parameter=parameter,
+            contacts=chosen_contacts(contacts, parameter, model, common),
+            common=common,
         ),
         values,
         omega=omega,

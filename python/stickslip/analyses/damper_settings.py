@@ -73,9 +73,7 @@ class DamperSettings:
     def design(self, model: Model) -> Design:
         """Return the settings as the compiled core takes them."""
         return {
-            "parameter": self.variation.parameter,
-            "contacts": [model.contact_index(name) for name in self.variation.contacts],
-            "factor": self.variation.common == "factor",
+            "variation": self.variation.varied(model),
             "dof": model.structure.index(self.dof),
             "measure": self.measure,
             "omega": self.span,

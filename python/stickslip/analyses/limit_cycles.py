@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,10 +18,10 @@ from stickslip.analyses.arguments import (
 from stickslip.analyses.cycle_assumptions import cycle_assumptions
 from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSettings, wanted
 from stickslip.analyses.forced_response import MAX_HARMONICS
-from stickslip.analyses.variation import Common, Parameter, Variation, chosen_contacts
+from stickslip.analyses.variation import Common, Contacts, Parameter, Variation, chosen_contacts
 from stickslip.checks import brief, real_number
 from stickslip.errors import Interrupted, ModelError
-from stickslip.model import ContactRef, Model
+from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import negative_matrix
 from stickslip.results.cycle_arrays import CycleArrays
@@ -48,7 +47,7 @@ def limit_cycles(
     ratio: ArrayLike | Span | None = None,
     stiffness: ArrayLike | Span | None = None,
     slip_force: ArrayLike | Span | None = None,
-    contacts: Iterable[ContactRef] | ContactRef | None = None,
+    contacts: Contacts | None = None,
     common: Common = "value",
     harmonics: int | Literal["auto"] = 31,
     method: CycleMethod = "newton",
@@ -217,11 +216,9 @@ def solve(
     from stickslip import _core
 
     variation = settings.variation
-    names = () if variation is None else variation.contacts
+    ratio: _core.Varied = {"parameter": "ratio", "contacts": [], "factor": False}
     followed: _core.Followed = {
-        "parameter": None if variation is None else variation.parameter,
-        "contacts": [model.contact_index(name) for name in names],
-        "factor": variation is not None and variation.common == "factor",
+        "variation": ratio if variation is None else variation.varied(model),
         "ratio": settings.ratio,
         "values": None if settings.values is None else list(settings.values),
         "range": settings.span,
@@ -252,7 +249,7 @@ def _settings(
     model: Model,
     parameters: dict[Parameter, ArrayLike | Span | None],
     ratio: ArrayLike | Span | None,
-    contacts: Iterable[ContactRef] | ContactRef | None,
+    contacts: Contacts | None,
     common: Common,
     **rest: Any,
 ) -> CycleSettings:
@@ -267,7 +264,7 @@ def _settings(
         return CycleSettings(values=values, span=span, **rest)
     (name,) = given
     variation = Variation(
-        parameter=name, contacts=chosen_contacts(contacts, name, model), common=common
+        parameter=name, contacts=chosen_contacts(contacts, name, model, common), common=common
     )
     values, span = wanted(parameters[name], name, (inf, 0.0))
     if values is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from typing import Literal
 
@@ -13,15 +12,19 @@ from stickslip.analyses.damper_curve import curve_of, settings_for
 from stickslip.analyses.damper_settings import DamperSettings
 from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS, forced_response
 from stickslip.analyses.variation import (
+    Chosen,
     Common,
+    Contacts,
     Parameter,
     Variation,
     chosen_contacts,
     local_stiffness,
+    located,
 )
 from stickslip.checks import choice, real_number
 from stickslip.errors import Interrupted, ModelError
-from stickslip.model import ContactRef, Model
+from stickslip.model import Model
+from stickslip.model.contact import Contact
 from stickslip.results.arrays import Measure, amplitude_of
 from stickslip.results.damper_curve import DamperArrays, LeastPeak
 from stickslip.results.optimal_damper import OptimalDamper
@@ -47,7 +50,7 @@ def optimal_damper(
     dof: str,
     parameter: Parameter = "slip_force",
     bounds: tuple[float, float] | None = None,
-    contacts: Iterable[ContactRef] | ContactRef | None = None,
+    contacts: Contacts | None = None,
     common: Common = "value",
     omega: Span | None = None,
     mode: int = 0,
@@ -81,12 +84,10 @@ def optimal_damper(
         light damping that rises far above the load: the lower bound is then 0.03 times, and the
         upper one at most 10 000 times, what they bear at the low end of the range. For levels
         likewise; for stiffnesses: 1/100 to 250 times that of the structure.
-    contacts : iterable of int or str, optional
-        The contacts that are varied. Default: all; of slip forces those that are finite, unless
-        none is.
-    common : {"value", "factor"}, optional
-        Whether all contacts take one common value, or multiply their own by one common factor.
-        Different values for each contact are not looked for.
+    contacts, common
+        Which contacts or points are varied, and whether they all take one common value or multiply
+        their own by one common factor; see `stickslip.damper_curve`. Different values for each
+        are not looked for.
     omega, mode, measure
         See `stickslip.damper_curve`.
     harmonics, tolerance, residual, progress, max_harmonics, max_iterations
@@ -110,7 +111,9 @@ def optimal_damper(
     require_progress(progress)
     choice(parameter, "parameter", ("slip_force", "stiffness", "level"))
     variation = Variation(
-        parameter=parameter, contacts=chosen_contacts(contacts, parameter, model), common=common
+        parameter=parameter,
+        contacts=chosen_contacts(contacts, parameter, model, common),
+        common=common,
     )
     given = None if bounds is None else _checked(bounds)
     values = np.array(given if given is not None else (1.0,))
@@ -189,8 +192,7 @@ def _default_bounds(
     if settings is None:
         stiffness = local_stiffness(model, variation.contacts)
         if variation.common == "factor":
-            own = [model.contacts[model.contact_index(name)] for name in variation.contacts]
-            stiffness /= max(contact.parameters()["stiffness"] for contact in own)
+            stiffness = _factor(model, variation.contacts)
         return STIFFNESSES[0] * stiffness, STIFFNESSES[1] * stiffness
     load, ratio = _stuck_forces(model, variation, settings)
     if not ratio > 0.0:
@@ -204,6 +206,38 @@ def _default_bounds(
     return (1.0 / high, 1.0 / low) if variation.parameter == "level" else (low, high)
 
 
+def _factor(model: Model, contacts: tuple[Chosen, ...]) -> float:
+    """Return the factor that makes contacts as stiff as the structure."""
+    factors, springs = [], []
+    for ref in contacts:
+        contact = model.contacts[located(model, ref)[0]]
+        if "stiffness" in contact.factors:
+            factors.append(_matrix_factor(model, ref, contact))
+        else:
+            springs.append(contact.adjustable()["stiffness"][0])
+    stiffest = max(springs, default=0.0)
+    if stiffest > 0.0:
+        factors.append(local_stiffness(model, contacts) / stiffest)
+    if not factors or not 0.0 < max(factors) < np.inf:
+        raise ModelError("bounds: no factor on a stiffness of 0 changes it; vary its value")
+    return max(factors)
+
+
+def _matrix_factor(model: Model, ref: Chosen, contact: Contact) -> float:
+    """Return the inverse of the largest product of a stiffness matrix with a flexibility."""
+    held = local_stiffness(model, [ref]) / max(
+        float(contact.stuck_stiffness.diagonal().max()), 1e-300
+    )
+    rows = contact.rows(model.structure)
+    try:
+        flexibility = rows @ np.linalg.solve(model.structure.stiffness, rows.T)
+    except np.linalg.LinAlgError:
+        return held
+    product = float(np.linalg.eigvals(contact.stuck_stiffness @ flexibility).real.max())
+    # Of a structure that is nearly free, rounding decides.
+    return 1.0 / product if 0.0 < product * held < 1e10 else held
+
+
 def _stuck_forces(
     model: Model, variation: Variation, settings: DamperSettings
 ) -> tuple[float, float]:
@@ -211,18 +245,18 @@ def _stuck_forces(
 
     Over its own slip force, if that counts.
     """
-    varied = variation.contacts or chosen_contacts(None, "slip_force", model)
+    varied = variation.contacts or chosen_contacts(None, "slip_force", model, "value")
     stuck = Variation(parameter="slip_force", contacts=varied).apply(model, np.inf)
     highest = max((force.harmonic for force in model.forces), default=1)
     response = forced_response(stuck, settings.span, max(highest, 1), observe=[settings.dof])
     load = largest = 0.0
-    for name in varied:
-        position = model.contact_index(name)
-        column = response.arrays.contact_force[:, :, response._columns(position, 0)][:, :, 0]
+    for ref in varied:
+        position, point = model.point(ref)
+        column = response.arrays.contact_force[:, :, response._columns(position, point)][:, :, 0]
         forces = amplitude_of(np.ascontiguousarray(column), "half_range")
         start = forces[np.isfinite(forces)][:1].sum()
         relative = variation.common == "factor" or variation.parameter == "level"
-        own = model.contacts[position].parameters()["slip_force"]
+        own = model.contacts[position].limits[point]
         if relative and not 0.0 < own < np.inf:
             continue
         scale = own if relative else 1.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from math import inf
 from typing import Literal
 
@@ -13,9 +12,9 @@ from stickslip.analyses.arguments import Progress, require_model, require_progre
 from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSettings, wanted
 from stickslip.analyses.forced_response import MAX_HARMONICS
 from stickslip.analyses.limit_cycles import MAX_POINTS, negative_damping_of, solve
-from stickslip.analyses.variation import Common, Parameter, Variation, chosen_contacts
+from stickslip.analyses.variation import Common, Contacts, Parameter, Variation, chosen_contacts
 from stickslip.errors import Interrupted, ModelError
-from stickslip.model import ContactRef, Model
+from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.stability_map import MapArrays, MapSettings, StabilityMap
 
@@ -28,7 +27,7 @@ def stability_map(
     *,
     stiffness: ArrayLike | None = None,
     slip_force: ArrayLike | None = None,
-    contacts: Iterable[ContactRef] | ContactRef | None = None,
+    contacts: Contacts | None = None,
     common: Common = "value",
     mode: int = 0,
     harmonics: int | Literal["auto"] = 31,
@@ -87,7 +86,7 @@ def stability_map(
     values, _ = wanted(np.atleast_1d(np.asarray(given[name])), name, (inf, 0.0))
     assert values is not None
     variation = Variation(
-        parameter=name, contacts=chosen_contacts(contacts, name, model), common=common
+        parameter=name, contacts=chosen_contacts(contacts, name, model, common), common=common
     )
     cycles = CycleSettings(
         mode=mode,

@@ -4,29 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
 
 from stickslip.analyses.arguments import Span
 from stickslip.checks import brief, choice, listed, unknown, whole_number
 from stickslip.errors import ModelError
-from stickslip.model import ContactRef, Model, natural_frequencies
+from stickslip.model import Model, PointRef, natural_frequencies
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import Float
 
+if TYPE_CHECKING:
+    from stickslip import _core
+
 __all__ = [
     "PARAMETERS",
+    "Chosen",
     "Common",
+    "Contacts",
     "Parameter",
     "Variation",
     "chosen_contacts",
     "local_stiffness",
+    "located",
     "resonance_range",
 ]
 
 Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
 Common: TypeAlias = Literal["value", "factor"]
+
+Contacts: TypeAlias = Iterable[PointRef] | PointRef
+"""Contacts or points of contacts, or one of them."""
+
+Chosen: TypeAlias = str | tuple[str, int]
+"""A contact by its name, or one of its points."""
 
 PARAMETERS: tuple[Parameter, ...] = get_args(Parameter)
 """What can be varied: a parameter of the contacts, or a factor on all forces."""
@@ -43,8 +55,9 @@ class Variation:
     ----------
     parameter : {"slip_force", "stiffness", "level"}
         A parameter of contacts, or a factor on all forces.
-    contacts : tuple of str
-        Names of the contacts whose parameter it is; none for a level.
+    contacts : tuple of str or (str, int)
+        Names of the contacts whose parameter it is, or points of them as (name, point); none for a
+        level.
     common : {"value", "factor"}
         Whether they all take the value, or multiply their own by it.
 
@@ -55,13 +68,38 @@ class Variation:
     """
 
     parameter: Parameter
-    contacts: tuple[str, ...] = ()
+    contacts: tuple[Chosen, ...] = ()
     common: Common = "value"
 
     def __post_init__(self) -> None:
         choice(self.parameter, "parameter", PARAMETERS)
         choice(self.common, "common", get_args(Common))
-        object.__setattr__(self, "contacts", tuple(self.contacts))
+        # Files hold lists.
+        chosen = (
+            ref if isinstance(ref, str) else (str(ref[0]), int(ref[1])) for ref in self.contacts
+        )
+        object.__setattr__(self, "contacts", tuple(chosen))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is varied in words: names of contacts, points as "structural[0]"."""
+        return tuple(
+            ref if isinstance(ref, str) else f"{ref[0]}[{ref[1]}]" for ref in self.contacts
+        )
+
+    def varied(self, model: Model) -> _core.Varied:
+        """Return the variation as the compiled core takes it.
+
+        Raises
+        ------
+        ModelError
+            If the model lacks one of the contacts.
+        """
+        return {
+            "parameter": self.parameter,
+            "contacts": [located(model, ref) for ref in self.contacts],
+            "factor": self.common == "factor",
+        }
 
     @property
     def unit(self) -> str:
@@ -94,67 +132,142 @@ class Variation:
             return model.scaled(force=value)
 
         def changed(contact: Contact) -> Contact:
-            if contact.name not in self.contacts:
+            chosen = [ref for ref in self.contacts if _name(ref) == contact.name]
+            if not chosen:
                 return contact
-            own = contact.parameters()
-            new = value * own[self.parameter] if self.common == "factor" else value
-            parameters = {**own, self.parameter: new}
-            return type(contact).from_parameters(contact.dofs, parameters, contact.name)
+            values = list(contact.adjustable()[self.parameter])
+            for ref in chosen:
+                for point in range(len(values)) if isinstance(ref, str) else [ref[1]]:
+                    values[point] = self._at(value, values[point])
+            return contact.adjusted(self.parameter, values)
 
         return model.replaced(contacts=[changed(contact) for contact in model.contacts])
 
+    def _at(self, value: float, own: float) -> float:
+        """Return what becomes of a value; what never slips does so under every factor."""
+        if self.common == "value":
+            return value
+        return own if np.isinf(own) else value * own
+
+
+def _name(ref: Chosen) -> str:
+    return ref if isinstance(ref, str) else ref[0]
+
+
+def located(model: Model, ref: Chosen) -> tuple[int, int | None]:
+    """Return the position of a contact, and of one of its points if one is meant.
+
+    Raises
+    ------
+    ModelError
+        If the model lacks it.
+    """
+    return (model.contact_index(ref), None) if isinstance(ref, str) else model.point(ref)
+
 
 def chosen_contacts(
-    contacts: Iterable[ContactRef] | ContactRef | None, parameter: Parameter, model: Model
-) -> tuple[str, ...]:
-    """Return the names of the contacts whose parameter is varied.
+    contacts: Contacts | None, parameter: Parameter, model: Model, common: Common
+) -> tuple[Chosen, ...]:
+    """Return the contacts whose parameter is varied, by name, or points of them.
 
     Parameters
     ----------
-    contacts : iterable of int or str, or None
-        The contacts. Default: all that have the parameter; of slip forces those that are finite,
-        unless none is.
+    contacts : int, str, (contact, int), or iterable of these, or None
+        Contacts, or points of them; ``("structural", 0)`` alone is a point. Of a contact with
+        several points the slip forces that are finite, unless none is. Default: all contacts that
+        have the parameter; of slip forces those that are finite, unless none is.
     parameter : {"slip_force", "stiffness", "level"}
         What is varied.
     model : Model
         Whose contacts they are.
+    common : {"value", "factor"}
+        Whether they take a value, which not every parameter can, or a factor.
 
     Returns
     -------
-    tuple of str
+    tuple of str or (str, int)
         None for a level.
 
     Raises
     ------
     ModelError
-        If there is no such contact, or one without the parameter; if there is none at all.
+        If there is no such contact or point, or one without the parameter, or whose parameter takes
+        no value; if there is none at all.
     """
     if parameter == "level":
         if contacts is not None:
             raise ModelError("contacts: a level is no parameter of contacts; leave them out")
         return ()
     if contacts is None:
-        able = [one for one in model.contacts if parameter in one.parameters()]
-        slips = [one for one in able if one.parameters().get("slip_force", 0.0) < np.inf]
-        chosen = slips if parameter == "slip_force" and slips else able
-        if not chosen:
-            raise ModelError(f"contacts: none of the model has a {parameter}; add one to the model")
-        return tuple(str(one.name) for one in chosen)
-    refs = [contacts] if isinstance(contacts, str | int) else contacts
-    if not isinstance(refs, Iterable):
+        return _all_contacts(parameter, model, common)
+    given: list[PointRef]
+    if isinstance(contacts, str | int) or _is_point(contacts):
+        given = [contacts]  # type: ignore[list-item]
+    elif isinstance(contacts, Iterable):
+        given = list(contacts)
+    else:
         raise ModelError(f"contacts: {brief(contacts)} is not a list of contacts")
-    positions = [model.contact_index(ref) for ref in refs]
-    if not positions:
+    if not given:
         raise ModelError("contacts: empty; name at least one, or leave it out for all")
-    for position in positions:
-        known = model.contacts[position].parameters()
-        if parameter not in known:
-            name = model.contact_names[position]
-            raise ModelError(f"contact {name!r}: {unknown('parameter', parameter, known)}")
-    if len(set(positions)) < len(positions):
-        names = [model.contact_names[position] for position in positions]
+    chosen = [one for ref in given for one in _chosen(ref, parameter, model, common)]
+    if len(set(chosen)) < len(chosen):
+        names = Variation(parameter=parameter, contacts=tuple(chosen)).names
         raise ModelError(f"contacts: one is given more than once in {listed(names)}")
-    return tuple(model.contact_names[position] for position in positions)
+    return tuple(chosen)
+
+
+def _is_point(contacts: object) -> bool:
+    """Return whether a tuple is one point and no list of contacts."""
+    return isinstance(contacts, tuple) and [type(part) for part in contacts] == [str, int]
+
+
+def _all_contacts(parameter: Parameter, model: Model, common: Common) -> tuple[Chosen, ...]:
+    """Return the contacts that have the parameter; of slip forces those that are finite, if any."""
+    able = [one for one in model.contacts if parameter in one.adjustable()]
+    if not able:
+        raise ModelError(f"contacts: none of the model has a {parameter}; add one to the model")
+    taking = [one for one in able if common == "factor" or parameter not in one.factors]
+    if not taking:
+        raise _without_value(str(able[0].name), parameter)
+    slips = [one for one in taking if min(one.adjustable()[parameter]) < np.inf]
+    chosen = slips if parameter == "slip_force" and slips else taking
+    return tuple(ref for one in chosen for ref in _points(one, parameter))
+
+
+def _chosen(
+    ref: PointRef, parameter: Parameter, model: Model, common: Common
+) -> tuple[Chosen, ...]:
+    """Return the contact that is meant, or the points of it that have a value each."""
+    position, point = model.point(ref) if isinstance(ref, tuple | list) else (ref, None)
+    contact = model.contacts[model.contact_index(position)]
+    known, name = contact.adjustable(), str(contact.name)
+    if parameter not in known:
+        raise ModelError(f"contact {name!r}: {unknown('parameter', parameter, known)}")
+    if parameter in contact.factors and common == "value":
+        raise _without_value(name, parameter)
+    if point is None:
+        return _points(contact, parameter)
+    if len(known[parameter]) == contact.points:
+        return (name,) if contact.points == 1 else ((name, point),)
+    raise ModelError(
+        f"contact {name!r}: its {parameter} is that of the whole contact; name it without a point"
+    )
+
+
+def _points(contact: Contact, parameter: Parameter) -> tuple[Chosen, ...]:
+    """Return a contact, or its points if each has a value; those that are finite, if any."""
+    own, name = contact.adjustable()[parameter], str(contact.name)
+    if len(own) == 1:
+        return (name,)
+    finite = [point for point, value in enumerate(own) if np.isfinite(value)]
+    return tuple((name, point) for point in finite or range(len(own)))
+
+
+def _without_value(name: str, parameter: Parameter) -> ModelError:
+    return ModelError(
+        f'contact {name!r}: its {parameter} is a matrix, which takes no value; common="factor" '
+        "multiplies it"
+    )
 
 
 def resonance_range(model: Model, variation: Variation, mode: int, values: Float) -> Span:
@@ -208,15 +321,15 @@ def resonance_range(model: Model, variation: Variation, mode: int, values: Float
     return low, high
 
 
-def local_stiffness(model: Model, contacts: Iterable[str]) -> float:
+def local_stiffness(model: Model, contacts: Iterable[Chosen]) -> float:
     """Return the largest stiffness that the structure itself opposes to a force at a contact.
 
     Parameters
     ----------
     model : Model
         The model.
-    contacts : iterable of str
-        Names of contacts.
+    contacts : iterable of str or (str, int)
+        Names of contacts, or points of them.
 
     Returns
     -------
@@ -226,7 +339,7 @@ def local_stiffness(model: Model, contacts: Iterable[str]) -> float:
     """
     structure = model.structure
     rows = np.concatenate(
-        [model.contacts[model.contact_index(name)].rows(structure) for name in contacts]
+        [model.contacts[located(model, ref)[0]].rows(structure) for ref in contacts]
     )
     held: Float = np.einsum("ij,jk,ik->i", rows, structure.stiffness, rows)
     try:

@@ -42,7 +42,7 @@ def family(disk: BladedDisk) -> _core.TunedDisk:
     constant, proportional, root = _damping(sector)
     places = [disk.contact_rows(contact) for contact in disk.contacts]
     contacts = [
-        (contact.law, *rows, contact.parameters())
+        (contact.law, *rows, contact.law_parameters())
         for contact, rows in zip(disk.contacts, places, strict=True)
     ]
     loads = disk.mistuned(0.0).ring.loads

@@ -85,8 +85,8 @@ def _frequencies(model: Model) -> Table:
     slipping = [
         (contact, point)
         for contact, one in enumerate(model.contacts)
-        if one.parameters().get("slip_force") != inf
-        for point in range(one.points)
+        for point, limit in enumerate(one.limits)
+        if limit < inf
     ]
     stuck, free = natural_frequencies(model), natural_frequencies(model, slipping)
     table = new_table("natural frequencies")

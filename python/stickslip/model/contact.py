@@ -34,6 +34,9 @@ class Contact(ABC):
     law: ClassVar[str]
     """Name of the law, as the compiled core knows it."""
 
+    factors: ClassVar[frozenset[str]] = frozenset()
+    """Adjustable parameters that are factors on what the contact was given: they take no value."""
+
     name: str | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -78,6 +81,34 @@ class Contact(ABC):
     @abstractmethod
     def parameters(self) -> dict[str, float]:
         """Return the parameters that are single numbers, by name, in SI units."""
+
+    def adjustable(self) -> dict[str, tuple[float, ...]]:
+        """Return the parameters that an analysis can vary, by name, in SI units.
+
+        Returns
+        -------
+        dict of str to tuple of float
+            The value of each contact point, or one of the whole contact. See `factors`.
+        """
+        return {name: (value,) for name, value in self.parameters().items()}
+
+    def adjusted(self, parameter: str, values: Sequence[float]) -> Self:
+        """Return the contact with other values of one of its adjustable parameters.
+
+        Parameters
+        ----------
+        parameter : str
+            Its name.
+        values : sequence of float
+            As many as `adjustable` has.
+
+        Raises
+        ------
+        ModelError
+            If the law refuses a value.
+        """
+        (value,) = values
+        return self.from_parameters(self.dofs, {**self.parameters(), parameter: value}, self.name)
 
     @property
     def stuck_stiffness(self) -> Matrix:

@@ -70,6 +70,7 @@ class StructuralDamper(Contact):
     """
 
     law: ClassVar[str] = "structural"
+    factors: ClassVar[frozenset[str]] = frozenset({"stiffness"})
 
     stiffness: Matrix
     slip_forces: tuple[float, ...]
@@ -211,6 +212,27 @@ class StructuralDamper(Contact):
     def parameters(self) -> dict[str, float]:
         """Return the parameters that are single numbers: none."""
         return {}
+
+    def adjustable(self) -> dict[str, tuple[float, ...]]:
+        """Return `stiffness`, a factor on D, and `slip_force` of each contact [N]."""
+        return {"stiffness": (1.0,), "slip_force": self.slip_forces}
+
+    def adjusted(self, parameter: str, values: Sequence[float]) -> Self:
+        """Return the damper with D times a factor, or with other slip limits.
+
+        Parameters, returns and raises are those of `Contact.adjusted`.
+        """
+        if parameter == "slip_force":
+            return self._like(self._dofs, values, self.name)
+        factor = real_number(values[0], "structural contact: factor on the stiffness")
+        if factor < 0.0:
+            raise ModelError(
+                f"structural contact: factor {factor:g} on the stiffness is negative; give >= 0"
+            )
+        stiffness = factor * self.stiffness
+        return type(self)(
+            self._dofs, stiffness=stiffness, slip_forces=self.slip_forces, name=self.name
+        )
 
     def law_parameters(self) -> dict[str, float | list[float]]:
         """Return `stiffness`, row by row [N/m], and `slip_forces` [N]."""

@@ -220,10 +220,11 @@ def _traits(result: ForcedResponse) -> dict[str, str]:
     traits = {"P": f"P = {force_level(result.model):.5g} N"}
     for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
         of = f" ({name})" if len(result.model.contacts) > 1 else ""
-        parameters = contact.parameters()
+        parameters = contact.adjustable()
         for key, symbol, unit in (("slip_force", "F_d", "N"), ("stiffness", "k_d", "N/m")):
-            if key in parameters:
-                traits[f"{symbol}{of}"] = f"${symbol}$ = {parameters[key]:.4g} {unit}{of}"
+            if key in parameters and key not in contact.factors:
+                values = ", ".join(f"{value:.4g}" for value in parameters[key])
+                traits[f"{symbol}{of}"] = f"${symbol}$ = {values} {unit}{of}"
     exact = isinstance(result, ExactResponse)
     traits["H"] = "exact" if exact else f"H = {result.settings.harmonics}"
     return traits

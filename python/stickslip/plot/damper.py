@@ -198,7 +198,7 @@ def _abscissa(curve: DamperCurve, x: Float, level: float, *, per_force: bool) ->
         return x, f"factor on the {curve.parameter.replace('_', ' ')}"
     if curve.parameter != "level":
         return x, f"{_SYMBOLS[curve.parameter]} [{variation.unit}]"
-    limits = {contact.parameters().get("slip_force", 0.0) for contact in curve.model.contacts}
+    limits = {limit for contact in curve.model.contacts for limit in contact.limits}
     limits = {limit for limit in limits if 0.0 < limit < np.inf}
     if per_force and len(limits) == 1:
         return x * level / limits.pop(), "force over slip force $P/F_d$"

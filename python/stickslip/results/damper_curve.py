@@ -280,8 +280,7 @@ class DamperCurve(Result):
         values = settings_of(dataset)
         values |= {"variation": Variation(**values["variation"]), "span": tuple(values["span"])}
         settings = DamperSettings(**values)
-        for name in settings.variation.contacts:
-            model.contact_index(name)
+        settings.variation.varied(model)
         arrays = DamperArrays(value=dataset["value"].values, **read(_VARIABLES, dataset))
         if arrays.status.max(initial=0) >= len(Status):
             raise ValueError(f"status {arrays.status.max()} is unknown")

@@ -89,8 +89,8 @@ class OptimalDamper(Result):
         """
         if self.parameter != "slip_force":
             raise ModelError(f"slip_force: the {self.parameter} was varied; see value")
-        contacts = [one for one in self.model.contacts if one.name in self._contacts]
-        forces = {one.parameters()["slip_force"] for one in contacts}
+        points = [self.model.point(ref) for ref in self.curve.settings.variation.contacts]
+        forces = {self.model.contacts[contact].limits[point] for contact, point in points}
         if len(forces) > 1:
             raise ModelError("slip_force: the contacts have several; see model.contacts")
         return forces.pop()
@@ -109,10 +109,6 @@ class OptimalDamper(Result):
     def evaluations(self) -> int:
         """Number of peaks computed; `curve.counters` tells of how many solutions each."""
         return int(self.curve.values.size)
-
-    @property
-    def _contacts(self) -> tuple[str, ...]:
-        return self.curve.settings.variation.contacts
 
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, TypeAlias, get_args, overload
 
 import numpy as np
 
-from stickslip.checks import choice, text, unknown
+from stickslip.checks import choice, listed, text, unknown
 from stickslip.errors import ModelError
-from stickslip.model import ContactRef, Model
+from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
 
@@ -20,7 +20,10 @@ __all__ = ["COMMON", "Sensitivities"]
 COMMON = {"level": "m", "omega": "m s/rad"}
 """What belongs to no contact: a factor on all forces, and the excitation frequency."""
 
-Cause: TypeAlias = "str | tuple[int, str]"
+Cause: TypeAlias = "str | tuple[int, int | None, str]"
+
+Place: TypeAlias = "str | tuple[str, int]"
+"""A contact by its name, or one of its points."""
 
 
 class Sensitivities(ContactMotion):
@@ -41,16 +44,16 @@ class Sensitivities(ContactMotion):
     def sensitivity(
         self,
         dof: str,
-        contact: ContactRef | None = None,
+        contact: PointRef | None = None,
         parameter: None = None,
         measure: Measure = "half_range",
-    ) -> dict[tuple[str, str], Float]: ...
+    ) -> dict[tuple[Place, str], Float]: ...
 
     @overload
     def sensitivity(
         self,
         dof: str,
-        contact: ContactRef | None = None,
+        contact: PointRef | None = None,
         *,
         parameter: str,
         measure: Measure = "half_range",
@@ -60,7 +63,7 @@ class Sensitivities(ContactMotion):
     def sensitivity(
         self,
         dof: str,
-        contact: ContactRef | None,
+        contact: PointRef | None,
         parameter: str,
         measure: Measure = "half_range",
     ) -> Float: ...
@@ -68,10 +71,10 @@ class Sensitivities(ContactMotion):
     def sensitivity(
         self,
         dof: str,
-        contact: ContactRef | None = None,
+        contact: PointRef | None = None,
         parameter: str | None = None,
         measure: Measure = "half_range",
-    ) -> Float | dict[tuple[str, str], Float]:
+    ) -> Float | dict[tuple[Place, str], Float]:
         """Return the derivative of an amplitude in parameters of the contacts, or in the load.
 
         Where two turning points are equally high, or a contact is just about to slip, it is that
@@ -81,25 +84,29 @@ class Sensitivities(ContactMotion):
         ----------
         dof : str
             A degree of freedom of the structure; it need not have been observed.
-        contact : int or str, optional
-            A contact. Default: all.
+        contact : int, str or (int or str, int), optional
+            A contact, or one of its points as (contact, point). Default: all.
         parameter : str, optional
-            A parameter of the contact's law ("slip_force", "stiffness"). Without a contact: that
-            of all contacts, changed together by the same amount. Also "level", a factor on all
-            forces, at its value 1, and "omega", the frequency. Default: all parameters.
+            A parameter of the contact's law ("slip_force", "stiffness"). Of several points, and
+            without a contact of all contacts: changed together by the same amount. Also "level", a
+            factor on all forces, at its value 1, and "omega", the frequency. Default: all
+            parameters.
         measure : {"half_range", "max", "fundamental"}, optional
             See `ForcedResponse.amplitude`.
 
         Returns
         -------
         ndarray of float64, shape (n,), or dict
-            Amplitude per parameter, [m/N] for a slip force. Without a parameter: one array for
-            every (contact name, parameter). Not-a-number at points that were not solved.
+            Amplitude per parameter, [m/N] for a slip force, [m] for the stiffness of a
+            structure-like damper, a factor on its matrix. Without a parameter: one array for
+            every (contact name, parameter), of contacts with several points
+            ((contact name, point), parameter). Not-a-number at points that were not solved.
 
         Raises
         ------
         ModelError
-            If there is no such degree of freedom, contact, parameter or measure.
+            If there is no such degree of freedom, contact, point, parameter or measure; if a
+            parameter of all contacts is a factor on some and a value of others.
         """
         causes = _causes(self.model, contact, parameter)
         slopes = self._slopes(dof, list(causes.values()), measure)
@@ -112,16 +119,16 @@ class Sensitivities(ContactMotion):
     def peak_sensitivity(
         self,
         dof: str,
-        contact: ContactRef | None = None,
+        contact: PointRef | None = None,
         parameter: None = None,
         measure: Measure = "half_range",
-    ) -> dict[tuple[str, str], float]: ...
+    ) -> dict[tuple[Place, str], float]: ...
 
     @overload
     def peak_sensitivity(
         self,
         dof: str,
-        contact: ContactRef | None = None,
+        contact: PointRef | None = None,
         *,
         parameter: str,
         measure: Measure = "half_range",
@@ -131,7 +138,7 @@ class Sensitivities(ContactMotion):
     def peak_sensitivity(
         self,
         dof: str,
-        contact: ContactRef | None,
+        contact: PointRef | None,
         parameter: str,
         measure: Measure = "half_range",
     ) -> float: ...
@@ -139,10 +146,10 @@ class Sensitivities(ContactMotion):
     def peak_sensitivity(
         self,
         dof: str,
-        contact: ContactRef | None = None,
+        contact: PointRef | None = None,
         parameter: str | None = None,
         measure: Measure = "half_range",
-    ) -> float | dict[tuple[str, str], float]:
+    ) -> float | dict[tuple[Place, str], float]:
         """Return the derivative of the height of the peak.
 
         The frequency of the peak moves with the parameter, but the amplitude is stationary in it:
@@ -230,27 +237,51 @@ class Sensitivities(ContactMotion):
 
 
 def _causes(
-    model: Model, contact: ContactRef | None, parameter: str | None
-) -> dict[tuple[str, str], Cause]:
-    """Return what is differentiated by, by (contact name, parameter)."""
+    model: Model, contact: PointRef | None, parameter: str | None
+) -> dict[tuple[Place, str], Cause]:
+    """Return what is differentiated by, by (contact or point, parameter)."""
     if parameter is not None:
         text(parameter, "parameter")
     if parameter in COMMON:
         if contact is not None:
             raise ModelError(f"parameter: {parameter!r} belongs to no contact; leave contact out")
         return {("", parameter): parameter}
-    positions = range(len(model.contacts)) if contact is None else [model.contact_index(contact)]
-    known = {
-        (model.contact_names[position], name): (position, name)
-        for position in positions
-        for name in model.contacts[position].parameters()
-    }
+    known = _known(model, contact)
     if parameter is None:
-        return dict(known)
-    causes: dict[tuple[str, str], Cause] = {
-        key: cause for key, cause in known.items() if key[1] == parameter
-    }
+        return known
+    causes = {key: cause for key, cause in known.items() if key[1] == parameter}
     if not causes:
         names = [*dict.fromkeys(name for _, name in known), *(COMMON if contact is None else ())]
         raise ModelError(unknown("parameter", parameter, names))
+    owners = {name if isinstance(name, str) else name[0] for name, _ in causes}
+    factors = {
+        one for one in owners if parameter in model.contacts[model.contact_index(one)].factors
+    }
+    if factors and factors != owners:
+        raise ModelError(
+            f"parameter: {parameter!r} is a factor on a matrix in {listed(sorted(factors))} and a "
+            f"value in {listed(sorted(owners - factors))}; name one contact"
+        )
     return causes
+
+
+def _known(model: Model, contact: PointRef | None) -> dict[tuple[Place, str], Cause]:
+    """Return all that a contact, one of its points, or the model can be differentiated by."""
+    only: int | None = None
+    if isinstance(contact, tuple | list):
+        position, only = model.point(contact)
+        positions = [position]
+    elif contact is None:
+        positions = list(range(len(model.contacts)))
+    else:
+        positions = [model.contact_index(contact)]
+    known: dict[tuple[Place, str], Cause] = {}
+    for position in positions:
+        owner, name = model.contacts[position], model.contact_names[position]
+        for parameter, values in owner.adjustable().items():
+            if owner.points == 1 or (len(values) == 1 and only is None):
+                known[name, parameter] = (position, None, parameter)
+            elif len(values) > 1:
+                for point in range(len(values)) if only is None else [only]:
+                    known[(name, point), parameter] = (position, point, parameter)
+    return known

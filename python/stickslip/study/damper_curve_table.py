@@ -16,13 +16,13 @@ from stickslip.results.arrays import Float
 from stickslip.study.analysis_entries import ResidualEntry
 from stickslip.study.entries import (
     HERE,
+    Contacts,
     Count,
     Dof,
     Factor,
     Omega,
     SlipForce,
     Table,
-    Text,
     Tolerance,
     number_or,
 )
@@ -130,9 +130,9 @@ class DamperCurveTable(Table):
         title="level",
         description="Factors on every force: a list or a range.",
     )
-    contacts: Annotated[tuple[Text, ...], Strict(False), Field(min_length=1)] | None = Field(
+    contacts: Contacts | None = Field(
         default=None,
-        description="Names of the contacts that take the value; left out: all.",
+        description="Names of the contacts that take the value, or [name, point]; left out: all.",
     )
     common: Literal["value", "factor"] = Field(
         default="value",

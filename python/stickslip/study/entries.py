@@ -11,6 +11,8 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
+    PlainValidator,
+    Strict,
     WithJsonSchema,
     model_validator,
 )
@@ -23,6 +25,7 @@ from stickslip.units import quantity
 __all__ = [
     "HERE",
     "Angle",
+    "Contacts",
     "Count",
     "Dof",
     "Factor",
@@ -66,6 +69,17 @@ def _dof(value: object) -> object:
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
+def _contact(value: object) -> str | tuple[str, int]:
+    if isinstance(value, str) and value:
+        return value
+    if isinstance(value, list | tuple) and [type(part) for part in value] == [str, int]:
+        return value[0], value[1]
+    raise ModelError(
+        f"{HERE} = {brief(value)}; give the name of a contact, or [name, point] for one of its "
+        "points, counted from 0"
+    )
+
+
 Newtons = Annotated[float, _quantity("N"), _quantity_schema("20.3 N", "1.2 kN")]
 SlipForce = Annotated[
     float, _quantity("N", "not be negative", finite=False), _quantity_schema("246 N", "1.2 kN")
@@ -92,6 +106,12 @@ Dof = Annotated[
     str, BeforeValidator(_dof), WithJsonSchema({"type": ["string", "integer"], "examples": ["tip"]})
 ]
 Text = Annotated[str, Field(min_length=1)]
+_Contact = Annotated[
+    str | tuple[str, int],
+    PlainValidator(_contact),
+    WithJsonSchema({"type": ["string", "array"], "examples": ["blade", ["structural", 0]]}),
+]
+Contacts = Annotated[tuple[_Contact, ...], Strict(False), Field(min_length=1)]
 Count = Annotated[int, Field(ge=1, le=MAX_COUNT)]
 
 

@@ -17,12 +17,12 @@ from stickslip.checks import real_matrix
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.study.entries import (
+    Contacts,
     Count,
     Factor,
     SlipForce,
     StiffnessValue,
     Table,
-    Text,
     Tolerance,
     number_or,
 )
@@ -90,8 +90,13 @@ class LimitCyclesTable(Table):
     slip_force: SlipForceSpan | None = Field(
         default=None, title="slip_force", description="Range of slip forces to follow."
     )
-    contacts: Annotated[tuple[Text, ...], Strict(False), Field(min_length=1)] | None = Field(
-        default=None, description="Names of the contacts that take the value; left out: all."
+    contacts: Contacts | None = Field(
+        default=None,
+        description="Names of the contacts that take the value, or [name, point]; left out: all.",
+    )
+    common: Literal["value", "factor"] = Field(
+        default="value",
+        description="Whether contacts take the value, or multiply their own by it.",
     )
     method: Literal["newton", "exact"] = Field(
         default="newton", description="Harmonic balance, or exact orbits."
@@ -166,6 +171,7 @@ class LimitCyclesTable(Table):
             stiffness=spans["stiffness"],
             slip_force=spans["slip_force"],
             contacts=self.contacts,
+            common=self.common,
             harmonics=self.harmonics,
             method=self.method,
             tolerance=self.tolerance,

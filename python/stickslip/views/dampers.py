@@ -62,7 +62,7 @@ def facts(result: DamperCurve) -> list[Row]:
     settings = result.settings
     values = result.values
     low, high = settings.span
-    varied = settings.variation.contacts
+    varied = settings.variation.names
     rows = [
         *model_rows(result.model),
         (

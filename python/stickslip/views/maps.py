@@ -41,7 +41,7 @@ def facts(result: StabilityMap) -> list[Row]:
     settings = result.settings
     rows = [
         *model_rows(result.model),
-        ("varied", f"{settings.variation.parameter} of {', '.join(settings.variation.contacts)}"),
+        ("varied", f"{settings.variation.parameter} of {', '.join(settings.variation.names)}"),
         ("mode", f"{settings.mode}"),
         ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
     ]

@@ -1,0 +1,27 @@
+//! What is varied.
+
+use pyo3::prelude::*;
+use stickslip_core::model::{Common, Variation};
+
+/// What is varied: `parameter` is "level", "ratio" or one of the laws', of contacts or of points.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Varied {
+    parameter: String,
+    contacts: Vec<(usize, Option<usize>)>,
+    factor: bool,
+}
+
+impl From<Varied> for Variation {
+    fn from(varied: Varied) -> Self {
+        let Varied { parameter, contacts, factor } = varied;
+        match parameter.as_str() {
+            "level" => Self::Level,
+            "ratio" => Self::Ratio,
+            _ => {
+                let common = if factor { Common::Factor } else { Common::Value };
+                Self::Law { parameter, contacts, common }
+            }
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! The numbers of a law that can be varied.
+
+/// A number of a law that can be varied.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: &'static str,
+    /// The contact point that it belongs to; nothing if it is the whole contact's.
+    pub point: Option<usize>,
+    /// Its value.
+    pub value: f64,
+    /// Whether it is a factor on what the law was built with, and no quantity with a unit.
+    pub factor: bool,
+}
+
+impl Parameter {
+    /// Slip limit of a point [N].
+    pub(super) fn slip_force(point: usize, value: f64) -> Self {
+        Self { name: "slip_force", point: Some(point), value, factor: false }
+    }
+
+    /// Stiffness of the whole contact [N/m].
+    pub(super) fn stiffness(value: f64) -> Self {
+        Self { name: "stiffness", point: None, value, factor: false }
+    }
+}
