@@ -7,11 +7,12 @@
 //! coefficients of u is carried through it.
 
 use super::derivative::Derivative;
-use super::elastic::Sliding;
+use super::jets::Jet;
+use super::slip_set::SlipSet;
 use super::structural::StructuralDamper;
-use super::transitions::Jet;
 use super::{Motion, PointState};
 use crate::fourier::Harmonics;
+use std::borrow::Cow;
 
 /// Rounds after which a passage is taken as it is: its forces repeat after a few.
 const MOST_ROUNDS: usize = 200;
@@ -24,16 +25,6 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub(super) const SLOW: f64 = 0.9;
 /// Distance from its limit at which a point is at it, relative to the limit.
 pub(super) const AT_LIMIT: f64 = 1e-12;
-
-/// A set of slipping points with its stiffness and the series it gives.
-#[derive(Debug)]
-pub(super) struct SlipSet {
-    pub(super) slips: Vec<bool>,
-    pub(super) sliding: Sliding,
-    /// Series of `T u` and of the slip `R u`, point after point.
-    pub(super) force: Vec<f64>,
-    pub(super) slip: Vec<f64>,
-}
 
 /// A stretch of the period in one state.
 #[derive(Debug, Clone)]
@@ -67,9 +58,8 @@ pub(super) struct March<'a> {
     pub(super) law: &'a StructuralDamper,
     pub(super) harmonics: &'a Harmonics,
     series: &'a [f64],
-    /// Values, slopes and curvatures of each point's displacement on a grid.
-    grid: Vec<[Vec<f64>; 3]>,
-    spacing: f64,
+    /// Displacements at the ends of the cells of a grid.
+    grid: Vec<Jet>,
     pub(super) sets: Vec<SlipSet>,
     pub(super) here: Stretch,
     done: Vec<Stretch>,
@@ -121,8 +111,6 @@ impl<'a> March<'a> {
         let harmonics = motion.table.harmonics();
         let points = law.limits.len();
         let series = motion.displacement;
-        let grid: Vec<_> =
-            series.chunks_exact(harmonics.slots()).map(|u| motion.table.jets(u)).collect();
         let here = Stretch {
             start: 0.0,
             end: 0.0,
@@ -131,14 +119,12 @@ impl<'a> March<'a> {
             offset: vec![0.0; points],
             rate: Vec::new(),
         };
-        let spacing = harmonics.span() / motion.table.coarse_samples() as f64;
         let (sets, done) = (Vec::new(), Vec::new());
         let mut march = Self {
             law,
             harmonics,
             series,
-            grid,
-            spacing,
+            grid: Jet::grid(motion),
             sets,
             here,
             done,
@@ -156,7 +142,7 @@ impl<'a> March<'a> {
         self.here.set = self.find_set();
         let jet = self.jet(0.0);
         let (mut force, mut gain) = (vec![0.0; points], vec![0.0; points * points]);
-        self.law.increment(&jet.value, &mut force, Some(&mut gain));
+        self.law.increment(jet.value(), &mut force, Some(&mut gain));
         self.slipped = (0..points).any(|i| gain[i * points + i] == 0.0);
         let gradient = self.derivative.start(self.law, &self.basis(0.0), &force, &gain);
         self.settle(&jet, force, gradient, None);
@@ -164,41 +150,36 @@ impl<'a> March<'a> {
 
     /// Passes once through the span; `false` if transitions pile up without end.
     fn round(&mut self) -> bool {
-        let cells = self.grid.first().map_or(0, |grid| grid[0].len());
         self.transitions = 0;
-        let most = 8 * self.law.limits.len() * (cells + 8);
-        let mut from = self.jet(self.here.start);
-        for cell in 0..cells {
-            let to = self.cell_end(cell, cells);
-            while let Some((theta, point)) = self.next_transition(&from, &to) {
-                from = self.jet(theta);
+        let grid = std::mem::take(&mut self.grid);
+        let passed = self.pass(&grid);
+        self.grid = grid;
+        self.here.end = self.harmonics.span();
+        passed
+    }
+
+    fn pass(&mut self, grid: &[Jet]) -> bool {
+        let most = 8 * self.law.limits.len() * (grid.len() + 8);
+        let mut from = Cow::Owned(self.jet(self.here.start));
+        for to in grid {
+            while let Some((theta, point)) = self.next_transition(&from, to) {
+                from = Cow::Owned(self.jet(theta));
                 let before = (self.here.set, self.here.states.clone());
                 let force = self.force_at(&from);
                 let gradient = (self.derivative != Derivative::None).then(|| self.gradient(theta));
                 self.settle(&from, force, gradient, Some(point));
                 if (self.here.set, &self.here.states) == (before.0, &before.1) {
                     // A touch that changes nothing: go on beyond it.
-                    from = self.jet(0.5 * (theta + to.theta));
+                    from = Cow::Owned(self.jet(0.5 * (theta + to.theta)));
                 }
                 self.transitions += 1;
                 if self.transitions > most {
                     return false;
                 }
             }
-            from = to;
+            from = Cow::Borrowed(to);
         }
-        self.here.end = self.harmonics.span();
         true
-    }
-
-    /// Displacements at the end of a cell of the grid.
-    fn cell_end(&self, cell: usize, cells: usize) -> Jet {
-        let theta = (cell + 1) as f64 * self.spacing;
-        let sign = if cell + 1 == cells && self.harmonics.half_wave() { -1.0 } else { 1.0 };
-        let pick = |of: usize| -> Vec<f64> {
-            self.grid.iter().map(|grid| sign * grid[of][(cell + 1) % cells]).collect()
-        };
-        Jet { theta, value: pick(0), slope: pick(1), curvature: pick(2) }
     }
 
     /// Begins the next round where this one has ended.
@@ -213,8 +194,10 @@ impl<'a> March<'a> {
 
     /// Bound of the elastic forces without any slip.
     fn elastic_forces(&self) -> f64 {
-        let far = |grid: &[Vec<f64>; 3]| grid[0].iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-        let far: Vec<f64> = self.grid.iter().map(far).collect();
+        let mut far = vec![0.0_f64; self.law.limits.len()];
+        for jet in &self.grid {
+            far.iter_mut().zip(jet.value()).for_each(|(far, u)| *far = far.max(u.abs()));
+        }
         let row = |i: usize| -> f64 {
             far.iter().enumerate().map(|(j, u)| self.law.stiffness[(i, j)].abs() * u).sum()
         };
@@ -232,14 +215,7 @@ impl<'a> March<'a> {
     }
 
     fn jet(&self, theta: f64) -> Jet {
-        let mut jet = Jet { theta, value: Vec::new(), slope: Vec::new(), curvature: Vec::new() };
-        for series in self.series.chunks_exact(self.harmonics.slots()) {
-            let [value, slope, curvature] = self.harmonics.jet(series, theta);
-            jet.value.push(value);
-            jet.slope.push(slope);
-            jet.curvature.push(curvature);
-        }
-        jet
+        Jet::at(self.harmonics, self.series, theta)
     }
 
     fn basis(&self, theta: f64) -> Vec<f64> {
@@ -249,14 +225,12 @@ impl<'a> March<'a> {
     }
 
     pub(super) fn tangent_row(&self, i: usize, of: &[f64]) -> f64 {
-        let tangent = &self.sets[self.here.set].sliding.tangent;
-        of.iter().enumerate().map(|(j, u)| tangent[(i, j)] * u).sum()
+        self.sets[self.here.set].force_on(i, of)
     }
 
     fn force_at(&self, jet: &Jet) -> Vec<f64> {
-        (0..jet.value.len())
-            .map(|i| self.tangent_row(i, &jet.value) - self.here.offset[i])
-            .collect()
+        let offsets = self.here.offset.iter().enumerate();
+        offsets.map(|(i, offset)| self.tangent_row(i, jet.value()) - offset).collect()
     }
 
     /// Derivative of the forces at an angle.
@@ -295,19 +269,7 @@ impl<'a> March<'a> {
             return known;
         }
         let sliding = self.law.elastic.sliding(&slips);
-        let slots = self.harmonics.slots();
-        let combined = |matrix: &faer::Mat<f64>| {
-            let mut out = vec![0.0; self.series.len()];
-            for (i, out) in out.chunks_exact_mut(slots).enumerate() {
-                for (j, u) in self.series.chunks_exact(slots).enumerate() {
-                    let share = matrix[(i, j)];
-                    out.iter_mut().zip(u).for_each(|(out, u)| *out += share * u);
-                }
-            }
-            out
-        };
-        let (force, slip) = (combined(&sliding.tangent), combined(&sliding.slip_rate));
-        self.sets.push(SlipSet { slips, sliding, force, slip });
+        self.sets.push(SlipSet::new(slips, sliding, self.series));
         self.sets.len() - 1
     }
 
@@ -336,7 +298,7 @@ impl<'a> March<'a> {
         let mut advance: Option<Vec<f64>> = None;
         for _ in 0..16 * (points + 1) {
             let Some(i) = (0..points).find(|&i| self.contradicts(jet, &force, i)) else { break };
-            let old: Vec<f64> = (0..points).map(|r| self.tangent_row(r, &jet.slope)).collect();
+            let old: Vec<f64> = (0..points).map(|r| self.tangent_row(r, jet.slope())).collect();
             let onset = self.here.states[i] == PointState::Stuck;
             let column: Vec<f64> = {
                 let tangent = &self.sets[self.here.set].sliding.tangent;
@@ -366,7 +328,7 @@ impl<'a> March<'a> {
             } else if let Some(advance) = &advance {
                 // A point sticks because another has begun to slip: the rates jump once more.
                 for (r, row) in gradient.chunks_exact_mut(columns).enumerate() {
-                    let jump = self.tangent_row(r, &jet.slope) - old[r];
+                    let jump = self.tangent_row(r, jet.slope()) - old[r];
                     row.iter_mut().zip(advance).for_each(|(g, time)| *g += jump * time);
                 }
             }
@@ -383,7 +345,7 @@ impl<'a> March<'a> {
             self.here.start = jet.theta;
         }
         self.here.offset =
-            (0..points).map(|i| self.tangent_row(i, &jet.value) - force[i]).collect();
+            (0..points).map(|i| self.tangent_row(i, jet.value()) - force[i]).collect();
         if let Some(gradient) = gradient {
             let mut rate = vec![0.0; gradient.len()];
             self.add_tangent(&self.basis(jet.theta), &mut rate);

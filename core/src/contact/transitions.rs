@@ -4,6 +4,7 @@
 //! trigonometric series: a limit or a standstill is bracketed by their values and slopes at both
 //! ends, and located by Newton's method.
 
+use super::jets::Jet;
 use super::passage::{March, AT_LIMIT};
 use super::PointState;
 
@@ -11,14 +12,6 @@ use super::PointState;
 const AT_REST: f64 = 1e-10;
 /// Steps of a root search: Newton's method needs a handful, bisection 50.
 const STEPS: usize = 60;
-
-/// Displacements of all points, their slopes and curvatures at an angle.
-pub(super) struct Jet {
-    pub(super) theta: f64,
-    pub(super) value: Vec<f64>,
-    pub(super) slope: Vec<f64>,
-    pub(super) curvature: Vec<f64>,
-}
 
 impl March<'_> {
     /// Whether a point cannot go on as it is: at its limit with the force growing, or slipping
@@ -36,7 +29,7 @@ impl March<'_> {
         };
         // Where contacts share a DOF the parts of a rate may cancel: what is left then is none.
         let (mut size, mut rate) = ([0.0; 2], [0.0; 2]);
-        for (j, (slope, curvature)) in jet.slope.iter().zip(&jet.curvature).enumerate() {
+        for (j, (slope, curvature)) in jet.slope().iter().zip(jet.curvature()).enumerate() {
             let part = sign * matrix[(i, j)];
             rate[0] += part * slope;
             rate[1] += part * curvature;
@@ -70,8 +63,8 @@ impl March<'_> {
 
     /// Where the force of a stuck point leaves its limits.
     fn reaches_limit(&self, from: &Jet, to: &Jet, i: usize, limit: f64) -> Option<f64> {
-        let force = |jet: &Jet| self.tangent_row(i, &jet.value) - self.here.offset[i];
-        let rate = |jet: &Jet| self.tangent_row(i, &jet.slope);
+        let force = |jet: &Jet| self.tangent_row(i, jet.value()) - self.here.offset[i];
+        let rate = |jet: &Jet| self.tangent_row(i, jet.slope());
         let (start, end) = (force(from), force(to));
         let most = limit * (1.0 + AT_LIMIT);
         let series = self.own_series(&self.sets[self.here.set].force, i);
@@ -105,23 +98,21 @@ impl March<'_> {
 
     /// Where the slip of a point comes to rest.
     fn stands_still(&self, from: &Jet, to: &Jet, i: usize, sign: f64) -> Option<f64> {
-        let matrix = &self.sets[self.here.set].sliding.slip_rate;
-        let along = |of: &[f64]| -> f64 {
-            sign * of.iter().enumerate().map(|(j, x)| matrix[(i, j)] * x).sum::<f64>()
-        };
-        let (start, end) = (along(&from.slope), along(&to.slope));
+        let set = &self.sets[self.here.set];
+        let along = |of: &[f64]| sign * set.slip_of(i, of);
+        let (start, end) = (along(from.slope()), along(to.slope()));
         let series = self.own_series(&self.sets[self.here.set].slip, i);
         let slope = |theta: f64| {
             let jet = self.harmonics.jet(series, theta);
             [sign * jet[1], sign * jet[2]]
         };
-        let parts = to.slope.iter().enumerate();
-        let size: f64 = parts.map(|(j, x)| (matrix[(i, j)] * x).abs()).sum();
+        let parts = to.slope().iter().enumerate();
+        let size: f64 = parts.map(|(j, x)| (set.sliding.slip_rate[(i, j)] * x).abs()).sum();
         if end < -AT_REST * size {
             return Some(root([from.theta, to.theta], &slope));
         }
         // The slip may come to rest and go on between the two.
-        let (fall, rise) = (along(&from.curvature), along(&to.curvature));
+        let (fall, rise) = (along(from.curvature()), along(to.curvature()));
         let reach = 0.5 * (to.theta - from.theta) * fall.abs().max(rise.abs());
         if !(fall < 0.0 && rise > 0.0) || start.min(end) >= reach {
             return None;
@@ -135,7 +126,7 @@ impl March<'_> {
                 high = middle;
             }
         }
-        let size = along(&from.slope).abs() + reach;
+        let size = along(from.slope()).abs() + reach;
         (slope(low)[0] < -AT_LIMIT * size).then(|| root([from.theta, low], &slope))
     }
 
