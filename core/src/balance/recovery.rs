@@ -3,7 +3,7 @@
 use super::accuracy::{errors, extended_order};
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
-use super::sampling::{sampling_errors, FINER};
+use super::sampling::{finer_than, sampling_errors};
 use super::settings::Method;
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
@@ -68,7 +68,7 @@ impl ForcedBalance<'_> {
             // Broyden's method leaves no tangent at the solution.
             equations.residual(x, &mut vec![0.0; x.len()]);
         }
-        let finer = self.evaluated(Some(FINER * samples))?;
+        let finer = self.evaluated(Some(finer_than(samples)))?;
         point.sampling_error = sampling_errors(equations, &finer, x, self.observe, point)?;
         let errors = point.error_estimate.iter_mut().zip(&point.sampling_error);
         errors.for_each(|(error, sampling)| *error += sampling);

@@ -1,11 +1,12 @@
 //! How wrong a marched balance is: what more samples per period would still change.
 //!
-//! One Newton step of the balance with the slip load of a march through four times as many samples
-//! and the tangent that it was solved with. The error of a march is of second order in the
-//! distance of its samples, with a factor that depends on where between two samples each turning
-//! point and each transition falls: it differs from point to point, can vanish, and the change
-//! from N to 2N samples, extrapolated, is as often far too small as it is right. A march through
-//! 4N samples errs by a sixteenth at most, so that the step is the error itself but for that.
+//! One Newton step of the balance, with the slip load of a march through about four times as many
+//! samples and the tangent that it was solved with. The error of a march falls with the second
+//! power of the distance of its samples, of laws that couple several points now and then with the
+//! first, and its factor depends on where between two samples each turning point and transition
+//! falls. So it is uneven: the change from N to 2N samples can vanish where the error does not.
+//! Four times as many leave little room for that; and as they do not contain the N instants, what
+//! falls close beside one of those is seen as well.
 
 use super::condensed::Condensed;
 use super::solution::Point;
@@ -14,8 +15,16 @@ use crate::solve::System as _;
 use crate::Error;
 use faer::c64;
 
-/// Samples of the march that the solution is compared with, as a multiple of its own.
-pub(super) const FINER: usize = 4;
+/// What N samples are compared with, 4 N + 2: an instant of the one falls between two of the other.
+const FINER: [usize; 2] = [4, 2];
+/// The step to the finer march times this is the whole error if that is of first order, and a
+/// little more than it if it is of second order.
+const CAUTION: f64 = 4.0 / 3.0;
+
+/// Samples of the march that one through `samples` is compared with.
+pub(super) fn finer_than(samples: usize) -> usize {
+    FINER[0] * samples + FINER[1]
+}
 
 /// Sum over all harmonics of the change that the laws of `finer` would bring to each observed DOF
 /// [m]; `solved` are the equations of the solution `x`.
@@ -49,7 +58,7 @@ pub(super) fn sampling_errors(
     solved.displacements(&corrected, &slip_load, observe, |order, observed, _, _| {
         for (dof, error) in errors.iter_mut().enumerate() {
             let before: c64 = point.displacement[dof * orders + order];
-            *error += (observed[dof] - before).norm();
+            *error += CAUTION * (observed[dof] - before).norm();
         }
     })?;
     Ok(errors)

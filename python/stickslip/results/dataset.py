@@ -60,7 +60,7 @@ CURVE_VARIABLES: dict[str, Variable] = {
         "error_estimate",
         ("omega", "dof"),
         "m",
-        "what the discarded harmonics could still change",
+        "what the discarded harmonics, and more samples, could still change",
     ),
     "slip_fraction": Variable(
         "slip_fraction",
@@ -77,6 +77,9 @@ CURVE_VARIABLES: dict[str, Variable] = {
     "residual": Variable("residual", ("omega",), "1", "relative residual of the balance equations"),
     "iterations": Variable("iterations", ("omega",), "1", "iterations of the solver"),
     "harmonics_kept": Variable("harmonics", ("omega",), "1", "highest harmonic kept"),
+    "samples": Variable(
+        "samples", ("omega",), "1", "samples per period of marched friction laws, 0 if not marched"
+    ),
     "status": Variable("status", ("omega",), "1", "how the point ended"),
 }
 """Those of every curve over frequency."""
