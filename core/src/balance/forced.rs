@@ -184,8 +184,7 @@ impl<'a> ForcedBalance<'a> {
     fn judge(&mut self, point: &Point) -> Verdict {
         self.scale.include(point);
         let scale = &self.scale;
-        let of_samples =
-            scale.relative(point, OF_HARMONICS, point.sampling_error.iter().copied());
+        let of_samples = scale.relative(point, OF_HARMONICS, point.sampling_error.iter().copied());
         // Nothing can be done about samples that were given.
         let climb = self.ladder.samples_climb();
         let errors = point.error_estimate.iter().zip(&point.sampling_error);
@@ -328,7 +327,6 @@ impl<'a> ForcedBalance<'a> {
         let mut residual = vec![0.0; equations.size()];
         equations.residual(x, &mut residual);
     }
-
 }
 
 fn has_failed(report: &Report) -> bool {

@@ -36,8 +36,7 @@ pub fn refine_peak(
         return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
     }
     let observe = [dof];
-    let (settings, mut start) =
-        with_one_resolution(model, settings, &observe, [low, high, guess])?;
+    let (settings, mut start) = with_one_resolution(model, settings, &observe, [low, high, guess])?;
     let mut balance = ForcedBalance::new(model, settings, &observe)?.watched(progress);
     let mut height = |omega: f64| -> Result<f64, Error> {
         let point = balance.solve(omega, start.as_ref())?;

@@ -327,8 +327,7 @@ impl<'a, 'b> Search<'a, 'b> {
         };
         let table = self.balance.table(unknowns.harmonics().highest());
         let model = self.balance.evaluated(point.samples)?;
-        let mut linearised =
-            Linearised::new(&model, &table, self.residual, point.omega, unknowns)?;
+        let mut linearised = Linearised::new(&model, &table, self.residual, point.omega, unknowns)?;
         let jets = linearised.frequency_jets(&self.dofs, self.aim.measure)?;
         self.balance.add_profile(linearised.profile());
         let Some((jets, rate)) = jets else {

@@ -182,7 +182,8 @@ impl Climb<'_> {
                 });
                 first += group.len();
             }
-            if wanted == resolution || summits.iter().any(|s| s.status == PointStatus::NotComputed) {
+            if wanted == resolution || summits.iter().any(|s| s.status == PointStatus::NotComputed)
+            {
                 return Ok(summits);
             }
             // What a summit asks for may move it, and change which is highest.
@@ -190,11 +191,7 @@ impl Climb<'_> {
         }
     }
 
-    fn search(
-        &mut self,
-        resolution: Resolution,
-        seeds: &[Sample],
-    ) -> Result<Option<Found>, Error> {
+    fn search(&mut self, resolution: Resolution, seeds: &[Sample]) -> Result<Option<Found>, Error> {
         let settings = self.settings.at(resolution);
         // Nothing is observed: a point of the search needs no error estimate.
         let mut balance = ForcedBalance::new(self.model, settings, &[])?

@@ -334,7 +334,8 @@ def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> str:
         return ""
     what = "The discarded harmonics"
     if arrays.samples[point]:
-        what, remedy = f"{what} and the sampling", "keep more harmonics, or take more samples, there"
+        what = f"{what} and the sampling"
+        remedy = "keep more harmonics, or take more samples, there"
     return (
         f"{what} could still change {dofs[dof]!r} by {share:.1%} at omega = "
         f"{arrays.omega[point]:.6g} rad/s, the worst point; {remedy}."
