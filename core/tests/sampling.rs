@@ -14,7 +14,7 @@ use stickslip_core::balance::{
     SampleChoice, Settings, Solution,
 };
 use stickslip_core::contact::Jenkins;
-use stickslip_core::design::{summits, Quest};
+use stickslip_core::design::{peak_curve, summits, Quest, Target, Variation};
 use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use stickslip_core::model::{Model, SectorContact};
 use stickslip_core::orbit::{orbit_sweep, OrbitSettings, PeriodicOrbits};
@@ -165,6 +165,14 @@ fn a_limit_of_samples_is_a_status() {
     assert_eq!((stuck.status, stuck.samples), (PointStatus::Converged, Some(64)));
     assert_eq!((slipping.status, slipping.samples), (PointStatus::SamplesLimit, Some(256)));
     assert!(slipping.is_solved() && slipping.sampling_error[0] > 2.5e-6 * 1e-3);
+    // The rest of the error is brought down all the same.
+    let settings = Settings { tolerance: 1e-3, ..marched(Settings::default(), SampleChoice::Auto) };
+    let settings = Settings { max_samples: 256, max_harmonics: 63, ..settings };
+    let curve = solve(&model, settings, &[1], &[190.0]);
+    let point = &curve.points[0];
+    assert_eq!((point.status, point.samples), (PointStatus::SamplesLimit, Some(256)));
+    let truncation = point.error_estimate[0] - point.sampling_error[0];
+    assert!(truncation < 1.1e-3 * point.displacement[1].norm(), "{truncation:e}");
     for (most, harmonics) in [(1000, 9), (32, 9), (1024, 300), (1 << 21, 9)] {
         let settings = marched(fixed(harmonics, 1e-3), SampleChoice::Auto);
         let settings = Settings { max_samples: most, ..settings };
@@ -252,6 +260,16 @@ fn ranges_and_summits_choose_samples_too() {
     let (own, exact) = (summit(settings), summit(Settings::default()));
     assert!((own.amplitude / exact.amplitude - 1.0).abs() < 1e-3);
     assert!(own.error_estimate > 0.0);
+    let target = Target { dof: 1, measure: Measure::HalfRange, span: (150.0, 250.0) };
+    let curve = |settings: Settings| {
+        let levels = [0.6, 1.0, 1.4];
+        peak_curve(&model, settings, &Variation::Level, &levels, &target, &|_| true).unwrap().peaks
+    };
+    for (own, exact) in curve(settings).iter().zip(&curve(Settings::default())) {
+        assert_eq!(own.status, PointStatus::Converged);
+        assert!((own.amplitude / exact.amplitude - 1.0).abs() < 1e-3);
+        assert!((own.slope / exact.slope - 1.0).abs() < 0.05);
+    }
     let given = summit(marched(fixed(9, 1e-3), SampleChoice::Fixed(512)));
     let same = summits(&model.marched(512).unwrap(), fixed(9, 1e-3), &quest, None, &|_| true);
     assert_eq!(given.amplitude, same.unwrap().summits[0].amplitude);

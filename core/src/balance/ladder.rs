@@ -16,8 +16,8 @@ const LOWEST_ORDER: usize = 3;
 const FIRST_RUNG: usize = 3;
 /// An estimate this far below the tolerance lets the next point try one rung less.
 const GENEROUS: f64 = 0.05;
-/// Share of the tolerance that the sampling error may take: little enough to leave the discarded
-/// harmonics their part, and half the samples are saved where a sixteenth would do.
+/// Share of the tolerance that the sampling error may take: it leaves most to the discarded
+/// harmonics, which cost more, for twice the samples that the whole tolerance would ask for.
 const OF_SAMPLES: f64 = 0.25;
 /// A sampling error this far below its share lets the next point try half the samples, which err
 /// four times as much.
@@ -123,33 +123,36 @@ impl Ladder {
     pub(super) fn judge(&mut self, at: Resolution, error: f64, of_samples: f64) -> Verdict {
         let tolerance = self.settings.tolerance;
         let target = OF_SAMPLES * tolerance;
-        let climbs = self.samples_climb();
-        if climbs && of_samples > target {
-            let finer = self.allowed(at.harmonics, finer(at.samples, of_samples / target));
-            if finer == at {
-                self.rung.samples = at.samples.unwrap_or(FEWEST_SAMPLES);
-                return Verdict::Limit(PointStatus::SamplesLimit);
+        let mut verdict = Verdict::Enough;
+        let mut left = error;
+        if let Some(samples) = at.samples.filter(|_| self.samples_climb()) {
+            self.rung.samples = samples;
+            if of_samples > target {
+                let finer = self.allowed(at.harmonics, finer(at.samples, of_samples / target));
+                if finer != at {
+                    return Verdict::More(finer);
+                }
+                // More harmonics bring the rest of the error down all the same.
+                verdict = Verdict::Limit(PointStatus::SamplesLimit);
+                left -= of_samples;
+            } else if of_samples <= GENEROUS_SAMPLES * target {
+                self.rung.samples = samples / 2;
             }
-            return Verdict::More(finer);
-        }
-        if let Some(samples) = at.samples {
-            let halved = samples / (1 + usize::from(of_samples <= GENEROUS_SAMPLES * target));
-            self.rung.samples = if climbs { halved } else { self.rung.samples };
         }
         if self.settings.harmonics != HarmonicChoice::Auto {
-            return Verdict::Enough;
+            return verdict;
         }
         let order = self.position(at);
-        if error > tolerance {
+        if left > tolerance {
             let Some(&more) = self.orders.get(order + 1) else {
                 self.rung.order = order;
                 return Verdict::Limit(PointStatus::HarmonicsLimit);
             };
             return Verdict::More(self.allowed(more, at.samples));
         }
-        let generous = error <= GENEROUS * tolerance;
+        let generous = left <= GENEROUS * tolerance;
         self.rung.order = (order - usize::from(generous && order > 0)).max(self.lowest);
-        Verdict::Enough
+        verdict
     }
 
     /// A rung more of all that is chosen automatically, if there is one.
