@@ -154,6 +154,24 @@ def test_automatic_samples_keep_the_tolerance_and_say_how_many(frf, tmp_path):
     assert "samples" not in dict(facts(frf))
 
 
+def test_files_without_samples_per_point_are_read_as_long_as_the_settings_name_them():
+    march = beam(evaluation="marched", samples=64)
+    model, index = march.model, march.index(190.0)
+    old = march.to_dataset().drop_vars("samples")
+    again = ss.ForcedResponse.from_dataset(old, model)
+    assert set(again.samples) == {64}
+    force = march.contact_force((0, 0), index)
+    np.testing.assert_array_equal(again.contact_force((0, 0), index), force)
+    exact = beam().to_dataset().drop_vars("samples")
+    exact.attrs["settings"] = exact.attrs["settings"].replace(
+        '"samples": "auto"', '"samples": null'
+    )
+    assert not ss.ForcedResponse.from_dataset(exact, model).samples.any()
+    old.attrs["settings"] = old.attrs["settings"].replace('"samples": 64', '"samples": null')
+    with pytest.raises(KeyError, match="samples"):
+        ss.ForcedResponse.from_dataset(old, model)
+
+
 def test_peaks_and_sensitivities_of_automatic_samples(frf):
     march = beam(evaluation="marched")
     assert march.peak("tip").amplitude == pytest.approx(frf.peak("tip").amplitude, rel=3e-4)
