@@ -75,6 +75,7 @@ def test_interruption_before_the_first_point():
     empty = Arrays(
         omega=np.ones(n),
         harmonics=np.zeros(n, int),
+        samples=np.zeros(n, int),
         status=np.full(n, 3, np.uint8),
         residual=np.full(n, np.nan),
         iterations=np.zeros(n, int),

@@ -4,11 +4,13 @@ import sys
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.analyses.forced_response import Settings
 from stickslip.reference import SNECMA_LOADS, beam_pair, snecma_beam
 from stickslip.study import Study
+from stickslip.views.curves import facts
 
 GRID = np.linspace(20.0, 350.0, 400)
 BAND = np.linspace(150.0, 250.0, 60)
@@ -66,7 +68,7 @@ def test_broyden_with_several_contacts_a_range_and_automatic_harmonics():
 
 
 def test_the_sensitivity_of_a_peak_is_solved_with_the_settings_of_its_curve(monkeypatch):
-    module = sys.modules[Settings.__module__]
+    module = sys.modules["stickslip.analyses.forced_response"]
     solve, methods = module.forced_response, []
 
     def spy(*arguments, **options):
@@ -92,9 +94,8 @@ def test_the_march_approaches_the_exact_evaluation(frf):
     rate = np.log2(np.linalg.norm(errors[0]) / np.linalg.norm(errors[1])) / 4
     assert rate == pytest.approx(2.0, abs=0.3)
     assert errors[1].max() < 1e-4
-    text = "marched through 1024 samples per period"
-    assert any(text in one for one in beam(evaluation="marched").assumptions)
     assert not any("marched" in one for one in frf.assumptions)
+    assert not frf.samples.any()
 
 
 def test_everything_of_a_marched_result_is_marched(frf, tmp_path):
@@ -117,13 +118,115 @@ def test_everything_of_a_marched_result_is_marched(frf, tmp_path):
     np.testing.assert_array_equal(loaded.contact_force((0, 0), index, 40), force)
 
 
-@pytest.mark.parametrize(
-    ("harmonics", "limit", "march"), [(9, 255, 1024), (200, 255, 2048), ("auto", 63, 1024)]
+def test_automatic_samples_keep_the_tolerance_and_say_how_many(frf, tmp_path):
+    counts = []
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        march = beam(evaluation="marched", tolerance=tolerance)
+        assert march.converged.all()
+        errors = np.abs(march.amplitude("tip") / frf.amplitude("tip") - 1)
+        assert 0.005 * tolerance < errors.max() < 0.4 * tolerance
+        # The estimate of the exact evaluation, and the error of the samples.
+        more = march.error_estimate("tip") - frf.error_estimate("tip")
+        allowed = 0.3 * tolerance * march.amplitude("tip") + 0.5 * frf.error_estimate("tip")
+        assert (np.abs(more) < allowed + 1e-15).all()
+        counts.append(march.samples.sum())
+    assert counts[0] < counts[1] < counts[2]
+    assert march.samples.min() == 64 < march.samples.max()
+    text = (
+        f"marched through 64 to {march.samples.max()} samples per period, chosen per point to a "
+        "quarter of the tolerance of 0.0001; the error of the sampling is part of"
+    )
+    assert any(text in one for one in march.assumptions)
+    dataset = march.to_dataset()
+    np.testing.assert_array_equal(dataset.samples, march.samples)
+    assert dataset.samples.dims == ("omega",)
+    march.save(tmp_path / "march.nc")
+    loaded = ss.load(tmp_path / "march.nc")
+    np.testing.assert_array_equal(loaded.samples, march.samples)
+    assert loaded.settings == march.settings
+    index = march.index(190.0)
+    force = march.contact_force((0, 0), index, 512)
+    np.testing.assert_array_equal(loaded.contact_force((0, 0), index, 512), force)
+    assert np.abs(force - frf.contact_force((0, 0), index, 512)).max() < 0.01 * 246.048
+    rows = dict(facts(march))
+    assert rows["samples"] == f"auto, 64 to {march.samples.max()} per period"
+    assert dict(facts(beam(evaluation="marched", samples=64)))["samples"] == "64 per period"
+    assert "samples" not in dict(facts(frf))
+
+
+def test_files_without_samples_per_point_are_read_as_long_as_the_settings_name_them():
+    march = beam(evaluation="marched", samples=64)
+    model, index = march.model, march.index(190.0)
+    old = march.to_dataset().drop_vars("samples")
+    again = ss.ForcedResponse.from_dataset(old, model)
+    assert set(again.samples) == {64}
+    force = march.contact_force((0, 0), index)
+    np.testing.assert_array_equal(again.contact_force((0, 0), index), force)
+    exact = beam().to_dataset().drop_vars("samples")
+    exact.attrs["settings"] = exact.attrs["settings"].replace(
+        '"samples": "auto"', '"samples": null'
+    )
+    assert not ss.ForcedResponse.from_dataset(exact, model).samples.any()
+    old.attrs["settings"] = old.attrs["settings"].replace('"samples": 64', '"samples": null')
+    with pytest.raises(KeyError, match="samples"):
+        ss.ForcedResponse.from_dataset(old, model)
+
+
+def test_peaks_and_sensitivities_of_automatic_samples(frf):
+    march = beam(evaluation="marched")
+    assert march.peak("tip").amplitude == pytest.approx(frf.peak("tip").amplitude, rel=3e-4)
+    for ask in (
+        lambda result: result.peak_sensitivity("tip", parameter="slip_force", contact=0),
+        lambda result: result.sensitivity("tip", parameter="slip_force", contact=0)[30],
+    ):
+        assert ask(march) == pytest.approx(ask(frf), rel=0.02)
+    both = ss.forced_response(snecma_beam(), (150.0, 250.0), evaluation="marched")
+    exact = ss.forced_response(snecma_beam(), (150.0, 250.0))
+    assert both.converged.all()
+    assert both.peak("tip").amplitude == pytest.approx(exact.peak("tip").amplitude, rel=1e-3)
+
+
+def test_a_limit_of_samples_is_a_status_with_advice():
+    march = beam(evaluation="marched", tolerance=1e-5, max_samples=256)
+    limited = np.array([status == ss.Status.SAMPLES_LIMIT for status in march.status])
+    assert limited.any()
+    assert not limited.all()
+    assert (march.samples[limited] == 256).all()
+    assert np.isfinite(march.amplitude("tip")).all()
+    assert "raise max_samples" in ss.Status.SAMPLES_LIMIT.advice
+    assert ss.Status.SAMPLES_LIMIT.solved
+    assert any(f"{limited.sum()} samples limit" in one for one in march.assumptions)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    stiffness=st.floats(0.05, 20.0),
+    limit=st.floats(0.05, 3.0),
+    damping=st.floats(0.005, 0.05),
+    mass=st.floats(0.3, 3.0),
 )
-def test_automatic_samples(harmonics, limit, march):
-    settings = Settings(harmonics=harmonics, evaluation="marched", max_harmonics=limit)
-    assert settings.march == march
-    assert Settings(harmonics=9).march is None
+def test_automatic_samples_of_random_systems(stiffness, limit, damping, mass):
+    chain = np.array([[2.0, -1.0], [-1.0, 2.0]])
+    structure = ss.Structure(
+        mass=np.diag([1.0, mass]), stiffness=chain, damping=damping * chain, dofs=["a", "b"]
+    )
+    contacts = [
+        ss.Jenkins("a", stiffness=stiffness, slip_force=limit),
+        ss.StructuralDamper(
+            ["a", "b", None],
+            stiffness=stiffness * np.array([[3.0, -1, -2], [-1, 2, -1], [-2, -1, 3]]),
+            slip_forces=[limit, 0.3 * limit, np.inf],
+        ),
+    ]
+    model = ss.Model(structure, contacts=contacts, forces=[ss.Force("b", amplitude=1.0)])
+    omega = np.linspace(0.6, 2.4, 12)
+    exact = ss.forced_response(model, omega, harmonics=5)
+    march = ss.forced_response(model, omega, harmonics=5, evaluation="marched", tolerance=1e-2)
+    assert march.converged.all()
+    for dof in "ab":
+        apart = np.abs(march.coefficients(dof) - exact.coefficients(dof)).sum(axis=1)
+        size = np.abs(exact.coefficients(dof)).max(axis=1)
+        assert (apart < 1e-2 * np.maximum(size, 1e-3 * size.max())).all()
 
 
 @pytest.mark.parametrize(
@@ -138,6 +241,13 @@ def test_automatic_samples(harmonics, limit, march):
         ({"evaluation": "marched", "samples": 513}, "samples: 513 .* an even number from 40"),
         ({"evaluation": "marched", "samples": 51.2}, "samples: 51.2 is not an integer"),
         ({"evaluation": "marched", "samples": 512, "harmonics": "auto"}, "up to 255; .* 1024"),
+        ({"evaluation": "marched", "samples": "many"}, "samples: 'many'; give \"auto\" or an even"),
+        ({"evaluation": "marched", "max_samples": 1000}, "max_samples: 1000 is not a power of two"),
+        (
+            {"evaluation": "marched", "max_samples": 32},
+            "max_samples: 32 for .* up to 9; .* 40",
+        ),
+        ({"evaluation": "marched", "max_samples": 16}, "max_samples: 16 lies below 32"),
     ],
 )
 def test_settings_that_do_not_fit_are_refused(settings, message):
@@ -171,5 +281,10 @@ def test_a_study_file_chooses_solver_and_evaluation():
     assert (settings.method, settings.jacobian) == ("broyden", "differences")
     assert settings.march == 64
     assert result.converged.all()
+    assert set(result.samples) == {64}
+    (automatic,) = Study.parse(text.replace("= 64", '= "auto"\nmax_samples = 4096')).run()
+    assert (automatic.settings.march, automatic.settings.max_samples) == ("auto", 4096)
+    assert automatic.converged.all()
+    assert automatic.samples.max() <= 4096
     with pytest.raises(ss.ModelError, match="samples: 64 for harmonics up to 31"):
         Study.parse(text.replace("harmonics = 5", "harmonics = 31"))

@@ -80,11 +80,12 @@ def test_dataset(frf):
         "residual": "1",
         "iterations": "1",
         "harmonics_kept": "1",
+        "samples": "1",
         "status": "1",
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs
-    assert flags["flag_values"].tolist() == [0, 1, 2, 3, 4, 5]
+    assert flags["flag_values"].tolist() == [0, 1, 2, 3, 4, 5, 6]
     assert flags["flag_meanings"].split() == [
         "converged",
         "stalled",
@@ -92,6 +93,7 @@ def test_dataset(frf):
         "not_computed",
         "harmonics_limit",
         "orbit_stalled",
+        "samples_limit",
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5

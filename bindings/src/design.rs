@@ -230,18 +230,20 @@ pub fn sensitivity<'py>(
     dof: usize,
     measure: &str,
     causes: Vec<CauseArgument>,
-    march: Option<usize>,
+    samples: PyReadonlyArray1<'py, i64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let model: &Model = &*evaluated(problem, march)?;
+    let model: &Model = &problem.model;
     let measure: Measure = measure.parse().map_err(refused)?;
     let residual = residual.parse()?;
     let causes: Vec<Cause> =
         causes.iter().map(|cause| cause.parse(model)).collect::<PyResult<_>>()?;
     let (omega, harmonics) = (omega.as_array().to_vec(), harmonics.as_array().to_vec());
+    let samples = samples.as_array().to_vec();
     let shape = contact_displacement.shape();
     let (points, orders, contacts) = (shape[0], shape[1], shape[2]);
     if points != omega.len()
         || harmonics.len() != omega.len()
+        || samples.len() != omega.len()
         || contacts != model.compliance().contacts()
         || dof >= model.compliance().dofs()
     {
@@ -260,7 +262,9 @@ pub fn sensitivity<'py>(
             .flat_map(|i| series(sample_table.harmonics(), |k| view[[n, k, i]]))
             .collect();
         let solution = Unknowns::new(sample_table.harmonics().clone(), values);
-        let slopes = Linearised::new(model, &sample_table, residual, omega, &solution)
+        let march = usize::try_from(samples[n]).ok().filter(|&march| march > 0);
+        let marched = evaluated(problem, march)?;
+        let slopes = Linearised::new(&marched, &sample_table, residual, omega, &solution)
             .and_then(|mut linearised| linearised.amplitude(dof, measure, &causes));
         rows.extend(slopes.map_err(refused)?.1);
         last = Some(sample_table);

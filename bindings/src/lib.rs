@@ -28,7 +28,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(response::amplitude, module)?)?;
     module.add_function(wrap_pyfunction!(contacts::contact_force, module)?)?;
     module.add_function(wrap_pyfunction!(contacts::contact_phases, module)?)?;
-    module.add_function(wrap_pyfunction!(settings::automatic_samples, module)?)?;
     module.add_function(wrap_pyfunction!(single_harmonic::single_harmonic, module)?)?;
     module.add_class::<design::Peaks>()?;
     module.add_function(wrap_pyfunction!(design::damper_curve, module)?)?;

@@ -3,7 +3,7 @@
 use crate::arrays::{matrix, refused};
 use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
 use crate::response::{status_code, ResidualArgument};
-use crate::settings::{evaluated, settings};
+use crate::settings::{settings, March};
 use crate::watch::{Raised, Watch};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -100,15 +100,18 @@ fn row(summit: &Summit) -> Row {
 
 /// The highest point of every group of DOFs.
 #[pyfunction]
+#[pyo3(signature = (problem, quest, march=None, max_samples=0, progress=None))]
 pub fn summits(
     py: Python<'_>,
     problem: &Problem,
     quest: Quest,
-    march: Option<usize>,
+    march: Option<March>,
+    max_samples: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Row>> {
-    let model = evaluated(problem, march)?;
+    let model = Arc::clone(&problem.model);
     let (quest, settings) = quest.parse()?;
+    let settings = March::applied(march, max_samples, settings)?;
     let (found, raised) = Watch::during(py, progress.as_ref(), |look| {
         design::summits(&model, settings, &quest, None, look)
     });

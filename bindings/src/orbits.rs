@@ -89,6 +89,12 @@ impl Orbits {
         self.amplitudes(py, self.contacts, |p| &p.contact_force)
     }
 
+    /// Orbits are not marched.
+    #[getter]
+    fn samples<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        vector(py, self.points().iter().map(|_| 0_i64))
+    }
+
     #[getter]
     fn harmonics<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         vector(py, self.points().iter().map(|o| o.response.harmonics as i64))

@@ -3,12 +3,13 @@
 use crate::arrays::{indices, is_half_wave, padded, refused, series, table, vector};
 use crate::problem::Problem;
 pub use crate::settings::ResidualArgument;
-use crate::settings::{evaluated, parse_method, settings};
+use crate::settings::{parse_method, settings, March};
 use crate::watch::Watch;
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::Arc;
 use stickslip_core::balance::{
     self, refine_peak, sweep, sweep_range, ForcedBalance, Point, PointStatus, Progress,
     HIGHEST_ORDER,
@@ -102,6 +103,11 @@ impl Solution {
     }
 
     #[getter]
+    fn samples<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        vector(py, self.points().iter().map(|p| p.samples.unwrap_or(0) as i64))
+    }
+
+    #[getter]
     fn half_wave(&self) -> bool {
         self.inner.half_wave
     }
@@ -163,6 +169,8 @@ pub fn status_code(status: PointStatus) -> u8 {
         PointStatus::Singular => 2,
         PointStatus::NotComputed => 3,
         PointStatus::HarmonicsLimit => 4,
+        // 5 is an orbit that did not close.
+        PointStatus::SamplesLimit => 6,
     }
 }
 
@@ -210,14 +218,16 @@ pub fn forced_response(
     residual: ResidualArgument,
     method: &str,
     jacobian: &str,
-    march: Option<usize>,
+    march: Option<March>,
     max_harmonics: usize,
+    max_samples: usize,
     max_iterations: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Solution> {
     let method = parse_method(method, jacobian)?;
     let settings =
         settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
+    let settings = March::applied(march, max_samples, settings)?;
     let observe = indices(&observe)?;
     let grid = match &omega {
         Frequencies::Grid(grid) => grid.as_array().to_vec(),
@@ -227,7 +237,7 @@ pub fn forced_response(
         Frequencies::Range(range) => Some(range),
         Frequencies::Grid(_) => None,
     };
-    let model = evaluated(problem, march)?;
+    let model = Arc::clone(&problem.model);
     let contacts = model.compliance().contacts();
     swept(py, progress.as_ref(), observe.len(), contacts, |look| {
         let rescue = Rescue::new(&model, settings.residual, look);
@@ -257,14 +267,16 @@ pub fn peak(
     residual: ResidualArgument,
     method: &str,
     jacobian: &str,
-    march: Option<usize>,
+    march: Option<March>,
     max_harmonics: usize,
+    max_samples: usize,
     max_iterations: usize,
 ) -> PyResult<(f64, f64)> {
     let method = parse_method(method, jacobian)?;
     let settings =
         settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
-    let model = evaluated(problem, march)?;
+    let settings = March::applied(march, max_samples, settings)?;
+    let model = Arc::clone(&problem.model);
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
     let (found, watch) =

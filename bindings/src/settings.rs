@@ -5,8 +5,8 @@ use crate::problem::Problem;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::balance::{HarmonicChoice, Method, Settings};
-use stickslip_core::contact::{Marched, Residual};
+use stickslip_core::balance::{Evaluation, HarmonicChoice, Method, SampleChoice, Settings};
+use stickslip_core::contact::Residual;
 use stickslip_core::model::Model;
 use stickslip_core::solve::{FirstJacobian, NewtonSettings};
 
@@ -46,7 +46,36 @@ pub fn settings(
         max_harmonics,
         method,
         newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
+        ..Settings::default()
     })
+}
+
+/// Samples per period of a march: a number or "auto".
+#[derive(FromPyObject)]
+pub enum March {
+    Samples(usize),
+    Name(String),
+}
+
+impl March {
+    /// The settings with laws that are marched, if a march is given.
+    pub fn applied(
+        march: Option<Self>,
+        max_samples: usize,
+        settings: Settings,
+    ) -> PyResult<Settings> {
+        let evaluation = match march {
+            None => Evaluation::Direct,
+            Some(Self::Samples(samples)) => Evaluation::Marched(SampleChoice::Fixed(samples)),
+            Some(Self::Name(name)) if name == "auto" => Evaluation::Marched(SampleChoice::Auto),
+            Some(Self::Name(name)) => {
+                return Err(PyValueError::new_err(format!(
+                    "samples = \"{name}\": must be a number or \"auto\""
+                )))
+            }
+        };
+        Ok(Settings { evaluation, max_samples, ..settings })
+    }
 }
 
 /// A solver by its name, with the first Jacobian of Broyden's method.
@@ -67,10 +96,4 @@ pub fn evaluated(problem: &Problem, march: Option<usize>) -> PyResult<Arc<Model>
         || Ok(Arc::clone(&problem.model)),
         |samples| problem.model.marched(samples).map(Arc::new).map_err(refused),
     )
-}
-
-/// Samples per period that serve a marched evaluation of harmonics up to `highest`.
-#[pyfunction]
-pub fn automatic_samples(highest: usize) -> usize {
-    Marched::automatic_samples(highest)
 }

@@ -24,6 +24,8 @@ const SETTINGS: Settings = Settings {
     tolerance: 1e-3,
     residual: Residual::Centred,
     max_harmonics: 255,
+    evaluation: stickslip_core::balance::Evaluation::Direct,
+    max_samples: 16384,
     method: stickslip_core::balance::Method::Newton,
     newton: stickslip_core::solve::NewtonSettings { tolerance: 1e-11, max_iterations: 50 },
 };

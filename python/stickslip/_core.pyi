@@ -1,7 +1,7 @@
 """The compiled mathematics: arrays in, arrays out."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TypedDict
+from typing import Literal, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ Parameters = Mapping[str, float | list[float]]
 Contact = tuple[str, Float, Parameters]
 SectorContact = tuple[str, Float, Float, Parameters]
 Residual = str | float
+March = int | Literal["auto"] | None
 
 __version__: str
 
@@ -61,6 +62,8 @@ class Solution:
     @property
     def harmonics(self) -> NDArray[np.int64]: ...
     @property
+    def samples(self) -> NDArray[np.int64]: ...
+    @property
     def half_wave(self) -> bool: ...
     @property
     def status(self) -> NDArray[np.uint8]: ...
@@ -90,8 +93,9 @@ def forced_response(
     residual: Residual,
     method: str,
     jacobian: str,
-    march: int | None,
+    march: March,
     max_harmonics: int,
+    max_samples: int,
     max_iterations: int,
     progress: Callable[[float], None] | None,
 ) -> Solution: ...
@@ -107,8 +111,9 @@ def peak(
     residual: Residual,
     method: str,
     jacobian: str,
-    march: int | None,
+    march: March,
     max_harmonics: int,
+    max_samples: int,
     max_iterations: int,
 ) -> tuple[float, float]: ...
 def amplitude(coefficients: Complex, measure: str) -> Float: ...
@@ -127,7 +132,6 @@ def contact_phases(
     residual: Residual,
     march: int | None,
 ) -> tuple[Float, Float]: ...
-def automatic_samples(highest: int) -> int: ...
 def single_harmonic(
     problem: Problem,
     omega: Float,
@@ -165,8 +169,9 @@ class TunedDisk:
 def summits(
     problem: Problem,
     quest: Quest,
-    march: int | None,
-    progress: Callable[[float], None] | None,
+    march: March = None,
+    max_samples: int = ...,
+    progress: Callable[[float], None] | None = None,
 ) -> list[Summit]: ...
 def mistuning_study(
     disks: Sequence[TunedDisk],
@@ -348,7 +353,7 @@ def sensitivity(
     dof: int,
     measure: str,
     causes: Sequence[str | tuple[int, int | None, str]],
-    march: int | None,
+    samples: NDArray[np.int64],
 ) -> Float: ...
 
 class Followed(TypedDict):

@@ -40,7 +40,7 @@ pub(super) fn extended_order(
     let beyond = kept.highest() + (SHARE * kept.highest() as f64) as usize;
     let wanted = reach.max(beyond).min(affordable);
     // Steps of four keep the number of sample tables small along a curve.
-    wanted.max(kept.highest() + MARGIN).next_multiple_of(4).min(model.resolves())
+    wanted.max(kept.highest() + MARGIN).next_multiple_of(4)
 }
 
 /// Sum over all harmonics of the change that the extended balance would bring to each observed

@@ -73,13 +73,13 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
             let target = balance.settings.tolerance;
             // Nothing is known of the bend at the start, where the step stays, nor behind a point
             // that is not solved, where it grows to get past.
-            let unknown = if is_solved(&point) { 0.81 * target } else { 0.0 };
+            let unknown = if point.is_solved() { 0.81 * target } else { 0.0 };
             let error = line_error(&balance, &points, &point).unwrap_or(unknown);
             let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
             let too_long = error > 2.0 * target && length > 1.5 * SHORTEST * omega;
             step = (length * factor).min(longest);
             if !too_long {
-                if is_solved(&point) {
+                if point.is_solved() {
                     balance.scale.include(&point);
                 }
                 points.push(point);
@@ -114,13 +114,14 @@ fn stops(balance: &ForcedBalance<'_>, from: f64, to: f64) -> Vec<f64> {
 
 /// Extrapolation along the tangent `dU/dω = J⁻¹ (dU^stuck/dω + dG/dω Q)`.
 fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<Unknowns> {
-    if !is_solved(last) {
+    if !last.is_solved() {
         return None;
     }
     let unknowns = last.unknowns.as_ref()?;
     let table = balance.table(unknowns.harmonics.highest());
     let residual = balance.settings.residual;
-    let mut equations = Condensed::new(balance.model, &table, residual, true);
+    let model = balance.evaluated(last.samples).ok()?;
+    let mut equations = Condensed::new(&model, &table, residual, true);
     equations.set_omega(last.omega).ok()?;
     let (mut ignored, mut rate) = (vec![0.0; equations.size()], vec![0.0; equations.size()]);
     equations.residual(&unknowns.values, &mut ignored);
@@ -141,7 +142,7 @@ fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<
 /// and `new`, from the curvature through the last three points.
 fn line_error(balance: &ForcedBalance<'_>, points: &[Point], new: &Point) -> Option<f64> {
     let [.., before, last] = points else { return None };
-    if ![before, last, new].into_iter().all(is_solved) {
+    if ![before, last, new].into_iter().all(Point::is_solved) {
         return None;
     }
     let (step, earlier) = (new.omega - last.omega, last.omega - before.omega);
@@ -164,8 +165,4 @@ fn line_error(balance: &ForcedBalance<'_>, points: &[Point], new: &Point) -> Opt
         bend * missed.sqrt()
     });
     Some(balance.scale.relative(new, OF_STEPS, errors))
-}
-
-fn is_solved(point: &Point) -> bool {
-    matches!(point.status, PointStatus::Converged | PointStatus::HarmonicsLimit)
 }

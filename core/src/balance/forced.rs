@@ -1,30 +1,20 @@
 //! The forced response at one frequency.
 
-use super::accuracy::{errors, extended_order};
 use super::condensed::{Condensed, Path};
+use super::evaluation::{Evaluated, Evaluations};
+use super::ladder::{Ladder, Resolution, Rung, Verdict};
 use super::scale::{Scale, OF_HARMONICS};
-use super::settings::{HarmonicChoice, Method, Settings};
+use super::settings::{Method, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
 use super::{FreshStart, Progress};
-use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{broyden, homotopy, newton, Outcome, Report, System as _};
 use crate::timing::Profile;
 use crate::Error;
-use faer::c64;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Orders that automatic harmonics climb: half as many again from rung to rung.
-const LADDER: [usize; 17] = [1, 3, 5, 7, 9, 13, 19, 27, 39, 57, 83, 121, 177, 261, 387, 575, 857];
-/// Below this order the friction force has no shape that an estimate could start from.
-const LOWEST_ORDER: usize = 3;
-/// First rung: enough for a smooth slip cycle.
-const FIRST_RUNG: usize = 3;
-/// An estimate this far below the tolerance lets the next point try one rung less.
-const GENEROUS: f64 = 0.05;
 
 /// The harmonic balance of a model under its loads, from point to point.
 pub struct ForcedBalance<'a> {
@@ -34,7 +24,8 @@ pub struct ForcedBalance<'a> {
     half_wave: bool,
     forced: Vec<usize>,
     tables: BTreeMap<usize, Arc<SampleTable>>,
-    rung: usize,
+    evaluations: Evaluations<'a>,
+    pub(super) ladder: Ladder,
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     rescue: &'a FreshStart<'a>,
@@ -42,12 +33,12 @@ pub struct ForcedBalance<'a> {
     pub(super) profile: Profile,
 }
 
-/// What passes from one balance to the next: sample tables, the order that automatic harmonics
-/// start from, and the account of the work.
+/// What passes from one balance to the next: sample tables, the rung that automatic harmonics and
+/// samples start from, and the account of the work.
 #[derive(Default)]
 pub(crate) struct Memory {
     tables: BTreeMap<usize, Arc<SampleTable>>,
-    rung: usize,
+    rung: Rung,
     half_wave: bool,
     pub(crate) profile: Profile,
 }
@@ -77,9 +68,10 @@ impl<'a> ForcedBalance<'a> {
             settings,
             observe,
             half_wave,
+            ladder: Ladder::new(settings, &forced),
             forced,
             tables: BTreeMap::new(),
-            rung: FIRST_RUNG,
+            evaluations: Evaluations::new(model),
             scale: Scale::default(),
             progress: &|_| true,
             rescue: &|_, _| None,
@@ -113,7 +105,7 @@ impl<'a> ForcedBalance<'a> {
     pub(crate) fn remembering(mut self, memory: Memory) -> Self {
         let Memory { tables, rung, half_wave, profile } = memory;
         if half_wave == self.half_wave {
-            (self.tables, self.rung) = (tables, rung);
+            (self.tables, self.ladder.rung) = (tables, rung);
         }
         self.profile = profile;
         self
@@ -121,8 +113,8 @@ impl<'a> ForcedBalance<'a> {
 
     /// What a balance of the same contacts can use again.
     pub(crate) fn into_memory(self) -> Memory {
-        let Self { tables, rung, half_wave, profile, .. } = self;
-        Memory { tables, rung, half_wave, profile }
+        let Self { tables, ladder, half_wave, profile, .. } = self;
+        Memory { tables, rung: ladder.rung, half_wave, profile }
     }
 
     /// Whether only odd harmonics are solved for.
@@ -140,80 +132,83 @@ impl<'a> ForcedBalance<'a> {
         Arc::clone(table)
     }
 
-    /// Solves at one frequency [rad/s] from a start, or from the stuck response.
+    /// The model as it is evaluated with some samples per period, or with none.
+    ///
+    /// # Errors
+    /// An odd or too small number of samples.
+    pub(crate) fn evaluated(&mut self, samples: Option<usize>) -> Result<Evaluated<'a>, Error> {
+        self.evaluations.with(samples)
+    }
+
+    /// Solves at one frequency [rad/s] from a start, or from the stuck response: with more and more
+    /// of what is chosen automatically, until what is left out matters less than the tolerance.
     ///
     /// # Errors
     /// The loads themselves excite an undamped resonance.
     pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
-        match self.settings.harmonics {
-            HarmonicChoice::Fixed(highest) => self.solve_with(highest, omega, start),
-            HarmonicChoice::Auto => self.solve_automatically(omega, start),
+        let mut resolution = self.ladder.first();
+        if self.ladder.is_fixed() {
+            return self.solve_with(resolution, omega, start);
+        }
+        let mut start = start.cloned();
+        let (mut stalled, mut iterations) = (false, 0);
+        loop {
+            let mut point = self.solve_with(resolution, omega, start.as_ref())?;
+            iterations += point.iterations;
+            point.iterations = iterations;
+            let more = match point.status {
+                PointStatus::Converged => match self.judge(&point) {
+                    Verdict::More(more) => {
+                        start = point.unknowns;
+                        more
+                    }
+                    Verdict::Limit(limit) => {
+                        point.status = limit;
+                        return Ok(point);
+                    }
+                    Verdict::Enough => return Ok(point),
+                },
+                // One more rung may be what a stalled point lacks; it cures no singular equations.
+                PointStatus::Stalled if !stalled => {
+                    stalled = true;
+                    let Some(above) = self.ladder.above(resolution) else { return Ok(point) };
+                    above
+                }
+                _ => return Ok(point),
+            };
+            resolution = more;
         }
     }
 
-    /// Climbs the ladder of orders until the discarded harmonics matter less than the tolerance.
-    fn solve_automatically(
-        &mut self,
-        omega: f64,
-        start: Option<&Unknowns>,
-    ) -> Result<Point, Error> {
-        let limit = self.settings.max_harmonics;
-        let lowest = self.forced.last().copied().unwrap_or(1).max(1);
-        let rungs: Vec<usize> =
-            LADDER.iter().copied().filter(|&h| h >= lowest && h < limit).chain([limit]).collect();
-        let lowest_rung = rungs.iter().position(|&h| h >= LOWEST_ORDER).unwrap_or(0);
-        let mut rung = self.rung.min(rungs.len() - 1);
-        let mut stalled = false;
-        let mut start = start.cloned();
-        let mut iterations = 0;
-        loop {
-            let mut point = self.solve_with(rungs[rung], omega, start.as_ref())?;
-            iterations += point.iterations;
-            point.iterations = iterations;
-            match point.status {
-                PointStatus::Converged => {
-                    self.scale.include(&point);
-                    let error = self.scale.relative(
-                        &point,
-                        OF_HARMONICS,
-                        point.error_estimate.iter().copied(),
-                    );
-                    if error <= self.settings.tolerance {
-                        let generous = error <= GENEROUS * self.settings.tolerance;
-                        self.rung = (rung - usize::from(generous && rung > 0)).max(lowest_rung);
-                        return Ok(point);
-                    }
-                    if rung + 1 == rungs.len() {
-                        self.rung = rung;
-                        point.status = PointStatus::HarmonicsLimit;
-                        return Ok(point);
-                    }
-                    start = point.unknowns;
-                }
-                // One more rung may be what a stalled point lacks.
-                PointStatus::Stalled if !stalled && rung + 1 < rungs.len() => stalled = true,
-                // More harmonics cure no singular equations.
-                _ => return Ok(point),
-            }
-            rung += 1;
-        }
+    /// What the errors of a solution ask for.
+    fn judge(&mut self, point: &Point) -> Verdict {
+        self.scale.include(point);
+        let scale = &self.scale;
+        let of_samples = scale.relative(point, OF_HARMONICS, point.sampling_error.iter().copied());
+        // Nothing can be done about samples that were given.
+        let climb = self.ladder.samples_climb();
+        let errors = point.error_estimate.iter().zip(&point.sampling_error);
+        let counted = |(all, sampling): (&f64, &f64)| if climb { *all } else { all - sampling };
+        let error = scale.relative(point, OF_HARMONICS, errors.map(counted));
+        self.ladder.judge(point.resolution(), error, of_samples)
     }
 
     fn solve_with(
         &mut self,
-        highest: usize,
+        resolution: Resolution,
         omega: f64,
         start: Option<&Unknowns>,
     ) -> Result<Point, Error> {
-        let table = self.table(highest);
+        let table = self.table(resolution.harmonics);
+        let model = self.evaluated(resolution.samples)?;
         let (progress, share) = (self.progress, self.share);
         let interrupted = || !progress(share);
-        let mut equations = Condensed::new(self.model, &table, self.settings.residual, false);
+        let mut equations = Condensed::new(&model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
         if self.settings.method != Method::Newton {
             equations.densify();
         }
-        let solved = self.solve_equations(&mut equations, omega, start)?;
+        let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
         self.add_profile(&equations.profile);
         Ok(solved)
     }
@@ -228,6 +223,7 @@ impl<'a> ForcedBalance<'a> {
         equations: &mut Condensed<'_>,
         omega: f64,
         start: Option<&Unknowns>,
+        samples: Option<usize>,
     ) -> Result<Point, Error> {
         let contacts = self.model.compliance().contacts();
         if let Err((order, error)) = equations.set_omega(omega) {
@@ -267,6 +263,11 @@ impl<'a> ForcedBalance<'a> {
         };
         let start = std::time::Instant::now();
         let mut point = self.recover(equations, omega, &x, status)?;
+        point.samples = samples;
+        // Without an observed DOF there is nothing whose error could be estimated.
+        if status == PointStatus::Converged && !self.observe.is_empty() {
+            self.estimate(equations, &x, &mut point)?;
+        }
         self.profile.recovery += start.elapsed();
         point.residual = report.residual;
         point.iterations = report.iterations;
@@ -325,72 +326,6 @@ impl<'a> ForcedBalance<'a> {
         // The recovery reads slip loads and tangents at the point that is returned.
         let mut residual = vec![0.0; equations.size()];
         equations.residual(x, &mut residual);
-    }
-
-    /// Displacements, contact forces, slip shares and the error estimate of a solution.
-    fn recover(
-        &mut self,
-        equations: &Condensed<'_>,
-        omega: f64,
-        x: &[f64],
-        status: PointStatus,
-    ) -> Result<Point, Error> {
-        let harmonics = equations.harmonics();
-        let contacts = self.model.compliance().contacts();
-        let orders = harmonics.highest() + 1;
-        let mut point = Point::empty(omega, status, self.observe.len(), contacts);
-        point.harmonics = harmonics.highest();
-        let zero = c64::new(0.0, 0.0);
-        point.displacement = vec![zero; self.observe.len() * orders];
-        point.contact_displacement = vec![zero; contacts * orders];
-        point.contact_force = vec![zero; contacts * orders];
-        let slip_load = equations.slip_load();
-        let stiffness = self.model.contact_stiffness();
-        equations.displacements(x, &slip_load, self.observe, |order, observed, u, q| {
-            for (i, value) in observed.iter().enumerate() {
-                point.displacement[i * orders + order] = *value;
-            }
-            // A contact's stiffness couples its own points alone.
-            let points = self.model.points().iter().flat_map(|p| p.clone().map(move |i| (i, p)));
-            for (i, own) in points {
-                let stuck: c64 = own.clone().map(|j| u[j] * stiffness[(i, j)]).sum();
-                point.contact_displacement[i * orders + order] = u[i];
-                point.contact_force[i * orders + order] = stuck - q[i];
-            }
-        })?;
-        let mut summaries = vec![PointSummary::default(); contacts];
-        for (index, law) in self.model.laws().iter().enumerate() {
-            let range = self.model.points()[index].clone();
-            law.summary(equations.motion(index, x), &mut summaries[range]);
-        }
-        point.contacts = summaries;
-        // Without an observed DOF there is nothing whose error could be estimated.
-        if status == PointStatus::Converged && !self.observe.is_empty() {
-            self.estimate(harmonics, x, Some(equations), &mut point)?;
-        }
-        Ok(point)
-    }
-
-    /// Writes the error estimate of a solution `x`, of these equations if they are at hand.
-    pub(super) fn estimate(
-        &mut self,
-        harmonics: &Harmonics,
-        x: &[f64],
-        solved: Option<&Condensed<'_>>,
-        point: &mut Point,
-    ) -> Result<(), Error> {
-        point.error_estimate = vec![0.0; self.observe.len()];
-        let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
-        if slipping == 0 {
-            return Ok(());
-        }
-        let order = extended_order(harmonics, point.omega, self.model, slipping);
-        let table = self.table(order);
-        let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
-        let residual = self.settings.residual;
-        point.error_estimate =
-            errors(self.model, &table, residual, &solution, self.observe, point, solved)?;
-        Ok(())
     }
 }
 

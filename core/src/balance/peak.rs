@@ -1,10 +1,11 @@
 //! The true maximum of a curve between its grid points.
 
 use super::forced::ForcedBalance;
-use super::settings::{HarmonicChoice, Settings};
+use super::ladder::Resolution;
+use super::settings::Settings;
 use super::sweep::check_frequency;
 use super::unknowns::Unknowns;
-use super::{PointStatus, Progress};
+use super::Progress;
 use crate::fourier::{amplitude, Measure};
 use crate::model::Model;
 use crate::Error;
@@ -35,11 +36,11 @@ pub fn refine_peak(
         return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
     }
     let observe = [dof];
-    let (settings, mut start) = with_one_order(model, settings, &observe, [low, high, guess])?;
+    let (settings, mut start) = with_one_resolution(model, settings, &observe, [low, high, guess])?;
     let mut balance = ForcedBalance::new(model, settings, &observe)?.watched(progress);
     let mut height = |omega: f64| -> Result<f64, Error> {
         let point = balance.solve(omega, start.as_ref())?;
-        if !matches!(point.status, PointStatus::Converged | PointStatus::HarmonicsLimit) {
+        if !point.is_solved() {
             return Ok(f64::NEG_INFINITY);
         }
         let table = balance.table(point.harmonics);
@@ -51,26 +52,26 @@ pub fn refine_peak(
     brent(low, guess, high, &mut height)
 }
 
-/// Replaces automatic harmonics by the most that they choose at three frequencies: an amplitude
-/// whose order changes from point to point is too rough to maximise. Returns the solution at the
-/// last of them too.
-fn with_one_order(
+/// Replaces automatic harmonics and samples by the most that are chosen at three frequencies: an
+/// amplitude whose order changes from point to point is too rough to maximise. Returns the solution
+/// at the last of them too.
+fn with_one_resolution(
     model: &Model,
     settings: Settings,
     observe: &[usize],
     omega: [f64; 3],
 ) -> Result<(Settings, Option<Unknowns>), Error> {
-    if settings.harmonics != HarmonicChoice::Auto {
+    if !settings.is_automatic() {
         return Ok((settings, None));
     }
     let mut balance = ForcedBalance::new(model, settings, observe)?;
-    let (mut highest, mut start) = (1, None);
+    let (mut finest, mut start) = (Resolution { harmonics: 1, samples: None }, None);
     for frequency in omega {
         let point = balance.solve(frequency, start.as_ref())?;
-        highest = highest.max(point.harmonics);
+        finest = finest.or_finer(point.resolution());
         start = point.unknowns;
     }
-    Ok((Settings { harmonics: HarmonicChoice::Fixed(highest), ..settings }, start))
+    Ok((settings.at(finest), start))
 }
 
 /// Brent's maximiser without derivatives.

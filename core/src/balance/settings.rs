@@ -1,5 +1,6 @@
 //! Settings of a forced response, each with its default.
 
+use super::ladder::{resolving, Resolution};
 use crate::contact::Residual;
 use crate::solve::{FirstJacobian, NewtonSettings};
 use crate::Error;
@@ -23,17 +24,40 @@ pub enum Method {
     Broyden(FirstJacobian),
 }
 
+/// How the friction laws are evaluated.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Evaluation {
+    /// As the laws know best: by exact integrals, if they have them.
+    #[default]
+    Direct,
+    /// Marched through equidistant samples (see [`crate::contact::Marched`]).
+    Marched(SampleChoice),
+}
+
+/// How many samples per period a march takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SampleChoice {
+    /// A fixed number.
+    Fixed(usize),
+    /// As many at each point as the tolerance demands, a power of two.
+    Auto,
+}
+
 /// Settings of a forced response.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Harmonics kept; default [`HarmonicChoice::Auto`].
     pub harmonics: HarmonicChoice,
-    /// Relative error of the amplitudes, for automatic harmonics and steps; default 1e-3.
+    /// Relative error of the amplitudes, for automatic harmonics, samples and steps; default 1e-3.
     pub tolerance: f64,
     /// Force at mid-range of contacts that never slip; default [`Residual::Centred`].
     pub residual: Residual,
     /// Highest order that automatic harmonics may reach; default 255.
     pub max_harmonics: usize,
+    /// Evaluation of the laws; default [`Evaluation::Direct`].
+    pub evaluation: Evaluation,
+    /// Most samples that an automatic march may take, a power of two; default 16384.
+    pub max_samples: usize,
     /// Solver at each point; default [`Method::Newton`].
     pub method: Method,
     /// When the solver stops.
@@ -43,6 +67,8 @@ pub struct Settings {
 /// Highest order that may be asked for: its tables grow with the square, and a period with more
 /// turning points is no vibration.
 pub const HIGHEST_ORDER: usize = 1000;
+/// Most samples that may be asked for: their sampling error is that of rounding.
+const MOST_SAMPLES: usize = 1 << 20;
 /// Finest tolerance: the solvers end at 1e-11 of the contact displacements.
 const FINEST_TOLERANCE: f64 = 1e-8;
 
@@ -53,6 +79,8 @@ impl Default for Settings {
             tolerance: 1e-3,
             residual: Residual::Centred,
             max_harmonics: 255,
+            evaluation: Evaluation::Direct,
+            max_samples: 16384,
             method: Method::Newton,
             newton: NewtonSettings::default(),
         }
@@ -98,7 +126,33 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks the settings against the highest harmonic that the evaluation of the laws resolves:
+    /// The same settings with what is chosen automatically fixed.
+    #[must_use]
+    pub fn at(self, resolution: Resolution) -> Self {
+        let evaluation = match resolution.samples {
+            Some(samples) => Evaluation::Marched(SampleChoice::Fixed(samples)),
+            None => self.evaluation,
+        };
+        Self { harmonics: HarmonicChoice::Fixed(resolution.harmonics), evaluation, ..self }
+    }
+
+    /// Samples per period that were given.
+    #[must_use]
+    pub fn fixed_samples(&self) -> Option<usize> {
+        match self.evaluation {
+            Evaluation::Marched(SampleChoice::Fixed(samples)) => Some(samples),
+            _ => None,
+        }
+    }
+
+    /// Whether something is chosen automatically.
+    #[must_use]
+    pub fn is_automatic(&self) -> bool {
+        self.harmonics == HarmonicChoice::Auto
+            || self.evaluation == Evaluation::Marched(SampleChoice::Auto)
+    }
+
+    /// Checks the settings against the highest harmonic that laws evaluated as they are resolve:
     /// the error estimate looks as far beyond the kept harmonics as they reach.
     ///
     /// # Errors
@@ -107,6 +161,21 @@ impl Settings {
         let (entry, kept) = match self.harmonics {
             HarmonicChoice::Fixed(highest) => ("harmonics", highest),
             HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
+        };
+        let resolved = match self.evaluation {
+            Evaluation::Direct => resolved,
+            Evaluation::Marched(SampleChoice::Fixed(samples)) => (samples / 2).saturating_sub(1),
+            Evaluation::Marched(SampleChoice::Auto) => {
+                let most = self.max_samples;
+                let least = resolving(kept);
+                if most < least || most > MOST_SAMPLES || !most.is_power_of_two() {
+                    let remedy = format!(
+                        "must be a power of two from {least} to {MOST_SAMPLES} for harmonics up to {kept}"
+                    );
+                    return Err(Error::value("max_samples", most as f64, &remedy));
+                }
+                return Ok(());
+            }
         };
         let most = resolved.saturating_sub(1) / 2;
         if kept > most {

@@ -114,7 +114,7 @@ impl<'a> Equations<'a> {
         let mut point = self.recover(balance, omega, &x)?;
         (point.residual, point.iterations) = (report.residual, report.iterations);
         if estimate {
-            balance.estimate(&self.harmonics, &x, None, &mut point)?;
+            balance.estimate_truncation(&self.harmonics, &x, None, &mut point)?;
         }
         point.unknowns = Some(Unknowns { harmonics: self.harmonics.clone(), values: x });
         balance.profile.recovery += start.elapsed();

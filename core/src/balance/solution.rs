@@ -1,5 +1,6 @@
 //! What a forced response returns.
 
+use super::ladder::Resolution;
 use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
 use crate::timing::Profile;
@@ -18,6 +19,16 @@ pub enum PointStatus {
     NotComputed,
     /// Solved, but automatic harmonics reached their limit above the tolerance.
     HarmonicsLimit,
+    /// Solved, but automatic samples reached their limit above their share of the tolerance.
+    SamplesLimit,
+}
+
+impl PointStatus {
+    /// Whether the balance equations hold.
+    #[must_use]
+    pub fn is_solved(self) -> bool {
+        matches!(self, Self::Converged | Self::HarmonicsLimit | Self::SamplesLimit)
+    }
 }
 
 /// Solution at one frequency.
@@ -29,6 +40,8 @@ pub struct Point {
     pub status: PointStatus,
     /// Highest harmonic kept.
     pub harmonics: usize,
+    /// Samples per period of marched laws.
+    pub samples: Option<usize>,
     /// Residual, relative to the contact displacements.
     pub residual: f64,
     /// Newton iterations, homotopy included.
@@ -39,8 +52,10 @@ pub struct Point {
     pub contact_displacement: Vec<c64>,
     /// Amplitudes F_k of the contact forces, laid out likewise.
     pub contact_force: Vec<c64>,
-    /// What the discarded harmonics could change at each observed DOF [m].
+    /// What the discarded harmonics, and more samples, could change at each observed DOF [m].
     pub error_estimate: Vec<f64>,
+    /// The part of it that is due to the samples; zero of laws evaluated as they are [m].
+    pub sampling_error: Vec<f64>,
     /// Slip share and friction work per contact point.
     pub contacts: Vec<PointSummary>,
     pub(super) unknowns: Option<Unknowns>,
@@ -56,7 +71,13 @@ impl Point {
     /// Whether the balance equations hold.
     #[must_use]
     pub fn is_solved(&self) -> bool {
-        matches!(self.status, PointStatus::Converged | PointStatus::HarmonicsLimit)
+        self.status.is_solved()
+    }
+
+    /// What it resolves.
+    #[must_use]
+    pub fn resolution(&self) -> Resolution {
+        Resolution { harmonics: self.harmonics, samples: self.samples }
     }
 
     pub(crate) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {
@@ -64,12 +85,14 @@ impl Point {
             omega,
             status,
             harmonics: 0,
+            samples: None,
             residual: f64::NAN,
             iterations: 0,
             displacement: vec![c64::new(f64::NAN, 0.0); observed],
             contact_displacement: vec![c64::new(f64::NAN, 0.0); contacts],
             contact_force: vec![c64::new(f64::NAN, 0.0); contacts],
             error_estimate: vec![f64::NAN; observed],
+            sampling_error: vec![f64::NAN; observed],
             contacts: vec![
                 PointSummary { slip_fraction: f64::NAN, dissipation: f64::NAN };
                 contacts

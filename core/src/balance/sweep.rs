@@ -76,9 +76,7 @@ const REACH: [f64; 2] = [3.0, 1.5];
 /// Polynomial extrapolation from the last points that converged, of the degree that would have
 /// predicted the last one best.
 fn predict(points: &[Point], omega: f64) -> Option<Unknowns> {
-    let usable = |point: &&Point| {
-        matches!(point.status, PointStatus::Converged | PointStatus::HarmonicsLimit)
-    };
+    let usable = |point: &&Point| point.is_solved();
     let last = points.last().filter(usable)?.unknowns.as_ref()?;
     let known: Vec<(f64, Vec<f64>)> = points
         .iter()

@@ -19,10 +19,6 @@ use std::f64::consts::TAU;
 
 /// Fewest samples: below it there is no loop to speak of.
 const FEWEST: usize = 8;
-/// Automatic samples: the sampling error of the SNECMA beam then lies near 1e-5 of its amplitude.
-const AUTOMATIC: usize = 1024;
-/// Automatic samples per harmonic where there are many of them.
-const PER_HARMONIC: usize = 8;
 /// Rounds after which a march is taken as it is. An elastoplastic contact forgets its start with
 /// the first slip in either direction; several coupled points take some rounds more.
 const MOST_ROUNDS: usize = 200;
@@ -64,12 +60,6 @@ impl Marched {
             return Err(Error::value("samples", samples as f64, &remedy));
         }
         Ok(Self { law, samples })
-    }
-
-    /// Samples that serve a balance of harmonics up to `highest`.
-    #[must_use]
-    pub fn automatic_samples(highest: usize) -> usize {
-        AUTOMATIC.max((PER_HARMONIC * (highest + 1)).next_power_of_two())
     }
 
     /// Slip load of a contact that never slips, from the extreme samples: its value, and their

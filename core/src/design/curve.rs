@@ -4,7 +4,7 @@ use super::member::Member;
 use super::samples::Sample;
 use super::search::{first_look, Aim, Found, Search};
 use crate::balance::{
-    ForcedBalance, HarmonicChoice, Linearised, Memory, PointStatus, Progress, Settings,
+    ForcedBalance, HarmonicChoice, Linearised, Memory, PointStatus, Progress, Resolution, Settings,
 };
 use crate::fourier::Measure;
 use crate::model::{Model, Variation};
@@ -44,7 +44,7 @@ pub struct Peak {
     pub status: PointStatus,
     /// Highest harmonic kept.
     pub harmonics: usize,
-    /// What the discarded harmonics could change in its amplitude [m].
+    /// What the discarded harmonics, and more samples, could change in its amplitude [m].
     pub error_estimate: f64,
     /// Whether it lies at an end of the range.
     pub at_edge: bool,
@@ -108,7 +108,8 @@ pub(super) struct Follower<'a> {
     target: &'a Target,
     progress: &'a Progress<'a>,
     memory: Memory,
-    order: usize,
+    /// What the last search has resolved.
+    resolution: Option<Resolution>,
     seeds: Vec<Sample>,
     points: usize,
     /// Values without a solved peak.
@@ -131,10 +132,6 @@ impl<'a> Follower<'a> {
         // Refuses what no member could be solved with.
         let observe = [target.dof];
         let memory = ForcedBalance::new(model, settings, &observe)?.into_memory();
-        let order = match settings.harmonics {
-            HarmonicChoice::Fixed(highest) => highest,
-            HarmonicChoice::Auto => 0,
-        };
         Ok(Self {
             model,
             settings,
@@ -142,7 +139,7 @@ impl<'a> Follower<'a> {
             target,
             progress,
             memory,
-            order,
+            resolution: None,
             seeds: Vec::new(),
             points: 0,
             missing: Vec::new(),
@@ -166,13 +163,21 @@ impl<'a> Follower<'a> {
             return Ok(Peak::missing(value, PointStatus::NotComputed));
         }
         let member = Member::new(self.variation, self.model, self.settings.residual, value)?;
-        if self.order == 0 {
-            // The order of a first search is what the middle of the range asks for.
-            let middle = 0.5 * (self.target.span.0 + self.target.span.1);
-            self.order = self.judge(&member, middle, None, share)?.1.max(1);
-        }
+        let mut resolution = match (self.resolution, self.settings.harmonics) {
+            (Some(last), _) => last,
+            (None, HarmonicChoice::Fixed(harmonics)) if !self.settings.is_automatic() => {
+                Resolution { harmonics, samples: self.settings.fixed_samples() }
+            }
+            // A first search resolves what the middle of the range asks for.
+            (None, _) => {
+                let middle = 0.5 * (self.target.span.0 + self.target.span.1);
+                let least = Resolution { harmonics: 1, samples: None };
+                least.or_finer(self.judge(&member, middle, None, share)?.1)
+            }
+        };
         loop {
-            let Some(found) = self.search(&member, share)? else {
+            self.resolution = Some(resolution);
+            let Some(found) = self.search(&member, resolution, share)? else {
                 return Ok(self.failed(value));
             };
             let Some(&top) = found.tops.first() else { return Ok(self.failed(value)) };
@@ -182,11 +187,12 @@ impl<'a> Follower<'a> {
                 return Ok(Peak::missing(value, status));
             }
             let best = &found.samples[top.sample];
-            let (status, order, estimate) = self.judge(&member, best.at, Some(best), share)?;
-            if order > self.order && status != PointStatus::NotComputed {
-                // The harmonics that the peak asks for may move it, and change which is highest.
+            let (status, wanted, estimate) = self.judge(&member, best.at, Some(best), share)?;
+            let finer = resolution.or_finer(wanted);
+            if finer != resolution && status != PointStatus::NotComputed {
+                // What the peak asks for may move it, and change which is highest.
                 self.seeds = found.samples;
-                self.order = order;
+                resolution = finer;
                 continue;
             }
             if status == PointStatus::NotComputed {
@@ -201,13 +207,13 @@ impl<'a> Follower<'a> {
                 value,
                 omega: best.at,
                 amplitude: member.scale * best.knots[0].height,
-                slope: self.slope(&member, best)?,
+                slope: self.slope(&member, best, resolution.samples)?,
                 status,
-                harmonics: self.order,
+                harmonics: resolution.harmonics,
                 error_estimate: member.scale * estimate,
                 at_edge: top.sample == 0 || top.sample + 1 == found.samples.len(),
             };
-            self.order = order;
+            self.resolution = Some(wanted);
             self.seeds = found.samples;
             return Ok(peak);
         }
@@ -221,12 +227,13 @@ impl<'a> Follower<'a> {
         Peak::missing(value, PointStatus::Stalled)
     }
 
-    fn search(&mut self, member: &Member, share: f64) -> Result<Option<Found>, Error> {
-        let settings = Settings {
-            harmonics: HarmonicChoice::Fixed(self.order),
-            residual: member.residual,
-            ..self.settings
-        };
+    fn search(
+        &mut self,
+        member: &Member,
+        resolution: Resolution,
+        share: f64,
+    ) -> Result<Option<Found>, Error> {
+        let settings = Settings { residual: member.residual, ..self.settings.at(resolution) };
         let mut balance = ForcedBalance::new(&member.model, settings, &[])?
             .watched(self.progress)
             .remembering(std::mem::take(&mut self.memory));
@@ -238,7 +245,7 @@ impl<'a> Follower<'a> {
             gain: GAIN,
             most_points: MOST_POINTS,
         };
-        let search = Search::new(&member.model, member.residual, &aim, &mut balance);
+        let search = Search::new(member.residual, &aim, &mut balance);
         let looks = first_look(self.target.span, &self.seeds);
         let found = search.run(&looks, &self.seeds)?;
         self.points += found.as_ref().map_or(0, |found| found.samples.len());
@@ -246,15 +253,15 @@ impl<'a> Follower<'a> {
         Ok(found)
     }
 
-    /// Solves at a peak as the settings ask; says how that ended, with which order, and what the
-    /// discarded harmonics could change.
+    /// Solves at a peak as the settings ask; says how that ended, with what resolution, and what a
+    /// better one could change.
     fn judge(
         &mut self,
         member: &Member,
         omega: f64,
         start: Option<&Sample>,
         share: f64,
-    ) -> Result<(PointStatus, usize, f64), Error> {
+    ) -> Result<(PointStatus, Resolution, f64), Error> {
         let observe = [self.target.dof];
         let settings = Settings { residual: member.residual, ..self.settings };
         let mut balance = ForcedBalance::new(&member.model, settings, &observe)?
@@ -265,19 +272,25 @@ impl<'a> Follower<'a> {
         self.memory = balance.into_memory();
         self.points += 1;
         let point = point?;
-        Ok((point.status, point.harmonics, point.error_estimate[0]))
+        Ok((point.status, point.resolution(), point.error_estimate[0]))
     }
 
     /// Derivative of the peak in the parameter: the frequency at which it is highest moves, but
     /// the amplitude is stationary in it.
-    fn slope(&mut self, member: &Member, best: &Sample) -> Result<f64, Error> {
+    fn slope(
+        &mut self,
+        member: &Member,
+        best: &Sample,
+        samples: Option<usize>,
+    ) -> Result<f64, Error> {
         let mut balance = ForcedBalance::new(&member.model, self.settings, &[])?
             .remembering(std::mem::take(&mut self.memory));
         let table = balance.table(best.unknowns.harmonics().highest());
+        let model = balance.evaluated(samples)?;
         self.memory = balance.into_memory();
-        let (model, omega) = (&member.model, best.at);
+        let omega = best.at;
         let mut linearised =
-            Linearised::new(model, &table, member.residual, omega, &best.unknowns)?;
+            Linearised::new(&model, &table, member.residual, omega, &best.unknowns)?;
         let causes: Vec<_> = member.causes.iter().map(|(cause, _)| *cause).collect();
         let Target { dof, measure, .. } = *self.target;
         let (_, slopes) = linearised.amplitude(dof, measure, &causes)?;

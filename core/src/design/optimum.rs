@@ -6,7 +6,7 @@
 
 use super::curve::{Curve, Follower, Peak, Target};
 use super::member::objective;
-use crate::balance::{HarmonicChoice, PointStatus, Progress, Settings};
+use crate::balance::{PointStatus, Progress, Settings};
 use crate::model::{Model, Variation};
 use crate::Error;
 use std::time::Instant;
@@ -91,11 +91,8 @@ pub fn optimum(
         minima.push(refine(&mut follower, *bracket, &mut trials, share)?);
     }
     minima.sort_by(|a, b| a.height.total_cmp(&b.height));
-    // With automatic harmonics both sides of a dent are known to the tolerance only.
-    let depth = match settings.harmonics {
-        HarmonicChoice::Auto => 2.0 * settings.tolerance,
-        HarmonicChoice::Fixed(_) => 0.0,
-    };
+    // With automatic harmonics or samples both sides of a dent are known to the tolerance only.
+    let depth = if settings.is_automatic() { 2.0 * settings.tolerance } else { 0.0 };
     let minima = prominent(minima, &trials, depth);
     let missing = std::mem::take(&mut follower.missing);
     let mut peaks: Vec<Peak> = trials.iter().map(|trial| trial.peak).chain(missing).collect();
@@ -107,7 +104,7 @@ pub fn optimum(
 /// The peak at a value, if it is found.
 fn try_value(follower: &mut Follower<'_>, value: f64, share: f64) -> Result<Option<Trial>, Error> {
     let peak = follower.peak(value, share)?;
-    let solved = matches!(peak.status, PointStatus::Converged | PointStatus::HarmonicsLimit);
+    let solved = peak.status.is_solved();
     if !solved || !peak.amplitude.is_finite() {
         if peak.status != PointStatus::NotComputed {
             follower.missing.push(peak);

@@ -11,7 +11,6 @@ use super::samples::{predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
 use crate::contact::Residual;
 use crate::fourier::Measure;
-use crate::model::Model;
 use crate::Error;
 use std::ops::Range;
 
@@ -99,7 +98,6 @@ pub(super) struct Found {
 
 /// A search under way.
 pub(super) struct Search<'a, 'b> {
-    model: &'a Model,
     residual: Residual,
     aim: &'b Aim,
     dofs: Vec<usize>,
@@ -115,14 +113,13 @@ pub(super) struct Search<'a, 'b> {
 
 impl<'a, 'b> Search<'a, 'b> {
     pub(super) fn new(
-        model: &'a Model,
         residual: Residual,
         aim: &'b Aim,
         balance: &'b mut ForcedBalance<'a>,
     ) -> Self {
         let dofs = aim.groups.concat();
         let (samples, gaps) = (Vec::new(), Vec::new());
-        Self { model, residual, aim, dofs, balance, samples, gaps, failures: 0, failure: None }
+        Self { residual, aim, dofs, balance, samples, gaps, failures: 0, failure: None }
     }
 
     /// Finds the highest points from a first look, ascending from one end of the range to the
@@ -329,8 +326,8 @@ impl<'a, 'b> Search<'a, 'b> {
             return Ok(None);
         };
         let table = self.balance.table(unknowns.harmonics().highest());
-        let mut linearised =
-            Linearised::new(self.model, &table, self.residual, point.omega, unknowns)?;
+        let model = self.balance.evaluated(point.samples)?;
+        let mut linearised = Linearised::new(&model, &table, self.residual, point.omega, unknowns)?;
         let jets = linearised.frequency_jets(&self.dofs, self.aim.measure)?;
         self.balance.add_profile(linearised.profile());
         let Some((jets, rate)) = jets else {

@@ -3,7 +3,9 @@
 
 use super::samples::Sample;
 use super::search::{rivals, sorted, Aim, Found, Search};
-use crate::balance::{ForcedBalance, HarmonicChoice, Memory, PointStatus, Progress, Settings};
+use crate::balance::{
+    Evaluation, ForcedBalance, HarmonicChoice, Memory, PointStatus, Progress, Resolution, Settings,
+};
 use crate::fourier::Measure;
 use crate::model::Model;
 use crate::structure::Compliance;
@@ -49,7 +51,7 @@ pub struct Summit {
     pub status: PointStatus,
     /// Highest harmonic kept.
     pub harmonics: usize,
-    /// What the discarded harmonics could change in its amplitude [m].
+    /// What the discarded harmonics, and more samples, could change in its amplitude [m].
     pub error_estimate: f64,
     /// Whether it lies at an end of the range.
     pub at_edge: bool,
@@ -134,41 +136,43 @@ struct Climb<'a> {
 
 impl Climb<'_> {
     fn run(&mut self, order: Option<usize>) -> Result<Vec<Summit>, Error> {
-        let mut order = match (self.settings.harmonics, order) {
-            (HarmonicChoice::Fixed(highest), _) => highest,
-            (HarmonicChoice::Auto, Some(order)) => order.max(1),
-            (HarmonicChoice::Auto, None) => {
-                let middle = 0.5 * (self.quest.span.0 + self.quest.span.1);
-                self.judge(self.quest.groups[0][0], middle, None)?.1.max(1)
-            }
+        let least = match self.settings.harmonics {
+            HarmonicChoice::Fixed(harmonics) => harmonics,
+            HarmonicChoice::Auto => order.unwrap_or(1).max(1),
         };
+        let samples = self.settings.fixed_samples();
+        let mut resolution = Resolution { harmonics: least, samples };
+        let known = order.is_some() && self.settings.evaluation == Evaluation::Direct;
+        if self.settings.is_automatic() && !known {
+            let middle = 0.5 * (self.quest.span.0 + self.quest.span.1);
+            resolution = resolution.or_finer(self.judge(self.quest.groups[0][0], middle, None)?.1);
+        }
         let all = self.quest.groups.concat();
         let mut seeds: Vec<Sample> = Vec::new();
         loop {
-            let Some(found) = self.search(order, &seeds)? else {
+            let Some(found) = self.search(resolution, &seeds)? else {
                 let ended = !(self.progress)(0.0);
                 let status = if ended { PointStatus::NotComputed } else { PointStatus::Stalled };
                 return Ok(vec![Summit::missing(status); self.quest.groups.len()]);
             };
             let mut summits = Vec::with_capacity(found.tops.len());
-            let mut wanted = order;
+            let mut wanted = resolution;
             let mut first = 0;
             for (top, group) in found.tops.iter().zip(&self.quest.groups) {
                 let best = &found.samples[top.sample];
                 let (mut status, kept, error_estimate) =
                     self.judge(all[top.curve], best.at, Some(best))?;
-                if matches!(status, PointStatus::Converged | PointStatus::HarmonicsLimit) {
-                    wanted = wanted.max(kept);
+                if status.is_solved() {
+                    wanted = wanted.or_finer(kept);
                 }
                 status = top.failure.unwrap_or(status);
-                let solved = matches!(status, PointStatus::Converged | PointStatus::HarmonicsLimit);
-                summits.push(if solved {
+                summits.push(if status.is_solved() {
                     Summit {
                         omega: best.at,
                         amplitude: best.knots[top.curve].height,
                         member: top.curve - first,
                         status,
-                        harmonics: order,
+                        harmonics: resolution.harmonics,
                         error_estimate,
                         at_edge: top.sample == 0 || top.sample + 1 == found.samples.len(),
                     }
@@ -178,16 +182,17 @@ impl Climb<'_> {
                 });
                 first += group.len();
             }
-            if wanted == order || summits.iter().any(|s| s.status == PointStatus::NotComputed) {
+            if wanted == resolution || summits.iter().any(|s| s.status == PointStatus::NotComputed)
+            {
                 return Ok(summits);
             }
-            // The harmonics that a summit asks for may move it, and change which is highest.
-            (order, seeds) = (wanted, found.samples);
+            // What a summit asks for may move it, and change which is highest.
+            (resolution, seeds) = (wanted, found.samples);
         }
     }
 
-    fn search(&mut self, order: usize, seeds: &[Sample]) -> Result<Option<Found>, Error> {
-        let settings = Settings { harmonics: HarmonicChoice::Fixed(order), ..self.settings };
+    fn search(&mut self, resolution: Resolution, seeds: &[Sample]) -> Result<Option<Found>, Error> {
+        let settings = self.settings.at(resolution);
         // Nothing is observed: a point of the search needs no error estimate.
         let mut balance = ForcedBalance::new(self.model, settings, &[])?
             .watched(self.progress)
@@ -199,7 +204,7 @@ impl Climb<'_> {
             gain: GAIN,
             most_points: MOST_POINTS,
         };
-        let search = Search::new(self.model, settings.residual, &aim, &mut balance);
+        let search = Search::new(settings.residual, &aim, &mut balance);
         let looks = looks(self.model.compliance(), self.quest.span, seeds);
         let found = search.run(&looks, seeds)?;
         self.points += found.as_ref().map_or(0, |found| found.samples.len());
@@ -207,14 +212,14 @@ impl Climb<'_> {
         Ok(found)
     }
 
-    /// Solves at a summit as the settings ask; says how that ended, with which order, and what the
-    /// discarded harmonics could change.
+    /// Solves at a summit as the settings ask; says how that ended, with what resolution, and what a
+    /// better one could change.
     fn judge(
         &mut self,
         dof: usize,
         omega: f64,
         start: Option<&Sample>,
-    ) -> Result<(PointStatus, usize, f64), Error> {
+    ) -> Result<(PointStatus, Resolution, f64), Error> {
         let observe = [dof];
         let mut balance = ForcedBalance::new(self.model, self.settings, &observe)?
             .watched(self.progress)
@@ -223,7 +228,7 @@ impl Climb<'_> {
         self.memory = balance.into_memory();
         self.points += 1;
         let point = point?;
-        Ok((point.status, point.harmonics, point.error_estimate[0]))
+        Ok((point.status, point.resolution(), point.error_estimate[0]))
     }
 }
 

@@ -332,8 +332,12 @@ def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> str:
     share = float(arrays.error_estimate[point, dof] / amplitude_of(series, "half_range")[0])
     if not share > LARGE_ERROR:
         return ""
+    what = "The discarded harmonics"
+    if arrays.samples[point]:
+        what = f"{what} and the sampling"
+        remedy = "keep more harmonics, or take more samples, there"
     return (
-        f"The discarded harmonics could still change {dofs[dof]!r} by {share:.1%} at omega = "
+        f"{what} could still change {dofs[dof]!r} by {share:.1%} at omega = "
         f"{arrays.omega[point]:.6g} rad/s, the worst point; {remedy}."
     )
 

@@ -19,7 +19,7 @@ def contact_assumptions(model: Model, settings: Settings, arrays: Arrays) -> tup
     return (
         residual_assumption(model, settings, arrays),
         start_assumption(model),
-        _evaluation(model, settings),
+        _evaluation(model, settings, arrays),
     )
 
 
@@ -62,10 +62,20 @@ def start_assumption(model: Model) -> str:
     )
 
 
-def _evaluation(model: Model, settings: Settings) -> str:
+def _evaluation(model: Model, settings: Settings, arrays: Arrays) -> str:
     if settings.march is None or not model.contacts:
         return ""
+    taken = arrays.samples[arrays.solved]
+    if not taken.size:
+        return ""
+    least, most = int(taken.min()), int(taken.max())
+    count = f"{least}" if least == most else f"{least} to {most}"
+    chosen = (
+        f", chosen per point to a quarter of the tolerance of {settings.tolerance:g}"
+        if settings.march == "auto"
+        else ""
+    )
     return (
-        f"The contact forces were marched through {settings.march} samples per period; the error "
-        "of the sampling, of second order in their distance, is not part of the error estimate."
+        f"The contact forces were marched through {count} samples per period{chosen}; the error "
+        "of the sampling is part of the error estimate."
     )

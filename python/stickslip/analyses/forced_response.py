@@ -55,7 +55,9 @@ EVALUATIONS = ("exact", "marched")
 """How the friction laws are evaluated."""
 
 MAX_HARMONICS = 255
+MAX_SAMPLES = 16384
 MAX_ITERATIONS = 100
+_FEWEST_SAMPLES, _MOST_SAMPLES = 32, 1 << 20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,10 +80,13 @@ class Settings:
         First Jacobian of Broyden's method.
     evaluation : {"exact", "marched"}, optional
         Evaluation of the friction laws.
-    samples : int, optional
-        Samples per period of the marched evaluation. Default: `march` says how many.
+    samples : int or "auto", optional
+        Samples per period of the marched evaluation, or "auto": per point, as many as `tolerance`
+        asks for.
     max_harmonics : int, optional
         Highest harmonic that may be kept.
+    max_samples : int, optional
+        Most automatic samples per period, a power of two.
     max_iterations : int, optional
         Iterations per point before it is reported as stalled.
     span : (float, float), optional
@@ -101,8 +106,9 @@ class Settings:
     method: str = "newton"
     jacobian: str = "exact"
     evaluation: str = "exact"
-    samples: int | None = None
+    samples: int | Literal["auto"] = "auto"
     max_harmonics: int = MAX_HARMONICS
+    max_samples: int = MAX_SAMPLES
     max_iterations: int = MAX_ITERATIONS
     span: Span | None = None
 
@@ -110,6 +116,7 @@ class Settings:
         limit = whole_number(self.max_harmonics, "max_harmonics", smallest=1)
         iterations = whole_number(self.max_iterations, "max_iterations", smallest=1)
         harmonics = _harmonics(self.harmonics, limit)
+        kept = limit if harmonics == "auto" else harmonics
         checked: dict[str, object] = {
             "harmonics": harmonics,
             "tolerance": tolerance_of(self.tolerance),
@@ -117,10 +124,9 @@ class Settings:
             "method": choice(self.method, "method", self.methods),
             "jacobian": _jacobian(self.jacobian, self.method),
             "evaluation": choice(self.evaluation, "evaluation", EVALUATIONS),
-            "samples": _samples(
-                self.samples, self.evaluation, limit if harmonics == "auto" else harmonics
-            ),
+            "samples": _samples(self.samples, self.evaluation, kept),
             "max_harmonics": limit,
+            "max_samples": _max_samples(self.max_samples, self.march, kept),
             "max_iterations": iterations,
             "span": None if self.span is None else span_of(self.span),
         }
@@ -133,13 +139,9 @@ class Settings:
         return None if self.harmonics == "auto" else self.harmonics
 
     @property
-    def march(self) -> int | None:
+    def march(self) -> int | Literal["auto"] | None:
         """Samples per period of a marched evaluation; None if the evaluation is exact."""
-        if self.evaluation == "exact":
-            return None
-        from stickslip import _core
-
-        return self.samples or _core.automatic_samples(self.fixed_harmonics or self.max_harmonics)
+        return None if self.evaluation == "exact" else self.samples
 
 
 def forced_response(
@@ -152,10 +154,11 @@ def forced_response(
     method: str = "newton",
     jacobian: str = "exact",
     evaluation: str = "exact",
-    samples: int | None = None,
+    samples: int | Literal["auto"] = "auto",
     observe: Iterable[str] | str | None = None,
     progress: Callable[[float], None] | None = None,
     max_harmonics: int = MAX_HARMONICS,
+    max_samples: int = MAX_SAMPLES,
     max_iterations: int = MAX_ITERATIONS,
 ) -> ForcedResponse:
     """Steady response over excitation frequency, by harmonic balance.
@@ -174,7 +177,7 @@ def forced_response(
     harmonics : int or "auto", optional
         Highest harmonic kept, or "auto": per point, as many as `tolerance` asks for.
     tolerance : float, optional
-        Relative accuracy of automatic harmonics and steps, from 1e-8 to 0.5.
+        Relative accuracy of automatic harmonics, samples and steps, from 1e-8 to 0.5.
     residual : {"centred", "from_rest"} or float, optional
         Force [N] that a contact holds at mid-range of its displacement if it never slips; the
         steady state alone does not determine it. See `ForcedResponse.residual_bounds`.
@@ -186,16 +189,18 @@ def forced_response(
     evaluation : {"exact", "marched"}, optional
         Friction laws by exact Fourier integrals, or marched through equidistant samples: the
         alternating frequency/time scheme, for comparisons and for laws without a closed form. Its
-        sampling error is not part of the error estimate.
-    samples : int, optional
-        Samples per period of the marched evaluation, even and at least 4 (H + 1). Default: 1024,
-        or 8 (H + 1), rounded up to a power of two, if that is more.
+        sampling error is part of the error estimate.
+    samples : int or "auto", optional
+        Samples per period of the marched evaluation, even and at least 4 (H + 1), or "auto": per
+        point the power of two whose sampling error stays below a quarter of `tolerance`.
     observe : iterable of str, optional
         Degrees of freedom whose motion is kept. Default: all.
     progress : callable, optional
         Called about ten times per second with the fraction of the work that is done.
     max_harmonics : int, optional
         Highest harmonic that may be kept.
+    max_samples : int, optional
+        Most automatic samples per period, a power of two.
     max_iterations : int, optional
         Iterations per point before it is reported as stalled.
 
@@ -229,6 +234,7 @@ def forced_response(
         evaluation=evaluation,
         samples=samples,
         max_harmonics=max_harmonics,
+        max_samples=max_samples,
         max_iterations=max_iterations,
         span=grid if isinstance(grid, tuple) else None,
     )
@@ -280,6 +286,7 @@ def _solve(
             settings.jacobian,
             settings.march,
             settings.max_harmonics,
+            settings.max_samples,
             settings.max_iterations,
             progress,
         )
@@ -338,9 +345,11 @@ def _jacobian(jacobian: object, method: str) -> str:
     return name
 
 
-def _samples(samples: object, evaluation: str, kept: int) -> int | None:
-    if samples is None:
-        return None
+def _samples(samples: object, evaluation: str, kept: int) -> int | Literal["auto"]:
+    if isinstance(samples, str):
+        if samples != "auto":
+            raise ModelError(f'samples: {samples!r}; give "auto" or an even number')
+        return "auto"
     count = whole_number(samples, "samples", smallest=1)
     if evaluation == "exact":
         raise ModelError(
@@ -351,5 +360,18 @@ def _samples(samples: object, evaluation: str, kept: int) -> int | None:
     if count < least or count % 2:
         raise ModelError(
             f"samples: {count} for harmonics up to {kept}; give an even number from {least}"
+        )
+    return count
+
+
+def _max_samples(most: object, march: int | Literal["auto"] | None, kept: int) -> int:
+    count = whole_number(most, "max_samples", smallest=_FEWEST_SAMPLES, largest=_MOST_SAMPLES)
+    if count & (count - 1):
+        raise ModelError(f"max_samples: {count} is not a power of two; give one, such as 4096")
+    least = 4 * (kept + 1)
+    if march == "auto" and count < least:
+        raise ModelError(
+            f"max_samples: {count} for harmonics up to {kept}; give a power of two from {least}, "
+            "or keep fewer harmonics"
         )
     return count

@@ -48,7 +48,7 @@ def tuned_peaks(
         groups = [[f"{blade}.{dof}" for blade in range(disk.sectors)] for dof in dofs]
     require_held(model, settings.residual)
     try:
-        found = _core.summits(model.problem, settings.quest(model, groups), None, None)
+        found = _core.summits(model.problem, settings.quest(model, groups))
     except ModelError:
         raise
     except ValueError as error:

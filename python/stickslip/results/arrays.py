@@ -49,6 +49,8 @@ class Arrays:
     """(n,) Angular frequency [rad/s]."""
     harmonics: Int
     """(n,) Highest harmonic kept."""
+    samples: Int
+    """(n,) Samples per period of marched friction laws; 0 where they are not marched."""
     status: NDArray[np.uint8]
     """(n,) Codes of `Status`."""
     residual: Float
@@ -62,7 +64,7 @@ class Arrays:
     contact_force: Complex
     """(n, H+1, n_p) Contact force [N]."""
     error_estimate: Float
-    """(n, n_o) What the discarded harmonics could still change [m]."""
+    """(n, n_o) What the discarded harmonics, and more samples, could still change [m]."""
     slip_fraction: Float
     """(n, n_p) Share of the period that the point slips."""
     dissipation: Float

@@ -59,7 +59,7 @@ class ContactMotion(Sweep):
                     number,
                     np.ascontiguousarray(series),
                     self.settings.residual,
-                    self.settings.march,
+                    int(self.arrays.samples[position]) or None,
                     count,
                 )
             except ValueError as error:
@@ -130,7 +130,7 @@ class ContactMotion(Sweep):
             number,
             np.ascontiguousarray(series),
             self.settings.residual,
-            self.settings.march,
+            int(self.arrays.samples[position]) or None,
         )
         return ContactStates(constant(start / (2.0 * np.pi)), direction.astype(np.int8))
 

@@ -6,6 +6,7 @@ from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.results.arrays import Arrays
 from stickslip.results.certificate import Certificate
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CURVE_VARIABLES",
+    "curve_arrays",
     "curve_dataset",
     "curve_parts",
     "curve_settings",
@@ -60,7 +62,7 @@ CURVE_VARIABLES: dict[str, Variable] = {
         "error_estimate",
         ("omega", "dof"),
         "m",
-        "what the discarded harmonics could still change",
+        "what the discarded harmonics, and more samples, could still change",
     ),
     "slip_fraction": Variable(
         "slip_fraction",
@@ -77,6 +79,9 @@ CURVE_VARIABLES: dict[str, Variable] = {
     "residual": Variable("residual", ("omega",), "1", "relative residual of the balance equations"),
     "iterations": Variable("iterations", ("omega",), "1", "iterations of the solver"),
     "harmonics_kept": Variable("harmonics", ("omega",), "1", "highest harmonic kept"),
+    "samples": Variable(
+        "samples", ("omega",), "1", "samples per period of marched friction laws, 0 if not marched"
+    ),
     "status": Variable("status", ("omega",), "1", "how the point ended"),
 }
 """Those of every curve over frequency."""
@@ -130,7 +135,7 @@ def from_dataset(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
     """
     from stickslip.analyses.forced_response import Settings
 
-    arrays = read(CURVE_VARIABLES, dataset) | {"omega": coordinate(dataset, "omega")}
+    arrays = curve_arrays(dataset, CURVE_VARIABLES)
     return curve_parts(dataset, model, Arrays(**arrays)) | {
         "settings": Settings(**curve_settings(dataset)),
         "certificate": Certificate.of_dataset(dataset),
@@ -161,6 +166,21 @@ def curve_dataset(
     return dataset
 
 
+def curve_arrays(dataset: xr.Dataset, table: Mapping[str, Variable]) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a curve over frequency that a dataset holds, by their names."""
+    known = dict(table)
+    arrays = {"omega": coordinate(dataset, "omega")}
+    if "samples" not in dataset:
+        # The first files name the samples of a march in their settings, unless it chose them.
+        settings = settings_of(dataset)
+        if settings.get("evaluation") != "marched":
+            settings["samples"] = 0
+        if settings["samples"] is not None:
+            del known["samples"]
+            arrays["samples"] = np.full(arrays["omega"].size, settings["samples"], np.int64)
+    return read(known, dataset) | arrays
+
+
 def curve_parts(dataset: xr.Dataset, model: Model, arrays: Arrays) -> dict[str, Any]:
     """Return the arguments that all curves over frequency have, if the arrays fit the model."""
     points = sum(contact.points for contact in model.contacts)
@@ -181,6 +201,8 @@ def curve_settings(dataset: xr.Dataset) -> dict[str, Any]:
     settings = settings_of(dataset)
     if settings["span"] is not None:
         settings["span"] = tuple(settings["span"])
+    if "samples" in settings and settings["samples"] is None:
+        settings["samples"] = "auto"
     return settings
 
 

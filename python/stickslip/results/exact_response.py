@@ -15,13 +15,19 @@ from stickslip.model import ContactRef, Model, PointRef
 from stickslip.model.state import State
 from stickslip.results.arrays import Bool, Complex, Float, Int, Measure, constant
 from stickslip.results.contact_states import ContactStates, states_of
-from stickslip.results.dataset import CURVE_VARIABLES, curve_dataset, curve_parts, curve_settings
+from stickslip.results.dataset import (
+    CURVE_VARIABLES,
+    curve_arrays,
+    curve_dataset,
+    curve_parts,
+    curve_settings,
+)
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
 from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
-from stickslip.results.variables import Variable, coordinate, names, read, state_names
+from stickslip.results.variables import Variable, names, state_names
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -308,8 +314,7 @@ class ExactResponse(ForcedResponse):
         """Return the exact response that a dataset holds; see `Result.from_dataset`."""
         from stickslip.analyses.exact_response import ExactSettings
 
-        arrays = read(_VARIABLES, dataset) | {"omega": coordinate(dataset, "omega")}
-        orbits = OrbitArrays(**arrays)
+        orbits = OrbitArrays(**curve_arrays(dataset, _VARIABLES))
         given = curve_parts(dataset, model, orbits)
         if orbits.state.shape[1] != len(state_names(model)):
             raise ValueError(

@@ -207,7 +207,7 @@ class ForcedResponse(BladeMotion, Sensitivities):
         return highest_of(self, dofs, measure)
 
     def error_estimate(self, dof: str) -> Float:
-        """Return what the discarded harmonics could still change in a displacement.
+        """Return what the discarded harmonics, and more samples, could still change.
 
         Parameters
         ----------
@@ -217,7 +217,8 @@ class ForcedResponse(BladeMotion, Sensitivities):
         Returns
         -------
         ndarray of float64, shape (n,)
-            [m]. The discarded harmonics of the contact forces, pushed through the compliance.
+            [m], in a displacement. The discarded harmonics of the contact forces, pushed through
+            the compliance; of a marched evaluation with the error of its samples.
 
         Raises
         ------

@@ -156,7 +156,7 @@ def highest_of(result: ForcedResponse, dofs: Sequence[str], measure: Measure) ->
         }
         try:
             ((omega, amplitude, member, *_),) = _core.summits(
-                result.model.problem, quest, settings.march, None
+                result.model.problem, quest, settings.march, settings.max_samples
             )
         except ValueError as error:
             raise ModelError(f"peak of {dofs[index]!r}: {error}") from error
@@ -266,6 +266,7 @@ def refined(
             settings.jacobian,
             settings.march,
             settings.max_harmonics,
+            settings.max_samples,
             settings.max_iterations,
         )
     except ValueError as error:

@@ -193,6 +193,7 @@ class Sensitivities(ContactMotion):
             samples=settings.samples,
             observe=[dof],
             max_harmonics=settings.max_harmonics,
+            max_samples=settings.max_samples,
             max_iterations=settings.max_iterations,
         )
         slopes = there._slopes(dof, list(causes.values()), measure)[0]
@@ -229,7 +230,7 @@ class Sensitivities(ContactMotion):
                     position,
                     measure,
                     causes,
-                    self.settings.march,
+                    arrays.samples[solved],
                 )
             except ValueError as error:
                 raise ModelError(f"sensitivity of {dof!r}: {error}") from error

@@ -21,6 +21,7 @@ class Status(StrEnum):
     NOT_COMPUTED = "not computed"
     HARMONICS_LIMIT = "harmonics limit"
     ORBIT_STALLED = "orbit stalled"
+    SAMPLES_LIMIT = "samples limit"
 
     @classmethod
     def from_code(cls, code: int) -> Status:
@@ -30,7 +31,7 @@ class Status(StrEnum):
         ----------
         code : int
             0 converged, 1 stalled, 2 singular, 3 not computed, 4 harmonics limit,
-            5 orbit stalled.
+            5 orbit stalled, 6 samples limit.
 
         Raises
         ------
@@ -51,10 +52,11 @@ class Status(StrEnum):
     def solved(self) -> bool:
         """Whether the balance equations hold at this point.
 
-        True for `CONVERGED`, and for `HARMONICS_LIMIT`: there the equations are solved for the
-        harmonics that were kept, only more of them would be needed for the tolerance.
+        True for `CONVERGED`, and for `HARMONICS_LIMIT` and `SAMPLES_LIMIT`: there the equations are
+        solved for the harmonics that were kept and the samples that were taken, only more of them
+        would be needed for the tolerance.
         """
-        return self in (Status.CONVERGED, Status.HARMONICS_LIMIT)
+        return self in (Status.CONVERGED, Status.HARMONICS_LIMIT, Status.SAMPLES_LIMIT)
 
     @property
     def advice(self) -> str:
@@ -86,5 +88,10 @@ _ADVICE = {
     Status.ORBIT_STALLED: (
         "Shooting stopped before the orbit closed: at an undamped resonance friction may not bound "
         "the motion. Raise max_iterations, or see with transient whether the motion settles."
+    ),
+    Status.SAMPLES_LIMIT: (
+        "max_samples was reached before the sampling error of the marched friction laws met its "
+        "share of the tolerance. "
+        "Read error_estimate, and raise max_samples or tolerance, or evaluate the laws exactly."
     ),
 }

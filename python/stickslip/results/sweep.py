@@ -47,6 +47,11 @@ class Sweep(Result):
         return self.arrays.harmonics
 
     @property
+    def samples(self) -> Int:
+        """Samples per period of marched friction laws per point, shape (n,); 0 if not marched."""
+        return self.arrays.samples
+
+    @property
     def residual(self) -> Float:
         """Relative residual of the balance equations per point, shape (n,)."""
         return self.arrays.residual

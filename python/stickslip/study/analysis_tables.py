@@ -12,6 +12,7 @@ from stickslip.analyses.forced_response import (
     JACOBIANS,
     MAX_HARMONICS,
     MAX_ITERATIONS,
+    MAX_SAMPLES,
     METHODS,
     Settings,
     forced_response,
@@ -54,11 +55,18 @@ class BalanceTable(AnalysisEntries):
     evaluation: Annotated[str, WithJsonSchema({"enum": list(EVALUATIONS)})] = Field(
         default="exact", description="Evaluation of the friction laws."
     )
-    samples: Count | None = Field(
-        default=None, description="Samples per period of the marched evaluation."
+    samples: Annotated[
+        Annotated[Count, Tag("<number>")] | Annotated[Literal["auto"], Tag("<text>")],
+        number_or("<text>"),
+    ] = Field(
+        default="auto",
+        description="Samples per period of a marched evaluation, or 'auto': as the tolerance asks.",
     )
     max_harmonics: Count = Field(
         default=MAX_HARMONICS, description="Highest harmonic that may be kept."
+    )
+    max_samples: Count = Field(
+        default=MAX_SAMPLES, description="Most automatic samples, a power of two."
     )
     max_iterations: Count = Field(
         default=MAX_ITERATIONS, description="Iterations per point before it counts as stalled."
@@ -76,6 +84,7 @@ class BalanceTable(AnalysisEntries):
             evaluation=self.evaluation,
             samples=self.samples,
             max_harmonics=self.max_harmonics,
+            max_samples=self.max_samples,
             max_iterations=self.max_iterations,
         )
         return self
@@ -95,6 +104,7 @@ class BalanceTable(AnalysisEntries):
             observe=self.observe,
             progress=progress,
             max_harmonics=self.max_harmonics,
+            max_samples=self.max_samples,
             max_iterations=self.max_iterations,
         )
 

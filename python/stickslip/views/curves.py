@@ -100,6 +100,13 @@ def _harmonics(result: ForcedResponse) -> str:
     return f"auto, {kept.min()} to {kept.max()}" if kept.size else "auto"
 
 
+def _samples(result: ForcedResponse) -> str:
+    taken = result.samples[result.arrays.solved]
+    if result.settings.samples != "auto" or not taken.size:
+        return f"{result.settings.samples} per period"
+    return f"auto, {taken.min()} to {taken.max()} per period"
+
+
 def _converged(result: ForcedResponse) -> str:
     return f"{int(result.converged.sum())} of {result.omega.size}"
 
@@ -145,7 +152,7 @@ def _without_orbit(name: str, result: ForcedResponse) -> list[str]:
 
 def cautions(name: str, result: ForcedResponse) -> list[str]:
     """Return the assumptions that put the numbers in doubt, one line each."""
-    doubtful = ("The discarded harmonics could", "The damping leaves", "The damping is negative")
+    doubtful = ("The discarded harmonics", "The damping leaves", "The damping is negative")
     return [f"{name}: {line}" for line in result.assumptions if line.startswith(doubtful)]
 
 
@@ -163,6 +170,8 @@ def facts(result: ForcedResponse) -> list[Row]:
         ("points", f"{omega.size} {span}, {_converged(result)} converged"),
         ("harmonics", _harmonics(result)),
     ]
+    if result.samples.any():
+        rows.append(("samples", _samples(result)))
     if isinstance(result, ExactResponse):
         rows += _orbit_rows(result)
     return rows + [("assumed", text) for text in result.assumptions]

@@ -1,0 +1,54 @@
+//! A model under the evaluations of its laws that a balance asks for.
+
+use crate::model::Model;
+use crate::Error;
+use std::collections::BTreeMap;
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// A model as it is evaluated.
+#[derive(Clone)]
+pub(crate) enum Evaluated<'a> {
+    /// As it was given.
+    Given(&'a Model),
+    /// With marched laws.
+    Marched(Arc<Model>),
+}
+
+impl Deref for Evaluated<'_> {
+    type Target = Model;
+
+    fn deref(&self) -> &Model {
+        match self {
+            Self::Given(model) => model,
+            Self::Marched(model) => model,
+        }
+    }
+}
+
+/// A model with its laws marched through every number of samples that has been asked for. All of
+/// them share one decomposition.
+pub(super) struct Evaluations<'a> {
+    model: &'a Model,
+    marched: BTreeMap<usize, Arc<Model>>,
+}
+
+impl<'a> Evaluations<'a> {
+    pub(super) fn new(model: &'a Model) -> Self {
+        Self { model, marched: BTreeMap::new() }
+    }
+
+    /// The model under `samples` per period, or as it was given.
+    ///
+    /// # Errors
+    /// An odd or too small number of samples.
+    pub(super) fn with(&mut self, samples: Option<usize>) -> Result<Evaluated<'a>, Error> {
+        let Some(samples) = samples else { return Ok(Evaluated::Given(self.model)) };
+        if let Some(known) = self.marched.get(&samples) {
+            return Ok(Evaluated::Marched(Arc::clone(known)));
+        }
+        let marched = Arc::new(self.model.marched(samples)?);
+        self.marched.insert(samples, Arc::clone(&marched));
+        Ok(Evaluated::Marched(marched))
+    }
+}

@@ -1,0 +1,187 @@
+//! The ladders that automatic harmonics and samples climb.
+//!
+//! The errors say which of the two a point lacks: what the discarded harmonics could change, and
+//! what a march through more samples could. Samples climb first, because a coarse march knows too
+//! little of the discarded harmonics. The next point begins where the last one has ended, a rung
+//! lower if that was generous.
+
+use super::settings::{Evaluation, HarmonicChoice, SampleChoice, Settings};
+use super::solution::PointStatus;
+
+/// Orders that automatic harmonics climb: half as many again from rung to rung.
+const ORDERS: [usize; 17] = [1, 3, 5, 7, 9, 13, 19, 27, 39, 57, 83, 121, 177, 261, 387, 575, 857];
+/// Below this order the friction force has no shape that an estimate could start from.
+const LOWEST_ORDER: usize = 3;
+/// First rung: enough for a smooth slip cycle.
+const FIRST_RUNG: usize = 3;
+/// An estimate this far below the tolerance lets the next point try one rung less.
+const GENEROUS: f64 = 0.05;
+/// Share of the tolerance that the sampling error may take: it leaves most to the discarded
+/// harmonics, which cost more, for twice the samples that the whole tolerance would ask for.
+const OF_SAMPLES: f64 = 0.25;
+/// A sampling error this far below its share lets the next point try half the samples, which err
+/// four times as much.
+const GENEROUS_SAMPLES: f64 = 0.125;
+/// Fewest automatic samples: fewer make no loop to speak of.
+const FEWEST_SAMPLES: usize = 32;
+
+/// What a balance resolves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Resolution {
+    /// Highest harmonic kept.
+    pub harmonics: usize,
+    /// Samples per period of marched laws; none if they are evaluated as they are.
+    pub samples: Option<usize>,
+}
+
+impl Resolution {
+    /// Enough for both.
+    #[must_use]
+    pub fn or_finer(self, other: Self) -> Self {
+        Self {
+            harmonics: self.harmonics.max(other.harmonics),
+            samples: self.samples.max(other.samples),
+        }
+    }
+}
+
+/// Samples that resolve harmonics up to `highest`, and as many beyond: a power of two.
+pub(super) fn resolving(highest: usize) -> usize {
+    (4 * (highest + 1)).next_power_of_two().max(FEWEST_SAMPLES)
+}
+
+/// Where the next point begins.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rung {
+    order: usize,
+    samples: usize,
+}
+
+impl Default for Rung {
+    fn default() -> Self {
+        Self { order: FIRST_RUNG, samples: FEWEST_SAMPLES }
+    }
+}
+
+/// What the errors of a solution ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    Enough,
+    More(Resolution),
+    /// More than the settings allow.
+    Limit(PointStatus),
+}
+
+/// The rungs that the settings allow.
+#[derive(Debug, Clone)]
+pub(super) struct Ladder {
+    settings: Settings,
+    orders: Vec<usize>,
+    lowest: usize,
+    pub(super) rung: Rung,
+}
+
+impl Ladder {
+    /// The ladder of a model with loads at the harmonics `forced`.
+    pub(super) fn new(settings: Settings, forced: &[usize]) -> Self {
+        let limit = settings.max_harmonics;
+        let least = forced.last().copied().unwrap_or(1).max(1);
+        let orders: Vec<usize> = match settings.harmonics {
+            HarmonicChoice::Fixed(highest) => vec![highest],
+            HarmonicChoice::Auto => {
+                let rungs = ORDERS.iter().copied().filter(|&h| h >= least && h < limit);
+                rungs.chain([limit]).collect()
+            }
+        };
+        let lowest = orders.iter().position(|&h| h >= LOWEST_ORDER).unwrap_or(0);
+        Self { settings, orders, lowest, rung: Rung::default() }
+    }
+
+    /// Whether there is nothing to choose.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.settings.harmonics != HarmonicChoice::Auto && !self.samples_climb()
+    }
+
+    /// Whether the number of samples is chosen.
+    pub(super) fn samples_climb(&self) -> bool {
+        self.settings.evaluation == Evaluation::Marched(SampleChoice::Auto)
+    }
+
+    /// What the next point begins with.
+    pub(super) fn first(&self) -> Resolution {
+        let harmonics = self.orders[self.rung.order.min(self.orders.len() - 1)];
+        let samples = match self.settings.evaluation {
+            Evaluation::Direct => None,
+            Evaluation::Marched(SampleChoice::Fixed(samples)) => Some(samples),
+            Evaluation::Marched(SampleChoice::Auto) => Some(self.rung.samples),
+        };
+        self.allowed(harmonics, samples)
+    }
+
+    /// Judges a solution by its errors relative to its amplitudes: that of all that is chosen
+    /// automatically, and the part of it that more samples would take away.
+    pub(super) fn judge(&mut self, at: Resolution, error: f64, of_samples: f64) -> Verdict {
+        let tolerance = self.settings.tolerance;
+        let target = OF_SAMPLES * tolerance;
+        let mut verdict = Verdict::Enough;
+        let mut left = error;
+        if let Some(samples) = at.samples.filter(|_| self.samples_climb()) {
+            self.rung.samples = samples;
+            if of_samples > target {
+                let finer = self.allowed(at.harmonics, finer(at.samples, of_samples / target));
+                if finer != at {
+                    return Verdict::More(finer);
+                }
+                // More harmonics bring the rest of the error down all the same.
+                verdict = Verdict::Limit(PointStatus::SamplesLimit);
+                left -= of_samples;
+            } else if of_samples <= GENEROUS_SAMPLES * target {
+                self.rung.samples = samples / 2;
+            }
+        }
+        if self.settings.harmonics != HarmonicChoice::Auto {
+            return verdict;
+        }
+        let order = self.position(at);
+        if left > tolerance {
+            let Some(&more) = self.orders.get(order + 1) else {
+                self.rung.order = order;
+                return Verdict::Limit(PointStatus::HarmonicsLimit);
+            };
+            return Verdict::More(self.allowed(more, at.samples));
+        }
+        let generous = left <= GENEROUS * tolerance;
+        self.rung.order = (order - usize::from(generous && order > 0)).max(self.lowest);
+        verdict
+    }
+
+    /// A rung more of all that is chosen automatically, if there is one.
+    pub(super) fn above(&self, at: Resolution) -> Option<Resolution> {
+        let harmonics = self.orders.get(self.position(at) + 1).copied().unwrap_or(at.harmonics);
+        let samples = if self.samples_climb() { finer(at.samples, 1.0) } else { at.samples };
+        Some(self.allowed(harmonics, samples)).filter(|above| *above != at)
+    }
+
+    fn position(&self, at: Resolution) -> usize {
+        self.orders.iter().position(|&order| order == at.harmonics).unwrap_or(0)
+    }
+
+    /// As many samples as asked for within what the harmonics need and the settings allow.
+    fn allowed(&self, harmonics: usize, samples: Option<usize>) -> Resolution {
+        let bounded = |samples: usize| {
+            if self.samples_climb() {
+                samples.max(resolving(harmonics)).min(self.settings.max_samples)
+            } else {
+                samples
+            }
+        };
+        Resolution { harmonics, samples: samples.map(bounded) }
+    }
+}
+
+/// The next power of two whose error, of second order, is about `excess` times less.
+fn finer(samples: Option<usize>, excess: f64) -> Option<usize> {
+    // A coarse march misjudges its error: no more than three rungs at once.
+    let rungs = (0.5 * excess.log2()).round().clamp(1.0, 3.0) as u32;
+    samples.map(|samples| samples.next_power_of_two() << rungs)
+}

@@ -1,0 +1,65 @@
+//! How wrong a marched balance is: what more samples per period would still change.
+//!
+//! One Newton step of the balance, with the slip load of a march through about four times as many
+//! samples and the tangent that it was solved with. The error of a march falls with the second
+//! power of the distance of its samples, of laws that couple several points now and then with the
+//! first, and its factor depends on where between two samples each turning point and transition
+//! falls. So it is uneven: the change from N to 2N samples can vanish where the error does not.
+//! Four times as many leave little room for that; and as they do not contain the N instants, what
+//! falls close beside one of those is seen as well.
+
+use super::condensed::Condensed;
+use super::solution::Point;
+use crate::model::Model;
+use crate::solve::System as _;
+use crate::Error;
+use faer::c64;
+
+/// What N samples are compared with, 4 N + 2: an instant of the one falls between two of the other.
+const FINER: [usize; 2] = [4, 2];
+/// The step to the finer march times this is the whole error if that is of first order, and a
+/// little more than it if it is of second order.
+const CAUTION: f64 = 4.0 / 3.0;
+
+/// Samples of the march that one through `samples` is compared with.
+pub(super) fn finer_than(samples: usize) -> usize {
+    FINER[0] * samples + FINER[1]
+}
+
+/// Sum over all harmonics of the change that the laws of `finer` would bring to each observed DOF
+/// [m]; `solved` are the equations of the solution `x`.
+pub(super) fn sampling_errors(
+    solved: &mut Condensed<'_>,
+    finer: &Model,
+    x: &[f64],
+    observe: &[usize],
+    point: &Point,
+) -> Result<Vec<f64>, Error> {
+    let mut errors = vec![0.0; observe.len()];
+    let infinite = vec![f64::INFINITY; observe.len()];
+    let mut fine = Condensed::new(finer, solved.table, solved.residual, false);
+    if fine.set_omega_beside(point.omega, Some(&*solved)).is_err() {
+        return Ok(infinite);
+    }
+    let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    fine.value(x, &mut defect);
+    let slips = |load: &[f64]| load.iter().any(|q| *q != 0.0);
+    let mut slip_load = fine.slip_load();
+    if !slips(&slip_load) && !slips(&solved.slip_load()) {
+        return Ok(errors);
+    }
+    if !solved.solve(&defect, &mut step) {
+        return Ok(infinite);
+    }
+    step.iter_mut().for_each(|s| *s = -*s);
+    solved.add_tangent_product(&step, &mut slip_load);
+    let corrected: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
+    let orders = point.harmonics + 1;
+    solved.displacements(&corrected, &slip_load, observe, |order, observed, _, _| {
+        for (dof, error) in errors.iter_mut().enumerate() {
+            let before: c64 = point.displacement[dof * orders + order];
+            *error += CAUTION * (observed[dof] - before).norm();
+        }
+    })?;
+    Ok(errors)
+}
