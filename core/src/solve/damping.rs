@@ -13,6 +13,9 @@ const SHORTEST: f64 = 1e-4;
 /// Share of the length at which the error would fall most: the path to the solution bends at every
 /// kink, and shorter steps stay close to it.
 const CAUTION: f64 = 0.5;
+/// Decrease, relative to the length, that counts as one: full steps that leave nearly all of themselves
+/// go to and fro.
+const DECREASE: f64 = 0.25;
 /// Steps in one solution that may leave more than was there: right at a kink the Jacobian of one
 /// side leads nowhere on the other.
 const STRIDES: usize = 4;
@@ -51,8 +54,8 @@ impl Damping {
         self.last = None;
     }
 
-    /// Takes x along `−step` as far as the step that would follow becomes smaller. The system holds
-    /// the Jacobian of `step`, before and after.
+    /// Takes x along `−step` to where the step that would follow is smaller. The system holds the
+    /// Jacobian of `step`, before and after.
     pub(super) fn advance(
         &mut self,
         system: &mut impl System,
@@ -69,7 +72,7 @@ impl Damping {
             system.value(&self.x, &mut self.residual);
             if system.solve(&self.residual, &mut self.following) {
                 let left = norm(&self.following);
-                if left < size {
+                if left <= (1.0 - DECREASE * length) * size {
                     x.copy_from_slice(&self.x);
                     self.last = Some([size, length]);
                     return if length < 1.0 { Damped::Part } else { Damped::Full(left / size) };
