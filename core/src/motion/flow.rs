@@ -190,6 +190,10 @@ impl<'a> Flow<'a> {
         let state = regime.points[point];
         if state != PointState::Stuck {
             self.fill_slip_velocity(regime, point, state.sign(), natural);
+            // Another point's onset of slip turns it back at once.
+            if self.scratch[0] < -AT_REST * self.scratch[1..].iter().map(|a| a.abs()).sum::<f64>() {
+                return Next::Now(PointState::Stuck);
+            }
             return match self.leaves(length / natural, 0.0) {
                 Some(0.0) => Next::Now(PointState::Stuck),
                 Some(share) => Next::At(share * natural, PointState::Stuck),
