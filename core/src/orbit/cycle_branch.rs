@@ -140,7 +140,7 @@ impl Finder<'_> {
                 let starts = out
                     .cycles
                     .iter()
-                    .map(|cycle| orbits.unknowns(&cycle.response, cycle.value, scale).ok())
+                    .map(|cycle| orbits.start(&cycle.response, cycle.value, scale))
                     .collect();
                 judge(&self.judge(orbits, false), starts, &mut out, interrupted, share);
             }
@@ -163,7 +163,7 @@ impl Finder<'_> {
             let mut balance = CycleBalance::new(&self.given, &table, &start, interrupted);
             let point = balance.point(&start, self.onset.dof);
             let value = start[start.len() - 1];
-            let guess = of_ratio.unknowns(&point, value, scale)?;
+            let guess = of_ratio.unknowns(&point, value, scale, 1)?;
             let mut curve = OrbitCurve::new(&of_ratio, scale, &guess, interrupted);
             at_parameter(&mut curve, &guess, value, 40).ok_or_else(|| self.no_start())?.0
         };
@@ -260,7 +260,8 @@ impl Finder<'_> {
     ) -> Result<Traced, Error> {
         let settings = self.settings;
         let steps = Steps::default();
-        let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]);
+        // The mean over the states, however many there are.
+        let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]) / (z.len() as f64).sqrt();
         let first = motion(&start);
         let endless = |z: &[f64]| motion(z) > ENDLESS * first;
         if *self.family.scalar() == Scalar::Ratio {
@@ -308,8 +309,11 @@ impl Finder<'_> {
         let low = values.clone().fold(settings.range.0, f64::min).min(own);
         let high = values.fold(settings.range.1, f64::max).max(own);
         let bounds = Bounds { range: (low, high), most: settings.most, ends: &endless };
-        let up = Branch::walk(curve, z.clone(), 1.0, steps, &bounds);
-        let down = Branch::walk(curve, z, -1.0, steps, &bounds);
+        let mut up = Branch::walk(curve, z, 1.0, steps, &bounds);
+        let down = Branch::walk(curve, up.first().to_vec(), -1.0, steps, &bounds);
+        if !up.lift(curve, down.first().len()) {
+            up = Branch::from_start(down.first().to_vec());
+        }
         Ok(joined(up, down))
     }
 

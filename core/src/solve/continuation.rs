@@ -27,6 +27,17 @@ pub trait Curve {
     /// Has a point become part of the curve, for what is defined relative to the last one.
     fn accept(&mut self, z: &[f64]);
 
+    /// Number of unknowns that the equations need about the point `z`: more than it has where they
+    /// are too sensitive to those.
+    fn wanted(&mut self, z: &[f64]) -> usize {
+        z.len()
+    }
+
+    /// The same point in more unknowns; the last two keep their meaning.
+    fn lifted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
+        (z.len() == unknowns).then(|| z.to_vec())
+    }
+
     /// Whether the caller wants to end the analysis.
     fn interrupted(&self) -> bool {
         false
@@ -115,6 +126,12 @@ impl Continuation {
             steps,
             short: 0,
         })
+    }
+
+    /// Goes on in more unknowns from the last two points, which are given in them.
+    pub(super) fn lift(&mut self, curve: &mut dyn Curve, before: &[f64], point: &[f64]) {
+        self.point = before.to_vec();
+        self.move_to(curve, point.to_vec());
     }
 
     /// Takes one step.
