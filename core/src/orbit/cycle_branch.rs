@@ -309,11 +309,8 @@ impl Finder<'_> {
         let low = values.clone().fold(settings.range.0, f64::min).min(own);
         let high = values.fold(settings.range.1, f64::max).max(own);
         let bounds = Bounds { range: (low, high), most: settings.most, ends: &endless };
-        let mut up = Branch::walk(curve, z, 1.0, steps, &bounds);
-        let down = Branch::walk(curve, up.first().to_vec(), -1.0, steps, &bounds);
-        if !up.lift(curve, down.first().len()) {
-            up = Branch::from_start(down.first().to_vec());
-        }
+        let up = Branch::walk(curve, z.clone(), 1.0, steps, &bounds);
+        let down = Branch::walk(curve, z, -1.0, steps, &bounds);
         Ok(joined(up, down))
     }
 

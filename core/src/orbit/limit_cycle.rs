@@ -6,7 +6,7 @@
 //! steers Newton's method. The phase is held across the velocity of the last accepted point, which
 //! never fails, and reported orbits begin at a maximum of the DOF that moves most.
 
-use super::segments::{follow, halved, product_eigenvalues, too_long, Segment};
+use super::segments::{follow, halved, product_eigenvalues, suited, Segment, Suited};
 use super::shooting::Shooting;
 use super::start::start_of;
 use crate::balance::Point;
@@ -264,12 +264,6 @@ impl<'a> OrbitCurve<'a> {
             Some(states.collect())
         })
     }
-
-    /// Two points in the same number of segments.
-    pub(super) fn matched(&mut self, a: &[f64], b: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let unknowns = a.len().max(b.len());
-        Some((self.lifted(a, unknowns)?, self.lifted(b, unknowns)?))
-    }
 }
 
 impl Curve for OrbitCurve<'_> {
@@ -352,23 +346,28 @@ impl Curve for OrbitCurve<'_> {
     }
 
     fn wanted(&mut self, z: &[f64]) -> usize {
-        let known = self.evaluate(z, true).then_some(self.at.as_ref()).flatten();
         let states = z.len().saturating_sub(2);
-        if known.is_some_and(|at| too_long(&at.segments)) {
-            2 * states + 2
-        } else {
-            states + 2
+        let known = self.evaluate(z, true).then_some(self.at.as_ref()).flatten();
+        match known.map(|at| suited(&at.segments)) {
+            Some(Suited::More) => 2 * states + 2,
+            Some(Suited::Fewer) => states / 2 + 2,
+            Some(Suited::These) | None => states + 2,
         }
     }
 
-    fn lifted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
-        let mut z = z.to_vec();
-        while z.len() < unknowns {
-            let last = z.get(z.len().checked_sub(2)?..)?.to_vec();
-            z = self.with_shooting(&z, |_, shooting, y| halved(shooting, y))?;
-            z.extend(last);
+    fn converted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
+        let (y, last) = z.split_at(z.len().checked_sub(2)?);
+        let mut y = y.to_vec();
+        while y.len() + 2 < unknowns {
+            let starts: Vec<f64> = y.iter().chain(last).copied().collect();
+            y = self.with_shooting(&starts, |_, shooting, y| halved(shooting, y))?;
         }
-        Some(z)
+        while y.len() + 2 > unknowns {
+            let size = self.orbits.size();
+            y = y.chunks_exact(size).step_by(2).flatten().copied().collect();
+        }
+        y.extend(last);
+        Some(y)
     }
 
     fn interrupted(&self) -> bool {

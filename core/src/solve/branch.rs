@@ -65,14 +65,14 @@ impl Branch {
         steps: Steps,
         bounds: &Bounds<'_>,
     ) -> Self {
-        let mut branch = Self::from_start(start);
-        loop {
-            let wanted = curve.wanted(branch.last());
-            if wanted <= branch.last().len() || !branch.lift(curve, wanted) {
-                break;
-            }
-        }
-        let start = branch.last().to_vec();
+        let start = suited(curve, start);
+        let mut branch = Self {
+            points: vec![start.clone()],
+            folds: Vec::new(),
+            end: End::Stalled,
+            iterations: 0,
+            jumps: 0,
+        };
         let Some(mut walk) = Continuation::new(curve, start, sign, steps) else { return branch };
         branch.end = loop {
             match walk.advance(curve) {
@@ -99,45 +99,17 @@ impl Branch {
                 break End::Points;
             }
             let wanted = curve.wanted(&walk.point);
-            if wanted > walk.point.len() {
-                if !branch.lift(curve, wanted) {
-                    break End::Stalled;
-                }
-                if let [.., before, point] = &branch.points[..] {
-                    walk.lift(curve, before, point);
-                }
+            if wanted != walk.point.len() {
+                let [.., before, last] = &mut branch.points[..] else { break End::Stalled };
+                let Some(known) = curve.converted(before, wanted) else { break End::Stalled };
+                let Some(point) = curve.converted(last, wanted) else { break End::Stalled };
+                walk.restart(curve, &known, &point);
+                (*before, *last) = (known, point);
             }
         };
         branch.iterations += walk.iterations;
         branch.jumps = walk.jumps;
         branch
-    }
-
-    /// A branch of one point, from which no way leads on.
-    #[must_use]
-    pub fn from_start(start: Vec<f64>) -> Self {
-        let points = vec![start];
-        Self { points, folds: Vec::new(), end: End::Stalled, iterations: 0, jumps: 0 }
-    }
-
-    /// Where it begins.
-    #[must_use]
-    pub fn first(&self) -> &[f64] {
-        self.points.first().map_or(&[], |point| point)
-    }
-
-    fn last(&self) -> &[f64] {
-        self.points.last().map_or(&[], |point| point)
-    }
-
-    /// Brings all points to as many unknowns; `false`, with the points as they were, if one of them
-    /// cannot be.
-    pub fn lift(&mut self, curve: &mut dyn Curve, unknowns: usize) -> bool {
-        let lifted: Option<Vec<Vec<f64>>> =
-            self.points.iter().map(|point| curve.lifted(point, unknowns)).collect();
-        let Some(points) = lifted else { return false };
-        self.points = points;
-        true
     }
 
     /// Adds a point, and the fold before it if the parameter has turned.
@@ -274,7 +246,8 @@ impl Branch {
             if a == 0.0 {
                 found.push((position, pair[0].clone()));
             } else if a * b < 0.0 {
-                if let Some((point, _)) = between(curve, &pair[0], &pair[1], value) {
+                let Some((a, b)) = curve.matched(&pair[0], &pair[1]) else { continue };
+                if let Some((point, _)) = between(curve, &a, &b, value) {
                     found.push((position, point));
                 }
             }
@@ -285,6 +258,17 @@ impl Branch {
             }
         }
         found
+    }
+}
+
+/// A point in as many unknowns as the equations need there.
+fn suited(curve: &mut dyn Curve, mut point: Vec<f64>) -> Vec<f64> {
+    loop {
+        let wanted = curve.wanted(&point);
+        match curve.converted(&point, wanted) {
+            Some(more) if wanted > point.len() => point = more,
+            _ => return point,
+        }
     }
 }
 

@@ -27,15 +27,21 @@ pub trait Curve {
     /// Has a point become part of the curve, for what is defined relative to the last one.
     fn accept(&mut self, z: &[f64]);
 
-    /// Number of unknowns that the equations need about the point `z`: more than it has where they
+    /// Number of unknowns that suits the equations about the point `z`: more than it has where they
     /// are too sensitive to those.
     fn wanted(&mut self, z: &[f64]) -> usize {
         z.len()
     }
 
-    /// The same point in more unknowns; the last two keep their meaning.
-    fn lifted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
+    /// The same point in another number of unknowns; the last two keep their meaning.
+    fn converted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
         (z.len() == unknowns).then(|| z.to_vec())
+    }
+
+    /// Two points in the same unknowns, as many as the larger number of them.
+    fn matched(&mut self, a: &[f64], b: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let unknowns = a.len().max(b.len());
+        Some((self.converted(a, unknowns)?, self.converted(b, unknowns)?))
     }
 
     /// Whether the caller wants to end the analysis.
@@ -67,8 +73,9 @@ impl Default for Steps {
 const EASY: usize = 4;
 /// … and by how much.
 const GROWTH: f64 = 1.6;
-/// Cosine between successive secants below which a step is too long to follow the curve, …
-const BEND: f64 = 0.85;
+/// Cosine between successive secants below which a step is too long to follow the curve: with more
+/// freedom walks change over to neighbouring parts of winding curves, …
+const BEND: f64 = 0.95;
 /// … unless it is so short, against the longest, that the bend must be a corner.
 const CORNER: f64 = 2e-3;
 /// Cosine at a corner below which the point found lies behind.
@@ -128,8 +135,8 @@ impl Continuation {
         })
     }
 
-    /// Goes on in more unknowns from the last two points, which are given in them.
-    pub(super) fn lift(&mut self, curve: &mut dyn Curve, before: &[f64], point: &[f64]) {
+    /// Goes on from the last two points, given in other unknowns.
+    pub(super) fn restart(&mut self, curve: &mut dyn Curve, before: &[f64], point: &[f64]) {
         self.point = before.to_vec();
         self.move_to(curve, point.to_vec());
     }
