@@ -315,3 +315,49 @@ fn vertex([a, b, c]: [(f64, f64); 3]) -> Option<f64> {
     let at = b.0 - 0.5 * p / q;
     at.is_finite().then_some(at)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::Mat;
+
+    /// `(ω − 2)² + p² = 1` about p = 2: a closed loop, with a motion that does not matter.
+    struct Loop;
+
+    impl Curve for Loop {
+        fn unknowns(&self) -> usize {
+            3
+        }
+
+        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
+            out[0] = z[0] - 1.0;
+            out[1] = (z[1] - 2.0).powi(2) + (z[2] - 2.0).powi(2) - 1.0;
+        }
+
+        fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+            out.fill(0.0);
+            out[(0, 0)] = 1.0;
+            out[(1, 1)] = 2.0 * (z[1] - 2.0);
+            out[(1, 2)] = 2.0 * (z[2] - 2.0);
+        }
+
+        fn weights(&self, _: &[f64]) -> Vec<f64> {
+            vec![1.0; 3]
+        }
+
+        fn accept(&mut self, _: &[f64]) {}
+    }
+
+    #[test]
+    fn a_walk_round_a_loop_ends_where_it_comes_back() {
+        let bounds = Bounds { range: (0.0, 10.0), most: 1000, ends: &|_| false };
+        let branch = Branch::walk(&mut Loop, vec![1.0, 1.0, 2.0], 1.0, Steps::default(), &bounds);
+        assert_eq!(branch.end, End::Returned);
+        // What was walked after the second turn is not known to be new.
+        let last = branch.points.len() - 1;
+        let turns = branch.folds.iter().chain([&last]);
+        let turns: Vec<f64> = turns.map(|at| branch.points[*at][2]).collect();
+        assert!((turns[0] - 3.0).abs() < 1e-9 && (turns[1] - 1.0).abs() < 1e-9, "{turns:?}");
+        assert!(branch.points.len() < 200);
+    }
+}
