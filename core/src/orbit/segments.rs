@@ -3,8 +3,8 @@
 //! Over one stretch a small change may grow beyond what the digits of its start can steer. Over
 //! segments it does not: their start states are unknowns, which the flow has to join (Ascher,
 //! Mattheij and Russell 1995, section 4.3). The multipliers are powers of the eigenvalues of the
-//! cyclic matrix of all segments, which keeps the small ones that their product loses (Fairgrieve
-//! and Jepson 1991; Lust 2001).
+//! cyclic matrix of all segments, which keeps the small ones that their product loses (Kressner
+//! 2006, section 2).
 
 use super::limit_cycle::Member;
 use super::shooting::Shooting;
