@@ -19,8 +19,9 @@ const GROWTH: f64 = 1e4;
 const MILD: f64 = 0.03;
 /// Most segments of half a period.
 const MOST: usize = 64;
-/// Growth up to which segments are multiplied before the eigenvalues are sought.
-const PRODUCT: f64 = 1e5;
+/// Growth up to which segments are multiplied before the eigenvalues are sought: their cost grows
+/// with the cube of the number of factors, and half of the digits are enough to tell 1 from others.
+const PRODUCT: f64 = 1e8;
 
 /// What is known of the flow over a segment.
 pub(super) struct Segment {

@@ -19,8 +19,7 @@ __all__ = ["cycle_assumptions"]
 _REMEDIES = {
     "newton": "Keep other harmonics, or use method='exact'.",
     "exact": (
-        "Contacts may begin or cease to slip at several places at once there; use "
-        "method='newton'."
+        "Contacts may begin or cease to slip at several places at once there; use method='newton'."
     ),
 }
 
