@@ -2,7 +2,8 @@
 //! with its folds, and read off at given values.
 
 use super::bordered::{Bordered, Condition};
-use super::continuation::{at_parameter, Advance, Continuation, Curve, Steps};
+use super::continuation::{at_parameter, Advance, Continuation, Steps};
+use super::curve::Curve;
 
 /// How a walk ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
