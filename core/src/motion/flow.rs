@@ -190,6 +190,10 @@ impl<'a> Flow<'a> {
         let state = regime.points[point];
         if state != PointState::Stuck {
             self.fill_slip_velocity(regime, point, state.sign(), natural);
+            // Another point's onset of slip turns it back at once.
+            if self.scratch[0] < -AT_REST * self.scratch[1..].iter().map(|a| a.abs()).sum::<f64>() {
+                return Next::Now(PointState::Stuck);
+            }
             return match self.leaves(length / natural, 0.0) {
                 Some(0.0) => Next::Now(PointState::Stuck),
                 Some(share) => Next::At(share * natural, PointState::Stuck),
@@ -271,5 +275,61 @@ fn rescale(a: &mut [f64], length: f64) {
     for a in a {
         *a *= scale;
         scale *= length;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::StructuralDamper;
+    use crate::model::Contact;
+    use crate::structure::Structure;
+    use faer::{mat, Mat};
+
+    /// Three masses on springs, joined by a damper that touches all of them.
+    fn masses() -> Model {
+        let mass = Mat::<f64>::identity(3, 3);
+        let stiffness = mat![[1.0, 0.0, 0.0], [0.0, 1.7, 0.0], [0.0, 0.0, 2.9]];
+        let structure =
+            Structure::new(mass.as_ref(), Mat::zeros(3, 3).as_ref(), stiffness.as_ref()).unwrap();
+        let damper = mat![[3.0, -2.4, -0.5], [-2.4, 3.4, -0.8], [-0.5, -0.8, 1.5]];
+        let law = StructuralDamper::new(damper.as_ref(), &[0.2, 0.5, 0.3]).unwrap();
+        let contacts = vec![Contact { law: Box::new(law), rows: Mat::identity(3, 3) }];
+        Model::new(structure, contacts, Vec::new()).unwrap()
+    }
+
+    #[test]
+    fn no_point_slips_against_its_force() {
+        let model = masses();
+        let system = ModalSystem::new(&model).unwrap();
+        let mut turned_back = 0;
+        for start in 0..40 {
+            let mut state = State::rest(&system);
+            for (j, v) in state.velocity.iter_mut().enumerate() {
+                *v = 2.0 * (f64::from(start) * (1.3 + j as f64)).sin();
+            }
+            let mut begun = f64::NAN;
+            Flow::new(&model, &system, 1.0)
+                .run(&mut state, 20.0, &mut |passage| match passage {
+                    Passage::Arc(arc) => {
+                        let (mut x, mut v) = (vec![0.0; 3], vec![0.0; 3]);
+                        arc.series.motion_at(0.5 * arc.length, &mut x, &mut v);
+                        let speed = system.contact_displacement(&v);
+                        for (i, point) in arc.regime.points.iter().enumerate() {
+                            let slip: f64 =
+                                (0..3).map(|j| arc.regime.slip_rate[(i, j)] * speed[j]).sum();
+                            assert!(slip * point.sign() >= -1e-9, "{start}: {i} at {slip}");
+                        }
+                    }
+                    Passage::Event { event, .. } if event.state != PointState::Stuck => {
+                        begun = event.time;
+                    }
+                    Passage::Event { event, .. } => {
+                        turned_back += usize::from(event.time == begun);
+                    }
+                })
+                .unwrap();
+        }
+        assert!(turned_back > 0);
     }
 }

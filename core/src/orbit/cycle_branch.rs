@@ -140,7 +140,7 @@ impl Finder<'_> {
                 let starts = out
                     .cycles
                     .iter()
-                    .map(|cycle| orbits.unknowns(&cycle.response, cycle.value, scale).ok())
+                    .map(|cycle| orbits.start(&cycle.response, cycle.value, scale))
                     .collect();
                 judge(&self.judge(orbits, false), starts, &mut out, interrupted, share);
             }
@@ -163,7 +163,7 @@ impl Finder<'_> {
             let mut balance = CycleBalance::new(&self.given, &table, &start, interrupted);
             let point = balance.point(&start, self.onset.dof);
             let value = start[start.len() - 1];
-            let guess = of_ratio.unknowns(&point, value, scale)?;
+            let guess = of_ratio.unknowns(&point, value, scale, 1)?;
             let mut curve = OrbitCurve::new(&of_ratio, scale, &guess, interrupted);
             at_parameter(&mut curve, &guess, value, 40).ok_or_else(|| self.no_start())?.0
         };
@@ -260,7 +260,8 @@ impl Finder<'_> {
     ) -> Result<Traced, Error> {
         let settings = self.settings;
         let steps = Steps::default();
-        let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]);
+        // The mean over the states, however many there are.
+        let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]) / (z.len() as f64).sqrt();
         let first = motion(&start);
         let endless = |z: &[f64]| motion(z) > ENDLESS * first;
         if *self.family.variation() == Variation::Ratio {

@@ -7,7 +7,7 @@ use crate::balance::{Point, PointStatus};
 use crate::contact::PointState;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::motion::{Event, Flow, ModalSystem, State};
+use crate::motion::{Event, Flow, ModalSystem, Passage, State};
 use std::f64::consts::PI;
 
 /// Newton steps to the maximum of the DOF with which the period begins.
@@ -33,13 +33,14 @@ pub(super) fn survey(
     quadrature: &mut Quadrature,
 ) -> Option<CycleSurvey> {
     let [.., omega, _] = z else { return None };
-    let first = curve.state(z)?;
+    let starts = curve.states(z)?;
     curve.with_shooting(z, |member, _, _| {
         let (model, system) = (member.model(), &member.system);
-        let begin = maximum(model, system, *omega, &first, phase, table, quadrature)?;
+        let course = Course { model, system, omega: *omega, starts };
+        let begin = course.maximum(phase, table, quadrature)?;
         let highest = table.harmonics().highest();
         let all: Vec<usize> = (0..system.modes()).collect();
-        let survey = pass(model, system, *omega, &begin, &all, highest, quadrature)?;
+        let survey = course.pass(&begin, &all, highest, quadrature)?;
         let points = system.points();
         let mut response = Point::empty(*omega, PointStatus::Converged, all.len(), points);
         response.harmonics = highest;
@@ -53,68 +54,119 @@ pub(super) fn survey(
         Some(CycleSurvey {
             response,
             range: survey.range[..all.len()].to_vec(),
-            state: begin.to_dofs(system),
+            state: begin.state.to_dofs(system),
             viscous: survey.viscous,
             events: survey.events,
         })
     })
 }
 
-/// One pass over half a period, completed by its mirror image.
-fn pass<'a>(
+/// Where a pass over half a period begins.
+struct Begin {
+    /// Time after the start of the course [s].
+    time: f64,
+    /// −1 where it is the mirror image of the course, otherwise 1.
+    side: f64,
+    state: State,
+}
+
+/// The motion over half a period, with the states from which its segments start.
+struct Course<'a> {
     model: &'a Model,
     system: &'a ModalSystem,
     omega: f64,
-    start: &State,
-    observe: &[usize],
-    highest: usize,
-    quadrature: &'a mut Quadrature,
-) -> Option<Survey<'a>> {
-    let mut survey = Survey::new(system, omega, true, highest, observe, quadrature);
-    let mut state = start.clone();
-    Flow::new(model, system, omega)
-        .run(&mut state, PI / omega, &mut |passage| survey.include(&passage))
-        .ok()?;
-    survey.finish();
-    Some(survey)
+    starts: Vec<State>,
 }
 
-/// The state at the maximum of a DOF over the period.
-fn maximum(
-    model: &Model,
-    system: &ModalSystem,
-    omega: f64,
-    first: &State,
-    dof: usize,
-    table: &SampleTable,
-    quadrature: &mut Quadrature,
-) -> Option<State> {
-    let highest = table.harmonics().highest();
-    let series = pass(model, system, omega, first, &[dof], highest, quadrature)?.displacement();
-    let mut values = vec![0.0; table.harmonics().slots()];
-    table.harmonics().write_series(&series[..=highest], &mut values);
-    let mut turns = Vec::new();
-    table.turning_points(&values, &mut turns);
-    let most = turns.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
-    let mut time = most.theta / omega;
-    let half = PI / omega;
-    let mut state = first.clone();
-    for round in 0..POLISH {
-        state = first.clone();
-        Flow::new(model, system, omega).run(&mut state, time, &mut |_| {}).ok()?;
-        let acceleration = system.acceleration(&state.displacement, &state.velocity, &state.force);
-        let of = |modal: &[f64]| -> f64 { system.shape(dof).zip(modal).map(|(s, q)| s * q).sum() };
-        let step = of(&state.velocity) / of(&acceleration);
-        // The series leads close to the extremum; a longer step would leave it.
-        if round + 1 < POLISH && step.abs() < 0.01 * half {
-            time = (time - step).max(0.0);
+impl Course<'_> {
+    /// One pass over half a period, completed by its mirror image.
+    fn pass<'a>(
+        &'a self,
+        begin: &Begin,
+        observe: &[usize],
+        highest: usize,
+        quadrature: &'a mut Quadrature,
+    ) -> Option<Survey<'a>> {
+        let mut survey = Survey::new(self.system, self.omega, true, highest, observe, quadrature);
+        let mut flow = Flow::new(self.model, self.system, self.omega);
+        let half = PI / self.omega;
+        let mut state = begin.state.clone();
+        let mut see = |passage: Passage<'_>| survey.include(&passage);
+        for (lap, side) in [(0.0, begin.side), (half, -begin.side)] {
+            // A single segment passes its end as it comes.
+            for start in self.starts.iter().filter(|_| self.starts.len() > 1) {
+                let at = start.time + lap - begin.time;
+                if at > 0.0 && at < half {
+                    flow.run(&mut state, at, &mut see).ok()?;
+                    renew(&mut state, start, side);
+                }
+            }
+        }
+        flow.run(&mut state, half, &mut see).ok()?;
+        survey.finish();
+        Some(survey)
+    }
+
+    /// The state at a time of the first half of the period.
+    fn state_at(&self, time: f64) -> Option<State> {
+        let start = self.starts.iter().rev().find(|start| start.time <= time)?;
+        let mut state = start.clone();
+        Flow::new(self.model, self.system, self.omega).run(&mut state, time, &mut |_| {}).ok()?;
+        Some(state)
+    }
+
+    /// The maximum of a DOF over the period: the mirror image of a minimum in the half.
+    fn maximum(
+        &self,
+        dof: usize,
+        table: &SampleTable,
+        quadrature: &mut Quadrature,
+    ) -> Option<Begin> {
+        let system = self.system;
+        let highest = table.harmonics().highest();
+        let first = Begin { time: 0.0, side: 1.0, state: self.starts.first()?.clone() };
+        let series = self.pass(&first, &[dof], highest, quadrature)?.displacement();
+        let mut values = vec![0.0; table.harmonics().slots()];
+        table.harmonics().write_series(&series[..=highest], &mut values);
+        let mut turns = Vec::new();
+        table.turning_points(&values, &mut turns);
+        let most = turns.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
+        let mut time = most.theta / self.omega;
+        let half = PI / self.omega;
+        let mut state = self.state_at(time)?;
+        for _ in 1..POLISH {
+            let acceleration =
+                system.acceleration(&state.displacement, &state.velocity, &state.force);
+            let of =
+                |modal: &[f64]| -> f64 { system.shape(dof).zip(modal).map(|(s, q)| s * q).sum() };
+            let step = of(&state.velocity) / of(&acceleration);
+            // The series leads close to the extremum; a longer step would leave it.
+            if step.abs() < 0.01 * half {
+                time = (time - step).max(0.0);
+            }
+            state = self.state_at(time)?;
+        }
+        state.time = 0.0;
+        if most.value < 0.0 {
+            mirror(&mut state);
+        }
+        Some(Begin { time, side: most.value.signum(), state })
+    }
+}
+
+/// Takes a state over the join of two segments: displacements, velocities and the forces that may
+/// vary become those at the start of the next one, or on the other side their mirror image.
+fn renew(state: &mut State, start: &State, side: f64) {
+    for (own, new) in
+        [(&mut state.displacement, &start.displacement), (&mut state.velocity, &start.velocity)]
+    {
+        own.iter_mut().zip(new).for_each(|(own, new)| *own = side * new);
+    }
+    for ((own, new), point) in state.force.iter_mut().zip(&start.force).zip(&state.points) {
+        if *point == PointState::Stuck {
+            *own = side * new;
         }
     }
-    state.time = 0.0;
-    if most.value < 0.0 {
-        mirror(&mut state);
-    }
-    Some(state)
 }
 
 /// The mirror image of a state.

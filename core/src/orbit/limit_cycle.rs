@@ -6,6 +6,7 @@
 //! steers Newton's method. The phase is held across the velocity of the last accepted point, which
 //! never fails, and reported orbits begin at a maximum of the DOF that moves most.
 
+use super::segments::{follow, halved, product_eigenvalues, suited, Segment, Suited};
 use super::shooting::Shooting;
 use super::start::start_of;
 use crate::balance::Point;
@@ -69,39 +70,67 @@ impl<'a> CycleOrbits<'a> {
         Ok(Member { own, given, system })
     }
 
-    /// Unknowns of [`OrbitCurve`] from a harmonic balance: an eighth of a period behind the start
-    /// of its period, away from the turning points.
+    /// Number of unknowns that describe a state.
+    fn size(&self) -> usize {
+        2 * self.system.modes() + self.system.strains()
+    }
+
+    /// Unknowns of [`OrbitCurve`] from a harmonic balance: the states at the starts of equal
+    /// `segments` of half a period, which begins an eighth of a period behind the start of that of
+    /// the balance, away from the turning points.
     ///
     /// # Errors
     /// A value that a law refuses.
-    pub fn unknowns(&self, point: &Point, value: f64, reference: f64) -> Result<Vec<f64>, Error> {
+    pub fn unknowns(
+        &self,
+        point: &Point,
+        value: f64,
+        reference: f64,
+        segments: usize,
+    ) -> Result<Vec<f64>, Error> {
         let member = self.member(value)?;
-        let mut later = point.clone();
+        let coordinates = Transition::new(&member.system, reference);
         let orders = point.harmonics + 1;
-        for series in [&mut later.displacement, &mut later.contact_displacement] {
-            for row in series.chunks_exact_mut(orders) {
-                for (order, x) in row.iter_mut().enumerate() {
-                    *x *= c64::from_polar(1.0, 0.25 * PI * order as f64);
+        let mut z = Vec::with_capacity(segments * self.size() + 2);
+        for number in 0..segments {
+            let angle = PI * (0.25 + number as f64 / segments as f64);
+            let mut later = point.clone();
+            for series in [&mut later.displacement, &mut later.contact_displacement] {
+                for row in series.chunks_exact_mut(orders) {
+                    for (order, x) in row.iter_mut().enumerate() {
+                        *x *= c64::from_polar(1.0, angle * order as f64);
+                    }
                 }
             }
+            let state = start_of(member.model(), &member.system, Residual::Centred, &later, true);
+            z.extend(coordinates.coordinates(&state));
         }
-        let state = start_of(member.model(), &member.system, Residual::Centred, &later, true);
-        let mut z = Transition::new(&member.system, reference).coordinates(&state);
         z.extend([point.omega, value]);
         Ok(z)
+    }
+
+    /// As [`CycleOrbits::unknowns`], in as many segments as the motion needs.
+    pub(super) fn start(&self, point: &Point, value: f64, reference: f64) -> Option<Vec<f64>> {
+        let mut z = self.unknowns(point, value, reference, 1).ok()?;
+        loop {
+            let wanted = OrbitCurve::new(self, reference, &z, &|| false).wanted(&z);
+            if wanted <= z.len() {
+                return Some(z);
+            }
+            z = self.unknowns(point, value, reference, (wanted - 2) / self.size()).ok()?;
+        }
     }
 }
 
 /// What is known of the flow over half a period.
 struct Evaluation {
     z: Vec<f64>,
-    image: Vec<f64>,
-    /// Rate of the coordinates at the end.
-    end: Vec<f64>,
-    derivative: Mat<f64>,
+    segments: Vec<Segment>,
+    derivatives: bool,
 }
 
-/// The closing condition in the unknowns `(state, ω, scalar)`.
+/// The closing condition in the unknowns `(states, ω, scalar)`: the states at the starts of equal
+/// segments of half a period, as many as there are.
 pub struct OrbitCurve<'a> {
     orbits: &'a CycleOrbits<'a>,
     /// Frequency that scales the coordinates of the state [rad/s].
@@ -165,33 +194,27 @@ impl<'a> OrbitCurve<'a> {
         visit(&member, &mut shooting, y)
     }
 
-    /// The mirror image after half a period alone.
-    fn image(&self, z: &[f64]) -> Option<Vec<f64>> {
-        self.with_shooting(z, |_, shooting, y| shooting.image(y))
+    /// The flow over all segments, in the order of time.
+    fn segments(&self, z: &[f64], derivatives: bool) -> Option<Vec<Segment>> {
+        self.with_shooting(z, |member, shooting, y| follow(member, shooting, y, derivatives))
     }
 
-    fn evaluate(&mut self, z: &[f64], derivative: bool) -> bool {
+    fn evaluate(&mut self, z: &[f64], derivatives: bool) -> bool {
         let known = self.at.as_ref();
-        if known.is_some_and(|at| at.z == z && (!derivative || at.derivative.nrows() > 0)) {
+        if known.is_some_and(|at| at.z == z && (!derivatives || at.derivatives)) {
             return true;
         }
         self.flows += 1;
-        self.matrices += usize::from(derivative);
-        self.at = self.with_shooting(z, |member, shooting, y| {
-            let image = shooting.image(y)?;
-            let state = shooting.end.as_ref()?;
-            let regime = Regime::new(member.model(), &state.points);
-            let end = shooting.coordinates.rate(state, &regime);
-            let derivative = if derivative { shooting.derivative() } else { Mat::new() };
-            Some(Evaluation { z: z.to_vec(), image, end, derivative })
-        });
+        self.matrices += usize::from(derivatives);
+        let segments = self.segments(z, derivatives);
+        self.at = segments.map(|segments| Evaluation { z: z.to_vec(), segments, derivatives });
         self.at.is_some()
     }
 
     /// Rate of the coordinates at a point.
     fn velocity(&self, z: &[f64]) -> Option<Vec<f64>> {
         self.with_shooting(z, |member, shooting, y| {
-            let (state, _) = shooting.coordinates.state(y);
+            let (state, _) = shooting.coordinates.state(y.get(..self.orbits.size())?);
             let regime = Regime::new(member.model(), &state.points);
             Some(shooting.coordinates.rate(&state, &regime))
         })
@@ -201,9 +224,20 @@ impl<'a> OrbitCurve<'a> {
     /// that never slip, by falling modulus; and the number of these contacts.
     #[must_use]
     pub fn multipliers(&self, z: &[f64]) -> Option<(Vec<c64>, usize)> {
-        let (mut multipliers, neutral) = self.with_shooting(z, |_, shooting, y| {
-            shooting.image(y)?;
-            shooting.span_multipliers()
+        let (mut multipliers, neutral) = self.with_shooting(z, |member, shooting, y| {
+            let segments = follow(member, shooting, y, true)?;
+            let mut slipped = vec![false; self.orbits.system.points()];
+            for one in &segments {
+                slipped.iter_mut().zip(&one.slipped).for_each(|(all, own)| *all |= own);
+            }
+            let mut neutral = 0;
+            let reduced = segments.iter().map(|one| {
+                let (rest, count) = shooting.without_conserved(&one.derivative, &slipped);
+                neutral = count;
+                rest
+            });
+            let reduced: Vec<Mat<f64>> = reduced.collect();
+            Some((product_eigenvalues(reduced)?, neutral))
         })?;
         let one = c64::new(1.0, 0.0);
         let phase = (0..multipliers.len()).min_by(|&i, &j| {
@@ -217,9 +251,18 @@ impl<'a> OrbitCurve<'a> {
         Some((multipliers, neutral))
     }
 
-    /// State at a point.
-    pub(super) fn state(&self, z: &[f64]) -> Option<State> {
-        self.with_shooting(z, |_, shooting, y| Some(shooting.coordinates.state(y).0))
+    /// States at the starts of the segments, each at its time.
+    pub(super) fn states(&self, z: &[f64]) -> Option<Vec<State>> {
+        let [.., omega, _] = z else { return None };
+        self.with_shooting(z, |_, shooting, y| {
+            let starts = y.chunks_exact(self.orbits.size());
+            let share = PI / omega / starts.len() as f64;
+            let states = starts.enumerate().map(|(number, y)| {
+                let (state, _) = shooting.coordinates.state(y);
+                State { time: number as f64 * share, ..state }
+            });
+            Some(states.collect())
+        })
     }
 }
 
@@ -233,13 +276,16 @@ impl Curve for OrbitCurve<'_> {
             out.fill(f64::NAN);
             return;
         }
-        let size = z.len() - 2;
+        let all = z.len() - 2;
         let Some(at) = &self.at else { return };
-        for i in 0..size {
-            out[i] = (at.image[i] - z[i]) / self.size;
+        // What comes after each segment; after the last one, the first.
+        let next = z[..all].iter().cycle().skip(self.orbits.size());
+        let images = at.segments.iter().flat_map(|one| &one.image);
+        for ((out, image), next) in out.iter_mut().zip(images).zip(next) {
+            *out = (image - next) / self.size;
         }
         let way = z.iter().zip(&self.reference).zip(&self.drift);
-        out[size] = way.map(|((z, known), d)| d * (z - known)).sum::<f64>() / self.size;
+        out[all] = way.map(|((z, known), d)| d * (z - known)).sum::<f64>() / self.size;
     }
 
     fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
@@ -248,29 +294,38 @@ impl Curve for OrbitCurve<'_> {
             out.fill(f64::NAN);
             return;
         }
-        let size = z.len() - 2;
-        let step = DIFFERENCE * z[size + 1].abs().max(f64::MIN_POSITIVE);
+        let (all, size) = (z.len() - 2, self.orbits.size());
+        let step = DIFFERENCE * z[all + 1].abs().max(f64::MIN_POSITIVE);
         let mut shifted = z.to_vec();
-        shifted[size + 1] = z[size + 1] + step;
-        let ahead = self.image(&shifted);
-        shifted[size + 1] = z[size + 1] - step;
-        let behind = self.image(&shifted);
+        shifted[all + 1] = z[all + 1] + step;
+        let ahead = self.segments(&shifted, false);
+        shifted[all + 1] = z[all + 1] - step;
+        let behind = self.segments(&shifted, false);
         self.flows += 2;
         let (Some(ahead), Some(behind), Some(at)) = (ahead, behind, &self.at) else {
             out.fill(f64::NAN);
             return;
         };
-        for i in 0..size {
-            for j in 0..size {
-                let own = f64::from(u8::from(i == j));
-                out[(i, j)] = (at.derivative[(i, j)] - own) / self.size;
+        let count = at.segments.len();
+        for (number, one) in at.segments.iter().enumerate() {
+            let (first, next) = (number * size, (number + 1) % count * size);
+            // A segment lasts π/(m ω); the end of the last one is mirrored.
+            let mirrored = if number + 1 == count { 1.0 } else { -1.0 };
+            let shorter = mirrored * PI / (count as f64 * z[all] * z[all]) / self.size;
+            for i in 0..size {
+                for j in 0..size {
+                    out[(first + i, first + j)] = one.derivative[(i, j)] / self.size;
+                }
+                out[(first + i, all)] = one.rate[i] * shorter;
+                let change = ahead[number].image[i] - behind[number].image[i];
+                out[(first + i, all + 1)] = change / (2.0 * step) / self.size;
             }
-            // The mirrored end moves with half the period, π/ω.
-            out[(i, size)] = at.end[i] * PI / (z[size] * z[size]) / self.size;
-            out[(i, size + 1)] = (ahead[i] - behind[i]) / (2.0 * step) / self.size;
+            for i in 0..size {
+                out[(first + i, next + i)] -= self.size.recip();
+            }
         }
         for (j, d) in self.drift.iter().enumerate() {
-            out[(size, j)] = d / self.size;
+            out[(all, j)] = d / self.size;
         }
     }
 
@@ -288,6 +343,31 @@ impl Curve for OrbitCurve<'_> {
         let drift = self.velocity(z).unwrap_or_else(|| vec![0.0; size]);
         let speed = norm(&drift).max(f64::MIN_POSITIVE);
         self.drift = drift.iter().map(|d| d / speed).collect();
+    }
+
+    fn wanted(&mut self, z: &[f64]) -> usize {
+        let states = z.len().saturating_sub(2);
+        let known = self.evaluate(z, true).then_some(self.at.as_ref()).flatten();
+        match known.map(|at| suited(&at.segments)) {
+            Some(Suited::More) => 2 * states + 2,
+            Some(Suited::Fewer) => states / 2 + 2,
+            Some(Suited::These) | None => states + 2,
+        }
+    }
+
+    fn converted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
+        let (y, last) = z.split_at(z.len().checked_sub(2)?);
+        let mut y = y.to_vec();
+        while y.len() + 2 < unknowns {
+            let starts: Vec<f64> = y.iter().chain(last).copied().collect();
+            y = self.with_shooting(&starts, |_, shooting, y| halved(shooting, y))?;
+        }
+        while y.len() + 2 > unknowns {
+            let size = self.orbits.size();
+            y = y.chunks_exact(size).step_by(2).flatten().copied().collect();
+        }
+        y.extend(last);
+        Some(y)
     }
 
     fn interrupted(&self) -> bool {

@@ -9,6 +9,7 @@ mod periodic;
 mod quadrature;
 mod rescue;
 mod residual;
+mod segments;
 mod settings;
 mod shooting;
 mod stability;

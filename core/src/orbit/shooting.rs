@@ -20,6 +20,7 @@ pub(super) struct Shooting<'a> {
     /// Contact points beyond the number of strains.
     idle: usize,
     half_wave: bool,
+    period: f64,
     span: f64,
     interrupted: Option<&'a dyn Fn() -> bool>,
     /// Of the last evaluation: legs, forces that were free to vary at the start, points that
@@ -62,6 +63,7 @@ impl<'a> Shooting<'a> {
             limits: system.limits(),
             idle: system.points() - system.strains(),
             half_wave,
+            period,
             span: if half_wave { 0.5 * period } else { period },
             interrupted,
             legs: Vec::new(),
@@ -76,6 +78,18 @@ impl<'a> Shooting<'a> {
     /// Time that the flow covers, a period or half of it [s].
     pub(super) fn span(&self) -> f64 {
         self.span
+    }
+
+    /// Confines the flow to one of `count` equal segments of half a period; the image of the last
+    /// one alone is mirrored.
+    pub(super) fn narrow(&mut self, number: usize, count: usize) {
+        self.span = 0.5 * self.period / count as f64;
+        self.half_wave = number + 1 == count;
+    }
+
+    /// Whether each point has slipped in the last evaluation.
+    pub(super) fn slipped(&self) -> &[bool] {
+        &self.slipped
     }
 
     /// Coordinates after the span, mirrored under half-wave symmetry.
@@ -140,9 +154,20 @@ impl<'a> Shooting<'a> {
 
     /// Multipliers over the span, mirrored under half-wave symmetry, without those of contacts
     /// that never slip; and the number of these.
-    pub(super) fn span_multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
-        let conserved = self.coordinates.conserved(&self.slipped);
+    fn span_multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
         let matrix = self.derivative();
+        let (rest, conserved) = self.without_conserved(&matrix, &self.slipped);
+        Some((rest.eigenvalues().ok()?, conserved))
+    }
+
+    /// A transition matrix in coordinates that hold the forms which are conserved while the points
+    /// `slipped` alone slip, without these; and their number.
+    pub(super) fn without_conserved(
+        &self,
+        matrix: &Mat<f64>,
+        slipped: &[bool],
+    ) -> (Mat<f64>, usize) {
+        let conserved = self.coordinates.conserved(slipped);
         let size = matrix.nrows();
         let mut change = Mat::<f64>::identity(size, size);
         for (target, row) in &conserved {
@@ -150,13 +175,12 @@ impl<'a> Shooting<'a> {
                 change[(*target, j)] = *value;
             }
         }
-        // In coordinates that hold the conserved forms these leave the eigenvalue problem.
         let changed = &change * matrix;
         let matrix = change.transpose().partial_piv_lu().solve(changed.transpose());
         let kept: Vec<usize> =
             (0..size).filter(|i| conserved.iter().all(|(target, _)| target != i)).collect();
         let rest = Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[j], kept[i])]);
-        Some((rest.eigenvalues().ok()?, conserved.len()))
+        (rest, conserved.len())
     }
 }
 

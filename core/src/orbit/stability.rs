@@ -155,8 +155,9 @@ fn change(
         if curve.interrupted() {
             break;
         }
-        curve.accept(&low.z);
-        let Some(z) = across(curve, &low.z, &high.z, 0.5) else { break };
+        let Some((a, b)) = curve.matched(&low.z, &high.z) else { break };
+        curve.accept(&a);
+        let Some(z) = across(curve, &a, &b, 0.5) else { break };
         let Some(middle) = Floquet::of(curve, z, true) else { break };
         if middle.unstable() == before.unstable() {
             low = middle;

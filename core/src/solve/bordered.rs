@@ -1,6 +1,6 @@
 //! Newton's method on a curve of solutions, held by one more condition.
 
-use super::continuation::Curve;
+use super::curve::Curve;
 use super::norm;
 use faer::linalg::solvers::Solve as _;
 use faer::Mat;

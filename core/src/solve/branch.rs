@@ -2,7 +2,8 @@
 //! with its folds, and read off at given values.
 
 use super::bordered::{Bordered, Condition};
-use super::continuation::{at_parameter, Advance, Continuation, Curve, Steps};
+use super::continuation::{at_parameter, Advance, Continuation, Steps};
+use super::curve::Curve;
 
 /// How a walk ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,6 +66,7 @@ impl Branch {
         steps: Steps,
         bounds: &Bounds<'_>,
     ) -> Self {
+        let start = suited(curve, start);
         let mut branch = Self {
             points: vec![start.clone()],
             folds: Vec::new(),
@@ -96,6 +98,14 @@ impl Branch {
             }
             if branch.points.len() >= bounds.most {
                 break End::Points;
+            }
+            let wanted = curve.wanted(&walk.point);
+            if wanted != walk.point.len() {
+                let [.., before, last] = &mut branch.points[..] else { break End::Stalled };
+                let Some(known) = curve.converted(before, wanted) else { break End::Stalled };
+                let Some(point) = curve.converted(last, wanted) else { break End::Stalled };
+                walk.restart(curve, &known, &point);
+                (*before, *last) = (known, point);
             }
         };
         branch.iterations += walk.iterations;
@@ -237,7 +247,8 @@ impl Branch {
             if a == 0.0 {
                 found.push((position, pair[0].clone()));
             } else if a * b < 0.0 {
-                if let Some((point, _)) = between(curve, &pair[0], &pair[1], value) {
+                let Some((a, b)) = curve.matched(&pair[0], &pair[1]) else { continue };
+                if let Some((point, _)) = between(curve, &a, &b, value) {
                     found.push((position, point));
                 }
             }
@@ -248,6 +259,17 @@ impl Branch {
             }
         }
         found
+    }
+}
+
+/// A point in as many unknowns as the equations need there.
+fn suited(curve: &mut dyn Curve, mut point: Vec<f64>) -> Vec<f64> {
+    loop {
+        let wanted = curve.wanted(&point);
+        match curve.converted(&point, wanted) {
+            Some(more) if wanted > point.len() => point = more,
+            _ => return point,
+        }
     }
 }
 
@@ -293,4 +315,50 @@ fn vertex([a, b, c]: [(f64, f64); 3]) -> Option<f64> {
     let q = left * (b.1 - c.1) - right * (b.1 - a.1);
     let at = b.0 - 0.5 * p / q;
     at.is_finite().then_some(at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::Mat;
+
+    /// `(ω − 2)² + p² = 1` about p = 2: a closed loop, with a motion that does not matter.
+    struct Loop;
+
+    impl Curve for Loop {
+        fn unknowns(&self) -> usize {
+            3
+        }
+
+        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
+            out[0] = z[0] - 1.0;
+            out[1] = (z[1] - 2.0).powi(2) + (z[2] - 2.0).powi(2) - 1.0;
+        }
+
+        fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+            out.fill(0.0);
+            out[(0, 0)] = 1.0;
+            out[(1, 1)] = 2.0 * (z[1] - 2.0);
+            out[(1, 2)] = 2.0 * (z[2] - 2.0);
+        }
+
+        fn weights(&self, _: &[f64]) -> Vec<f64> {
+            vec![1.0; 3]
+        }
+
+        fn accept(&mut self, _: &[f64]) {}
+    }
+
+    #[test]
+    fn a_walk_round_a_loop_ends_where_it_comes_back() {
+        let bounds = Bounds { range: (0.0, 10.0), most: 1000, ends: &|_| false };
+        let branch = Branch::walk(&mut Loop, vec![1.0, 1.0, 2.0], 1.0, Steps::default(), &bounds);
+        assert_eq!(branch.end, End::Returned);
+        // What was walked after the second turn is not known to be new.
+        let last = branch.points.len() - 1;
+        let turns = branch.folds.iter().chain([&last]);
+        let turns: Vec<f64> = turns.map(|at| branch.points[*at][2]).collect();
+        assert!((turns[0] - 3.0).abs() < 1e-9 && (turns[1] - 1.0).abs() < 1e-9, "{turns:?}");
+        assert!(branch.points.len() < 200);
+    }
 }

@@ -6,32 +6,8 @@
 //! in the direction of the way there (Allgower and Georg 2003, chapter 6, for the smooth case).
 
 use super::bordered::{Bordered, Condition};
+use super::curve::Curve;
 use super::norm;
-use faer::Mat;
-
-/// Equations that leave one degree of freedom.
-pub trait Curve {
-    /// Number of unknowns, one more than equations.
-    fn unknowns(&self) -> usize;
-
-    /// Residual at `z`, of the order of the relative error of the unknowns; not a number where it
-    /// is not defined.
-    fn residual(&mut self, z: &[f64], out: &mut [f64]);
-
-    /// Jacobian at `z` into the first rows of `out`, unknowns × unknowns.
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>);
-
-    /// What the unknowns are multiplied by to be compared with each other, about `z`.
-    fn weights(&self, z: &[f64]) -> Vec<f64>;
-
-    /// Has a point become part of the curve, for what is defined relative to the last one.
-    fn accept(&mut self, z: &[f64]);
-
-    /// Whether the caller wants to end the analysis.
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
 
 /// Steps of a continuation, in the metric of [`Curve::weights`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,8 +32,9 @@ impl Default for Steps {
 const EASY: usize = 4;
 /// … and by how much.
 const GROWTH: f64 = 1.6;
-/// Cosine between successive secants below which a step is too long to follow the curve, …
-const BEND: f64 = 0.85;
+/// Cosine between successive secants below which a step is too long to follow the curve: with more
+/// freedom walks change over to neighbouring parts of winding curves, …
+const BEND: f64 = 0.95;
 /// … unless it is so short, against the longest, that the bend must be a corner.
 const CORNER: f64 = 2e-3;
 /// Cosine at a corner below which the point found lies behind.
@@ -115,6 +92,12 @@ impl Continuation {
             steps,
             short: 0,
         })
+    }
+
+    /// Goes on from the last two points, given in other unknowns.
+    pub(super) fn restart(&mut self, curve: &mut dyn Curve, before: &[f64], point: &[f64]) {
+        self.point = before.to_vec();
+        self.move_to(curve, point.to_vec());
     }
 
     /// Takes one step.
@@ -316,6 +299,7 @@ pub fn across(curve: &mut dyn Curve, a: &[f64], b: &[f64], share: f64) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
+    use faer::Mat;
 
     /// `p = 1 − |x| − x²/4`: a fold at a corner; with `smooth`, `p = 1 − x²`.
     struct Fold {

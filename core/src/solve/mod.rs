@@ -4,6 +4,7 @@ mod bordered;
 mod branch;
 mod broyden;
 mod continuation;
+mod curve;
 mod cyclic_tridiagonal;
 mod damping;
 mod homotopy;
@@ -15,7 +16,8 @@ mod small_dense;
 
 pub use branch::{Bounds, Branch, End};
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
-pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Curve, Steps};
+pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Steps};
+pub use curve::Curve;
 pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};

@@ -19,8 +19,7 @@ __all__ = ["cycle_assumptions"]
 _REMEDIES = {
     "newton": "Keep other harmonics, or use method='exact'.",
     "exact": (
-        "Small changes may grow too much within half a period for shooting to follow; use "
-        "method='newton'."
+        "Contacts may begin or cease to slip at several places at once there; use method='newton'."
     ),
 }
 

@@ -1,0 +1,44 @@
+//! A curve of solutions as equations: what a walk along it asks of them.
+
+use faer::Mat;
+
+/// Equations that leave one degree of freedom.
+pub trait Curve {
+    /// Number of unknowns, one more than equations.
+    fn unknowns(&self) -> usize;
+
+    /// Residual at `z`, of the order of the relative error of the unknowns; not a number where it
+    /// is not defined.
+    fn residual(&mut self, z: &[f64], out: &mut [f64]);
+
+    /// Jacobian at `z` into the first rows of `out`, unknowns × unknowns.
+    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>);
+
+    /// What the unknowns are multiplied by to be compared with each other, about `z`.
+    fn weights(&self, z: &[f64]) -> Vec<f64>;
+
+    /// Has a point become part of the curve, for what is defined relative to the last one.
+    fn accept(&mut self, z: &[f64]);
+
+    /// Number of unknowns that suits the equations about the point `z`: more than it has where they
+    /// are too sensitive to those.
+    fn wanted(&mut self, z: &[f64]) -> usize {
+        z.len()
+    }
+
+    /// The same point in another number of unknowns; the last two keep their meaning.
+    fn converted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
+        (z.len() == unknowns).then(|| z.to_vec())
+    }
+
+    /// Two points in the same unknowns, as many as the larger number of them.
+    fn matched(&mut self, a: &[f64], b: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let unknowns = a.len().max(b.len());
+        Some((self.converted(a, unknowns)?, self.converted(b, unknowns)?))
+    }
+
+    /// Whether the caller wants to end the analysis.
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
