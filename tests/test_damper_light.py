@@ -31,7 +31,8 @@ def light(damping: float, slip_force: float) -> ss.Model:
 def test_peaks_of_lightly_damped_structures_are_not_missed() -> None:
     curve = ss.damper_curve(light(1e-5, 48.0), slip_force=[5740, 10800], dof="tip")
     assert curve.amplitude == pytest.approx([0.94828, 1.78384], rel=1e-4)
-    assert curve.omega == pytest.approx([83.49946, 83.49972], rel=1e-7)
+    # the tops are flat: over 4e-5 rad/s the first one falls by 1e-8 of its height
+    assert curve.omega == pytest.approx([83.49947, 83.49972], rel=5e-7)
     assert all(status == "converged" for status in curve.status)
 
 
@@ -59,7 +60,7 @@ def test_optimum_at_light_damping(damping: float) -> None:
 def test_optimum_without_damping_is_a_solved_peak() -> None:
     best = ss.optimal_damper(light(0.0, 5.0), dof="tip")
     assert best.status.solved
-    assert best.amplitude == pytest.approx(6.767e-4, rel=2e-2)
+    assert best.amplitude == pytest.approx(6.767e-4, rel=1e-3)
     assert best.curve.arrays.solved[best.curve.values == best.value].all()
     with pytest.raises(ss.ModelError, match=r"^optimal damper: 0 peaks were found[^\n]*$"):
         ss.optimal_damper(light(0.0, 5.0), dof="tip", bounds=(1e5, 2e5), max_iterations=1)

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from matplotlib import pyplot
+from typer.testing import CliRunner
 
 import stickslip as ss
 from stickslip import reference
 from stickslip.analyses.variation import Variation
+from stickslip.cli.commands import app
 
 ENDS = ("1.tip", "2.tip")
 SPRING = 1e6

@@ -10,11 +10,15 @@ use super::unknowns::Unknowns;
 use super::{FreshStart, Progress};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::solve::{broyden, homotopy, newton, Outcome, Report, System as _};
+use crate::solve::{broyden, homotopy, newton, norm, Outcome, Report, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// Contact displacements over those of the stuck structure at which an undamped resonance counts as
+/// one that friction does not bound.
+const UNBOUNDED: f64 = 1e12;
 
 /// The harmonic balance of a model under its loads, from point to point.
 pub struct ForcedBalance<'a> {
@@ -278,13 +282,14 @@ impl<'a> ForcedBalance<'a> {
     /// The chosen method from `x`.
     fn iterate(&mut self, equations: &mut Condensed<'_>, x: &mut [f64]) -> Report {
         let Method::Broyden(first) = self.settings.method else {
-            return newton(equations, x, self.settings.newton);
+            let report = newton(equations, x, self.settings.newton);
+            return if_bounded(report, x, equations);
         };
         let (report, effort) = broyden(equations, x, self.settings.newton, first);
         equations.profile.factorisations += effort.jacobians;
         self.profile.updates += effort.updates;
         self.profile.restarts += usize::from(effort.jacobians > 1);
-        report
+        if_bounded(report, x, equations)
     }
 
     /// Newton's method from the start that the rescue offers, if it offers one.
@@ -302,6 +307,7 @@ impl<'a> ForcedBalance<'a> {
         let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
         points.for_each(|(amplitudes, series)| harmonics.write_series(amplitudes, series));
         let again = newton(equations, &mut trial, self.settings.newton);
+        let again = if_bounded(again, &trial, equations);
         report.iterations += again.iterations;
         if !has_failed(&again) {
             (report.outcome, report.residual) = (again.outcome, again.residual);
@@ -309,13 +315,14 @@ impl<'a> ForcedBalance<'a> {
         }
     }
 
-    /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact stiffness, whose path is
-    /// smooth even for nearly rigid contacts, then in the load.
+    /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact
+    /// stiffness, whose path is smooth even for nearly rigid contacts, then in the load.
     fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
         for path in [Path::Stiffness, Path::Load] {
             let mut along = x.clone();
             equations.choose(path);
             let followed = homotopy(equations, &mut along, self.settings.newton);
+            let followed = if_bounded(followed, &along, equations);
             report.iterations += followed.iterations;
             if !has_failed(&followed) {
                 (report.outcome, report.residual) = (followed.outcome, followed.residual);
@@ -327,6 +334,19 @@ impl<'a> ForcedBalance<'a> {
         let mut residual = vec![0.0; equations.size()];
         equations.residual(x, &mut residual);
     }
+}
+
+/// The report of a solution, unless nothing bounds the motion.
+fn if_bounded(report: Report, x: &[f64], equations: &Condensed<'_>) -> Report {
+    if report.outcome == Outcome::Converged && !is_bounded(x, equations.stuck_response()) {
+        return Report { outcome: Outcome::Singular, ..report };
+    }
+    report
+}
+
+/// Whether a motion still feels the load: of one that dwarfs the stuck response no digit does.
+pub(super) fn is_bounded(x: &[f64], stuck: &[f64]) -> bool {
+    norm(x) <= UNBOUNDED * norm(stuck)
 }
 
 fn has_failed(report: &Report) -> bool {

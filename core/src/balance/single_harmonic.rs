@@ -5,7 +5,7 @@
 //! `sum_j m_ij X_j + k_i (a_i − i b_i) X_i/A_i = r_i` keeps them. As everywhere it is condensed
 //! onto the stuck structure: `U = U^stuck + G Q`, `Q_i = (k_i − K_i(|U_i|)) U_i`.
 
-use super::forced::ForcedBalance;
+use super::forced::{is_bounded, ForcedBalance};
 use super::jacobian::contactwise;
 use super::solution::{Point, PointStatus, Solution};
 use super::sweep::sweep_with;
@@ -13,7 +13,7 @@ use super::unknowns::{gather, scatter, Unknowns};
 use crate::contact::Describing;
 use crate::fourier::Harmonics;
 use crate::model::Model;
-use crate::solve::{newton, Outcome, System};
+use crate::solve::{newton, Outcome, Report, System};
 use crate::structure::Receptance;
 use crate::timing::Profile;
 use crate::Error;
@@ -99,7 +99,9 @@ impl<'a> Equations<'a> {
             x = start.map_or_else(|| self.stuck.clone(), |start| start.recast(&self.harmonics));
             newton(self, &mut x, balance.settings.newton)
         });
-        let Some(report) = report.filter(|report| report.outcome == Outcome::Converged) else {
+        let solved =
+            |report: &Report| report.outcome == Outcome::Converged && is_bounded(&x, &self.stuck);
+        let Some(report) = report.filter(solved) else {
             // The same equations with homotopy at hand, or the word for why there is no solution.
             let mut point = balance.solve(omega, start)?;
             if !estimate {

@@ -74,7 +74,8 @@ _ADVICE = {
     ),
     Status.SINGULAR: (
         "The equations have no unique solution here: an unforced harmonic hits an undamped natural "
-        "frequency of the stuck structure, or damping is negative and the curve turns. "
+        "frequency of the stuck structure, friction does not bound an undamped resonance, or "
+        "damping is negative and the curve turns. "
         "Add damping or shift this omega slightly."
     ),
     Status.NOT_COMPUTED: (
