@@ -142,10 +142,10 @@ impl Elastic {
                 }
             }
         }
-        Sliding {
-            tangent,
-            slip_rate: self.least_slip(&slipping, &held, &self.root.transpose().to_owned()),
-        }
+        let mut slip_rate = self.least_slip(&slipping, &held, &self.root.transpose().to_owned());
+        drop_rounding(&mut tangent);
+        drop_rounding(&mut slip_rate);
+        Sliding { tangent, slip_rate }
     }
 
     /// Orthonormal basis of the strains that the rows of some points span.
@@ -197,6 +197,19 @@ impl Elastic {
     }
 }
 
+/// Sets what rounding has left in place of zeros to zero: of points that do not move with others the
+/// rate is none, and must not have a sign.
+fn drop_rounding(matrix: &mut Mat<f64>) {
+    let least = NEGLIGIBLE * matrix.norm_max();
+    for j in 0..matrix.ncols() {
+        for i in 0..matrix.nrows() {
+            if matrix[(i, j)].abs() <= least {
+                matrix[(i, j)] = 0.0;
+            }
+        }
+    }
+}
+
 /// Takes from x what lies along an orthonormal basis.
 fn subtract_along(basis: &[Vec<f64>], x: &mut [f64]) {
     for q in basis {
@@ -240,5 +253,47 @@ mod tests {
         }
         let one = elastic.sliding(&[false, true]);
         assert_eq!(one.tangent, Mat::<f64>::zeros(2, 2));
+    }
+
+    /// A floating body rests on the point that sticks. If another one is on the same ground it slips at
+    /// a rate of exactly zero, to which rounding must not give a sign.
+    #[test]
+    fn points_do_not_slip_with_others_by_rounding() {
+        let d = mat![
+            [
+                3_111_999.072_336_622,
+                2_013_862.593_721_796_5,
+                -2_259_566.291_669_272_4,
+                -2_866_295.374_389_146
+            ],
+            [
+                2_013_862.593_721_796_5,
+                6_617_603.142_542_944,
+                -3_395_872.949_069_31,
+                -5_235_592.787_195_43
+            ],
+            [
+                -2_259_566.291_669_272_4,
+                -3_395_872.949_069_31,
+                3_248_707.277_913_24,
+                2_406_731.962_825_342_5
+            ],
+            [
+                -2_866_295.374_389_146,
+                -5_235_592.787_195_43,
+                2_406_731.962_825_342_5,
+                5_695_156.198_759_234
+            ],
+        ];
+        let elastic = Elastic::new(d.as_ref()).unwrap();
+        assert_eq!(elastic.rank(), 3);
+        let rate = elastic.sliding(&[true, true, true, false]).slip_rate;
+        for i in 0..3 {
+            for j in 0..4 {
+                let expected = f64::from(u8::from(i == j)) - f64::from(u8::from(j == 3));
+                assert!((rate[(i, j)] - expected).abs() < 1e-12);
+                assert_eq!(rate[(i, j)] == 0.0, expected == 0.0, "{i} {j}: {}", rate[(i, j)]);
+            }
+        }
     }
 }

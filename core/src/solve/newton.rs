@@ -216,14 +216,14 @@ mod tests {
         }
     }
 
-    /// Along steps that lower the residual the way takes dozens of iterations.
+    /// Along steps that lower the residual the way takes three million iterations.
     #[test]
     fn steps_are_judged_by_the_error_and_not_by_the_residual() {
-        let mut x = [-1.2, 1.0];
+        let mut x = [-5.0, 25.0];
         let report = newton(&mut Valley(0.0), &mut x, NewtonSettings::default());
         assert_eq!(report.outcome, Outcome::Converged);
         assert!((x[0] - 1.0).abs() < 1e-12 && (x[1] - 1.0).abs() < 1e-12, "{x:?}");
-        assert!(report.iterations <= 6, "{}", report.iterations);
+        assert!(report.iterations <= 5, "{}", report.iterations);
     }
 
     struct Rootless;
