@@ -274,6 +274,28 @@ def test_bad_dampers_are_refused(arguments, message):
         )
 
 
+def test_six_printed_digits_of_a_stiffness_are_enough():
+    rng = np.random.default_rng(3)
+    strains = rng.normal(size=(3, 4))
+    strains -= strains.mean(axis=1, keepdims=True)
+    exact = 1e6 * strains.T @ strains
+    printed = np.array([[float(f"{entry:.6g}") for entry in row] for row in exact])
+    assert np.linalg.eigvalsh(printed)[0] < -1e-8 * printed.max()
+    pair = ss.reference.damped_pair(120.0)
+    ends, limits = pair.contacts[0].dofs, (5.0, 8.0, 11.0, 20.0)
+    amplitude, other = (
+        ss.forced_response(
+            pair.replaced(
+                contacts=[ss.StructuralDamper(ends, stiffness=stiffness, slip_forces=limits)]
+            ),
+            [150.0, 240.0, 540.0],
+            harmonics=9,
+        ).amplitude("1.tip")
+        for stiffness in (exact, printed)
+    )
+    np.testing.assert_allclose(other, amplitude, rtol=2e-4)
+
+
 def test_unknown_dofs_and_impossible_states_are_refused():
     model = reference.damped_pair()
     damper = ss.StructuralDamper(["1.tip", "2.tpi"], stiffness=D, slip_forces=[1.0, 2.0])

@@ -21,7 +21,9 @@ use std::f64::consts::TAU;
 
 /// Asymmetry, and negative eigenvalues, relative to the largest entry, that printed digits may
 /// leave in a stiffness.
-const PRINTED: f64 = 1e-8;
+const PRINTED: f64 = 1e-6;
+/// The same that rounding may leave.
+const ROUNDING: f64 = 1e-12;
 
 /// A massless elastic damper with several slipping contacts.
 #[derive(Debug, Clone)]
@@ -75,10 +77,16 @@ impl StructuralDamper {
             return Err(Error::value(
                 "structural: lowest eigenvalue of stiffness",
                 lowest,
-                "must not be negative, for the damper would give energy away; check its signs",
+                "must not be negative, for the damper would give energy away; check its signs and digits",
             ));
         }
         let elastic = Elastic::new(symmetric.as_ref())?;
+        // What printed digits have left of negative eigenvalues is not in the elastic forces.
+        let symmetric = if lowest < -ROUNDING * largest {
+            elastic.root() * elastic.root().transpose()
+        } else {
+            symmetric
+        };
         Ok(Self { unit: symmetric.clone(), stiffness: symmetric, limits, elastic, factor: 1.0 })
     }
 

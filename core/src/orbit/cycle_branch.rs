@@ -287,11 +287,8 @@ impl Finder<'_> {
             return Ok(Traced { branch, limit, ends });
         }
         let own = self.family.own_value().ok_or_else(|| {
-            Error::value(
-                "contacts",
-                f64::NAN,
-                "have different values of what is followed; follow a factor on them",
-            )
+            let got = "different ones; follow a factor on them";
+            Error::shape("contacts", "one value of what is followed", got)
         })?;
         if own.is_infinite() {
             let remedy = "never slip; give the model a finite slip force, from which to follow it";

@@ -54,7 +54,8 @@ def start_assumption(model: Model) -> str:
         "; ".join(
             [
                 "The march through a damper of several points begins without slip, so that points "
-                "which never slip hold what they built up from zero displacement",
+                "which never slip hold what they built up from zero displacement, and no mean "
+                "force where the motion is half-wave symmetric",
                 *held,
             ]
         )

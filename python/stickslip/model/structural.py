@@ -23,7 +23,7 @@ from stickslip.model.structure import Structure
 
 __all__ = ["StructuralDamper"]
 
-_PRINTED = 1e-8
+_PRINTED = 1e-6
 """Asymmetry, or row sum, relative to the largest stiffness, that printed digits may leave."""
 
 _ROUNDING = 1e-12
@@ -35,7 +35,8 @@ class StructuralDamper(Contact):
 
     With the displacements u of its contacts and their slip s the forces are f = D (u - s); each is
     held to abs(f_i) <= F_i, and its slip moves along f_i = +-F_i alone. The forces are unique. The
-    slip is, too, unless all contacts of a floating part slip at once: then it is the least one.
+    slip is, too, unless all contacts of a floating part slip at once: then its sharing among them
+    is not determined.
 
     Parameters
     ----------
@@ -328,7 +329,7 @@ def _stiffness(value: MatrixLike, points: int) -> Matrix:
     if lowest < -_PRINTED * largest:
         raise ModelError(
             f"{entry}: not positive semidefinite (eigenvalue {lowest:g}), so that the damper would "
-            "give energy away; check its signs"
+            "give energy away; check its signs, and give it more than six digits"
         )
     return symmetric
 
