@@ -274,6 +274,18 @@ def test_bad_dampers_are_refused(arguments, message):
         )
 
 
+def test_residual_forces_of_points_and_the_name_of_the_ground_are_refused():
+    model = ss.reference.damped_pair(60.0)
+    for analysis in (ss.forced_response, ss.exact_response):
+        with pytest.raises(ss.ModelError, match=r"^residual: 3 N is for contacts of one point"):
+            analysis(model, [550.0], residual=3.0)
+    damper = ss.StructuralDamper(
+        ["ground", "1.tip"], stiffness=[[1, -1], [-1, 1]], slip_forces=[1, 1]
+    )
+    with pytest.raises(ss.ModelError, match=r"unknown dof 'ground'.* \(the ground is None\)"):
+        model.replaced(contacts=[damper])
+
+
 def test_six_printed_digits_of_a_stiffness_are_enough():
     rng = np.random.default_rng(3)
     strains = rng.normal(size=(3, 4))
@@ -313,105 +325,3 @@ def test_unknown_dofs_and_impossible_states_are_refused():
                 [ss.Jenkins("1.tip", stiffness=1.0, slip_force=1.0) for _ in range(13)],
             )
         )
-
-
-def random_model(seed):
-    """A passive structure of 3 to 6 DOFs with a random damper of 2 to 6 contacts."""
-    rng = np.random.default_rng(seed)
-    size, points = int(rng.integers(3, 7)), int(rng.integers(2, 7))
-    basis = rng.normal(size=(2, size, size))
-    mass = basis[0] @ basis[0].T + 2.0 * np.eye(size)
-    stiffness = 30.0 * (basis[1] @ basis[1].T + np.eye(size))
-    structure = ss.Structure(mass, stiffness, damping=ss.ModalDamping(10 ** rng.uniform(-3, -1.3)))
-    links = np.triu(10 ** rng.uniform(0.0, 2.5, (points, points)), 1)
-    links = links + links.T
-    own = np.diag(links.sum(axis=1)) - links
-    limits = 10 ** rng.uniform(-1.5, 0.5, points)
-    limits[rng.random(points) < 0.2] = np.inf
-    dofs = [str(dof) for dof in rng.integers(0, size, points)]
-    if rng.random() < 0.3:
-        dofs[-1] = None
-    damper = ss.StructuralDamper(dofs, stiffness=own, slip_forces=limits)
-    forces = [ss.Force(str(dof), rng.uniform(0.5, 5.0), rng.uniform(0, 6)) for dof in (0, size - 1)]
-    model = ss.Model(structure, [damper], forces)
-    return model, ss.natural_frequencies(model)[0] * rng.uniform(0.4, 1.6)
-
-
-def test_three_hundred_random_dampers_need_no_homotopy():
-    for seed in range(300):
-        model, omega = random_model(seed)
-        frf = ss.forced_response(model, [omega], harmonics=9)
-        assert frf.converged.all(), seed
-        assert frf.counters["homotopies"] == 0, seed
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_random_dampers_on_random_structures_are_solved(seed):
-    model, omega = random_model(seed)
-    frf = ss.forced_response(model, [omega], harmonics=9)
-    assert frf.converged.all()
-    work = frf.dissipation(0)
-    assert (work >= -1e-12 * np.abs(work).max(initial=1e-300)).all()
-    free = [point for point, dof in enumerate(model.contacts[0].dofs) if dof is None]
-    forces = frf.contact_force(0, 0, 256)
-    largest = np.abs(forces).max()
-    assert np.abs(forces.sum(axis=1)).max() <= 1e-9 * max(largest, 1e-12)
-    assert len(free) <= 1
-    if seed < 8:
-        exact = ss.exact_response(model, [omega])
-        assert exact.converged.all()
-        assert exact.energy.friction[0] == pytest.approx(
-            exact.energy.work[0] - exact.energy.viscous[0], abs=1e-7 * exact.energy.work[0]
-        )
-        moving = np.abs(exact.multipliers[0, exact.neutral[0] :])
-        assert (moving < 1.0).all()
-
-
-@pytest.fixture(scope="module")
-def fed_pair():
-    pair = ss.reference.damped_pair()
-    free = pair.structure
-    bare = ss.Structure(free.mass, free.stiffness, None, free.dofs)
-    return ss.Model(bare, pair.contacts, []), ss.reference.negative_damping(free)
-
-
-@pytest.mark.parametrize(("mode", "limit"), [(0, 51.5614), (1, 22.8755), (2, 88.5427)])
-def test_exact_limit_cycles_are_followed_past_all_corners(fed_pair, mode, limit):
-    # The balance finds 51.56125 (127 harmonics), 22.87541 and 88.54278 (63). Modes 0 and 2 lead
-    # through motions of which a small change grows by more than 1e40 in a period.
-    branch = ss.limit_cycles(*fed_pair, mode=mode, method="exact", stability=mode == 2)
-    assert branch.limit.ratio == pytest.approx(limit, rel=1e-5)
-    assert not any("Stalled" in text for text in branch.assumptions)
-    assert branch.ratio[-1] < 0.05
-    slipping = np.array(branch.branch) == "slipping"
-    amplitude = branch.amplitude("1.tip")
-    assert amplitude[slipping][-1] > 1e3 * amplitude[0]
-    if mode == 2:
-        assert np.nanmax(np.abs(branch.multipliers)) > 1e80
-        # small multipliers are not lost in it: one of them passes 1 where the branch turns
-        folds = [change.value for change in branch.changes if change.kind == "fold"]
-        assert max(folds) == pytest.approx(branch.limit.ratio, rel=1e-9)
-
-
-def test_exact_limit_cycles_with_four_contacts_are_those_of_harmonic_balance(fed_pair):
-    ratio = [4.5, 20.0, 60.0]
-    exact = ss.limit_cycles(*fed_pair, mode=2, ratio=ratio, method="exact")
-    balance = ss.limit_cycles(*fed_pair, mode=2, ratio=ratio, harmonics=31)
-    assert np.array_equal(exact.ratio, balance.ratio)
-    assert len(exact.ratio) == 12
-    tip = exact.amplitude("1.tip")
-    assert tip.max() > 4000 * tip.min()
-    assert exact.omega == pytest.approx(balance.omega, rel=3e-3)
-    assert tip == pytest.approx(balance.amplitude("1.tip"), rel=4e-3)
-    # the orbit next to a balance has been found by another way, from other states
-    largest = np.abs(exact.multipliers).max(axis=1)
-    assert largest.max() > 1e80
-    found = np.log(largest), np.log(np.abs(balance.multipliers).max(axis=1))
-    assert found[0] == pytest.approx(found[1], rel=5e-3)
-
-
-def test_limit_cycles_that_cannot_be_followed_say_so(fed_pair):
-    # with seven harmonics the balance of the first mode has no way on
-    branch = ss.limit_cycles(*fed_pair, harmonics=7, stability=False)
-    assert any("Stalled: the slipping side ends" in text for text in branch.assumptions)
-    assert branch.limit.ratio < 3.0

@@ -145,7 +145,21 @@ def require_forced(model: Model, highest: int, entry: str) -> None:
 
 
 def require_held(model: Model, residual: Residual) -> None:
-    """Refuse a static load that nothing, or only contacts of prescribed mean force, would hold."""
+    """Refuse a static load that nothing, or only contacts of prescribed mean force, would hold.
+
+    Refused as well is a residual force where no contact could hold it: dampers of several points
+    hold what they built up.
+    """
+    if (
+        not isinstance(residual, str)
+        and residual
+        and model.contacts
+        and all(contact.points > 1 for contact in model.contacts)
+    ):
+        raise ModelError(
+            f"residual: {residual:g} N is for contacts of one point, and the model has none; "
+            "leave it out"
+        )
     static = [
         (n, one)
         for n, one in enumerate(model.forces, start=1)

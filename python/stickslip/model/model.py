@@ -98,6 +98,8 @@ class Model:
             for dof in contact.dofs:
                 if dof is not None and dof not in known:
                     reason = unknown("dof", dof, known)
+                    if dof == "ground":
+                        reason += " (the ground is None)"
                     raise ModelError(f"contact {number} ({brief(contact.name)}): {reason}")
         for number, force in enumerate(self.forces, 1):
             if force.dof not in known:
