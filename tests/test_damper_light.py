@@ -36,6 +36,20 @@ def test_peaks_of_lightly_damped_structures_are_not_missed() -> None:
     assert all(status == "converged" for status in curve.status)
 
 
+@pytest.mark.parametrize("harmonics", [1, 9, "auto"])
+def test_a_resonance_that_friction_cannot_bound_is_singular(harmonics: int | str) -> None:
+    oscillator = ss.Structure(mass=[[2.0]], stiffness=[[8.0]], dofs=["tip"])
+    for slip_force, status in ((1.0, "singular"), (100.0, "converged")):
+        contact = ss.Jenkins("tip", stiffness=10.0, slip_force=slip_force)
+        model = ss.Model(oscillator, [contact], [ss.Force("tip", 100.0)])
+        frf = ss.forced_response(model, [2.0], harmonics=harmonics)
+        assert frf.status[0] == status
+        # held fast, 100 N move 18 - 8 N/m
+        assert frf.amplitude("tip")[0] == pytest.approx(
+            10.0 if status == "converged" else np.nan, rel=1e-9, nan_ok=True
+        )
+
+
 @pytest.mark.parametrize("damping", [0.0, 1e-6])
 def test_a_peak_is_found_or_missing(damping: float) -> None:
     values = np.array([48.0, 1000.0, 51794.7, 1e5])

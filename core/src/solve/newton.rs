@@ -25,7 +25,7 @@ impl Default for NewtonSettings {
 pub enum Outcome {
     /// The estimated error is below the tolerance.
     Converged,
-    /// No step along the Newton direction lowers the residual, or too many iterations.
+    /// No step along the Newton direction leaves a smaller one, or too many iterations.
     Stalled,
     /// The Jacobian is singular, or the residual is not a number.
     Singular,
@@ -95,10 +95,7 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
             match taken {
                 Damped::Full(left) => damped = !keep || left > CONTRACTS,
                 Damped::Part => {}
-                Damped::Stuck => {
-                    let outcome = if within { Outcome::Converged } else { Outcome::Stalled };
-                    return report(outcome, size_of_residual, x);
-                }
+                Damped::Stuck => return report(Outcome::Stalled, size_of_residual, x),
             }
             continue;
         }
@@ -112,6 +109,9 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
         if !trial.along(evaluate, x, &step, size_of_residual, 1.0, close) {
             // The Jacobian at x again, for damped steps if it was not to blame.
             system.residual(x, &mut residual);
+            if fresh && within {
+                return report(Outcome::Converged, size_of_residual, x);
+            }
             if fresh {
                 damping.forget();
                 damped = true;
@@ -132,7 +132,7 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
             return report(Outcome::Converged, size_of_residual, x);
         }
         let before = within;
-        within = trial.length == 1.0 && left <= settings.tolerance;
+        within = left <= settings.tolerance;
         if within {
             // Newton's own last step would leave hardly more than rounding. One with a Jacobian
             // kept leaves what the step that would follow tells, at the price of a substitution;
