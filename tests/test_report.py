@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 import stickslip as ss
 from packed import numbers
 from stickslip.cli import app
+from stickslip.results.diagnostic import diagnostic
 from stickslip.results.result import Result
 from stickslip.views import kinds
 from stickslip.views.tables import new_table
@@ -364,7 +365,12 @@ class Branch(Result):
 
 
 BRANCH = Branch(
-    model=BEAM, dofs=("tip",), interrupted=False, timings={}, counters={}, assumptions=("None.",)
+    model=BEAM,
+    dofs=("tip",),
+    interrupted=False,
+    timings={},
+    counters={},
+    diagnostics=(diagnostic("text", "None."),),
 )
 
 
@@ -388,8 +394,7 @@ def test_a_new_kind_joins_with_its_view(tmp_path, monkeypatch):
     view.tables, view.panels = tables, panels
     view.facts = lambda result: [("branches", "2"), ("assumed", "None.")]
     view.details = lambda result, dofs, output: []
-    view.failures = lambda name, result: [f"{name}: turned back"]
-    view.cautions = lambda name, result: []
+    view.failures = lambda result: ["turned back"]
     monkeypatch.setitem(sys.modules, "branch_view", view)
     monkeypatch.setitem(kinds.MODULES, "branch", "branch_view")
     ss.report({"lco": BRANCH}, tmp_path / "a.html")

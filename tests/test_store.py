@@ -97,7 +97,9 @@ def test_dataset(frf):
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5
-    assert tuple(json.loads(dataset.attrs["assumptions"])) == frf.assumptions
+    told = json.loads(dataset.attrs["diagnostics"])
+    assert tuple(one["text"] for one in told) == frf.assumptions
+    assert {"harmonics", "modal-base"} <= {one["code"] for one in told}
     assert json.loads(dataset.attrs["timings"])["total"] > 0.0
 
 
@@ -298,7 +300,7 @@ def test_foreign_file(tmp_path):
         (
             "stickslip_format",
             store.FORMAT + 1,
-            r"in format 2, this version reads format 1 to 1; upgr",
+            r"in format 3, this version reads format 1 to 2; upgr",
         ),
         ("stickslip_format", "new", r"in format new, this version reads format 1"),
         ("stickslip_kind", "wave_fronts", r"holds 'wave_fronts', this version reads 'forced_"),

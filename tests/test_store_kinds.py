@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import zipfile
 from dataclasses import fields
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import stickslip as ss
 from stickslip.reference import beam_pair, snecma_beam
 from stickslip.results import store
 from stickslip.results.result import Result
+from stickslip.views import kinds
 
 OLD = Path(__file__).parent / "data" / "forced-response-format-1.nc.gz"
 
@@ -118,6 +120,19 @@ def test_a_file_of_the_first_version_is_read(tmp_path):
     assert old.certificate is None
     now = ss.forced_response(snecma_beam(), old.omega, 3, observe="tip")
     np.testing.assert_allclose(old.amplitude("tip"), now.amplitude("tip"), rtol=1e-8)
+
+
+@pytest.mark.parametrize("kind", store.KINDS)
+def test_a_file_of_every_first_kind_is_read_shown_and_written_again(kind, tmp_path):
+    with zipfile.ZipFile(OLD.with_name("first-version.zip")) as files:
+        old = ss.load(files.extract(f"{kind}.nc", tmp_path))
+    # Files of the first version hold texts without codes.
+    assert {(one.code, one.severity) for one in old.diagnostics} <= {("text", "note")}
+    assert kinds.failures(old) == kinds.cautions(old) == []
+    old.save(tmp_path / "new.nc")
+    again = ss.load(tmp_path / "new.nc")
+    assert again.diagnostics == old.diagnostics
+    assert kinds.view_of([again]).facts(again) == kinds.view_of([old]).facts(old)
 
 
 def test_every_kind_has_its_class_and_its_view():

@@ -1,8 +1,7 @@
-"""What an analysis took for granted, in words."""
+"""What an analysis took for granted."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -17,7 +16,7 @@ from stickslip.analyses.contact_assumptions import (
 from stickslip.analyses.uniqueness import damping_assumption
 from stickslip.model import Model, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
-from stickslip.results.status import Status
+from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_tolerances, present
 
 if TYPE_CHECKING:
     from stickslip.analyses.exact_response import ExactSettings
@@ -71,8 +70,8 @@ def assumptions_of(
     missing: int = 0,
     interrupted: bool = False,
     single: bool = False,
-) -> tuple[str, ...]:
-    """Say what a forced response took for granted, one text per assumption.
+) -> tuple[Diagnostic, ...]:
+    """Say what a forced response took for granted.
 
     Parameters
     ----------
@@ -95,23 +94,24 @@ def assumptions_of(
 
     Returns
     -------
-    tuple of str
-        One sentence or two each; those that do not apply are left out.
+    tuple of Diagnostic
+        Those that do not apply are left out.
     """
     base = model.problem.modal_base
     # Numbers far outside any unit overflow when squared; what is not finite then is left out.
     with np.errstate(all="ignore"):
-        texts = (
-            "" if single else _harmonics(settings, arrays, half_wave),
-            *contact_assumptions(model, settings, arrays),
-            _BASES.get(base, f"The compliance is evaluated by {base}."),
-            _frequencies(settings, arrays, missing, interrupted=interrupted),
-            _observed(model, dofs),
-            damping_assumption(model.structure.damping),
-            _truncation(dofs, arrays, _OTHER_METHOD if single else "keep more harmonics there"),
-            _failures(arrays),
+        return present(
+            (
+                None if single else _harmonics(settings, arrays, half_wave),
+                *contact_assumptions(model, settings, arrays),
+                diagnostic("modal-base", _BASES[base], base=base),
+                _frequencies(settings, arrays, missing, interrupted=interrupted),
+                _observed(model, dofs),
+                damping_assumption(model.structure.damping),
+                _truncation(dofs, arrays, _OTHER_METHOD if single else "keep more harmonics there"),
+                missed_tolerances(arrays.status, "points"),
+            )
         )
-    return tuple(text for text in texts if text)
 
 
 def orbit_assumptions(
@@ -122,8 +122,8 @@ def orbit_assumptions(
     *,
     half_wave: bool,
     missing: int = 0,
-) -> tuple[str, ...]:
-    """Say what exact orbits took for granted, one text per assumption.
+) -> tuple[Diagnostic, ...]:
+    """Say what exact orbits took for granted.
 
     Parameters
     ----------
@@ -132,8 +132,8 @@ def orbit_assumptions(
 
     Returns
     -------
-    tuple of str
-        One sentence or two each; those that do not apply are left out.
+    tuple of Diagnostic
+        Those that do not apply are left out.
     """
     half = (
         "Orbits were sought on half a period: the forces and the friction laws are half-wave "
@@ -141,27 +141,35 @@ def orbit_assumptions(
         if half_wave
         else "Only motions of the period of the forces were sought."
     )
-    chosen = ""
+    chosen = None
     if settings.span is not None:
         low, high = sorted(settings.span)
-        chosen = (
+        chosen = diagnostic(
+            "frequencies",
             f"The frequencies between {low:g} and {high:g} rad/s are those that an adaptive "
-            f"harmonic balance chose to a tolerance of {settings.tolerance:g}."
+            f"harmonic balance chose to a tolerance of {settings.tolerance:g}.",
+            tolerance=settings.tolerance,
         )
     without_span = replace(settings, span=None)
     with np.errstate(all="ignore"):
-        texts = (
-            half,
-            f"Harmonics are reported up to {settings.harmonics}; the orbits have no truncation.",
-            residual_assumption(model, settings, arrays),
-            start_assumption(model),
-            chosen,
-            _frequencies(without_span, arrays, missing, interrupted=missing > 0),
-            _observed(model, dofs),
-            damping_assumption(model.structure.damping),
-            _failures(arrays),
+        return present(
+            (
+                diagnostic("half-period", half),
+                diagnostic(
+                    "harmonics",
+                    f"Harmonics are reported up to {settings.harmonics}; the orbits have no "
+                    "truncation.",
+                    most=settings.harmonics,
+                ),
+                residual_assumption(model, settings, arrays),
+                start_assumption(model),
+                chosen,
+                _frequencies(without_span, arrays, missing, interrupted=missing > 0),
+                _observed(model, dofs),
+                damping_assumption(model.structure.damping),
+                missed_tolerances(arrays.status, "points"),
+            )
         )
-    return tuple(text for text in texts if text)
 
 
 def transient_assumptions(
@@ -172,8 +180,8 @@ def transient_assumptions(
     *,
     settled: bool,
     unbounded: bool,
-) -> tuple[str, ...]:
-    """Say what a transient took for granted, one text per assumption.
+) -> tuple[Diagnostic, ...]:
+    """Say what a transient took for granted.
 
     Parameters
     ----------
@@ -190,8 +198,8 @@ def transient_assumptions(
 
     Returns
     -------
-    tuple of str
-        One sentence or two each; those that do not apply are left out.
+    tuple of Diagnostic
+        Those that do not apply are left out.
     """
     begun = "rest" if start is None else "a given state"
     if isinstance(start, Mapping):
@@ -208,18 +216,19 @@ def transient_assumptions(
         if settings.scheme == "rk4"
         else "The motion was followed exactly between the instants of stick and slip."
     )
-    open_end = "" if settled or unbounded or settings.tolerance is not None else _UNASKED
+    open_end = not settled and not unbounded and settings.tolerance is None
     with np.errstate(all="ignore"):
-        texts = (
-            f"The run starts from {begun}{history}.",
-            stepped,
-            _coarse_steps(model, settings),
-            open_end,
-            _kept(settings),
-            _observed(model, dofs),
-            damping_assumption(model.structure.damping),
+        return present(
+            (
+                diagnostic("start", f"The run starts from {begun}{history}."),
+                diagnostic("time-steps", stepped, scheme=settings.scheme),
+                _coarse_steps(model, settings),
+                diagnostic("no-tolerance", _UNASKED) if open_end else None,
+                _kept(settings),
+                _observed(model, dofs),
+                damping_assumption(model.structure.damping),
+            )
         )
-    return tuple(text for text in texts if text)
 
 
 def turn_per_step(model: Model, settings: TransientSettings) -> float:
@@ -243,14 +252,17 @@ def turn_per_step(model: Model, settings: TransientSettings) -> float:
     return step * float(natural_frequencies(model)[-1])
 
 
-def _coarse_steps(model: Model, settings: TransientSettings) -> str:
+def _coarse_steps(model: Model, settings: TransientSettings) -> Diagnostic | None:
     turn = turn_per_step(model, settings)
     if not turn > COARSE_TURN:
-        return ""
+        return None
     needed = int(np.ceil(settings.steps * turn / COARSE_TURN))
-    return (
+    return diagnostic(
+        "coarse-steps",
         f"The highest stuck natural frequency turns by {turn:.2g} rad in a Runge-Kutta step, too "
-        f"much to be followed well; {needed} steps per period would."
+        f"much to be followed well; take {needed} steps per period.",
+        turn=turn,
+        needed=needed,
     )
 
 
@@ -258,16 +270,20 @@ _OTHER_METHOD = "forced_response keeps more of them"
 _UNASKED = "No tolerance was given, so that the last period need not be a steady one; see change."
 
 
-def _kept(settings: TransientSettings) -> str:
+def _kept(settings: TransientSettings) -> Diagnostic | None:
     if settings.keep is None or settings.keep >= settings.periods:
-        return ""
-    return f"Time histories and events are kept of the last {settings.keep} periods only."
+        return None
+    return diagnostic(
+        "kept-periods",
+        f"Time histories and events are kept of the last {settings.keep} periods only.",
+        periods=settings.keep,
+    )
 
 
-def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> str:
+def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> Diagnostic | None:
     kept = arrays.harmonics[arrays.solved]
     if not kept.size:
-        return ""
+        return None
     least, most = int(kept.min()), int(kept.max())
     chosen = (
         f", chosen per point ({least} to {most}) to a tolerance of {settings.tolerance:g}"
@@ -275,55 +291,66 @@ def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> str:
         else ""
     )
     if half_wave and most == 1:
-        return (
+        text = (
             "Only harmonic 1 was solved for: the forces and the friction laws are half-wave "
             "symmetric, and harmonics above it were left out."
         )
-    if half_wave:
-        return (
+    elif half_wave:
+        text = (
             f"Only the odd harmonics up to {most} were solved for{chosen}: the forces and the "
             "friction laws are half-wave symmetric."
         )
-    return f"All harmonics from 0 to {most} were solved for{chosen}."
+    else:
+        text = f"All harmonics from 0 to {most} were solved for{chosen}."
+    return diagnostic("harmonics", text, least=least, most=most)
 
 
-def _frequencies(settings: Settings, arrays: Arrays, missing: int, *, interrupted: bool) -> str:
+def _frequencies(
+    settings: Settings, arrays: Arrays, missing: int, *, interrupted: bool
+) -> Diagnostic | None:
     count = arrays.omega.size
     reached = f"{arrays.omega[-1] if count else np.nan:.6g} rad/s"
     if settings.span is None:
         if not missing:
-            return ""
-        return (
+            return None
+        text = (
             f"The run was interrupted after {count} of {count + missing} frequencies, at {reached}."
         )
-    if interrupted:
+    elif interrupted:
         start, end = settings.span
-        return (
+        text = (
             f"The run from {start:g} to {end:g} rad/s was interrupted: its {count} frequencies, "
             f"chosen to a tolerance of {settings.tolerance:g}, end at {reached}."
         )
-    low, high = sorted(settings.span)
-    return (
-        f"The {arrays.omega.size} frequencies between {low:g} and {high:g} rad/s were chosen to a "
-        f"tolerance of {settings.tolerance:g}."
+    else:
+        low, high = sorted(settings.span)
+        text = (
+            f"The {count} frequencies between {low:g} and {high:g} rad/s were chosen to a "
+            f"tolerance of {settings.tolerance:g}."
+        )
+    return diagnostic("frequencies", text, count=count, missing=missing)
+
+
+def _observed(model: Model, dofs: tuple[str, ...]) -> Diagnostic | None:
+    total = len(model.structure)
+    if len(dofs) == total:
+        return None
+    listed = ", ".join(dofs[:_SHOWN]) + (", ..." if len(dofs) > _SHOWN else "")
+    return diagnostic(
+        "observed-dofs",
+        f"Only {len(dofs)} of {total} dofs are kept in the result: {listed}.",
+        kept=len(dofs),
+        total=total,
     )
 
 
-def _observed(model: Model, dofs: tuple[str, ...]) -> str:
-    total = len(model.structure)
-    if len(dofs) == total:
-        return ""
-    listed = ", ".join(dofs[:_SHOWN]) + (", ..." if len(dofs) > _SHOWN else "")
-    return f"Only {len(dofs)} of {total} dofs are kept in the result: {listed}."
-
-
-def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> str:
+def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> Diagnostic | None:
     # The exact half range of every dof and point would cost as much as the solution; the root
     # sum of squares finds the point, and only there is the range taken.
     size = np.sqrt((np.abs(arrays.displacement[:, 1:]) ** 2).sum(axis=1))
     size[~(arrays.solved[:, None] & np.isfinite(size))] = 0.0
     if not size.max(initial=0.0) > 0.0:
-        return ""
+        return None
     # What moves by rounding only has no relative error worth naming.
     known = size > np.maximum(1e-6 * size.max(axis=0), 1e-12 * size.max())
     ratio = np.where(known, arrays.error_estimate / np.where(known, size, 1.0), 0.0)
@@ -331,20 +358,16 @@ def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> str:
     series = np.ascontiguousarray(arrays.displacement[point : point + 1, :, dof])
     share = float(arrays.error_estimate[point, dof] / amplitude_of(series, "half_range")[0])
     if not share > LARGE_ERROR:
-        return ""
+        return None
     what = "The discarded harmonics"
     if arrays.samples[point]:
         what = f"{what} and the sampling"
         remedy = "keep more harmonics, or take more samples, there"
-    return (
+    return diagnostic(
+        "truncation",
         f"{what} could still change {dofs[dof]!r} by {share:.1%} at omega = "
-        f"{arrays.omega[point]:.6g} rad/s, the worst point; {remedy}."
+        f"{arrays.omega[point]:.6g} rad/s, the worst point; {remedy}.",
+        dof=dofs[dof],
+        share=share,
+        omega=float(arrays.omega[point]),
     )
-
-
-def _failures(arrays: Arrays) -> str:
-    counts = Counter(Status.from_code(int(code)) for code in arrays.status)
-    failed = [f"{count} {status}" for status, count in counts.items() if status != "converged"]
-    if not failed:
-        return ""
-    return f"Of {arrays.omega.size} points not all met every tolerance: {', '.join(failed)}."

@@ -121,7 +121,7 @@ def basin_map(
         interrupted=fates.interrupted,
         timings={"total": fates.seconds},
         counters={"events": int(arrays.events.sum())},
-        assumptions=fate_assumptions(model, settings),
+        diagnostics=fate_assumptions(model, settings),
     )
     if result.interrupted:
         done = sum(reason != "interrupted" for reason in result.reason)

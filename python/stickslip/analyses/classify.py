@@ -22,6 +22,7 @@ from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
+from stickslip.results.diagnostic import Diagnostic, diagnostic, present
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.motion_class import MotionClass
 
@@ -155,7 +156,7 @@ def classify(
         interrupted=interrupted,
         timings={"total": fates.seconds},
         counters={"events": int(arrays.events.sum())},
-        assumptions=fate_assumptions(model, settings),
+        diagnostics=fate_assumptions(model, settings),
     )
     if interrupted:
         raise Interrupted(
@@ -203,23 +204,37 @@ def fates_of(
         raise ModelError(str(error)) from error
 
 
-def fate_assumptions(model: Model, settings: ClassifySettings) -> tuple[str, ...]:
-    """Say what a classification took for granted, one text per assumption."""
-    left_out = (
-        f"The {len(model.forces)} force(s) of the model were left out: the motion is free."
-        if model.forces
-        else ""
+def fate_assumptions(model: Model, settings: ClassifySettings) -> tuple[Diagnostic, ...]:
+    """Say what a classification took for granted."""
+    left_out = diagnostic(
+        "forces-left-out",
+        f"The {len(model.forces)} force(s) of the model were left out: the motion is free.",
+        forces=len(model.forces),
     )
-    texts = (
-        "The motion was followed exactly between the instants of stick and slip; decaying and "
-        "unbounded are bounds that hold for ever, settled and aperiodic what was seen of it.",
-        left_out,
-        f"A motion counts as settled at a closing error of {settings.tolerance:g} that is falling, "
-        f"over 32 periods, and was followed over {settings.periods} periods of the lowest stuck "
-        "mode at most.",
-        "Modes are those of the structure with all contacts stuck, told apart by kinetic energy.",
+    return present(
+        (
+            diagnostic(
+                "method",
+                "The motion was followed exactly between the instants of stick and slip; decaying "
+                "and unbounded are bounds that hold for ever, settled and aperiodic what was seen "
+                "of it.",
+            ),
+            left_out if model.forces else None,
+            diagnostic(
+                "criterion",
+                f"A motion counts as settled at a closing error of {settings.tolerance:g} that is "
+                f"falling, over 32 periods, and was followed over {settings.periods} periods of "
+                "the lowest stuck mode at most.",
+                tolerance=settings.tolerance,
+                periods=settings.periods,
+            ),
+            diagnostic(
+                "modes",
+                "Modes are those of the structure with all contacts stuck, told apart by kinetic "
+                "energy.",
+            ),
+        )
     )
-    return tuple(text for text in texts if text)
 
 
 def _tail_grid(model: Model, observed: int) -> tuple[float, int]:

@@ -9,6 +9,7 @@ import numpy as np
 from stickslip.analyses.cycle_settings import CycleSettings
 from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
+from stickslip.results.diagnostic import Diagnostic, diagnostic
 
 if TYPE_CHECKING:
     from stickslip import _core
@@ -26,64 +27,122 @@ _REMEDIES = {
 
 def cycle_assumptions(
     model: Model, settings: CycleSettings, arrays: CycleArrays, solution: _core.LimitCycles
-) -> tuple[str, ...]:
-    """Return the assumptions of limit cycles, one text each."""
+) -> tuple[Diagnostic, ...]:
+    """Return what is to be known of limit cycles."""
     onset, omega = solution.onset
     dof = model.structure.dofs[solution.phase_dof]
-    texts = [
-        f"Mode {settings.mode}, stuck at {omega:.6g} rad/s, loses its damping at r = {onset:.6g} "
-        "with all contacts stuck: its limit cycles begin there.",
-        "Motions are half-wave symmetric, x(t + T/2) = -x(t); cycles that break this symmetry are "
-        f"not looked for. t = 0 is the maximum of {dof!r}.",
+    told = [
+        diagnostic(
+            "onset",
+            f"Mode {settings.mode}, stuck at {omega:.6g} rad/s, loses its damping at "
+            f"r = {onset:.6g} with all contacts stuck: its limit cycles begin there.",
+            mode=settings.mode,
+            omega=omega,
+            ratio=onset,
+        ),
+        diagnostic(
+            "half-wave",
+            "Motions are half-wave symmetric, x(t + T/2) = -x(t); cycles that break this symmetry "
+            f"are not looked for. t = 0 is the maximum of {dof!r}.",
+        ),
     ]
     if any(force.amplitude for force in model.forces):
-        texts.append("The forces of the model are left out.")
+        told.append(diagnostic("forces-ignored", "The forces of the model are left out."))
     if model.travels:
-        texts.append("Stability is not decided: one sector of a wave has no motion of its own.")
+        told.append(
+            diagnostic(
+                "stability-undecided",
+                "Stability is not decided: one sector of a wave has no motion of its own.",
+            )
+        )
     side = ("sticking", "slipping")
     for name, (end, value) in zip(side, solution.ends, strict=True):
         if end == "returned":
-            texts.append(
-                f"Stalled: at {settings.followed} = {value:.6g} the walk turned back on itself, or "
-                "closed a loop: no way ahead was found at a corner of the branch, which may go on "
-                "to a farther limit; try method='newton' with more harmonics, or 'exact'."
+            told.append(
+                diagnostic(
+                    "branch-turned-back",
+                    f"Stalled: at {settings.followed} = {value:.6g} the walk turned back on "
+                    "itself, or closed a loop: no way ahead was found at a corner of the branch, "
+                    "which may go on to a farther limit; try method='newton' with more harmonics, "
+                    "or 'exact'.",
+                    value=value,
+                )
             )
         if end == "stalled":
-            texts.append(
-                f"Stalled: the {name} side ends at {settings.followed} = {value:.6g}, where no "
-                f"continuation was found. {_REMEDIES[settings.method]}"
+            told.append(
+                diagnostic(
+                    "branch-stalled",
+                    f"Stalled: the {name} side ends at {settings.followed} = {value:.6g}, where no "
+                    f"continuation was found. {_REMEDIES[settings.method]}",
+                    side=name,
+                    value=value,
+                )
             )
         if end == "points":
-            texts.append(f"The branch ends after {settings.max_points} points; raise max_points.")
+            told.append(
+                diagnostic(
+                    "points-limit",
+                    f"The branch ends after {settings.max_points} points; raise max_points.",
+                    points=settings.max_points,
+                )
+            )
         if end == "unbounded":
-            texts.append(
-                f"The {name} side grows without bound towards {settings.followed} = {value:.6g}."
+            told.append(
+                diagnostic(
+                    "unbounded-branch",
+                    f"The {name} side grows without bound towards {settings.followed} = "
+                    f"{value:.6g}.",
+                    side=name,
+                    value=value,
+                )
             )
     returned = any(end == "returned" for end, _ in solution.ends)
     if arrays.limit is None and not solution.interrupted and not returned:
-        texts.append("No turn: the branch does not turn in the range, and has one side alone.")
+        told.append(
+            diagnostic(
+                "no-turn", "No turn: the branch does not turn in the range, and has one side alone."
+            )
+        )
     if solution.jumps:
-        texts.append(
-            f"{solution.jumps} places were stepped over, at corners or between folds close to each "
-            "other."
+        told.append(
+            diagnostic(
+                "branch-jumps",
+                f"{solution.jumps} places were stepped over, at corners or between folds close to "
+                "each other.",
+                jumps=solution.jumps,
+            )
         )
     if settings.stability and not model.travels:
         along = int((~arrays.closed & arrays.known).sum())
         unknown = int((~arrays.known).sum())
         if along:
-            texts.append(
-                f"{along} points have no exact orbit nearby at their {settings.followed}: their "
-                "multipliers are those of the exact flow along the harmonic balance."
+            told.append(
+                diagnostic(
+                    "multipliers",
+                    f"{along} points have no exact orbit nearby at their {settings.followed}: "
+                    "their multipliers are those of the exact flow along the harmonic balance.",
+                    points=along,
+                )
             )
         if unknown:
-            texts.append(f"{unknown} points have no multipliers, and count as not stable.")
+            told.append(
+                diagnostic(
+                    "stability-undecided",
+                    f"{unknown} points have no multipliers, and count as not stable.",
+                    points=unknown,
+                )
+            )
     if settings.method == "newton":
         size = np.abs(arrays.displacement).max(axis=1)
         share = arrays.error_estimate / np.maximum(size, 0.02 * size.max(axis=1, keepdims=True))
         worst = float(np.where(np.isnan(share), 0.0, share).max(initial=0.0))
         if worst > settings.tolerance:
-            texts.append(
-                f"The discarded harmonics could still change amplitudes by up to {worst:.1e}; keep "
-                "more harmonics, or use method='exact'."
+            told.append(
+                diagnostic(
+                    "truncation",
+                    f"The discarded harmonics could still change amplitudes by up to {worst:.1e}; "
+                    "keep more harmonics, or use method='exact'.",
+                    share=worst,
+                )
             )
-    return tuple(texts)
+    return tuple(told)

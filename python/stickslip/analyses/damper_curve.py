@@ -219,7 +219,7 @@ def curve_of(
         interrupted=solution.interrupted,
         timings=dict(solution.timings),
         counters=dict(solution.counters),
-        assumptions=damper_assumptions(model, settings, arrays, rigid),
+        diagnostics=damper_assumptions(model, settings, arrays, rigid),
     )
 
 

@@ -241,7 +241,7 @@ def _result(
         interrupted=solution.interrupted,
         timings=dict(solution.timings),
         counters=dict(solution.counters),
-        assumptions=orbit_assumptions(
+        diagnostics=orbit_assumptions(
             model,
             settings,
             dofs,

@@ -309,7 +309,7 @@ def _result(
         interrupted=solution.interrupted,
         timings=dict(solution.timings),
         counters=dict(solution.counters),
-        assumptions=assumptions_of(
+        diagnostics=assumptions_of(
             model,
             settings,
             dofs,

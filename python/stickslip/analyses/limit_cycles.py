@@ -154,7 +154,7 @@ def limit_cycles(
         interrupted=solution.interrupted,
         timings=dict(solution.timings),
         counters={**solution.counters, "jumps": solution.jumps},
-        assumptions=cycle_assumptions(model, settings, arrays, solution),
+        diagnostics=cycle_assumptions(model, settings, arrays, solution),
     )
     if result.interrupted:
         raise Interrupted(

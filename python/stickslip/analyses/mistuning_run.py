@@ -137,7 +137,7 @@ class Work:
             interrupted=interrupted,
             timings={"total": seconds},
             counters={"disks": self.done, "points": self.points},
-            assumptions=mistuning_assumptions(self.settings, arrays, self.dofs),
+            diagnostics=mistuning_assumptions(self.settings, arrays, self.dofs),
         )
 
 

@@ -27,6 +27,7 @@ from stickslip.model import Model
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import Measure, amplitude_of
 from stickslip.results.damper_curve import DamperArrays, LeastPeak
+from stickslip.results.diagnostic import Diagnostic, diagnostic
 from stickslip.results.optimal_damper import OptimalDamper
 
 __all__ = ["optimal_damper"]
@@ -161,19 +162,30 @@ def optimal_damper(
     if progress is not None:
         progress(1.0)
     result = OptimalDamper.of(found, (low, high), curve, ())
-    return replace(result, assumptions=_assumptions(result))
+    return replace(result, diagnostics=_diagnostics(result))
 
 
-def _assumptions(result: OptimalDamper) -> tuple[str, ...]:
+def _diagnostics(result: OptimalDamper) -> tuple[Diagnostic, ...]:
     low, high = result.bounds
     unit = result.curve.settings.variation.unit
-    texts = [
-        f"The least peak was looked for between {low:.6g} and {high:.6g} {unit}; a local minimum "
-        "narrower than the coarse curve of 40 values may have been passed over."
+    told = [
+        diagnostic(
+            "coarse-search",
+            f"The least peak was looked for between {low:.6g} and {high:.6g} {unit}; a local "
+            "minimum narrower than the coarse curve of 40 values may have been passed over.",
+            low=low,
+            high=high,
+        )
     ]
     if result.at_bound:
-        texts.append("It lies at a bound: a better value may lie outside.")
-    return (*texts, *result.curve.assumptions)
+        told.append(
+            diagnostic(
+                "optimum-at-bound",
+                "The least peak lies at a bound; a better one may lie outside.",
+                value=result.value,
+            )
+        )
+    return (*told, *result.curve.diagnostics)
 
 
 def _checked(bounds: tuple[float, float]) -> tuple[float, float]:

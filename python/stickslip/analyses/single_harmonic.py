@@ -22,6 +22,7 @@ from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Arrays
+from stickslip.results.diagnostic import diagnostic
 from stickslip.results.status import Status
 
 __all__ = ["single_harmonic"]
@@ -144,7 +145,7 @@ def _solve(
     except ValueError as error:
         raise ModelError(str(error)) from error
     arrays = Arrays.of(solution)
-    texts = assumptions_of(
+    told = assumptions_of(
         model,
         settings,
         dofs,
@@ -163,5 +164,9 @@ def _solve(
         interrupted=solution.interrupted,
         timings=dict(solution.timings),
         counters=dict(solution.counters),
-        assumptions=(_METHOD, *texts, *(() if estimate else (_NO_ESTIMATE,))),
+        diagnostics=(
+            diagnostic("method", _METHOD),
+            *told,
+            *(() if estimate else (diagnostic("no-error-estimate", _NO_ESTIMATE),)),
+        ),
     )

@@ -16,6 +16,7 @@ from stickslip.analyses.variation import Common, Contacts, Parameter, Variation,
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
+from stickslip.results.diagnostic import Diagnostic, diagnostic
 from stickslip.results.stability_map import MapArrays, MapSettings, StabilityMap
 
 __all__ = ["stability_map"]
@@ -97,7 +98,7 @@ def stability_map(
         span=(LOWEST_RATIO, inf),
     )
     rows: list[tuple[float, float, float]] = []
-    causes: list[str] = []
+    told: list[Diagnostic] = []
     interrupted = False
     for place, value in enumerate(values):
         share = _share(progress, place, len(values))
@@ -105,7 +106,7 @@ def stability_map(
             solution = solve(variation.apply(model, value), matrix, cycles, share)
         except ModelError as error:
             rows.append((np.nan, np.nan, np.nan))
-            causes.append(f"{name} = {value:.6g}: {error}")
+            told.append(_without_limit(name, value, str(error)))
             continue
         if solution.interrupted:
             interrupted = True
@@ -114,9 +115,13 @@ def stability_map(
         ratio, omega = arrays.turn
         rows.append((ratio, omega, _stable_limit(arrays)))
         if np.isnan(ratio):
-            causes.append(f"{name} = {value:.6g}: the branch does not turn")
+            told.append(_without_limit(name, value, "the branch does not turn"))
     done = len(rows)
     limit, omega, stable = np.array(rows, dtype=np.float64).reshape(-1, 3).T
+    unknown = int((np.isfinite(limit) & ~np.isfinite(stable)).sum())
+    if unknown:
+        text = f"The stability of {unknown} values is not known."
+        told.append(diagnostic("stability-unknown", text, count=unknown))
     result = StabilityMap(
         model=model,
         dofs=model.structure.dofs,
@@ -128,7 +133,7 @@ def stability_map(
         interrupted=interrupted,
         timings={},
         counters={"branches": done},
-        assumptions=tuple(causes),
+        diagnostics=tuple(told),
     )
     if interrupted:
         raise Interrupted(
@@ -139,6 +144,10 @@ def stability_map(
     if progress is not None:
         progress(1.0)
     return result
+
+
+def _without_limit(name: str, value: float, cause: str) -> Diagnostic:
+    return diagnostic("no-limit", f"{name} = {value:.6g}: {cause}", value=float(value))
 
 
 def _share(progress: Progress, place: int, total: int) -> Progress:

@@ -267,7 +267,7 @@ def _result(
         interrupted=history.interrupted,
         timings=dict(history.timings),
         counters=dict(history.counters),
-        assumptions=transient_assumptions(
+        diagnostics=transient_assumptions(
             model, settings, dofs, start, settled=history.settled, unbounded=history.unbounded
         ),
     )

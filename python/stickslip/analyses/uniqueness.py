@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.results.diagnostic import Diagnostic, diagnostic
+
 __all__ = ["damping_assumption"]
 
 
-def damping_assumption(damping: NDArray[np.float64]) -> str:
+def damping_assumption(damping: NDArray[np.float64]) -> Diagnostic | None:
     """Say that a solution need not be the only one, if the damping leaves that open."""
     # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
     symmetric = 0.5 * (damping + damping.T)
@@ -18,14 +20,17 @@ def damping_assumption(damping: NDArray[np.float64]) -> str:
     # Rounding may put the zero eigenvalue of an undamped motion on either side.
     identity = np.eye(len(scaled))
     if _is_positive(scaled - 1e-13 * identity):
-        return ""
+        return None
     if _is_positive(scaled + 1e-9 * identity):
-        return (
+        return diagnostic(
+            "undamped-motion",
             "The damping leaves some motion undamped: a steady state that friction does not damp "
-            "either may not be the only one."
+            "either may not be the only one.",
         )
-    return (
-        "The damping is negative for some motion: the solution may be unstable or not the only one."
+    return diagnostic(
+        "negative-damping",
+        "The damping is negative for some motion: the solution may be unstable or not the only "
+        "one.",
     )
 
 

@@ -210,15 +210,15 @@ def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> 
 def _warn(results: Sequence[tuple[str, Result]]) -> None:
     """Name what did not converge, and end with the exit code that says so."""
     from stickslip.cli.console import complain
-    from stickslip.views.kinds import view_of
+    from stickslip.views.kinds import cautions, failures
 
     for name, result in results:
-        for line in view_of([result]).cautions(name, result):
-            complain("warning", line)
-    lines = [line for name, result in results for line in view_of([result]).failures(name, result)]
-    for line in lines:
+        for text in cautions(result):
+            complain("warning", f"{name}: {text}")
+    failed = [f"{name}: {text}" for name, result in results for text in failures(result)]
+    for line in failed:
         complain("warning", line)
-    if lines:
+    if failed:
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -240,7 +240,7 @@ def show(results: Files) -> None:
     from stickslip import load
     from stickslip.cli import console
     from stickslip.study import notable_dofs
-    from stickslip.views.kinds import view_of
+    from stickslip.views.kinds import failures, view_of
 
     for number, file in enumerate(results):
         result = load(file)
@@ -252,8 +252,8 @@ def show(results: Files) -> None:
         console.tell("")
         shown = notable_dofs(result.model, result.dofs)
         console.show_all(view.tables([("", result)], "", shown, "m"))
-        for line in view.failures(file.name, result):
-            console.complain("warning", line)
+        for text in failures(result):
+            console.complain("warning", f"{file.name}: {text}")
 
 
 @app.command(

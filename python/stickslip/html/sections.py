@@ -21,7 +21,7 @@ from stickslip.html.models import ModelSummary, summaries
 from stickslip.results.result import Result
 from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
-from stickslip.views.kinds import MODULES, View, view_of
+from stickslip.views.kinds import MODULES, View, cautions, failures, view_of
 from stickslip.views.picture import Panel
 from stickslip.views.tables import Row, Table, new_table
 
@@ -164,8 +164,8 @@ def _section(
     return Section(
         anchor,
         entry.name,
-        _without(view.failures(entry.name, result), entry.name),
-        _without(view.cautions(entry.name, result), entry.name),
+        failures(result),
+        cautions(result),
         facts,
         result.assumptions,
         [_figure(panel) for panel in view.details(result, dofs, output)],
@@ -173,10 +173,6 @@ def _section(
         _effort(result),
         _provenance(entry),
     )
-
-
-def _without(lines: Iterable[str], name: str) -> list[str]:
-    return [line.removeprefix(f"{name}: ") for line in lines]
 
 
 def _figure(panel: Panel) -> Drawn | str:

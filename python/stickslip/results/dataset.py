@@ -102,7 +102,7 @@ def to_dataset(result: ForcedResponse, *, derived: bool = True) -> xr.Dataset:
     -------
     xarray.Dataset
         Dimensions omega, harmonic, dof and point (of contact). The attributes `settings`,
-        `assumptions`, `timings` and `counters` are JSON texts. All
+        `diagnostics`, `timings` and `counters` are JSON texts. All
         numbers are copies.
     """
     dataset = curve_dataset(result, _TITLE, CURVE_VARIABLES, derived=derived)

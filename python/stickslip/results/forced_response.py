@@ -56,8 +56,8 @@ class ForcedResponse(BladeMotion, Sensitivities):
         Seconds by stage.
     counters : mapping of int
         Evaluations by kind.
-    assumptions : tuple of str
-        What was taken for granted, and what to look at before the numbers are used.
+    diagnostics : tuple of Diagnostic
+        What was taken for granted, what puts the numbers in doubt, and what is missing.
     certificate : Certificate or None
         The comparison with exact orbits that `stickslip.certify` made.
     """

@@ -13,6 +13,7 @@ from stickslip.model import Model
 from stickslip.model.force import force_from_spec
 from stickslip.model.laws import contact_from_spec
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
+from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.result import Result
 from stickslip.results.status import Status
 
@@ -143,8 +144,8 @@ class OptimalDamper(Result):
             dataset[f"given_{name}"] = (f"given_{name}_entry", specs, about)
         dataset.attrs |= {
             "title": "Least peak of a structure with dry friction over a parameter",
-            "assumptions": json.dumps(self.assumptions, ensure_ascii=False),
-            "curve_assumptions": json.dumps(self.curve.assumptions, ensure_ascii=False),
+            "diagnostics": to_json(self.diagnostics),
+            "curve_diagnostics": to_json(self.curve.diagnostics),
         }
         return dataset
 
@@ -174,15 +175,19 @@ class OptimalDamper(Result):
             [contact_from_spec(json.loads(text)) for text in dataset["given_contacts"].values],
             [force_from_spec(json.loads(text)) for text in dataset["given_forces"].values],
         )
-        own = dataset.assign_attrs(assumptions=dataset.attrs["curve_assumptions"])
+        prefix = "curve_"
+        of_curve = {
+            name.removeprefix(prefix): value
+            for name, value in dataset.attrs.items()
+            if name.startswith(prefix)
+        }
         columns = [dataset[f"minimum_{name}"].values for name in LeastPeak._fields]
         minima = tuple(LeastPeak(*map(float, row)) for row in zip(*columns, strict=True))
         if not minima:
             raise ValueError("no minimum")
         low, high = map(float, dataset["bounds"].values)
-        curve = DamperCurve.from_dataset(own, given)
-        assumptions = tuple(json.loads(dataset.attrs["assumptions"]))
-        return cls.of(minima, (low, high), curve, assumptions)
+        curve = DamperCurve.from_dataset(dataset.assign_attrs(of_curve), given)
+        return cls.of(minima, (low, high), curve, from_attributes(dataset.attrs))
 
     @classmethod
     def of(
@@ -190,7 +195,7 @@ class OptimalDamper(Result):
         minima: tuple[LeastPeak, ...],
         bounds: tuple[float, float],
         curve: DamperCurve,
-        assumptions: tuple[str, ...],
+        diagnostics: tuple[Diagnostic, ...],
     ) -> Self:
         """Return the result with what it has in common with its curve."""
         return cls(
@@ -199,7 +204,7 @@ class OptimalDamper(Result):
             interrupted=curve.interrupted,
             timings=curve.timings,
             counters=curve.counters,
-            assumptions=assumptions,
+            diagnostics=diagnostics,
             minima=minima,
             bounds=bounds,
             curve=curve,

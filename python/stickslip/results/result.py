@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
+from stickslip.results.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,8 +45,8 @@ class Result(ABC):
         Seconds by stage.
     counters : mapping of int
         Evaluations by kind.
-    assumptions : tuple of str
-        What was taken for granted, and what to look at before the numbers are used.
+    diagnostics : tuple of Diagnostic
+        What was taken for granted, what puts the numbers in doubt, and what is missing.
     """
 
     kind: ClassVar[str]
@@ -56,11 +57,16 @@ class Result(ABC):
     interrupted: bool
     timings: Mapping[str, float]
     counters: Mapping[str, int]
-    assumptions: tuple[str, ...]
+    diagnostics: tuple[Diagnostic, ...]
 
     def __post_init__(self) -> None:
         for name in ("timings", "counters"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """The texts of the diagnostics."""
+        return tuple(one.text for one in self.diagnostics)
 
     def __reduce__(self) -> tuple[Callable[[], Self], tuple[()]]:
         # What is only kept to save time stays behind, and a mapping proxy cannot be pickled.

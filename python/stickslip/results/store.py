@@ -36,7 +36,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 
-FORMAT = 1
+FORMAT = 2
 """Version of the layout of the file; it rises when an older reader could not read it."""
 
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.results.diagnostic import from_attributes, to_json
+
 if TYPE_CHECKING:
     import xarray as xr
     from _typeshed import DataclassInstance
@@ -102,7 +104,7 @@ def attributes(result: Result, settings: DataclassInstance, title: str) -> dict[
         "Conventions": "CF-1.11",
         "stickslip_version": __version__,
         "settings": json.dumps(asdict(settings)),
-        "assumptions": json.dumps(result.assumptions, ensure_ascii=False),
+        "diagnostics": to_json(result.diagnostics),
         "timings": json.dumps(dict(result.timings)),
         "counters": json.dumps(dict(result.counters)),
         "interrupted": int(result.interrupted),
@@ -126,7 +128,7 @@ def parts(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
         "interrupted": bool(dataset.attrs["interrupted"]),
         "timings": json.loads(dataset.attrs["timings"]),
         "counters": json.loads(dataset.attrs["counters"]),
-        "assumptions": tuple(json.loads(dataset.attrs["assumptions"])),
+        "diagnostics": from_attributes(dataset.attrs),
     }
 
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.results.fate_arrays import Motion
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, assumed, model_rows, new_table
 
 if TYPE_CHECKING:
     from stickslip.results.basin_map import BasinMap
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
+__all__ = ["details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
@@ -60,21 +60,16 @@ def facts(result: BasinMap) -> list[Row]:
         ("span", f"at most {settings.periods} periods of the lowest stuck mode"),
         ("events", f"{result.counters['events']}"),
     ]
-    return rows + [("assumed", text) for text in result.assumptions]
+    return rows + assumed(result)
 
 
-def failures(name: str, result: BasinMap) -> list[str]:
+def failures(result: BasinMap) -> list[str]:
     """Word what was not decided, one line per cause."""
     counts = Counter(reason for reason in result.reason if reason.motion == Motion.UNDECIDED)
     return [
-        f"{name}: {count} of {len(result)} starts undecided. {reason.advice}"
+        f"{count} of {len(result)} starts undecided. {reason.advice}"
         for reason, count in counts.items()
     ]
-
-
-def cautions(name: str, result: BasinMap) -> list[str]:
-    """Return the assumptions that put the numbers in doubt, one line each."""
-    return [f"{name}: {line}" for line in result.assumptions if "were left out" in line]
 
 
 def panels(results: Sequence[BasinMap], dofs: Sequence[str], output: OutputTable) -> list[Panel]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from stickslip.results.exact_response import ExactResponse
 from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, assumed, model_rows, new_table
 
 if TYPE_CHECKING:
     from stickslip.disk import MistunedDisk
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "certificates", "details", "facts", "failures", "panels", "peaks", "tables"]
+__all__ = ["certificates", "details", "facts", "failures", "panels", "peaks", "tables"]
 
 
 _SLIP_POINTS = 12
@@ -111,13 +111,11 @@ def _converged(result: ForcedResponse) -> str:
     return f"{int(result.converged.sum())} of {result.omega.size}"
 
 
-def failures(name: str, result: ForcedResponse) -> list[str]:
+def failures(result: ForcedResponse) -> list[str]:
     """Word what did not converge, one line per cause: how many points, where, and what to do.
 
     Parameters
     ----------
-    name : str
-        What the result is called.
     result : ForcedResponse
         The curve.
 
@@ -131,13 +129,13 @@ def failures(name: str, result: ForcedResponse) -> list[str]:
         if status != "converged":
             places[status].append(float(omega))
     return [
-        f"{name}: {len(where)} of {result.omega.size} points {status}, "
+        f"{len(where)} of {result.omega.size} points {status}, "
         f"{_where(where)} rad/s. {status.advice}"
         for status, where in places.items()
-    ] + _without_orbit(name, result)
+    ] + _without_orbit(result)
 
 
-def _without_orbit(name: str, result: ForcedResponse) -> list[str]:
+def _without_orbit(result: ForcedResponse) -> list[str]:
     certificate = result.certificate
     if certificate is None:
         return []
@@ -145,15 +143,9 @@ def _without_orbit(name: str, result: ForcedResponse) -> list[str]:
     if not failed:
         return []
     return [
-        f"{name}: {len(failed)} of {len(certificate.status)} points could not be compared "
+        f"{len(failed)} of {len(certificate.status)} points could not be compared "
         f"({failed[0]}). {failed[0].advice}"
     ]
-
-
-def cautions(name: str, result: ForcedResponse) -> list[str]:
-    """Return the assumptions that put the numbers in doubt, one line each."""
-    doubtful = ("The discarded harmonics", "The damping leaves", "The damping is negative")
-    return [f"{name}: {line}" for line in result.assumptions if line.startswith(doubtful)]
 
 
 def _where(omega: list[float]) -> str:
@@ -174,7 +166,7 @@ def facts(result: ForcedResponse) -> list[Row]:
         rows.append(("samples", _samples(result)))
     if isinstance(result, ExactResponse):
         rows += _orbit_rows(result)
-    return rows + [("assumed", text) for text in result.assumptions]
+    return rows + assumed(result)
 
 
 def _orbit_rows(result: ExactResponse) -> list[tuple[str, str]]:

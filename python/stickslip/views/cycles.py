@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
@@ -10,16 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, assumed, counted, model_rows, new_table
 
 if TYPE_CHECKING:
     from stickslip.results.limit_cycles import LimitCycles
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
-
-_DOUBTFUL = ("Stalled", "The branch ends", "The discarded", "No turn", "places were stepped")
+__all__ = ["details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
@@ -84,23 +81,13 @@ def facts(result: LimitCycles) -> list[Row]:
     for change in result.changes:
         counts = f"{change.unstable_before} to {change.unstable_after} unstable multipliers"
         rows.append(("change", f"{change.kind} at {change.value:.6g}: {counts}"))
-    return rows + [("assumed", text) for text in result.assumptions]
+    return rows + assumed(result)
 
 
-def failures(name: str, result: LimitCycles) -> list[str]:
+def failures(result: LimitCycles) -> list[str]:
     """Word what was not solved, one line per cause."""
-    counts = Counter(status for status in result.status if not status.solved)
-    lines = [
-        f"{name}: {count} of {result.omega.size} cycles {status}. {status.advice}"
-        for status, count in counts.items()
-    ]
-    return lines + [f"{name}: {one}" for one in result.assumptions if one.startswith("Stalled")]
-
-
-def cautions(name: str, result: LimitCycles) -> list[str]:
-    """Return the assumptions that put the numbers in doubt, one line each."""
-    doubtful = [one for one in result.assumptions if any(d in one for d in _DOUBTFUL)]
-    return [f"{name}: {one}" for one in doubtful if not one.startswith("Stalled")]
+    unsolved = [status for status in result.status if not status.solved]
+    return counted(unsolved, f"{result.omega.size} cycles")
 
 
 def panels(results: Sequence[LimitCycles], dofs: Sequence[str], output: OutputTable) -> list[Panel]:

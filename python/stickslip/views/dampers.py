@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from stickslip.results.status import Status
 from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, assumed, counted, model_rows, new_table
 
 if TYPE_CHECKING:
     from stickslip.results.damper_curve import DamperCurve
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
+__all__ = ["details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
@@ -74,26 +72,13 @@ def facts(result: DamperCurve) -> list[Row]:
         ("harmonics", f"{settings.harmonics}"),
         ("solutions", f"{result.counters['points']}"),
     ]
-    return rows + [("assumed", text) for text in result.assumptions]
+    return rows + assumed(result)
 
 
-def failures(name: str, result: DamperCurve) -> list[str]:
+def failures(result: DamperCurve) -> list[str]:
     """Word what was not solved, one line per cause."""
-    counts = Counter(status for status in result.status if not status.solved)
-    return [
-        f"{name}: {count} of {result.values.size} values {status}. {status.advice}"
-        for status, count in counts.items()
-    ]
-
-
-def cautions(name: str, result: DamperCurve) -> list[str]:
-    """Return the assumptions that put the numbers in doubt, one line each."""
-    doubtful = ("The discarded", "lies at an end", "The damping leaves", "The damping is negative")
-    lines = [f"{name}: {one}" for one in result.assumptions if any(d in one for d in doubtful)]
-    limited = sum(status == Status.HARMONICS_LIMIT for status in result.status)
-    if limited:
-        lines.append(f"{name}: {limited} values at the limit of harmonics; raise max_harmonics")
-    return lines
+    unsolved = [status for status in result.status if not status.solved]
+    return counted(unsolved, f"{result.values.size} values")
 
 
 def panels(results: Sequence[DamperCurve], dofs: Sequence[str], output: OutputTable) -> list[Panel]:

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from stickslip.errors import ModelError
+from stickslip.results.diagnostic import Severity
 
 if TYPE_CHECKING:
     from stickslip.results.result import Result
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from stickslip.views.picture import Panel
     from stickslip.views.tables import Row, Table
 
-__all__ = ["MODULES", "View", "view_of"]
+__all__ = ["MODULES", "View", "cautions", "failures", "view_of"]
 
 MODULES: Mapping[str, str] = {
     "forced_response": "stickslip.views.curves",
@@ -58,13 +59,23 @@ class View(Protocol):
         """Return what a report shows of one result beside the default picture."""
         ...
 
-    def failures(self, name: str, result: Any) -> list[str]:
-        """Word what went wrong, one line per cause."""
+    def failures(self, result: Any) -> list[str]:
+        """Word what the states of its points say went wrong, one line per cause."""
         ...
 
-    def cautions(self, name: str, result: Any) -> list[str]:
-        """Return what puts the numbers in doubt, one line each."""
-        ...
+
+def failures(result: Result) -> list[str]:
+    """Word what is missing from a result, one line per cause."""
+    return [*view_of([result]).failures(result), *_texts(result, Severity.FAILURE)]
+
+
+def cautions(result: Result) -> list[str]:
+    """Word what puts the numbers of a result in doubt, one line each."""
+    return _texts(result, Severity.CAUTION)
+
+
+def _texts(result: Result, severity: Severity) -> list[str]:
+    return [one.text for one in result.diagnostics if one.severity is severity]
 
 
 def view_of(results: Sequence[Result]) -> View:

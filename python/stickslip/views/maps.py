@@ -6,16 +6,14 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, assumed, model_rows, new_table
 
 if TYPE_CHECKING:
     from stickslip.results.stability_map import StabilityMap
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
+__all__ = ["details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
@@ -45,18 +43,12 @@ def facts(result: StabilityMap) -> list[Row]:
         ("mode", f"{settings.mode}"),
         ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
     ]
-    return rows + [("assumed", text) for text in result.assumptions]
+    return rows + assumed(result)
 
 
-def failures(name: str, result: StabilityMap) -> list[str]:
-    """Word what was not found, one line per value."""
-    return [f"{name}: {cause}" for cause in result.assumptions]
-
-
-def cautions(name: str, result: StabilityMap) -> list[str]:
-    """Return what puts the numbers in doubt: values whose stability is not known."""
-    unknown = int((np.isfinite(result.limit) & ~np.isfinite(result.stable_limit)).sum())
-    return [f"{name}: the stability of {unknown} values is not known"] if unknown else []
+def failures(result: StabilityMap) -> list[str]:
+    """Return nothing: the diagnostics name every value without a limit."""
+    return []
 
 
 def panels(

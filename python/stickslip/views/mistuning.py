@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,7 +10,7 @@ import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.results.status import Status
-from stickslip.views.tables import Row, Table, listed, model_rows, new_table
+from stickslip.views.tables import Row, Table, assumed, counted, listed, model_rows, new_table
 
 if TYPE_CHECKING:
     from stickslip.results.arrays import Float
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
+__all__ = ["details", "facts", "failures", "panels", "tables"]
 
 _HIGH = 99.9
 """Percentile of the fit that is printed."""
@@ -100,27 +99,13 @@ def facts(result: MistuningStudy) -> list[Row]:
         ("harmonics", f"{settings.harmonics}"),
         ("solutions", f"{result.counters['points']}"),
     ]
-    return rows + [("assumed", text) for text in result.assumptions]
+    return rows + assumed(result)
 
 
-def failures(name: str, result: MistuningStudy) -> list[str]:
+def failures(result: MistuningStudy) -> list[str]:
     """Word what was not solved, one line per cause."""
-    counts = Counter(Status.from_code(int(code)) for code in result.arrays.status.ravel())
-    return [
-        f"{name}: {count} of {result.arrays.status.size} peaks {status}. {status.advice}"
-        for status, count in counts.items()
-        if not status.solved
-    ]
-
-
-def cautions(name: str, result: MistuningStudy) -> list[str]:
-    """Return the assumptions that put the numbers in doubt, one line each."""
-    doubtful = ("The discarded", "lie at an end")
-    lines = [f"{name}: {one}" for one in result.assumptions if any(d in one for d in doubtful)]
-    limited = int((result.arrays.status == Status.HARMONICS_LIMIT.code).sum())
-    if limited:
-        lines.append(f"{name}: {limited} peaks at the limit of harmonics; raise max_harmonics")
-    return lines
+    every = [Status.from_code(int(code)) for code in result.arrays.status.ravel()]
+    return counted([one for one in every if not one.solved], f"{len(every)} peaks")
 
 
 def panels(

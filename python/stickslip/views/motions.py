@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 from stickslip.results.fate_arrays import Motion
 from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, assumed, model_rows, new_table
 
 if TYPE_CHECKING:
     from stickslip.results.motion_class import MotionClass
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
+__all__ = ["details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
@@ -56,19 +56,14 @@ def facts(result: MotionClass) -> list[Row]:
         ("because", result.reason.advice),
         ("span", f"at most {settings.periods} periods of the lowest stuck mode"),
     ]
-    return rows + [("assumed", text) for text in result.assumptions]
+    return rows + assumed(result)
 
 
-def failures(name: str, result: MotionClass) -> list[str]:
+def failures(result: MotionClass) -> list[str]:
     """Say that a motion is undecided, in one line; empty if it is not."""
     if result.motion != Motion.UNDECIDED:
         return []
-    return [f"{name}: {result.motion}. {result.reason.advice}"]
-
-
-def cautions(name: str, result: MotionClass) -> list[str]:
-    """Return the assumptions that put the numbers in doubt, one line each."""
-    return [f"{name}: {line}" for line in result.assumptions if "were left out" in line]
+    return [f"{result.motion}. {result.reason.advice}"]
 
 
 def panels(results: Sequence[MotionClass], dofs: Sequence[str], output: OutputTable) -> list[Panel]:

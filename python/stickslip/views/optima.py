@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from stickslip.units import quantity
 from stickslip.views import dampers
-from stickslip.views.tables import Row, Table, new_table
+from stickslip.views.tables import Row, Table, assumed, new_table
 
 if TYPE_CHECKING:
     from stickslip.results.optimal_damper import OptimalDamper
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
+__all__ = ["details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
@@ -45,22 +45,14 @@ def tables(
 
 def facts(result: OptimalDamper) -> list[Row]:
     """Say what a result is of, how it was computed and what it took for granted."""
-    # The others are those of the curve.
-    own = result.assumptions[: len(result.assumptions) - len(result.curve.assumptions)]
-    return dampers.facts(result.curve) + [("assumed", text) for text in own]
+    of_curve = set(assumed(result.curve))
+    own = [row for row in assumed(result) if row not in of_curve]
+    return dampers.facts(result.curve) + own
 
 
-def failures(name: str, result: OptimalDamper) -> list[str]:
+def failures(result: OptimalDamper) -> list[str]:
     """Word what was not solved, one line per cause."""
-    return dampers.failures(name, result.curve)
-
-
-def cautions(name: str, result: OptimalDamper) -> list[str]:
-    """Return what puts the numbers in doubt, one line each."""
-    lines = dampers.cautions(name, result.curve)
-    if result.at_bound:
-        lines.append(f"{name}: the least peak lies at a bound; a better one may lie outside")
-    return lines
+    return dampers.failures(result.curve)
 
 
 def panels(

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 from rich.table import Table
 
 if TYPE_CHECKING:
     from stickslip.model import Model
+    from stickslip.results.result import Result
+    from stickslip.results.status import Status
 
-__all__ = ["Row", "Table", "listed", "model_rows", "new_table"]
+__all__ = ["Row", "Table", "assumed", "counted", "listed", "model_rows", "new_table"]
 
 Row: TypeAlias = tuple[str, str]
 """A fact: what it is of, and what it is."""
@@ -51,6 +54,17 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
         if len(parts) > _SHOWN_PARTS:
             rows.append((name, f"{len(parts)} in all"))
     return rows
+
+
+def assumed(result: Result) -> list[Row]:
+    """Return what was assumed, chosen, doubted and missed, as rows of facts."""
+    return [("assumed", text) for text in result.assumptions]
+
+
+def counted(states: Iterable[Status], noun: str) -> list[str]:
+    """Count what ended alike, one line per cause with what to do; `noun` is what is counted."""
+    counts = Counter(states)
+    return [f"{count} of {noun} {state}. {state.advice}" for state, count in counts.items()]
 
 
 def listed(names: Sequence[str], most: int = 8) -> str:

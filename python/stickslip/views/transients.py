@@ -7,14 +7,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, assumed, model_rows, new_table
 
 if TYPE_CHECKING:
     from stickslip.results.transient import Transient
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["cautions", "details", "facts", "failures", "panels", "tables"]
+__all__ = ["details", "facts", "failures", "panels", "tables"]
 
 
 def tables(
@@ -61,19 +61,14 @@ def facts(result: Transient) -> list[Row]:
     ]
     if settings.scheme == "exact":
         rows.append(("events", f"{len(result.events)} in the periods kept"))
-    return rows + [("assumed", text) for text in result.assumptions]
+    return rows + assumed(result)
 
 
-def failures(name: str, result: Transient) -> list[str]:
+def failures(result: Transient) -> list[str]:
     """Say that a run has not come to its end, in one line; empty if it has."""
     if result.status in ("settled", "completed"):
         return []
-    return [f"{name}: {result.status} after {result.periods} periods. {result.status.advice}"]
-
-
-def cautions(name: str, result: Transient) -> list[str]:
-    """Return the assumptions that put the numbers in doubt, one line each."""
-    return [f"{name}: {line}" for line in result.assumptions if line.startswith("No tolerance")]
+    return [f"{result.status} after {result.periods} periods. {result.status.advice}"]
 
 
 def panels(results: Sequence[Transient], dofs: Sequence[str], output: OutputTable) -> list[Panel]:

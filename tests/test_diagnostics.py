@@ -1,0 +1,87 @@
+"""What results say of themselves: codes and severities, never decisions by wording."""
+
+import ast
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import stickslip as ss
+from stickslip.cli import app
+from stickslip.reference import snecma_beam
+from stickslip.results.diagnostic import SEVERITIES, Severity, diagnostic, missed_tolerances
+from stickslip.views import kinds
+
+PACKAGE = Path(ss.__file__).parent
+
+
+def codes(result):
+    return {one.code for one in result.diagnostics}
+
+
+def one_dof(damping, *forces):
+    structure = ss.Structure([[2.0]], [[8.0]], damping=[[damping]], dofs=["x"])
+    contact = ss.Jenkins("x", stiffness=10.0, slip_force=1.0)
+    return ss.Model(structure, [contact], forces)
+
+
+def test_every_code_is_used_and_known():
+    used = set()
+    for file in PACKAGE.rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "diagnostic":
+                used.add(node.args[0].value)
+    assert used == set(SEVERITIES)
+
+
+def test_no_decision_reads_a_text():
+    reads = re.compile(r"assumptions if |\.text\.startswith|\.text [!=]=|in \w+\.text\b")
+    lines = [
+        line for file in PACKAGE.rglob("*.py") for line in file.read_text("utf-8").splitlines()
+    ]
+    assert [line for line in lines if reads.search(line)] == []
+
+
+def test_texts_are_the_assumptions():
+    frf = ss.forced_response(snecma_beam(), [190.0, 192.0], harmonics=1)
+    assert frf.assumptions == tuple(map(str, frf.diagnostics))
+    (truncation,) = [one for one in frf.diagnostics if one.code == "truncation"]
+    assert truncation.severity is Severity.CAUTION
+    share = frf.error_estimate(truncation.data["dof"]) / frf.amplitude(truncation.data["dof"])
+    assert truncation.data["share"] == pytest.approx(share.max())
+
+
+@pytest.mark.parametrize(
+    ("damping", "expected"),
+    [(0.4, set()), (0.0, {"undamped-motion"}), (-0.1, {"negative-damping"})],
+)
+def test_damping_that_leaves_uniqueness_open_is_a_caution(damping, expected):
+    frf = ss.forced_response(one_dof(damping, ss.Force("x", 0.9)), [1.0], harmonics=3)
+    assert codes(frf) & {"undamped-motion", "negative-damping"} == expected
+    assert len(kinds.cautions(frf)) == len(expected)
+
+
+def test_missed_tolerances_are_counted():
+    assert missed_tolerances(np.array([0, 0]), "points") is None
+    missed = missed_tolerances(np.array([0, 1, 1, 4]), "points")
+    assert missed.data == {"total": 4, "missed": 3}
+    assert missed.text == ("Of 4 points not all met every tolerance: 2 stalled, 1 harmonics limit.")
+
+
+def test_the_exit_code_comes_from_the_severity_whatever_the_wording(tmp_path, monkeypatch):
+    cycles = ss.limit_cycles(
+        one_dof(0.4), negative_damping=[[-0.4]], ratio=[1.2], harmonics=3, stability=False
+    )
+    assert kinds.failures(cycles) == []
+    stalled = diagnostic("branch-stalled", "Bloqué.")
+    marked = replace(cycles, diagnostics=(*cycles.diagnostics, stalled))
+    assert kinds.failures(marked) == ["Bloqué."]
+    file = tmp_path / "marked.nc"
+    marked.save(file)
+    assert ss.load(file).diagnostics == marked.diagnostics
+    shown = CliRunner().invoke(app, ["show", str(file)])
+    assert shown.exit_code == 0
+    assert "Bloqué." in shown.stderr
