@@ -37,6 +37,14 @@ def test_every_code_is_used_and_known():
     assert used == set(SEVERITIES)
 
 
+def test_the_page_lists_every_code_by_severity():
+    page = (Path(__file__).parents[1] / "docs" / "troubleshooting.md").read_text("utf-8")
+    for severity in Severity:
+        (row,) = [line for line in page.splitlines() if line.startswith(f"| {severity}: ")]
+        listed = re.findall(r"`([a-z-]+)`", row)
+        assert sorted(listed) == sorted(one for one, of in SEVERITIES.items() if of is severity)
+
+
 def test_no_decision_reads_a_text():
     reads = re.compile(r"assumptions if |\.text\.startswith|\.text [!=]=|in \w+\.text\b")
     lines = [

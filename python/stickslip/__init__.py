@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
     from stickslip.results.basin_map import BasinMap
     from stickslip.results.damper_curve import DamperCurve
+    from stickslip.results.diagnostic import Diagnostic, Severity
     from stickslip.results.exact_response import ExactResponse
     from stickslip.results.limit_cycles import LimitCycles
     from stickslip.results.mistuning import MistuningStudy
@@ -68,6 +69,7 @@ __all__ = [
     "BladedDisk",
     "Coupling",
     "DamperCurve",
+    "Diagnostic",
     "ExactResponse",
     "Force",
     "ForcedResponse",
@@ -86,6 +88,7 @@ __all__ = [
     "OptimalDamper",
     "Rayleigh",
     "Reduction",
+    "Severity",
     "Solid",
     "StabilityMap",
     "State",
@@ -134,6 +137,7 @@ _HOMES = {
     "BladedDisk": "disk",
     "Coupling": "disk",
     "DamperCurve": "results.damper_curve",
+    "Diagnostic": "results.diagnostic",
     "ExactResponse": "results.exact_response",
     "Force": "model",
     "ForcedResponse": "results",
@@ -154,6 +158,7 @@ _HOMES = {
     "Reduction": "fe",
     "Solid": "fe",
     "StabilityMap": "results.stability_map",
+    "Severity": "results.diagnostic",
     "State": "model.state",
     "Status": "results",
     "StructuralDamper": "model",
