@@ -19,8 +19,8 @@ import os
 for variable in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ[variable] = "1"
 
-from stickslip.reproduce import FULL, items
-from stickslip.reproduce.index import number
+from stickslip_reproduce import FULL, items
+from stickslip_reproduce.index import number
 
 
 def main() -> None:

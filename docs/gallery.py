@@ -12,9 +12,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from stickslip.reproduce import SUBJECTS, costs, heading, items
-from stickslip.reproduce.folder import records
-from stickslip.reproduce.index import fact_rows, number
+from stickslip_reproduce import SUBJECTS, costs, heading, items
+from stickslip_reproduce.folder import records
+from stickslip_reproduce.index import fact_rows, number
 
 FOLDER = Path(__file__).parent / "assets" / "reproduction"
 _MARK = re.compile(r"^\{\{ (?P<what>gallery|coverage|table) ?(?P<name>[\w.-]*) \}\}$", re.MULTILINE)

@@ -13,9 +13,9 @@ import time
 from pathlib import Path
 
 from stickslip.files import whole
-from stickslip.reproduce import FULL, chosen, costs, items
-from stickslip.reproduce.costs import FILE
-from stickslip.reproduce.folder import write_picture, write_record
+from stickslip_reproduce import FULL, chosen, costs, items
+from stickslip_reproduce.costs import FILE
+from stickslip_reproduce.folder import write_picture, write_record
 
 FOLDER = Path(__file__).parent / "assets" / "reproduction"
 COLOURS = 48

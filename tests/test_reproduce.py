@@ -14,7 +14,7 @@ import stickslip as ss
 from beam_study import invoke
 from key_numbers import KEY_NUMBERS
 from stickslip.errors import ModelError
-from stickslip.reproduce import (
+from stickslip_reproduce import (
     COARSE,
     SUBJECTS,
     Axis,
@@ -30,9 +30,9 @@ from stickslip.reproduce import (
     items,
     write,
 )
-from stickslip.reproduce.curves import settled
-from stickslip.reproduce.drawing import draw
-from stickslip.reproduce.folder import records
+from stickslip_reproduce.curves import settled
+from stickslip_reproduce.drawing import draw
+from stickslip_reproduce.folder import records
 
 DOCS = Path(__file__).parents[1] / "docs"
 ERROR = "error of the tip peak to exact [%]"
@@ -193,8 +193,8 @@ def test_command_refuses_in_one_line(tmp_path):
 
 
 def test_interruption_keeps_what_is_complete(tmp_path, monkeypatch):
-    from stickslip.reproduce import chapter_4_rings
-    from stickslip.reproduce.catalogue import items as known
+    from stickslip_reproduce import chapter_4_rings
+    from stickslip_reproduce.catalogue import items as known
 
     def stopped(resolution):
         raise KeyboardInterrupt

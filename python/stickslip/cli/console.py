@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "complain",
+    "discard_output",
     "grid",
     "progress",
     "show",
@@ -54,14 +55,18 @@ def tell(text: str) -> None:
     try:
         print(text, flush=True)
     except OSError as error:
-        # What is still buffered would fail once more at the end of the program.
-        sink = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(sink, sys.stdout.fileno())
-        os.close(sink)
+        discard_output()
         if not isinstance(error, BrokenPipeError):
             raise ModelError(
                 f"standard output: {error.strerror}; results that were announced are saved"
             ) from None
+
+
+def discard_output() -> None:
+    """Write what is still to come, and what is still buffered, to nowhere."""
+    sink = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(sink, sys.stdout.fileno())
+    os.close(sink)
 
 
 def complain(kind: str, text: str) -> None:

@@ -79,7 +79,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
     @wraps(command)
     def safe(*args: P.args, **kwargs: P.kwargs) -> None:
-        from stickslip.cli.console import complain
+        from stickslip.cli.console import complain, discard_output
 
         if os.environ.get("STICKSLIP_DEBUG", "0") not in ("", "0"):
             return command(*args, **kwargs)
@@ -96,6 +96,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except ModelError as error:
             complain("error", str(error))
             raise typer.Exit(REFUSED) from None
+        except BrokenPipeError:
+            # Nobody reads any more.
+            discard_output()
         except OSError as error:
             complain("error", f"{error.filename or 'file'}: {error.strerror or error}")
             raise typer.Exit(REFUSED) from None

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from types import CodeType, FunctionType
 from typing import TypeAlias
 
-from stickslip.reproduce.numbers import Numbers
-from stickslip.reproduce.resolution import Resolution
+from stickslip_reproduce.numbers import Numbers
+from stickslip_reproduce.resolution import Resolution
 
 __all__ = ["Compute", "Item", "reproduces"]
 

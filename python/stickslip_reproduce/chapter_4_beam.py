@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.curves import (
+from stickslip_reproduce import errata
+from stickslip_reproduce.curves import (
     DAMPER,
     FREQUENCY,
     PER_FORCE,
@@ -18,9 +18,9 @@ from stickslip.reproduce.curves import (
     curve,
     over_period,
 )
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Fact, Numbers, Panel, Plot
-from stickslip.reproduce.resolution import Resolution
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Fact, Numbers, Panel, Plot
+from stickslip_reproduce.resolution import Resolution
 
 SPAN = (100.0, 300.0)
 FORCE = 20.313

@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce.numbers import Axis, Series
-from stickslip.results.arrays import Float
+from stickslip_reproduce.numbers import Axis, Series
+from stickslip_reproduce.resolution import Float
 
 __all__ = [
     "DAMPER",

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.curves import DAMPER
-from stickslip.reproduce.cycles import (
+from stickslip.results.motion_class import Line
+from stickslip_reproduce import errata
+from stickslip_reproduce.curves import DAMPER
+from stickslip_reproduce.cycles import (
     AMPLITUDES,
     LOWEST,
     MODES,
@@ -23,10 +24,9 @@ from stickslip.reproduce.cycles import (
     stable_share,
     turn,
 )
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
-from stickslip.reproduce.resolution import Resolution
-from stickslip.results.motion_class import Line
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
+from stickslip_reproduce.resolution import Resolution
 
 TRIED = (0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
 """Ratios at which eight starts are tried."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
 
-from stickslip.checks import unknown
-from stickslip.errors import ModelError
-from stickslip.reproduce.item import Item, heading
-from stickslip.reproduce.subjects import SUBJECTS
+from stickslip import ModelError
+from stickslip_reproduce.item import Item, heading
+from stickslip_reproduce.subjects import SUBJECTS
 
 __all__ = ["CHAPTERS", "SUBJECTS", "chosen", "items"]
 
@@ -36,7 +36,7 @@ def items() -> dict[str, Item]:
     dict of str to Item
         Names are among `SUBJECTS`; what is missing is not reproduced yet.
     """
-    modules = [import_module(f"stickslip.reproduce.{chapter}") for chapter in CHAPTERS]
+    modules = [import_module(f"stickslip_reproduce.{chapter}") for chapter in CHAPTERS]
     found = {
         value.name: value
         for module in modules
@@ -69,5 +69,7 @@ def chosen(names: Iterable[str]) -> list[Item]:
         elif name in SUBJECTS:
             raise ModelError(f"{name}: {heading(name)} is not reproduced yet; see the list")
         else:
-            raise ModelError(unknown("table or figure", name, [*known, "all"]))
+            near = get_close_matches(name, [*known, "all"], 1)
+            hint = f"did you mean {near[0]!r}?" if near else "stickslip reproduce lists them"
+            raise ModelError(f"unknown table or figure {name!r}; {hint}")
     return list(wanted.values())

@@ -9,12 +9,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.curves import PATIENCE, SETTLED
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Axis, Cell, Fact, Numbers, Panel, Plot, Series, Table
-from stickslip.reproduce.resolution import Resolution
-from stickslip.results.arrays import Float
+from stickslip_reproduce import errata
+from stickslip_reproduce.curves import PATIENCE, SETTLED
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Axis, Cell, Fact, Numbers, Panel, Plot, Series, Table
+from stickslip_reproduce.resolution import Float, Resolution
 
 __all__ = ["FREQUENCIES", "PRINTED", "RUNGE_KUTTA", "Timing", "timings"]
 

@@ -7,12 +7,11 @@ from math import inf
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.curves import FREQUENCY, PERIOD_SHARE, curve, maxima, over_period
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series, Table
-from stickslip.reproduce.resolution import Resolution
-from stickslip.results.arrays import Float
+from stickslip_reproduce import errata
+from stickslip_reproduce.curves import FREQUENCY, PERIOD_SHARE, curve, maxima, over_period
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series, Table
+from stickslip_reproduce.resolution import Float, Resolution
 
 SPAN = (500.0, 700.0)
 LOW = (20.0, 30.0, 40.0, 50.0, 55.0, 60.0)

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.results.arrays import Float, constant
+from stickslip_reproduce.resolution import Float
 
 __all__ = ["Axis", "Cell", "Fact", "Numbers", "Panel", "Plot", "Series", "Table"]
 
@@ -86,10 +86,11 @@ class Series:
         abscissae = np.array(x, dtype=np.float64)
         if abscissae.ndim != 1 or abscissae.shape != ordinates.shape:
             raise ValueError(f"series {label!r}: shapes {abscissae.shape} and {ordinates.shape}")
+        abscissae.flags.writeable = ordinates.flags.writeable = False
         for name, value in (
             ("label", label),
-            ("x", constant(abscissae)),
-            ("y", constant(ordinates)),
+            ("x", abscissae),
+            ("y", ordinates),
             ("kind", kind),
             ("pair", pair),
         ):

@@ -5,12 +5,12 @@ Michigan, 1999). One function per table or figure in the module of its chapter; 
 which there are, and which are still missing.
 """
 
-from stickslip.reproduce.catalogue import SUBJECTS, chosen, items
-from stickslip.reproduce.costs import costs
-from stickslip.reproduce.folder import write
-from stickslip.reproduce.item import Item, heading
-from stickslip.reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series, Table
-from stickslip.reproduce.resolution import COARSE, FULL, Resolution
+from stickslip_reproduce.catalogue import SUBJECTS, chosen, items
+from stickslip_reproduce.costs import costs
+from stickslip_reproduce.folder import write
+from stickslip_reproduce.item import Item, heading
+from stickslip_reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series, Table
+from stickslip_reproduce.resolution import COARSE, FULL, Resolution
 
 __all__ = [
     "COARSE",

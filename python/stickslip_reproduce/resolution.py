@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from stickslip.results.arrays import Float
+__all__ = ["COARSE", "FULL", "Float", "Resolution"]
 
-__all__ = ["COARSE", "FULL", "Resolution"]
-
+Float: TypeAlias = NDArray[np.float64]
 Kind = TypeVar("Kind")
 
 

@@ -9,10 +9,10 @@ from itertools import product
 import numpy as np
 
 import stickslip as ss
-from stickslip.errors import ModelError
-from stickslip.reproduce.numbers import Axis, Series
-from stickslip.results.arrays import Float
+from stickslip import ModelError
 from stickslip.results.limit_cycles import Limit
+from stickslip_reproduce.numbers import Axis, Series
+from stickslip_reproduce.resolution import Float
 
 __all__ = [
     "AMPLITUDES",

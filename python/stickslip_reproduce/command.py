@@ -1,4 +1,4 @@
-"""The command ``stickslip reproduce``: tables and figures of the dissertation."""
+"""The command ``stickslip reproduce``, which the program finds by an entry point."""
 
 from __future__ import annotations
 
@@ -8,23 +8,9 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.commands import app
-from stickslip.cli.guard import Command, guarded
-
 __all__ = ["reproduce"]
 
-_EXAMPLES = (
-    "stickslip reproduce",
-    "stickslip reproduce table-2.3 fig-4.22",
-    "stickslip reproduce all --out reproduction",
-)
 
-
-@app.command(
-    cls=Command,
-    epilog="\n\n".join(("[bold]Examples[/bold]", *(f"  {line}" for line in _EXAMPLES))),
-)
-@guarded
 def reproduce(
     names: Annotated[
         list[str] | None,
@@ -38,10 +24,14 @@ def reproduce(
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print problems only.")] = False,
 ) -> None:
-    """Reproduce tables and figures of the dissertation that this program comes from."""
-    from stickslip.cli.console import tell
-    from stickslip.reproduce import COARSE, FULL, chosen, write
-    from stickslip.reproduce.folder import INDEX
+    """Reproduce tables and figures of the dissertation that this program comes from.
+
+    stickslip reproduce table-2.3 fig-4.22
+
+    stickslip reproduce all --out reproduction
+    """
+    from stickslip_reproduce import COARSE, FULL, chosen, write
+    from stickslip_reproduce.folder import INDEX
 
     if not names:
         _list()
@@ -59,26 +49,19 @@ def reproduce(
             kept = f"{done} of {len(wanted)} complete in {out}"
             raise KeyboardInterrupt(f"{kept}, {item.name} was not finished") from None
         if not quiet:
-            tell(f"{item.name:<10} {seconds:6.1f} s  {out / item.name}.png")
+            print(f"{item.name:<10} {seconds:6.1f} s  {out / item.name}.png")
     if not quiet:
-        tell(f"index: {out / INDEX}")
+        print(f"index: {out / INDEX}")
 
 
 def _list() -> None:
     """Print every table and figure with its status and what it takes."""
-    from stickslip.cli import console
-    from stickslip.reproduce import SUBJECTS, costs, items
-    from stickslip.views.tables import new_table
+    from stickslip_reproduce import SUBJECTS, costs, items
 
     done, measured = items(), costs()
-    table = new_table()
-    table.add_column("name")
-    table.add_column("status")
-    table.add_column("cost [s]", justify="right")
-    table.add_column("subject")
+    print(f"{'name':<10}  {'status':<7}  {'cost [s]':>8}  subject")
     for name, subject in SUBJECTS.items():
         cost = f"{measured[name]:.2g}" if name in done and name in measured else ""
-        table.add_row(name, "done" if name in done else "not yet", cost, subject)
-    console.show(table)
+        print(f"{name:<10}  {'done' if name in done else 'not yet':<7}  {cost:>8}  {subject}")
     whole = sum(measured.get(name, 0.0) for name in done)
-    console.tell(f"{len(done)} of {len(SUBJECTS)} are reproduced, all of them in {whole:.0f} s")
+    print(f"{len(done)} of {len(SUBJECTS)} are reproduced, all of them in {whole:.0f} s")

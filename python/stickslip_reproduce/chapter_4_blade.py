@@ -12,10 +12,10 @@ from math import inf
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
-from stickslip.reproduce.resolution import Resolution
+from stickslip_reproduce import errata
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
+from stickslip_reproduce.resolution import Resolution
 
 RATIOS = (0.01, 0.1, 0.3, 0.6, 1.0, 2.0, 5.0, 20.0, 100.0)
 """Slip forces over the best one, F_d / F_d0."""

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Literal
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.cycles import (
+from stickslip_reproduce import errata
+from stickslip_reproduce.cycles import (
     AMPLITUDES,
     NEWTON,
     OMEGA,
@@ -19,9 +19,9 @@ from stickslip.reproduce.cycles import (
     stable_share,
     turn,
 )
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
-from stickslip.reproduce.resolution import Resolution
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
+from stickslip_reproduce.resolution import Resolution
 
 UNIT = {"mass": "m", "omega": "rad/s"}
 Y = {"mass": AMPLITUDES["mass"], "omega": OMEGA}

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from stickslip.reproduce.item import heading
-from stickslip.reproduce.subjects import SUBJECTS
+from stickslip_reproduce.item import heading
+from stickslip_reproduce.subjects import SUBJECTS
 
 __all__ = ["fact_rows", "number", "page"]
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.plot.style import colours
-from stickslip.reproduce.numbers import Axis, Plot, Series
+from stickslip_reproduce.numbers import Axis, Plot, Series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,6 +34,13 @@ _DENSE = 80
 _SPARSE = 32
 """Rows of more marks than the first number are drawn with about as many as the second."""
 _SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]\d?)\b")
+
+
+def _colours(count: int) -> list[tuple[float, float, float, float]]:
+    """Return colours in a perceptual sequence, from dark to light, the palest left out."""
+    from matplotlib import colormaps
+
+    return [colormaps["viridis"](0.05 + 0.8 * i / max(count - 1, 1)) for i in range(count)]
 
 
 def draw(plot: Plot) -> Figure:
@@ -143,7 +149,7 @@ def _looks(plot: Plot) -> dict[str, dict[str, Any]]:
             every.setdefault(series.label, series)
     pairs = list(dict.fromkeys(_pair(series) for series in every.values()))
     few = len(pairs) <= len(FEW_COLOURS)
-    palette = dict(zip(pairs, FEW_COLOURS if few else colours(len(pairs)), strict=not few))
+    palette = dict(zip(pairs, FEW_COLOURS if few else _colours(len(pairs)), strict=not few))
     return {
         label: _look(series, palette[_pair(series)], pairs.index(_pair(series)), len(pairs))
         for label, series in every.items()

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.curves import (
+from stickslip_reproduce import errata
+from stickslip_reproduce.curves import (
     FREQUENCY,
     PER_FORCE,
     PERIOD,
@@ -19,9 +19,9 @@ from stickslip.reproduce.curves import (
     over_period,
     settled,
 )
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Axis, Cell, Fact, Numbers, Panel, Plot, Series, Table
-from stickslip.reproduce.resolution import Resolution
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Axis, Cell, Fact, Numbers, Panel, Plot, Series, Table
+from stickslip_reproduce.resolution import Resolution
 
 SPAN = (20.0, 350.0)
 NEAR_RESONANCE = (100.0, 300.0)

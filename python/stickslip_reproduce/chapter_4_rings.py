@@ -11,8 +11,8 @@ from typing import Literal
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.curves import (
+from stickslip_reproduce import errata
+from stickslip_reproduce.curves import (
     DAMPER,
     FREQUENCY,
     PERIOD,
@@ -21,9 +21,9 @@ from stickslip.reproduce.curves import (
     curve,
     over_period,
 )
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
-from stickslip.reproduce.resolution import Resolution
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
+from stickslip_reproduce.resolution import Resolution
 
 SECTORS = 36
 SPAN = (150.0, 260.0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import stickslip as ss
-from stickslip.reproduce import errata
-from stickslip.reproduce.curves import PERIOD_SHARE, over_period
-from stickslip.reproduce.cycles import (
+from stickslip_reproduce import errata
+from stickslip_reproduce.curves import PERIOD_SHARE, over_period
+from stickslip_reproduce.cycles import (
     AMPLITUDES,
     LOWEST,
     MODES,
@@ -18,9 +18,9 @@ from stickslip.reproduce.cycles import (
     quantity,
     turn,
 )
-from stickslip.reproduce.item import reproduces
-from stickslip.reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series, Table
-from stickslip.reproduce.resolution import Resolution
+from stickslip_reproduce.item import reproduces
+from stickslip_reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series, Table
+from stickslip_reproduce.resolution import Resolution
 
 STARTS = (
     {"damper": 1e-5, "tip": 1e-3, "mode": 1e-5},

@@ -10,13 +10,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from stickslip.errors import ModelError
+from stickslip import ModelError
 from stickslip.files import whole
-from stickslip.reproduce.index import page
-from stickslip.reproduce.item import Item
-from stickslip.reproduce.numbers import Cell, Numbers, Plot, Table
-from stickslip.reproduce.resolution import Resolution
-from stickslip.reproduce.subjects import SUBJECTS
+from stickslip_reproduce.index import page
+from stickslip_reproduce.item import Item
+from stickslip_reproduce.numbers import Cell, Numbers, Plot, Table
+from stickslip_reproduce.resolution import Resolution
+from stickslip_reproduce.subjects import SUBJECTS
 
 __all__ = ["INDEX", "records", "write", "write_index", "write_picture", "write_record"]
 
@@ -65,7 +65,7 @@ def write_picture(plot: Plot, file: Path, *, colours: int | None = None) -> None
     """
     from PIL import Image
 
-    from stickslip.reproduce.drawing import draw
+    from stickslip_reproduce.drawing import draw
 
     picture = io.BytesIO()
     # Without the version of the program in the file, an unchanged picture is an unchanged file.
