@@ -21,6 +21,7 @@ import typer
 
 from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded
 from stickslip.errors import Interrupted, ModelError
+from stickslip.files import make_folder, write
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
@@ -130,7 +131,7 @@ def run(
     clock = Clock()
     with clock("reading the study"):
         loaded = storing(Study.load(study), out)
-        out.mkdir(parents=True, exist_ok=True)
+        make_folder(out)
     curves = _compute(loaded, out, clock, quiet=quiet)
     if not quiet:
         with clock("refining peaks, printing"):
@@ -396,5 +397,5 @@ def schema(
     if out is None:
         tell(text)
     else:
-        out.write_text(text + "\n", encoding="utf-8")
+        write(out, f"{text}\n".encode())
         tell(f"schema: {out}")

@@ -10,6 +10,7 @@ import typer
 
 from stickslip.cli.commands import app
 from stickslip.cli.guard import Command, guarded
+from stickslip.files import make_folder
 
 __all__ = ["reproduce"]
 
@@ -47,7 +48,7 @@ def reproduce(
         _list()
         return
     wanted = chosen(names)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     resolution = COARSE if coarse else FULL
     for done, item in enumerate(wanted):
         begin = time.perf_counter()
