@@ -35,7 +35,7 @@ _REMEDIES = {
 }
 
 
-def write(target: Path, content: bytes | memoryview) -> None:
+def write(target: Path, content: bytes | bytearray | memoryview) -> None:
     """Write a file whole, or leave everything as it was.
 
     Parameters
