@@ -51,7 +51,7 @@ def write(target: Path, content: bytes | bytearray | memoryview) -> None:
         If the folder does not exist, or the file cannot be written; then nothing is changed.
     """
     require_place(target)
-    temporary = target.with_name(f"{_MARK}{secrets.token_hex(4)}{_END}")
+    temporary = _beside(target)
     try:
         _write_anew(temporary, memoryview(content).cast("B"))
         os.replace(temporary, target)
@@ -82,17 +82,25 @@ def require_place(target: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder and those above it, unless they are there.
+    """Make a folder and those above it, unless they are there, and see that it takes files.
 
     Raises
     ------
     ModelError
-        If it cannot be made.
+        If it cannot be made, or no file can be made in it; better now than when all is computed.
     """
     try:
         os.makedirs(folder, exist_ok=True)
     except OSError as error:
         raise refusal(folder, "made", error) from error
+    probe = _beside(folder / "probe")
+    try:
+        _write_anew(probe, memoryview(b""))
+    except OSError as error:
+        raise refusal(folder, "written to", error) from error
+    finally:
+        with suppress(OSError):
+            os.unlink(probe)
 
 
 def refusal(path: Path, done: str, error: OSError) -> ModelError:
@@ -100,6 +108,11 @@ def refusal(path: Path, done: str, error: OSError) -> ModelError:
     cause = error.strerror or str(error) or type(error).__name__
     remedy = _REMEDIES.get(error.errno or 0, "check the disk, or choose another place")
     return ModelError(f"{path}: cannot be {done} ({cause}); {remedy}")
+
+
+def _beside(target: Path) -> Path:
+    """Return a name that no other file of the folder has, whatever the length of the target's."""
+    return target.with_name(f"{_MARK}{secrets.token_hex(4)}{_END}")
 
 
 def _write_anew(file: Path, content: memoryview) -> None:

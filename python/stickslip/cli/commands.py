@@ -21,7 +21,7 @@ import typer
 
 from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded
 from stickslip.errors import Interrupted, ModelError
-from stickslip.files import make_folder, write
+from stickslip.files import make_folder, require_place, write
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
@@ -53,7 +53,7 @@ def _print_version(wanted: bool) -> None:
     if wanted:
         from stickslip import __version__
 
-        print(f"stickslip {__version__}")
+        sys.stdout.write(f"stickslip {__version__}\n")
         raise typer.Exit
 
 
@@ -143,15 +143,24 @@ def run(
                     loaded.tables.output.length_unit,
                 )
             )
-    picture = out / f"{loaded.name}.png"
-    if not no_plot:
-        with clock("drawing"):
-            _draw_study(loaded, curves, picture)
+    picture = None if no_plot else out / f"{loaded.name}.png"
+    undrawn = None
+    if picture is not None:
+        try:
+            with clock("drawing"):
+                _draw_study(loaded, curves, picture)
+        except ModelError as error:
+            # The results are saved: what there is to say of them comes first.
+            picture, undrawn = None, error
     if timings:
         console.stages([curve.result for curve in curves], clock)
     if not quiet:
-        _tell_files(loaded, curves, None if no_plot else picture)
-    _warn([(curve.case.name, curve.result) for curve in curves])
+        _tell_files(loaded, curves, picture)
+    complete = _warned([(curve.case.name, curve.result) for curve in curves])
+    if undrawn is not None:
+        raise undrawn
+    if not complete:
+        raise typer.Exit(NOT_CONVERGED)
 
 
 def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curve]:
@@ -164,19 +173,32 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curv
         try:
             for case, result in zip(cases, results, strict=True):
                 file = out / f"{case.name}.nc"
-                with clock("saving"):
+                with clock("saving"), _counted(len(curves), study, out):
                     result.save(file)
                 curves.append(Curve(case, result, file))
         except Interrupted as stop:
             complain("interrupted", "saving what was computed")
             # under another name, so that a complete curve of an earlier run is not lost
             file = out / f"{cases[len(curves)].name}-partial.nc"
-            cast("Result", stop.result).save(file)
+            with _counted(len(curves), study, out):
+                cast("Result", stop.result).save(file)
             raise KeyboardInterrupt(
                 f"{len(curves)} of {len(cases)} {_nouns(study)} complete in {out}, "
                 f"the next one as far as it went in {file}{_rest(study)}"
             ) from None
     return curves
+
+
+@contextmanager
+def _counted(complete: int, study: Study, out: Path) -> Iterator[None]:
+    """Say beside an error how much of a study there is."""
+    try:
+        yield
+    except ModelError as error:
+        raise ModelError(
+            f"{error}; {complete} of {len(study.cases)} {_nouns(study)} complete in {out}"
+            f"{_rest(study)}"
+        ) from None
 
 
 def _nouns(study: Study) -> str:
@@ -208,8 +230,8 @@ def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> 
     tell(f"page:    stickslip report {first}")
 
 
-def _warn(results: Sequence[tuple[str, Result]]) -> None:
-    """Name what did not converge, and end with the exit code that says so."""
+def _warned(results: Sequence[tuple[str, Result]]) -> bool:
+    """Name what did not converge; False if there is anything."""
     from stickslip.cli.console import complain
     from stickslip.views.kinds import view_of
 
@@ -219,8 +241,7 @@ def _warn(results: Sequence[tuple[str, Result]]) -> None:
     lines = [line for name, result in results for line in view_of([result]).failures(name, result)]
     for line in lines:
         complain("warning", line)
-    if lines:
-        raise typer.Exit(NOT_CONVERGED)
+    return not lines
 
 
 def _draw_study(study: Study, curves: Sequence[Curve], picture: Path) -> None:
@@ -360,6 +381,7 @@ def certify(
 
     wanted = _points(points)
     target = out or result
+    require_place(target)
     try:
         with console.progress(result.name, wanted=True) as advance:
             certified = certify(load(result), wanted, seed=seed, dofs=dof, progress=advance)
@@ -367,11 +389,12 @@ def certify(
         console.complain("interrupted", "saving what was compared")
         cast("ForcedResponse", stop.result).save(target)
         raise KeyboardInterrupt(f"{stop}, now in {target}") from None
-    certified.save(target)
     console.show_all(certificates([("", certified)], "", "m"))
+    certified.save(target)
     console.tell("")
     console.tell(f"certified: {target}")
-    _warn([(result.stem, certified)])
+    if not _warned([(result.stem, certified)]):
+        raise typer.Exit(NOT_CONVERGED)
 
 
 def _points(text: str) -> int | Literal["all"]:

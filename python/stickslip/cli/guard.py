@@ -59,18 +59,31 @@ class Commands(TyperGroup):
         **extra: Any,
     ) -> object:
         """Run the command that the arguments name."""
-        from stickslip.cli.console import complain
+        from stickslip.cli.console import complain, give_up
 
+        for name in ("stdout", "stderr"):
+            # A program that was started without them has nowhere to write to.
+            if getattr(sys, name) is None:
+                setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
         if not (sys.argv[1:] if args is None else args):
             args = ["--help"]
         try:
             code = super().main(args, prog_name, complete_var, False, windows_expand_args, **extra)
+            sys.stdout.flush()
         except typer.Abort:
             code = STOPPED
         except _Refusal as error:
             line = " ".join(cast("typer.BadParameter", error).format_message().split()).rstrip(".")
             complain("error", f"{line}; see stickslip --help")
             code = REFUSED
+        except OSError as error:
+            # The help; all else is guarded.
+            try:
+                give_up(error)
+                code = 0
+            except ModelError as said:
+                complain("error", str(said))
+                code = REFUSED
         sys.exit(code if isinstance(code, int) else 0)
 
 
