@@ -172,8 +172,8 @@ def test_files_that_are_no_stores_are_refused_in_one_line(tmp_path):
         assert "\n" not in str(caught.value)
 
     with closing(sqlite3.connect(store)) as base:
-        base.execute("PRAGMA user_version = 2")
-    refused("a store of format 2, this version of stickslip reads format 1; upgrade stickslip")
+        base.execute("PRAGMA user_version = 3")
+    refused("a store of format 3, this version of stickslip reads format 1 to 2; upgrade stickslip")
     store.write_bytes(b"not a data base, " * 300)
     refused("no store, or a damaged one")
     for start in (0, 30, 4096, 9000, len(whole) - 4096):

@@ -159,13 +159,20 @@ def file_path(path: object, entry: str) -> Path:
     Raises
     ------
     ModelError
-        If `path` is neither text nor path-like, or empty, or holds a null character.
+        If `path` is neither text nor path-like, or empty, or holds characters that no file name
+        can have.
     """
     if not isinstance(path, str | os.PathLike):
         raise ModelError(f"{entry}: {brief(path)} is not a path; give text or a pathlib.Path")
     name = os.fspath(path)
     if not isinstance(name, str) or not name or "\0" in name:
         raise ModelError(f"{entry}: {brief(path)} is no file name; give one in quotes")
+    try:
+        os.fsencode(name)
+    except UnicodeEncodeError:
+        raise ModelError(
+            f"{entry}: {brief(path)} has characters that no file name can have; give another"
+        ) from None
     return Path(name)
 
 

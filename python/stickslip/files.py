@@ -1,51 +1,142 @@
-"""Files that are written whole or not at all."""
+"""Files are written whole or not at all.
+
+Every file of the package is written here, except the stores of mistuning studies, which SQLite
+writes. The content is made in memory first: HDF5, for one, crashes when a disk refuses its bytes.
+"""
 
 from __future__ import annotations
 
+import errno
 import os
 import secrets
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+import stat
+import time
+from contextlib import suppress
 from pathlib import Path
 
 from stickslip.errors import ModelError
 
-__all__ = ["whole"]
+__all__ = ["make_folder", "refusal", "require_place", "write"]
+
+_MARK, _END = ".stickslip-", ".part"
+_STALE = 3600.0
+"""Seconds after which a temporary file is one of a killed run: bytes take seconds to be written."""
+
+_FULL = "make room there, or choose another place"
+_CLOSED = "choose a place that can be written"
+_REMEDIES = {
+    errno.ENOSPC: _FULL,
+    errno.EDQUOT: _FULL,
+    errno.EFBIG: _FULL,
+    errno.EROFS: _CLOSED,
+    errno.EACCES: _CLOSED,
+    errno.EPERM: _CLOSED,
+    errno.ENAMETOOLONG: "choose a shorter name",
+}
 
 
-@contextmanager
-def whole(target: Path) -> Iterator[Path]:
-    """Let a file be written beside its target, and put it there once it is complete.
+def write(target: Path, content: bytes | bytearray | memoryview) -> None:
+    """Write a file whole, or leave everything as it was.
 
     Parameters
     ----------
     target : Path
         The file; an existing one is replaced.
-
-    Yields
-    ------
-    Path
-        What to write instead.
+    content : bytes
+        All of its bytes.
 
     Raises
     ------
     ModelError
-        If the folder does not exist or the file cannot be written; then nothing is changed.
+        If the folder does not exist, or the file cannot be written; then nothing is changed.
     """
-    if target.is_dir():
-        raise ModelError(f"{target}: is a folder; give the name of a file in it")
-    if not target.parent.is_dir():
-        raise ModelError(f"{target}: there is no folder {target.parent}; create it first")
-    temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+    require_place(target)
+    temporary = _beside(target)
     try:
-        yield temporary
-        with temporary.open("rb") as written:
-            os.fsync(written.fileno())
-        temporary.replace(target)
+        _write_anew(temporary, memoryview(content).cast("B"))
+        os.replace(temporary, target)
     except OSError as error:
-        raise ModelError(
-            f"{target}: cannot be written ({error.strerror or error}); nothing was changed"
-        ) from error
+        raise refusal(target, "written", error) from error
     finally:
-        with suppress(FileNotFoundError):
-            temporary.unlink()
+        with suppress(OSError):
+            os.unlink(temporary)
+    _remove_stale(target.parent)
+
+
+def require_place(target: Path) -> None:
+    """Refuse a file that could not be written because of what is or is not there.
+
+    Raises
+    ------
+    ModelError
+        If the target is a folder or a device, or its folder does not exist.
+    """
+    if os.path.isdir(target):
+        raise ModelError(f"{target}: is a folder; give the name of a file in it")
+    if not os.path.isdir(target.parent):
+        raise ModelError(f"{target}: there is no folder {target.parent}; create it first")
+    with suppress(OSError):
+        # A device would be replaced by a file.
+        if not stat.S_ISREG(os.stat(target).st_mode):
+            raise ModelError(f"{target}: is no regular file; give the name of a file")
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and those above it, unless they are there, and see that it takes files.
+
+    Raises
+    ------
+    ModelError
+        If it cannot be made, or no file can be made in it; better now than when all is computed.
+    """
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        raise refusal(folder, "made", error) from error
+    probe = _beside(folder / "probe")
+    try:
+        _write_anew(probe, memoryview(b""))
+    except OSError as error:
+        raise refusal(folder, "written to", error) from error
+    finally:
+        with suppress(OSError):
+            os.unlink(probe)
+
+
+def refusal(path: Path, done: str, error: OSError) -> ModelError:
+    """Return the error that says why a file or folder cannot be written, read or made."""
+    cause = error.strerror or str(error) or type(error).__name__
+    remedy = _REMEDIES.get(error.errno or 0, "check the disk, or choose another place")
+    return ModelError(f"{path}: cannot be {done} ({cause}); {remedy}")
+
+
+def _beside(target: Path) -> Path:
+    """Return a name that no other file of the folder has, whatever the length of the target's."""
+    return target.with_name(f"{_MARK}{secrets.token_hex(4)}{_END}")
+
+
+def _write_anew(file: Path, content: memoryview) -> None:
+    """Write bytes to a new file, and see them onto the disk."""
+    # O_BINARY: Windows would translate the ends of lines.
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    handle = os.open(file, flags, 0o666)
+    try:
+        while content:
+            count = os.write(handle, content)
+            if count == 0:
+                raise OSError(errno.EIO, os.strerror(errno.EIO))
+            content = content[count:]
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _remove_stale(folder: Path) -> None:
+    """Remove what killed runs have left in a folder."""
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            if not (entry.name.startswith(_MARK) and entry.name.endswith(_END)):
+                continue
+            with suppress(OSError):
+                if time.time() - entry.stat().st_mtime > _STALE:
+                    os.unlink(entry.path)

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from stickslip.files import make_folder
+
 __all__ = ["reproduce"]
 
 
@@ -37,7 +39,7 @@ def reproduce(
         _list()
         return
     wanted = chosen(names)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     resolution = COARSE if coarse else FULL
     for done, item in enumerate(wanted):
         begin = time.perf_counter()

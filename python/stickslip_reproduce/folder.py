@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from stickslip import ModelError
-from stickslip.files import whole
+from stickslip.files import make_folder
+from stickslip.files import write as write_file
 from stickslip_reproduce.index import page
 from stickslip_reproduce.item import Item
 from stickslip_reproduce.numbers import Cell, Numbers, Plot, Table
@@ -43,7 +44,7 @@ def write(
     folder : Path
         Made if it does not exist.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     write_picture(numbers.plot, folder / f"{item.name}.png")
     rows = _table_rows(numbers.table) if numbers.table else _curve_rows(numbers.plot)
     _write_text(folder / f"{item.name}.csv", _csv(rows))
@@ -75,8 +76,7 @@ def write_picture(plot: Plot, file: Path, *, colours: int | None = None) -> None
             small = drawn.convert("RGB").quantize(colours)
         picture = io.BytesIO()
         small.save(picture, format="png", optimize=True)
-    with whole(file) as temporary:
-        temporary.write_bytes(picture.getvalue())
+    write_file(file, picture.getbuffer())
 
 
 def write_record(
@@ -142,8 +142,7 @@ def write_index(folder: Path) -> None:
 
 
 def _write_text(file: Path, text: str) -> None:
-    with whole(file) as temporary:
-        temporary.write_text(text, encoding="utf-8", newline="")
+    write_file(file, text.encode())
 
 
 def _csv(rows: Iterator[tuple[Cell, ...]]) -> str:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,8 @@ from stickslip.results.status import Status
 
 __all__ = ["Work"]
 
+EDGE = 1e-9
+"""How far rounding may put a peak outside the range of frequencies, relative."""
 OFTEN = 0.1
 """Seconds between two calls of a progress callback."""
 
@@ -53,22 +56,60 @@ class Work:
         }
 
     def recall(self, store: PatternStore) -> None:
-        """Take over what a store holds of this study."""
+        """Take over what a store holds of this study.
+
+        Raises
+        ------
+        ModelError
+            If a row cannot be one of this study.
+        """
         places = {
             (float(deviation), one.coupling.hex()): (d, c)
             for d, deviation in enumerate(self.deviations)
             for c, one in enumerate(self.series)
         }
+        found: dict[tuple[int, ...], dict[int, Row]] = {}
+        effort: dict[tuple[int, ...], int] = {}
         for key, dof, row, points in store.rows():
+            cause = self._fault(key, dof, row, points)
+            if cause is not None:
+                raise store.damaged(key.deviation, key.pattern, cause)
             at = places.get((key.deviation, key.coupling.hex()))
-            if at is None or key.pattern >= len(self.patterns):
-                continue
-            place = (*at, key.pattern)
-            if not self.known[place]:
-                self.known[place] = True
-                self.points += points
-                self.done += 1
+            if at is not None and key.pattern < len(self.patterns):
+                found.setdefault((*at, key.pattern), {})[dof] = row
+                effort[*at, key.pattern] = points
+        for place, rows in found.items():
+            # A pattern of which a row was deleted is computed again.
+            if len(rows) == len(self.dofs):
+                self._take(place, rows.items(), effort[place])
+
+    def _fault(self, key: Key, dof: int, row: Row, points: int) -> str | None:
+        """Say what no row of this study can hold; stores of the first version have no digests."""
+        low, high = self.settings.span
+        harmonics = self.settings.harmonics
+        kept = self.settings.max_harmonics if harmonics == "auto" else harmonics
+        checks: dict[str, tuple[float, float, float]] = {
+            "pattern": (key.pattern, 0, math.inf),
+            "dof": (dof, 0, len(self.dofs) - 1),
+            "omega": (row.omega, low * (1 - EDGE), high * (1 + EDGE)),
+            "amplitude": (row.amplitude, sys.float_info.min, sys.float_info.max),
+            "blade": (row.blade, 0, self.disk.sectors - 1),
+            "status": (row.status, 0, len(Status) - 1),
+            "harmonics": (row.harmonics, 0, kept),
+            "error_estimate": (row.error_estimate, 0.0, math.inf),
+            "points": (points, 0, math.inf),
+        }
+        for name, (value, least, most) in checks.items():
+            if value < least or value > most:
+                return f"{name} is {value:.6g}, outside {least:.6g} to {most:.6g}"
+        return None
+
+    def _take(self, place: tuple[int, ...], rows: Iterable[tuple[int, Row]], points: int) -> None:
+        for dof, row in rows:
             self._set((*place, dof), row)
+        self.known[place] = True
+        self.points += points
+        self.done += 1
 
     def _set(self, place: tuple[int, ...], row: Row) -> None:
         # A peak that was not found is at no blade.
@@ -91,12 +132,12 @@ class Work:
             rows = [Row(*row) for row in found]
             if store is not None:
                 key = Key(float(self.deviations[d]), self.series[c].coupling, p)
-                store.add(key, rows, points)
-            for dof, row in enumerate(rows):
-                self._set((d, c, p, dof), row)
-            self.known[d, c, p] = True
-            self.points += points
-            self.done += 1
+                try:
+                    store.add(key, rows, points)
+                except ModelError as error:
+                    kept = f"{self.done} of {self.total} disks are stored"
+                    raise ModelError(f"{error}; {kept}, run again to go on from there") from None
+            self._take((d, c, p), enumerate(rows), points)
             report(self.done / self.total)
 
         try:

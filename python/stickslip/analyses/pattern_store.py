@@ -1,6 +1,7 @@
 """The file in which the results of a mistuning study are kept as they come.
 
-It is an SQLite data base: a row is there whole or not at all, whatever ends the program.
+It is an SQLite data base: a row is there whole or not at all, whatever ends the program. Every row
+carries a digest of itself and of its study, so that a row that was changed is no row.
 """
 
 from __future__ import annotations
@@ -11,21 +12,22 @@ import math
 import sqlite3
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import brief, file_path
 from stickslip.errors import ModelError
+from stickslip.files import require_place
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 __all__ = ["Identity", "Key", "PatternStore", "Row", "digest"]
 
-FORMAT = 1
-"""Version of the tables; it rises when an older reader could not read them."""
+FORMAT = 2
+"""Version of the tables; it rises when an older reader could not read them. 1 had no digests."""
 
 _APPLICATION = 0x53744D69
 """Marks the data bases that are ours, "StMi"."""
@@ -57,16 +59,39 @@ class Row(NamedTuple):
     at_edge: bool
 
 
-_TABLES = """
-CREATE TABLE identity (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE summit (
+_IDENTITY = "CREATE TABLE identity (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"
+_SUMMIT = """CREATE TABLE summit (
     deviation REAL NOT NULL, coupling TEXT NOT NULL, pattern INTEGER NOT NULL, dof INTEGER NOT NULL,
     omega REAL, amplitude REAL, blade INTEGER NOT NULL, status INTEGER NOT NULL,
     harmonics INTEGER NOT NULL, error_estimate REAL, at_edge INTEGER NOT NULL,
-    points INTEGER NOT NULL,
+    points INTEGER NOT NULL,{}
     PRIMARY KEY (deviation, coupling, pattern, dof)
-) WITHOUT ROWID;
-"""
+) WITHOUT ROWID"""
+_TABLES = {
+    1: {_IDENTITY, _SUMMIT.format("")},
+    FORMAT: {_IDENTITY, _SUMMIT.format(" digest TEXT NOT NULL,")},
+}
+"""What makes the tables of each format."""
+
+_KINDS = (
+    *(float, str, int, int),
+    *(float | None, float | None, int, int),
+    *(int, float | None, int),
+    int,
+)
+"""Of the columns but the digest."""
+
+_REMEDIES = {
+    sqlite3.SQLITE_FULL: "make room there",
+    sqlite3.SQLITE_IOERR: "make room there, or check the disk",
+    sqlite3.SQLITE_READONLY: "see that it can be written",
+    sqlite3.SQLITE_CANTOPEN: "see that it can be written",
+    sqlite3.SQLITE_PERM: "see that it can be written",
+    sqlite3.SQLITE_BUSY: "see that no other program holds it",
+    sqlite3.SQLITE_LOCKED: "see that no other program holds it",
+    sqlite3.SQLITE_NOMEM: "free memory",
+}
+"""What to do where the file itself is not at fault."""
 
 
 class PatternStore:
@@ -88,15 +113,16 @@ class PatternStore:
 
     def __init__(self, path: object, identity: Identity) -> None:
         self.path = file_path(path, "store")
-        if self.path.is_dir():
-            raise ModelError(f"{self.path}: is a folder; give the name of a file in it")
-        if not self.path.parent.is_dir():
-            raise ModelError(f"{self.path}: there is no folder {self.path.parent}; create it first")
+        require_place(self.path)
+        given = {name: json.dumps(value) for name, value in identity.items()}
+        self._key = hashlib.blake2b(json.dumps(sorted(given.items())).encode()).digest()
         with self._named():
             self._base = sqlite3.connect(self.path, isolation_level=None, timeout=30.0)
         try:
+            # Text that is none is shown, and differs from what is expected.
+            self._base.text_factory = lambda text: text.decode(errors="replace")
             with self._named():
-                self._open({name: json.dumps(value) for name, value in identity.items()})
+                self._open(given)
         except BaseException:
             self._base.close()
             raise
@@ -108,69 +134,122 @@ class PatternStore:
         self._base.close()
 
     def rows(self) -> Iterator[tuple[Key, int, Row, int]]:
-        """Yield what is there: what it belongs to, the DOF, the row, and the solutions it took."""
+        """Yield what is there: what it belongs to, the DOF, the row, and the solutions it took.
+
+        Raises
+        ------
+        ModelError
+            If a row was changed since it was stored.
+        """
         with self._named():
-            found = self._base.execute(
-                "SELECT deviation, coupling, pattern, dof, omega, amplitude, blade, status, "
-                "harmonics, error_estimate, at_edge, points FROM summit"
-            ).fetchall()
-        for deviation, coupling, pattern, dof, *numbers, at_edge, points in found:
-            omega, amplitude, blade, status, harmonics, error = numbers
-            key = Key(deviation, float.fromhex(coupling), pattern)
-            real = (math.nan if value is None else value for value in (omega, amplitude, error))
-            omega, amplitude, error = real
-            row = Row(omega, amplitude, blade, status, harmonics, error, bool(at_edge))
-            yield key, dof, row, points
+            found = self._base.execute("SELECT * FROM summit").fetchall()
+        for *values, mark in found:
+            if mark != self._digest(values):
+                raise self.damaged(values[0], values[2], "its digest differs")
+            deviation, coupling, pattern, dof, *numbers, points = values
+            yield Key(deviation, float.fromhex(coupling), pattern), dof, _row(numbers), points
 
     def add(self, key: Key, rows: Sequence[Row], points: int) -> None:
-        """Keep the rows of one pattern, one per DOF, together or not at all."""
-        values = [
-            (
-                key.deviation,
-                float(key.coupling).hex(),
-                key.pattern,
-                dof,
-                *(None if isinstance(one, float) and math.isnan(one) else one for one in row),
-                points,
-            )
+        """Keep the rows of one pattern, one per DOF, together or not at all.
+
+        Raises
+        ------
+        ModelError
+            If they cannot be written; what was stored before stays.
+        """
+        found = [
+            (key.deviation, float(key.coupling).hex(), key.pattern, dof, *map(_kept, row), points)
             for dof, row in enumerate(rows)
         ]
-        marks = ", ".join("?" * 12)
-        with self._named():
-            self._base.execute("BEGIN IMMEDIATE")
-            self._base.executemany(f"INSERT OR REPLACE INTO summit VALUES ({marks})", values)
-            self._base.execute("COMMIT")
+        with self._named(), self._transaction():
+            self._insert(found)
+
+    def damaged(self, deviation: object, pattern: object, cause: str) -> ModelError:
+        """Return the error that names a row which cannot be right."""
+        return ModelError(
+            f"{self.path}: the row of deviation {brief(deviation)}, pattern {brief(pattern)} is "
+            f"damaged ({cause}); delete the rows of this pattern to compute it again, or remove "
+            "the file to begin anew"
+        )
+
+    def _insert(self, found: Sequence[Sequence[object]]) -> None:
+        marks = ", ".join("?" * (len(_KINDS) + 1))
+        self._base.executemany(
+            f"INSERT OR REPLACE INTO summit VALUES ({marks})",
+            [(*values, self._digest(values)) for values in found],
+        )
+
+    def _digest(self, values: Sequence[object]) -> str:
+        """Return a text that tells a row of this study from all others."""
+        # Python writes every number so that it comes back bit by bit.
+        row = repr(tuple(values)).encode()
+        return hashlib.blake2b(row, digest_size=16, key=self._key).hexdigest()
 
     def _open(self, identity: Mapping[str, str]) -> None:
         self._base.execute("PRAGMA synchronous = NORMAL")
-        self._base.execute("BEGIN IMMEDIATE")
-        if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
-            for statement in _TABLES.split(";"):
-                self._base.execute(statement)
-            self._base.execute(f"PRAGMA application_id = {_APPLICATION}")
-            self._base.execute(f"PRAGMA user_version = {FORMAT}")
-            self._base.executemany("INSERT INTO identity VALUES (?, ?)", identity.items())
-            self._base.execute("COMMIT")
-            return
-        self._base.execute("COMMIT")
-        self._require_ours()
+        with self._transaction():
+            if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
+                for statement in sorted(_TABLES[FORMAT]):
+                    self._base.execute(statement)
+                self._base.execute(f"PRAGMA application_id = {_APPLICATION}")
+                self._base.execute(f"PRAGMA user_version = {FORMAT}")
+                self._base.executemany("INSERT INTO identity VALUES (?, ?)", identity.items())
+                return
+        version = self._required_format()
         self._require_same(dict(self._base.execute("SELECT name, value FROM identity")), identity)
+        if version < FORMAT:
+            self._add_digests()
 
-    def _require_ours(self) -> None:
+    def _add_digests(self) -> None:
+        """Bring a store of the first format, whose rows have no digest, to this one."""
+        with self._transaction():
+            found = self._base.execute("SELECT * FROM summit").fetchall()
+            for values in found:
+                kinds = zip(values, _KINDS, strict=True)
+                if not all(isinstance(value, kind) for value, kind in kinds):
+                    raise self.damaged(values[0], values[2], "not a number in every column")
+                try:
+                    float.fromhex(values[1])
+                except (ValueError, OverflowError):
+                    raise self.damaged(values[0], values[2], "its coupling is no number") from None
+            self._base.execute("DROP TABLE summit")
+            for statement in _TABLES[FORMAT] - _TABLES[1]:
+                self._base.execute(statement)
+            self._insert(found)
+            self._base.execute(f"PRAGMA user_version = {FORMAT}")
+
+    def _required_format(self) -> int:
         if self._base.execute("PRAGMA application_id").fetchone()[0] != _APPLICATION:
             raise ModelError(
                 f"{self.path}: is no store of a mistuning study; give another name, nothing was "
                 "changed"
             )
-        version = self._base.execute("PRAGMA user_version").fetchone()[0]
-        if version != FORMAT:
+        version: int = self._base.execute("PRAGMA user_version").fetchone()[0]
+        if version not in _TABLES:
             raise ModelError(
                 f"{self.path}: a store of format {version}, this version of stickslip reads format "
-                f"{FORMAT}; upgrade stickslip, or give another store"
+                f"1 to {FORMAT}; upgrade stickslip, or give another store"
             )
+        there = {row[0] for row in self._base.execute("SELECT sql FROM sqlite_master")}
+        if there != _TABLES[version]:
+            raise sqlite3.DatabaseError("its tables are not those of a store")
         said = self._base.execute("PRAGMA quick_check").fetchone()[0]
         if said != "ok":
             raise sqlite3.DatabaseError(str(said).splitlines()[-1])
+        return version
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        """Let all of it be done, or nothing."""
+        self._base.execute("BEGIN IMMEDIATE")
+        try:
+            yield
+            self._base.execute("COMMIT")
+        except BaseException:
+            # A disk that refuses a write may have ended the transaction already.
+            if self._base.in_transaction:
+                self._base.execute("ROLLBACK")
+            raise
 
     def _require_same(self, there: Mapping[str, str], here: Mapping[str, str]) -> None:
         names = [name for name in {**here, **there} if there.get(name) != here.get(name)]
@@ -190,16 +269,29 @@ class PatternStore:
         """Turn what the data base complains of into one line."""
         try:
             yield
-        except sqlite3.OperationalError as error:
+        except sqlite3.Error as error:
+            cause = " ".join(str(error).split())
+            remedy = _REMEDIES.get(getattr(error, "sqlite_errorcode", 0) & 0xFF)
+            if remedy is not None:
+                raise ModelError(
+                    f"{self.path}: cannot be used as a store ({cause}); {remedy}"
+                ) from None
             raise ModelError(
-                f"{self.path}: cannot be used as a store ({error}); see that it can be written and "
-                "that no other program holds it"
-            ) from None
-        except sqlite3.DatabaseError as error:
-            raise ModelError(
-                f"{self.path}: no store, or a damaged one ({error}); give another name, or remove "
+                f"{self.path}: no store, or a damaged one ({cause}); give another name, or remove "
                 "it to begin anew"
             ) from None
+
+
+def _kept(value: float) -> float | None:
+    """Return a number as SQLite gives it back: no not-a-number, no truth value, no -0."""
+    if isinstance(value, float):
+        return None if math.isnan(value) else float(value) + 0.0
+    return int(value)
+
+
+def _row(numbers: Sequence[Any]) -> Row:
+    *values, at_edge = (math.nan if value is None else value for value in numbers)
+    return Row(*values, bool(at_edge))  # type: ignore[call-arg, arg-type]
 
 
 def digest(*arrays: NDArray[np.generic]) -> str:
@@ -211,5 +303,10 @@ def digest(*arrays: NDArray[np.generic]) -> str:
     return mark.hexdigest()[:16]
 
 
-def _shown(text: str | None) -> str:
-    return "missing" if text is None else brief(json.loads(text))
+def _shown(text: object) -> str:
+    if text is None:
+        return "missing"
+    try:
+        return brief(json.loads(text))  # type: ignore[arg-type]
+    except (TypeError, ValueError, RecursionError):
+        return brief(text)

@@ -21,6 +21,7 @@ import typer
 
 from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded
 from stickslip.errors import Interrupted, ModelError
+from stickslip.files import make_folder, require_place, write
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
@@ -52,7 +53,7 @@ def _print_version(wanted: bool) -> None:
     if wanted:
         from stickslip import __version__
 
-        print(f"stickslip {__version__}")
+        sys.stdout.write(f"stickslip {__version__}\n")
         raise typer.Exit
 
 
@@ -130,7 +131,7 @@ def run(
     clock = Clock()
     with clock("reading the study"):
         loaded = storing(Study.load(study), out)
-        out.mkdir(parents=True, exist_ok=True)
+        make_folder(out)
     curves = _compute(loaded, out, clock, quiet=quiet)
     if not quiet:
         with clock("refining peaks, printing"):
@@ -142,15 +143,24 @@ def run(
                     loaded.tables.output.length_unit,
                 )
             )
-    picture = out / f"{loaded.name}.png"
-    if not no_plot:
-        with clock("drawing"):
-            _draw_study(loaded, curves, picture)
+    picture = None if no_plot else out / f"{loaded.name}.png"
+    undrawn = None
+    if picture is not None:
+        try:
+            with clock("drawing"):
+                _draw_study(loaded, curves, picture)
+        except ModelError as error:
+            # The results are saved: what there is to say of them comes first.
+            picture, undrawn = None, error
     if timings:
         console.stages([curve.result for curve in curves], clock)
     if not quiet:
-        _tell_files(loaded, curves, None if no_plot else picture)
-    _warn([(curve.case.name, curve.result) for curve in curves])
+        _tell_files(loaded, curves, picture)
+    complete = _warned([(curve.case.name, curve.result) for curve in curves])
+    if undrawn is not None:
+        raise undrawn
+    if not complete:
+        raise typer.Exit(NOT_CONVERGED)
 
 
 def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curve]:
@@ -163,19 +173,32 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curv
         try:
             for case, result in zip(cases, results, strict=True):
                 file = out / f"{case.name}.nc"
-                with clock("saving"):
+                with clock("saving"), _counted(len(curves), study, out):
                     result.save(file)
                 curves.append(Curve(case, result, file))
         except Interrupted as stop:
             complain("interrupted", "saving what was computed")
             # under another name, so that a complete curve of an earlier run is not lost
             file = out / f"{cases[len(curves)].name}-partial.nc"
-            cast("Result", stop.result).save(file)
+            with _counted(len(curves), study, out):
+                cast("Result", stop.result).save(file)
             raise KeyboardInterrupt(
                 f"{len(curves)} of {len(cases)} {_nouns(study)} complete in {out}, "
                 f"the next one as far as it went in {file}{_rest(study)}"
             ) from None
     return curves
+
+
+@contextmanager
+def _counted(complete: int, study: Study, out: Path) -> Iterator[None]:
+    """Say beside an error how much of a study there is."""
+    try:
+        yield
+    except ModelError as error:
+        raise ModelError(
+            f"{error}; {complete} of {len(study.cases)} {_nouns(study)} complete in {out}"
+            f"{_rest(study)}"
+        ) from None
 
 
 def _nouns(study: Study) -> str:
@@ -207,8 +230,8 @@ def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> 
     tell(f"page:    stickslip report {first}")
 
 
-def _warn(results: Sequence[tuple[str, Result]]) -> None:
-    """Name what did not converge, and end with the exit code that says so."""
+def _warned(results: Sequence[tuple[str, Result]]) -> bool:
+    """Name what did not converge; False if there is anything."""
     from stickslip.cli.console import complain
     from stickslip.views.kinds import cautions, failures
 
@@ -218,8 +241,7 @@ def _warn(results: Sequence[tuple[str, Result]]) -> None:
     failed = [f"{name}: {text}" for name, result in results for text in failures(result)]
     for line in failed:
         complain("warning", line)
-    if failed:
-        raise typer.Exit(NOT_CONVERGED)
+    return not failed
 
 
 def _draw_study(study: Study, curves: Sequence[Curve], picture: Path) -> None:
@@ -359,6 +381,7 @@ def certify(
 
     wanted = _points(points)
     target = out or result
+    require_place(target)
     try:
         with console.progress(result.name, wanted=True) as advance:
             certified = certify(load(result), wanted, seed=seed, dofs=dof, progress=advance)
@@ -366,11 +389,12 @@ def certify(
         console.complain("interrupted", "saving what was compared")
         cast("ForcedResponse", stop.result).save(target)
         raise KeyboardInterrupt(f"{stop}, now in {target}") from None
-    certified.save(target)
     console.show_all(certificates([("", certified)], "", "m"))
+    certified.save(target)
     console.tell("")
     console.tell(f"certified: {target}")
-    _warn([(result.stem, certified)])
+    if not _warned([(result.stem, certified)]):
+        raise typer.Exit(NOT_CONVERGED)
 
 
 def _points(text: str) -> int | Literal["all"]:
@@ -396,5 +420,5 @@ def schema(
     if out is None:
         tell(text)
     else:
-        out.write_text(text + "\n", encoding="utf-8")
+        write(out, f"{text}\n".encode())
         tell(f"schema: {out}")

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "complain",
-    "discard_output",
+    "give_up",
     "grid",
     "progress",
     "show",
@@ -55,17 +55,28 @@ def tell(text: str) -> None:
     try:
         print(text, flush=True)
     except OSError as error:
-        discard_output()
-        if not isinstance(error, BrokenPipeError):
-            raise ModelError(
-                f"standard output: {error.strerror}; results that were announced are saved"
-            ) from None
+        give_up(error)
 
 
-def discard_output() -> None:
-    """Write what is still to come, and what is still buffered, to nowhere."""
+def give_up(error: OSError) -> None:
+    """Write nothing more to standard output, which refused what was written.
+
+    Raises
+    ------
+    ModelError
+        Unless it is because its reader has gone.
+    """
+    _silence(sys.stdout)
+    if not isinstance(error, BrokenPipeError):
+        raise ModelError(
+            f"standard output: {error.strerror}; results that were announced are saved"
+        ) from None
+
+
+def _silence(stream: TextIO) -> None:
+    # What is still buffered would fail once more at the end of the program.
     sink = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(sink, sys.stdout.fileno())
+    os.dup2(sink, stream.fileno())
     os.close(sink)
 
 
@@ -74,7 +85,11 @@ def complain(kind: str, text: str) -> None:
     import typer
 
     colour = {"error": "red", "warning": "yellow"}.get(kind)
-    typer.echo(f"{typer.style(f'{kind}:', fg=colour, bold=True)} {text}", err=True)
+    try:
+        typer.echo(f"{typer.style(f'{kind}:', fg=colour, bold=True)} {text}", err=True)
+    except OSError:
+        # The exit code still says it.
+        _silence(sys.stderr)
 
 
 @contextmanager

@@ -59,18 +59,31 @@ class Commands(TyperGroup):
         **extra: Any,
     ) -> object:
         """Run the command that the arguments name."""
-        from stickslip.cli.console import complain
+        from stickslip.cli.console import complain, give_up
 
+        for name in ("stdout", "stderr"):
+            # A program that was started without them has nowhere to write to.
+            if getattr(sys, name) is None:
+                setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
         if not (sys.argv[1:] if args is None else args):
             args = ["--help"]
         try:
             code = super().main(args, prog_name, complete_var, False, windows_expand_args, **extra)
+            sys.stdout.flush()
         except typer.Abort:
             code = STOPPED
         except _Refusal as error:
             line = " ".join(cast("typer.BadParameter", error).format_message().split()).rstrip(".")
             complain("error", f"{line}; see stickslip --help")
             code = REFUSED
+        except OSError as error:
+            # The help; all else is guarded.
+            try:
+                give_up(error)
+                code = 0
+            except ModelError as said:
+                complain("error", str(said))
+                code = REFUSED
         sys.exit(code if isinstance(code, int) else 0)
 
 
@@ -79,7 +92,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
     @wraps(command)
     def safe(*args: P.args, **kwargs: P.kwargs) -> None:
-        from stickslip.cli.console import complain, discard_output
+        from stickslip.cli.console import complain, give_up
 
         if os.environ.get("STICKSLIP_DEBUG", "0") not in ("", "0"):
             return command(*args, **kwargs)
@@ -96,9 +109,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except ModelError as error:
             complain("error", str(error))
             raise typer.Exit(REFUSED) from None
-        except BrokenPipeError:
+        except BrokenPipeError as error:
             # Nobody reads any more.
-            discard_output()
+            give_up(error)
         except OSError as error:
             complain("error", f"{error.filename or 'file'}: {error.strerror or error}")
             raise typer.Exit(REFUSED) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import file_path, real_number
 from stickslip.errors import ModelError
+from stickslip.files import write
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -213,14 +215,9 @@ class Solid:
         file = file_path(path, "path")
         values = {name: np.asarray(value, dtype=np.float64) for name, value in fields.items()}
         cells = [("hexahedron20", self._vtk_cells)]
-        partial = file.with_name(f".{file.name}.part")
-        try:
-            meshio.Mesh(self.nodes, cells, point_data=values).write(partial, file_format="vtu")
-            os.replace(partial, file)
-        except OSError as error:
-            raise ModelError(f"{file}: cannot be written: {error.strerror or error}") from None
-        finally:
-            partial.unlink(missing_ok=True)
+        content = io.BytesIO()
+        meshio.Mesh(self.nodes, cells, point_data=values).write(content, file_format="vtu")
+        write(file, content.getbuffer())
 
     def _assembled(self, whole: NDArray[np.float64]) -> csc_array:
         """Add up matrices of elements, shape (elements, 20, 3, 20, 3)."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, Union
 
 from stickslip.checks import brief, choice, file_path, text
 from stickslip.errors import ModelError
-from stickslip.files import whole
+from stickslip.files import require_place, write
 from stickslip.results.result import Result
 
 if TYPE_CHECKING:
@@ -63,6 +63,7 @@ def report(
     target = file_path(path, "path")
     if target.suffix.lower() not in (".html", ".htm"):
         raise ModelError(f"{target}: a report is a page of HTML; let its name end in .html")
+    require_place(target)
     choice(omega_unit, "omega_unit", ["rad/s", "Hz"])
     choice(length_unit, "length_unit", ["m", "mm", "um"])
     entries = _entries(results)
@@ -78,8 +79,7 @@ def report(
         # the page marks these peaks
         warnings.filterwarnings("ignore", message="peak of ", category=UserWarning)
         html = page.render(content(entries, shown, output, title))
-    with whole(target) as temporary:
-        temporary.write_text(html, encoding="utf-8")
+    write(target, html.encode())
 
 
 def _templates() -> Environment:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import platform
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -19,6 +20,7 @@ from stickslip.errors import ModelError
 from stickslip.html.figures import Drawn, drawn
 from stickslip.html.models import ModelSummary, summaries
 from stickslip.results.result import Result
+from stickslip.results.store import content_of
 from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import MODULES, View, cautions, failures, view_of
@@ -245,8 +247,8 @@ def _provenance(entry: Entry) -> list[Row]:
         return [("source", "computed by the program that wrote the report")]
     import h5py
 
-    content = entry.source.read_bytes()
-    with h5py.File(entry.source) as stored:
+    content = content_of(entry.source)
+    with h5py.File(io.BytesIO(content)) as stored:
         writer = stored.attrs.get("stickslip_version", "unknown")
     written = datetime.fromtimestamp(entry.source.stat().st_mtime, UTC)
     return [

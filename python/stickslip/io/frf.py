@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 from collections.abc import Iterable, Mapping
@@ -15,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import brief, choice, file_path, members, text
 from stickslip.errors import ModelError
+from stickslip.files import write
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
@@ -188,15 +190,11 @@ def write_frf(path: str | os.PathLike[str], functions: Frf | Iterable[Frf]) -> N
     pyuff = _pyuff(file)
     given = (functions,) if isinstance(functions, Frf) else members(functions, "frf", "[frf, ...]")
     sets = [_dataset(pyuff, one) for one in given]
-    partial = file.with_name(f".{file.name}.part")
-    try:
-        partial.unlink(missing_ok=True)
-        pyuff.UFF(str(partial)).write_sets(sets, mode="overwrite")
-        os.replace(partial, file)
-    except OSError as error:
-        raise ModelError(f"{file}: cannot be written: {error.strerror or error}") from None
-    finally:
-        partial.unlink(missing_ok=True)
+    content = io.StringIO()
+    for one in sets:
+        # `UFF.write_sets` writes to files by name only, and hides why a disk refuses them.
+        pyuff.pyuff._write58(content, one)
+    write(file, content.getvalue().encode())
 
 
 def _pyuff(file: Path) -> ModuleType:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Hashable, Mapping
 from importlib import import_module
@@ -10,9 +11,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from stickslip.checks import file_path, listed
+from stickslip.checks import brief, file_path, listed
 from stickslip.errors import ModelError
-from stickslip.files import whole
+from stickslip.files import refusal, require_place, write
+from stickslip.results.bounds import require_bounds
+from stickslip.results.seal import SEAL, require_harmless, seal_variable, sealed, sealed_whole
 from stickslip.results.stored_model import model_of, model_variables
 
 if TYPE_CHECKING:
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
 
     from stickslip.results.result import Result
 
-__all__ = ["KINDS", "load", "save"]
+__all__ = ["KINDS", "content_of", "load", "save"]
 
 KINDS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.results.forced_response", "ForcedResponse"),
@@ -45,7 +48,8 @@ def save(result: Result, path: str | os.PathLike[str]) -> None:
 
     Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
     reader opens the file; what follows from other variables is left out. Contacts and forces are
-    JSON texts, one per variable entry.
+    JSON texts, one per variable entry. The file carries a digest of its bytes; `load` refuses a
+    file that was changed.
 
     Parameters
     ----------
@@ -59,10 +63,23 @@ def save(result: Result, path: str | os.PathLike[str]) -> None:
     ModelError
         If the folder does not exist or the file cannot be written.
     """
+    target = file_path(path, "path")
+    require_place(target)
     dataset = _split(result.to_dataset(derived=False).assign(model_variables(result.model)))
+    dataset = dataset.assign(seal_variable())
     dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": result.kind}
-    with whole(file_path(path, "path")) as temporary:
-        dataset.to_netcdf(temporary, engine="h5netcdf", encoding=_encoding(dataset))
+    write(target, sealed(_netcdf(dataset)))
+
+
+def _netcdf(dataset: xr.Dataset) -> bytearray:
+    """Return the bytes of a NetCDF 4 file."""
+    import h5netcdf  # type: ignore[import-untyped, unused-ignore]
+    from xarray.backends import H5NetCDFStore
+
+    content = io.BytesIO()
+    with h5netcdf.File(content, "w") as file:
+        dataset.dump_to_store(H5NetCDFStore(file), encoding=_encoding(dataset))
+    return bytearray(content.getbuffer())
 
 
 def load(path: str | os.PathLike[str]) -> Any:
@@ -85,30 +102,69 @@ def load(path: str | os.PathLike[str]) -> Any:
         If there is no such file, it is damaged, from elsewhere, or of a newer format.
     """
     source = file_path(path, "path")
-    if not source.is_file():
-        raise ModelError(f"{source}: {'is a folder' if source.is_dir() else 'no such file'}")
+    if not os.path.isfile(source):
+        raise ModelError(f"{source}: {'is a folder' if os.path.isdir(source) else 'no such file'}")
     dataset = _read(source)
     kind = _required_kind(dataset, source)
     try:
+        require_bounds(dataset)
         return kind.from_dataset(_joined(dataset), model_of(dataset))
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+    except Exception as error:
+        # What a file without a seal holds may lead the code below anywhere.
         raise ModelError(
             f"{source}: not a complete stickslip result ({_line(error)}); compute and save it again"
         ) from error
 
 
+def content_of(source: Path) -> bytes:
+    """Return the bytes of a result file.
+
+    Raises
+    ------
+    ModelError
+        If it cannot be read, or is larger than the memory.
+    """
+    from stickslip.analyses.memory import SHARE, physical_memory
+
+    try:
+        size, memory = os.stat(source).st_size, physical_memory()
+        if memory is not None and size > SHARE * memory:
+            raise ModelError(f"{source}: {size / 1e9:.3g} GB, more than the memory can hold")
+        return source.read_bytes()
+    except OSError as error:
+        raise refusal(source, "read", error) from error
+
+
 def _read(source: Path) -> xr.Dataset:
     import xarray as xr
 
+    content = content_of(source)
+    whole = sealed_whole(content)
+    if whole is False:
+        raise _changed(source)
     try:
+        if whole is None:
+            require_harmless(content)
         # Nothing is decoded: the numbers must come back bit by bit.
-        return xr.load_dataset(source, engine="h5netcdf", mask_and_scale=False, decode_times=False)
+        dataset = xr.load_dataset(
+            io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False
+        )
     except Exception as error:
-        # The readers below raise whatever the bytes of a damaged file lead them to.
+        # The readers raise whatever the bytes of a damaged file lead them to.
         raise ModelError(
             f"{source}: not a readable NetCDF file, or a damaged one ({_line(error)}); "
             "load reads what save wrote"
         ) from error
+    if SEAL in dataset and whole is None:
+        raise _changed(source)
+    return dataset
+
+
+def _changed(source: Path) -> ModelError:
+    return ModelError(
+        f"{source}: was changed since it was saved, its digest differs; take a copy of the file as "
+        "it was, or compute and save it again"
+    )
 
 
 def _required_kind(dataset: xr.Dataset, source: Path) -> type[Result]:
@@ -116,15 +172,16 @@ def _required_kind(dataset: xr.Dataset, source: Path) -> type[Result]:
     kind, version = (dataset.attrs.get(f"stickslip_{key}") for key in ("kind", "format"))
     if kind is None or version is None:
         raise ModelError(f"{source}: a NetCDF file, but not a stickslip result")
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise ModelError(
-            f"{source}: holds {kind!r}, this version reads {listed(list(KINDS))}; upgrade stickslip"
+            f"{source}: holds {brief(kind)}, this version reads {listed(list(KINDS))}; upgrade "
+            "stickslip"
         )
     if not isinstance(version, int | np.integer) or not 1 <= version <= FORMAT:
         writer = dataset.attrs.get("stickslip_version", "another version")
         raise ModelError(
-            f"{source}: written by stickslip {writer} in format {version}, this version reads "
-            f"format 1 to {FORMAT}; upgrade stickslip"
+            f"{source}: written by stickslip {_line(writer)} in format {_line(version)}, this "
+            f"version reads format 1 to {FORMAT}; upgrade stickslip"
         )
     module, name = KINDS[kind]
     return cast("type[Result]", getattr(import_module(module), name))
@@ -166,12 +223,13 @@ def _encoding(dataset: xr.Dataset) -> dict[Hashable, dict[str, object]]:
         if variable.dtype.kind == "U":
             continue
         encoding[name] = {"_FillValue": None}
-        if variable.ndim and variable.size:
+        # The seal is filled in where its bytes stand.
+        if variable.ndim and variable.size and name != SEAL:
             encoding[name] |= {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True}
     return encoding
 
 
-def _line(error: BaseException) -> str:
-    """Return the first line of what an error says."""
-    texts = str(error).splitlines()
-    return texts[0] if texts else type(error).__name__
+def _line(value: object) -> str:
+    """Return the first line of what an error or a value says."""
+    texts = str(value).splitlines()
+    return texts[0] if texts else type(value).__name__

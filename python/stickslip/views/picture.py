@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from stickslip.errors import ModelError
+from stickslip.files import make_folder, write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,20 +37,24 @@ def draw(panels: Sequence[Panel], file: Path) -> None:
     Raises
     ------
     ModelError
-        If the format is unknown, or a panel refuses what it is to draw.
+        If the format is unknown, a panel refuses what it is to draw, or the picture cannot be
+        written.
     """
     from matplotlib.figure import Figure
 
     # made without pyplot: no window system is asked for, and nothing stays open
     figure = Figure(figsize=(7.0, 0.6 + 3.9 * len(panels)), layout="constrained")
     known = figure.canvas.get_supported_filetypes()
-    if file.suffix.lstrip(".").lower() not in known:
+    kind = file.suffix.lstrip(".").lower()
+    if kind not in known:
         kinds = ", ".join(f".{kind}" for kind in sorted(known))
         raise ModelError(f"{file}: '{file.suffix}' is no format of pictures; known: {kinds}")
     for row, panel in enumerate(panels):
         panel(ax=figure.add_subplot(len(panels), 1, row + 1))
-    file.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(file, dpi=150)
+    picture = io.BytesIO()
+    figure.savefig(picture, format=kind, dpi=150)
+    make_folder(file.parent)
+    write(file, picture.getbuffer())
 
 
 def titled(panel: Panel, name: str) -> Panel:

@@ -1,0 +1,96 @@
+"""The seal of result files: a digest of all their bytes, in a variable of the file itself.
+
+A sealed file is checked before HDF5 sees it. HDF5 trusts the addresses in a file: one wrong byte
+can keep it busy for ever. Files of the first versions have no seal; another process, which can be
+ended, reads them beforehand.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+from collections.abc import Hashable
+
+import numpy as np
+
+__all__ = ["SEAL", "require_harmless", "seal_variable", "sealed", "sealed_whole"]
+
+SEAL = "seal"
+"""Name of the variable."""
+
+_MARK = bytes.fromhex("b7f3c1a9e88d9cfe94d0a6b1ff82c5e9") + b"stickslip seal 1"
+_DIGEST = 32
+_PATIENCE = 60
+"""Seconds; files of 100 MB take one or two."""
+_RATIO = 1100
+"""Bytes that one byte of a file can stand for: deflate reaches 1032."""
+
+_READ = """
+import io, sys
+import h5netcdf, h5py
+content, most = sys.stdin.buffer.read(), int(sys.argv[1])
+def size(name, item):
+    global most
+    if isinstance(item, h5py.Dataset):
+        most -= (item.size or 0) * item.dtype.itemsize
+with h5py.File(io.BytesIO(content), "r") as file:
+    file.visititems(size)
+if most < 0:
+    sys.exit("it declares more numbers than it can hold")
+with h5netcdf.File(io.BytesIO(content), "r") as file:
+    dict(file.attrs)
+    for variable in file.variables.values():
+        dict(variable.attrs), variable.dimensions, variable[...]
+"""
+
+
+def seal_variable() -> dict[Hashable, object]:
+    """Return the variable that holds the seal, to be filled by `sealed`."""
+    meaning = "mark, and BLAKE2b digest of the file with the digest as zeros"
+    entries = np.frombuffer(_MARK + bytes(_DIGEST), dtype=np.uint8)
+    return {SEAL: ("seal_byte", entries, {"units": "1", "long_name": meaning})}
+
+
+def sealed(content: bytearray) -> bytearray:
+    """Fill in the digest of a file that has the variable, and return the file."""
+    start = content.index(_MARK) + len(_MARK)
+    content[start : start + _DIGEST] = _digest(content, start)
+    return content
+
+
+def sealed_whole(content: bytes) -> bool | None:
+    """Tell whether a file is as it was saved; None if it has no seal."""
+    place = content.find(_MARK)
+    if place < 0:
+        return None
+    start = place + len(_MARK)
+    return content[start : start + _DIGEST] == _digest(content, start)
+
+
+def require_harmless(content: bytes) -> None:
+    """Refuse a file over which HDF5 crashes, never ends, or needs too much memory.
+
+    Raises
+    ------
+    ValueError
+        With the reason.
+    """
+    command = [sys.executable, "-P", "-c", _READ, str(_RATIO * len(content))]
+    try:
+        done = subprocess.run(
+            command, input=content, capture_output=True, timeout=_PATIENCE, check=False
+        )
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"not read within {_PATIENCE} s") from None
+    if done.returncode:
+        told = done.stderr.decode(errors="replace").strip().splitlines()
+        raise ValueError(told[-1] if told and done.returncode > 0 else "its reader crashed")
+
+
+def _digest(content: bytes | bytearray, start: int) -> bytes:
+    mark = hashlib.blake2b(digest_size=_DIGEST)
+    view = memoryview(content)
+    for part in (view[:start], bytes(_DIGEST), view[start + _DIGEST :]):
+        mark.update(part)
+    return mark.digest()
