@@ -27,6 +27,7 @@ __all__ = [
     "choice",
     "file_path",
     "is_file",
+    "is_reserved",
     "listed",
     "members",
     "real_matrix",
@@ -52,6 +53,7 @@ _LONGEST = 60
 # A sign, zeros and a point before a digit that is none: the mantissa of a number that is not 0.
 _NOT_ZERO = re.compile(r"\s*[+-]?[0._]*[1-9]")
 _Member = TypeVar("_Member")
+_RESERVED = re.compile(r"con|prn|aux|nul|(com|lpt)[0-9¹²³]|conin\$|conout\$", re.I)
 
 
 @runtime_checkable
@@ -195,10 +197,15 @@ def is_file(file: Path) -> bool:
     except OSError as error:
         raise ModelError(f"{brief(str(file))}: cannot be read ({error.strerror})") from None
     if stat.S_ISDIR(mode):
-        raise ModelError(f"{file}: is a folder; name a file in it")
+        raise ModelError(f"{file}: is a folder; give the name of a file in it")
     if not stat.S_ISREG(mode):
         raise ModelError(f"{file}: is a pipe, a device or a socket; give a file")
     return True
+
+
+def is_reserved(name: str) -> bool:
+    """Return whether Windows takes a file name for a device, whatever its ending: nul.nc."""
+    return _RESERVED.fullmatch(name.partition(".")[0].strip()) is not None
 
 
 def vanished(text: str, number: float) -> bool:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import brief, file_path
+from stickslip.checks import brief, file_path, is_file
 from stickslip.errors import ModelError
 
 if TYPE_CHECKING:
@@ -88,8 +88,7 @@ class PatternStore:
 
     def __init__(self, path: object, identity: Identity) -> None:
         self.path = file_path(path, "store")
-        if self.path.is_dir():
-            raise ModelError(f"{self.path}: is a folder; give the name of a file in it")
+        is_file(self.path)
         if not self.path.parent.is_dir():
             raise ModelError(f"{self.path}: there is no folder {self.path.parent}; create it first")
         with self._named():

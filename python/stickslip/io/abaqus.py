@@ -81,7 +81,9 @@ def _of_nodes(table: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Label
 
 def _substructure(lines: list[str], key: str | None) -> Labelled:
     """Return the lower triangle by rows below *MATRIX, mirrored."""
-    found = [(match[1].lower(), at) for at, line in enumerate(lines) if (match := _MATRIX.match(line))]
+    found = [
+        (match[1].lower(), at) for at, line in enumerate(lines) if (match := _MATRIX.match(line))
+    ]
     starts = dict(found)
     if len(starts) < len(found):
         raise ValueError("a matrix is given twice")

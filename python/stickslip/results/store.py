@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from stickslip.checks import file_path, listed
+from stickslip.checks import file_path, is_file, listed
 from stickslip.errors import ModelError
 from stickslip.files import whole
+from stickslip.io.hdf5 import require_held, require_own
 from stickslip.results.stored_model import model_of, model_variables
 
 if TYPE_CHECKING:
@@ -35,6 +36,9 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "stability_map": ("stickslip.results.stability_map", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
+
+_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"
+"""Marks what has a length and no numbers."""
 
 FORMAT = 1
 """Version of the layout of the file; it rises when an older reader could not read it."""
@@ -85,8 +89,8 @@ def load(path: str | os.PathLike[str]) -> Any:
         If there is no such file, it is damaged, from elsewhere, or of a newer format.
     """
     source = file_path(path, "path")
-    if not source.is_file():
-        raise ModelError(f"{source}: {'is a folder' if source.is_dir() else 'no such file'}")
+    if not is_file(source):
+        raise ModelError(f"{source}: no such file")
     dataset = _read(source)
     kind = _required_kind(dataset, source)
     try:
@@ -98,9 +102,15 @@ def load(path: str | os.PathLike[str]) -> Any:
 
 
 def _read(source: Path) -> xr.Dataset:
+    import h5py
     import xarray as xr
 
     try:
+        with h5py.File(source) as stored:
+            for name in stored:
+                require_own(stored, name)
+                if _NO_VARIABLE not in str(stored[name].attrs.get("NAME", "")):
+                    require_held(stored[name])
         # Nothing is decoded: the numbers must come back bit by bit.
         return xr.load_dataset(source, engine="h5netcdf", mask_and_scale=False, decode_times=False)
     except Exception as error:
