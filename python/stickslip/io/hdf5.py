@@ -1,4 +1,4 @@
-"""HDF5 files, looked at before anything is read: do they hold the numbers that they announce?"""
+"""HDF5 files, checked for the numbers that they announce before any is read."""
 
 from __future__ import annotations
 

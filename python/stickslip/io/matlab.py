@@ -150,12 +150,8 @@ def _require_version_4(content: memoryview) -> None:
             raise ValueError("the file ends inside the header of a matrix")
         kind, rows, columns, imaginary, name = struct.unpack_from(f"{order}5i", content, place)
         width = kind // 10 % 10
-        if (
-            not 0 <= kind < 5000
-            or width > 5
-            or min(rows, columns, name) < 0
-            or imaginary not in (0, 1)
-        ):
+        sound = 0 <= kind < 5000 and width < len(_WIDTHS_4) and imaginary in (0, 1)
+        if not sound or min(rows, columns, name) < 0:
             raise ValueError("the header of a matrix of version 4 is damaged")
         place += 20 + name + rows * columns * _WIDTHS_4[width] * (1 + imaginary)
     if place != len(content):

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.checks import MAX_DENSE
 from stickslip.io.fields import require_representable
-from stickslip.io.source import LARGEST_UNPACKED, plain, unzip
+from stickslip.io.source import plain, unzip
 from stickslip.io.triangle import SIGNS, require_whole_numbers, whole_matrix
 
 if TYPE_CHECKING:
@@ -28,8 +29,8 @@ _FIELDS = {"real": False, "double": False, "integer": True, "unsigned-integer": 
 """Whether the values are whole numbers."""
 _ENTRY = np.dtype([("row", np.int64), ("column", np.int64), ("value", np.float64)])
 _COMMENTS = re.compile(r"(?:[ \t]*(?:%[^\n]*)?\n)*")
-_HEAD, _LINE = 2**20, 256
-"""Bytes of comments, and of one entry, that a packed file may have."""
+_HEAD, _LINE, _LARGEST = 2**20, 256, 2**28
+"""Bytes of comments, of one entry and of all that a packed file may have unpacked."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,8 @@ class _Head:
             rows, columns, entries = _sizes(line, 3)
         else:
             rows, columns = _sizes(line, 2)
+            if rows * columns > MAX_DENSE**2:
+                raise ValueError(f"{rows} x {columns} entries; write such a matrix in coordinates")
             # A triangle has its diagonal, a skew one not.
             sign = SIGNS[symmetry]
             entries = rows * (rows + sign) // 2 if sign else rows * columns
@@ -105,7 +108,7 @@ def _unpacked(path: Path) -> bytes:
     with gzip.open(path) as packed:
         start = packed.read(_HEAD)
     entries = _Head.parse(plain(start, "latin-1")).entries
-    return unzip(path, min(LARGEST_UNPACKED, _HEAD + _LINE * entries))
+    return unzip(path, min(_LARGEST, _HEAD + _LINE * entries))
 
 
 def _header(line: str) -> tuple[str, bool, str]:

@@ -1,4 +1,4 @@
-"""What a file holds, before it is read: text with its marks removed, packed content of known size."""
+"""The content of files: text with marks removed, packed bytes up to the size they may have."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def read_text(path: Path, encoding: str = "ascii") -> str:
 
 
 def plain(content: bytes, encoding: str) -> str:
-    """Return text without the byte-order mark that editors of Windows put first, lines end by \\n.
+    """Return text without the byte-order mark of Windows' editors, lines ended by line feeds.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def unzip(path: Path, most: int) -> bytes:
     with gzip.open(path) as packed:
         content = packed.read(most + 1)
     if len(content) > most:
-        raise ValueError(f"it unpacks to more than the {most} bytes that its entries can need")
+        raise ValueError(f"it unpacks to more than {most} bytes; unpack it, if it is meant")
     return content
 
 
