@@ -155,7 +155,7 @@ def test_plot_writes_a_picture(results, tmp_path, monkeypatch, options, name):
         (["--dof", "tpi"], "unknown dof 'tpi'; did you mean 'tip'?"),
         (["--waveform", "999"], "--waveform = '999' is 999 rad/s, outside the computed 150 to 250"),
         (["--loop", "27 N"], "--loop = '27 N' is not a frequency [rad/s]"),
-        (["--loop", "nan"], "--loop = nan is not finite"),
+        (["--loop", "nan"], "--loop = 'nan' is not a frequency [rad/s]"),
         (["--loop", "170", "--contact", "5"], "there is no contact at position 5"),
         (["--loop", "170", "--waveform", "170"], "--waveform and --loop exclude each other"),
         (["--out", "beam.xyz"], "beam.xyz: '.xyz' is no format of pictures; known: "),

@@ -71,7 +71,7 @@ def test_a_second_contact_of_the_same_name_is_refused(folder):
     ("arguments", "message"),
     [
         (["run", "none.toml"], "error: none.toml: no such study file"),
-        (["run", "."], "error: .: is a folder; name the study file in it"),
+        (["run", "."], "error: .: is a folder; give the name of a file in it"),
         (["run", "study.toml", "--out", "study.toml"], "error: study.toml: File exists"),
         (["show", "none.nc"], "error: none.nc: no such file"),
         (["show", "study.toml"], "error: study.toml: "),

@@ -65,6 +65,7 @@ def test_harwell_boeing_symmetric_is_mirrored(folder, ending):
 
 def test_harwell_boeing_of_the_upper_triangle(folder):
     text = header("rsa", entries=3) + "   1   2   4\n   1   1   2\n  1.0000E+00  2.0000E+00\n"
+    text = text.replace(f"{3:14d}{1:14d}", f"{4:14d}{1:14d}", 1)
     text = text.replace(f"{1:14d}\n", f"{2:14d}\n", 1) + "  3.0000E+00\n"
     np.testing.assert_array_equal(read_matrix(write(folder / "k.rsa", text)), [[1, 2], [2, 3]])
 
@@ -127,8 +128,11 @@ BODY = "   1   2   2\n   2\n  5.0000E+00\n"
         (header("RSA") + "   1   3   2\n   2\n  5.0000E+00\n", "column pointers do not ascend"),
         (header("RSA") + "   1   2   2\n   2\n  5.0x00E+00\n", "could not convert"),
         (header("RSA") + "   1   2   2\n   2\n         nan\n", "nan in row 0, column 1"),
-        (header("RSA", entries=4) + BODY, "3 numbers announced in line '2'"),
-        (header("RUA").replace(f"{1:14d}\n", f"{0:14d}\n", 1) + BODY, "1 numbers .* 0 present"),
+        (header("RSA", entries=4) + BODY, "1 lines of rows announced, 4 fill 2"),
+        (
+            header("RUA").replace(f"{1:14d}\n", f"{0:14d}\n", 1) + BODY,
+            "0 lines of values announced, 1 fill 1",
+        ),
         (header("RUA", entries=-1) + BODY, "does not hold 3 counts"),
         (header("RSA", formats="(3I4) (3I4)") + BODY, "line 4 does not hold three"),
         (header("RSA", formats="(3I4) (3I4) (A12)") + BODY, r"unsupported number format '\(A12\)'"),
@@ -138,9 +142,44 @@ BODY = "   1   2   2\n   2\n  5.0000E+00\n"
             header("RSA", entries=2) + "   1   2   3\n   2   1\n  5.0000E+00  5.0000E+00\n",
             "entries on both sides of the diagonal",
         ),
+        (header("RUA") + BODY + "  6.0000E+00\n", "7 lines announced, 8 present"),
+        (header("RUA").replace(f"{3:14d}", f"{4:14d}", 1) + BODY, "4 lines .* but 3 by parts"),
+        (header("RUA") + "   1   2   2   9\n   2\n  5.0\n", "3 numbers announced in line"),
+        (
+            header("RUA", entries=2) + "   1   3   3\n   2   1\n  5.0000E+00  6.0000E+00\n",
+            "column 1: row 1 follows row 2; rows must ascend",
+        ),
+        (
+            header("RUA", entries=2) + "   1   3   3\n   2   2\n  5.0000E+00  6.0000E+00\n",
+            "column 1: row 2 follows row 2",
+        ),
+        (header("RUA") + "   1   2   2\n 0_2\n  5.0000E+00\n", "'0_2' stands where a whole"),
+        (header("RUA") + "   1   2   2\n   2\n  5_0.0E+00\n", "'5_0.0E.00' is no real number"),
+        (header("RUA") + "   1   2   2\n   2\n  1.00E-400\n", "1.00E-400 is too small"),
+        (header("RUA") + "   1   2   2\n   2\n  1.000-400\n", "1.000-400 is too small"),
+        (header("RZA") + "   1   2   2\n   1\n  5.0000E+00\n", "an entry on the diagonal is not 0"),
     ],
 )
 def test_refuses_harwell_boeing(folder, text, message):
     with pytest.raises(ModelError, match=message) as refusal:
         read_matrix(write(folder / "k.rsa", text))
     assert "\n" not in str(refusal.value)
+
+
+def scipy_file(folder, size=9):
+    random = np.random.default_rng(0).standard_normal((size, size))
+    file = folder / "k.rua"
+    scipy.io.hb_write(file, scipy.sparse.csc_array(random @ random.T))
+    return file, file.read_text().splitlines(keepends=True)
+
+
+def test_a_line_twice_or_lost_is_refused_wherever_it_stands(folder):
+    file, lines = scipy_file(folder)
+    sound = read_matrix(file)
+    for at in range(len(lines)):
+        for damaged in (lines[: at + 1] + lines[at:], lines[:at] + lines[at + 1 :]):
+            write(file, "".join(damaged))
+            with pytest.raises(ModelError, match="cannot be read as"):
+                read_matrix(file)
+    write(file, "".join(lines) + "\n  \n")  # blank lines at the end hold nothing
+    np.testing.assert_array_equal(read_matrix(file), sound)

@@ -171,7 +171,7 @@ def test_toml_errors_name_the_line():
     [
         ("stuy.toml", None, r"stuy.toml: no such study file; did you mean 'study.toml'\?"),
         ("no/study.toml", None, "no such study file; there is no folder .*no either"),
-        (".", None, "is a folder; name the study file in it"),
+        (".", None, "is a folder; give the name of a file in it"),
         ("bytes.toml", b"\xff\xfe", "is not text in UTF-8"),
         ("empty.toml", b"", r"empty.toml: \[structure\] is missing"),
     ],

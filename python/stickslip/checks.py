@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import difflib
 import os
+import re
+import stat
 from collections.abc import Iterable, Sequence
 from numbers import Integral, Real
 from pathlib import Path
@@ -17,23 +19,30 @@ from stickslip.errors import ModelError
 __all__ = [
     "MAX_COUNT",
     "MAX_DENSE",
+    "MAX_SPARSE",
     "Matrix",
     "MatrixLike",
     "SparseMatrix",
     "brief",
     "choice",
     "file_path",
+    "is_file",
+    "is_reserved",
     "listed",
     "members",
     "real_matrix",
     "real_number",
     "text",
     "unknown",
+    "vanished",
     "whole_number",
 ]
 
 MAX_DENSE = 5000
 """Largest sparse matrix, in rows, that is made dense."""
+
+MAX_SPARSE = 20_000_000
+"""Largest sparse matrix, in rows or columns: no model of this size is reduced on one machine."""
 
 MAX_COUNT = 2**31 - 1
 """Largest number that counts something."""
@@ -41,7 +50,10 @@ MAX_COUNT = 2**31 - 1
 Matrix: TypeAlias = NDArray[np.float64]
 _SHOWN = 6
 _LONGEST = 60
+# A sign, zeros and a point before a digit that is none: the mantissa of a number that is not 0.
+_NOT_ZERO = re.compile(r"\s*[+-]?[0._]*[1-9]")
 _Member = TypeVar("_Member")
+_RESERVED = re.compile(r"con|prn|aux|nul|(com|lpt)[0-9¹²³]|conin\$|conout\$", re.I)
 
 
 @runtime_checkable
@@ -176,6 +188,38 @@ def file_path(path: object, entry: str) -> Path:
     return Path(name)
 
 
+def is_file(file: Path) -> bool:
+    """Return whether there is a file to read.
+
+    Raises
+    ------
+    ModelError
+        If there is something else: a folder, or a pipe, a device or a socket, of which reading
+        may never end. Also if the system does not tell.
+    """
+    try:
+        mode = file.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    except OSError as error:
+        raise ModelError(f"{brief(str(file))}: cannot be read ({error.strerror})") from None
+    if stat.S_ISDIR(mode):
+        raise ModelError(f"{file}: is a folder; give the name of a file in it")
+    if not stat.S_ISREG(mode):
+        raise ModelError(f"{file}: is a pipe, a device or a socket; give a file")
+    return True
+
+
+def is_reserved(name: str) -> bool:
+    """Return whether Windows takes a file name for a device, whatever its ending: nul.nc."""
+    return _RESERVED.fullmatch(name.partition(".")[0].strip()) is not None
+
+
+def vanished(text: str, number: float) -> bool:
+    """Return whether a text that does not say zero was read as zero: 1e-400."""
+    return number == 0.0 and _NOT_ZERO.match(text) is not None
+
+
 def real_number(value: object, entry: str, *, finite: bool = True) -> float:
     """Return a real number as a float.
 
@@ -205,6 +249,8 @@ def real_number(value: object, entry: str, *, finite: bool = True) -> float:
         raise ModelError(
             f"{entry}: {brief(value)} is too large; give a number below 1e308"
         ) from None
+    if number == 0.0 and value != 0:
+        raise ModelError(f"{entry}: {brief(value)} is too small for a number; write 0")
     if np.isnan(number) or (finite and np.isinf(number)):
         kind = "finite number" if finite else "number"
         raise ModelError(f"{entry}: {number} is not a {kind}; give a real number in SI units")

@@ -8,17 +8,23 @@ from __future__ import annotations
 
 import errno
 import os
+import platform
+import re
 import secrets
 import stat
 import time
+import zlib
 from contextlib import suppress
 from pathlib import Path
 
+from stickslip.checks import is_reserved
 from stickslip.errors import ModelError
 
 __all__ = ["make_folder", "refusal", "require_place", "write"]
 
 _MARK, _END = ".stickslip-", ".part"
+_HOST = f"{zlib.crc32(platform.node().encode()):08x}"
+_TEMPORARY = re.compile(rf"{re.escape(_MARK)}([0-9a-f]{{8}})-(\d{{1,9}})-[0-9a-f]{{8}}\.part")
 _STALE = 3600.0
 """Seconds after which a temporary file is one of a killed run: bytes take seconds to be written."""
 
@@ -75,6 +81,8 @@ def require_place(target: Path) -> None:
         raise ModelError(f"{target}: is a folder; give the name of a file in it")
     if not os.path.isdir(target.parent):
         raise ModelError(f"{target}: there is no folder {target.parent}; create it first")
+    if is_reserved(target.name):
+        raise ModelError(f"{target}: is the name of a device on Windows; give another name")
     with suppress(OSError):
         # A device would be replaced by a file.
         if not stat.S_ISREG(os.stat(target).st_mode):
@@ -112,7 +120,7 @@ def refusal(path: Path, done: str, error: OSError) -> ModelError:
 
 def _beside(target: Path) -> Path:
     """Return a name that no other file of the folder has, whatever the length of the target's."""
-    return target.with_name(f"{_MARK}{secrets.token_hex(4)}{_END}")
+    return target.with_name(f"{_MARK}{_HOST}-{os.getpid()}-{secrets.token_hex(4)}{_END}")
 
 
 def _write_anew(file: Path, content: memoryview) -> None:
@@ -135,8 +143,22 @@ def _remove_stale(folder: Path) -> None:
     """Remove what killed runs have left in a folder."""
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
-            if not (entry.name.startswith(_MARK) and entry.name.endswith(_END)):
-                continue
+            found = _TEMPORARY.fullmatch(entry.name)
             with suppress(OSError):
-                if time.time() - entry.stat().st_mtime > _STALE:
+                if found and _is_stale(entry, *found.groups()):
                     os.unlink(entry.path)
+
+
+def _is_stale(entry: os.DirEntry[str], host: str, process: str) -> bool:
+    """Return whether the process that wrote a temporary file is gone, as far as one can tell."""
+    if time.time() - entry.stat().st_mtime > _STALE:
+        return True
+    if host != _HOST or os.name == "nt":
+        return False
+    try:
+        os.kill(int(process), 0)
+    except ProcessLookupError:
+        return True
+    except OSError:
+        pass
+    return False

@@ -8,7 +8,7 @@ from functools import cache
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from stickslip.checks import brief
+from stickslip.checks import brief, vanished
 from stickslip.errors import ModelError
 
 if TYPE_CHECKING:
@@ -60,10 +60,14 @@ _KINDS = {
     "1/s": ("a rate", "7.49 1/s"),
 }
 
-_TEXT = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*")
+_TEXT = re.compile(
+    r"\s*(?P<number>[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*?)\s*"
+)
+_LONGEST = 80
+"""Characters of a unit. Thousands of factors would exhaust the stack."""
 # pint would compute 9**9**9 to the last digit.
-_POWER_OF_NUMBER = re.compile(r"[\d)]\s*(?:\*\*|[\^²³])")
-_UNIT = re.compile(r"[A-Za-zµμ°%²³·*/^()\s\d.+-]*")
+_POWER_OF_NUMBER = re.compile(r"[0-9)]\s*(?:\*\*|[\^²³])")
+_UNIT = re.compile(r"[A-Za-zµμ°%²³·*/^()\s0-9.+-]*")
 
 
 def quantity(value: float | str, unit: str, entry: str, *, finite: bool = True) -> float:
@@ -101,6 +105,8 @@ def quantity(value: float | str, unit: str, entry: str, *, finite: bool = True) 
         number = float(value)
     except OverflowError:
         raise _refusal(value, unit, entry, "is too large") from None
+    if number == 0.0 and value != 0:
+        raise _refusal(value, unit, entry, "is too small")
     if math.isnan(number) or (finite and math.isinf(number)):
         raise _refusal(number, unit, entry, "is not finite" if finite else "is not a number")
     return number
@@ -114,11 +120,15 @@ def _parse(text: str, unit: str, entry: str) -> float:
     if given.startswith(","):
         # pint would drop the comma and read 205 for "20,5"
         raise _refusal(text, unit, entry, "has a decimal comma, write a decimal point")
+    if len(given) > _LONGEST:
+        raise _refusal(text, unit, entry, f"has a unit of {len(given)} characters")
     if not given and unit:
         raise _refusal(text, unit, entry, "has no unit")
     result = number * _factor(given, unit, text, entry)
     if not math.isfinite(result):
         raise _refusal(text, unit, entry, "is not finite")
+    if vanished(text, result):
+        raise _refusal(text, unit, entry, "is too small")
     return result
 
 

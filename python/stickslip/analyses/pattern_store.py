@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import brief, file_path
+from stickslip.checks import brief, file_path, is_file
 from stickslip.errors import ModelError
 from stickslip.files import require_place
 
@@ -113,6 +113,7 @@ class PatternStore:
 
     def __init__(self, path: object, identity: Identity) -> None:
         self.path = file_path(path, "store")
+        is_file(self.path)
         require_place(self.path)
         given = {name: json.dumps(value) for name, value in identity.items()}
         self._key = hashlib.blake2b(json.dumps(sorted(given.items())).encode()).digest()

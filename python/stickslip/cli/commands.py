@@ -13,13 +13,13 @@ import json
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, cast
 
 import typer
 
-from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded
+from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, count, guarded
 from stickslip.errors import Interrupted, ModelError
 from stickslip.files import make_folder, require_place, write
 
@@ -175,11 +175,12 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curv
                 file = out / f"{case.name}.nc"
                 with clock("saving"), _counted(len(curves), study, out):
                     result.save(file)
+                    _remove_partial(_partial(out, case))
                 curves.append(Curve(case, result, file))
         except Interrupted as stop:
             complain("interrupted", "saving what was computed")
             # under another name, so that a complete curve of an earlier run is not lost
-            file = out / f"{cases[len(curves)].name}-partial.nc"
+            file = _partial(out, cases[len(curves)])
             with _counted(len(curves), study, out):
                 cast("Result", stop.result).save(file)
             raise KeyboardInterrupt(
@@ -199,6 +200,23 @@ def _counted(complete: int, study: Study, out: Path) -> Iterator[None]:
             f"{error}; {complete} of {len(study.cases)} {_nouns(study)} complete in {out}"
             f"{_rest(study)}"
         ) from None
+
+
+def _partial(out: Path, case: Case) -> Path:
+    """Return where a run that was stopped leaves what it has."""
+    return out / f"{case.name}-partial.nc"
+
+
+def _remove_partial(file: Path) -> None:
+    """Remove what an interrupted run left, once the run is complete."""
+    import h5py
+
+    # Another study may have this name; its results say that they are whole.
+    with suppress(OSError):
+        with h5py.File(file) as left:
+            interrupted = bool(left.attrs.get("interrupted", 0))
+        if interrupted:
+            file.unlink()
 
 
 def _nouns(study: Study) -> str:
@@ -366,7 +384,9 @@ def certify(
     points: Annotated[
         str, typer.Option(help="How many points, chosen at random, or 'all'.", metavar="NUMBER")
     ] = "20",
-    seed: Annotated[int, typer.Option(help="Of the random choice.")] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Of the random choice.", metavar="INTEGER", parser=count)
+    ] = 0,
     dof: Annotated[
         list[str] | None, typer.Option(help="DOF to compare, repeatable; default: all.")
     ] = None,
@@ -400,9 +420,10 @@ def certify(
 def _points(text: str) -> int | Literal["all"]:
     if text == "all":
         return "all"
-    if not text.isdecimal():
-        raise ModelError(f"--points = {text!r}: give a number, or all")
-    return int(text)
+    try:
+        return count(text)
+    except typer.BadParameter:
+        raise ModelError(f"--points = {text!r}: give a number, or all") from None
 
 
 @app.command(cls=Command, epilog=_epilog("stickslip schema --out stickslip.schema.json"))

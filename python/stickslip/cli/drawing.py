@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Literal
@@ -136,7 +136,8 @@ def _single(result: ForcedResponse, picture: str, wanted: Wanted) -> Iterator[Pa
         for dof in wanted.dofs or notable_dofs(result.model, result.dofs):
             yield partial(plot.waveform, result, dof, index)
     elif wanted.loop is not None:
-        place = int(wanted.contact) if wanted.contact.isdecimal() else wanted.contact
+        counted = re.fullmatch("[0-9]{1,9}", wanted.contact)
+        place = int(wanted.contact) if counted else wanted.contact
         yield partial(plot.hysteresis, result, place, _index(result, wanted.loop, "--loop"))
     elif not isinstance(result, ExactResponse):
         raise ModelError(
@@ -152,10 +153,8 @@ def _index(result: ForcedResponse, text: str, option: str) -> int:
     """Return the computed point nearest to a frequency, which must lie among them."""
     from stickslip.units import quantity
 
-    value: float | str = text
-    with suppress(ValueError):
-        value = float(text)
-    omega = quantity(value, "rad/s", option)
+    bare = re.fullmatch("[-+.0-9eE]+", text)
+    omega = quantity(f"{text} rad/s" if bare else text, "rad/s", option)
     low, high = float(result.omega.min()), float(result.omega.max())
     if not low * (1 - 1e-6) <= omega <= high * (1 + 1e-6):
         raise ModelError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -12,9 +13,10 @@ from typing import Any, ParamSpec, TypeAlias, cast
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from stickslip.checks import brief
 from stickslip.errors import ModelError
 
-__all__ = ["NOT_CONVERGED", "Command", "Commands", "guarded"]
+__all__ = ["NOT_CONVERGED", "Command", "Commands", "count", "guarded"]
 
 NOT_CONVERGED, REFUSED, DEFECT, STOPPED = 1, 2, 70, 130
 
@@ -85,6 +87,14 @@ class Commands(TyperGroup):
                 complain("error", str(said))
                 code = REFUSED
         sys.exit(code if isinstance(code, int) else 0)
+
+
+def count(written: object) -> int:
+    """Read an option that counts; Python's own reading takes 1_0 and the digits of all scripts."""
+    text = str(written)
+    if not re.fullmatch("[0-9]{1,18}", text):
+        raise typer.BadParameter(f"{brief(text)} is not a whole number; give 0, 1, ...")
+    return int(text)
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:

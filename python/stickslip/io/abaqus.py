@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from stickslip.io.fields import real_field
 from stickslip.io.label import Labelled, counted, entry_table, node_names, square_matrix
+from stickslip.io.source import plain, read_text
 
 __all__ = ["abaqus_keys", "read_abaqus"]
 
@@ -40,7 +42,7 @@ def read_abaqus(path: Path, key: str | None = None) -> Labelled:
     Dassault Systemes, "Abaqus Analysis User's Guide", "Generating structural matrices" and
     "Defining substructures".
     """
-    text = path.read_text(encoding="ascii")
+    text = read_text(path)
     lines = text.splitlines(keepends=True)
     if key is not None or any(_MATRIX.match(line) for line in lines):
         return _substructure(lines, key)
@@ -50,18 +52,18 @@ def read_abaqus(path: Path, key: str | None = None) -> Labelled:
         raise ValueError("the file holds no entries")
     words = len(first.replace(",", " ").split())
     if words == 3:
-        table = entry_table(body.replace(",", " "), 3)
+        table = entry_table(body, 3)
         rows, columns = counted(table[:, 0], "row") - 1, counted(table[:, 1], "column") - 1
         size = int(max(rows.max(), columns.max())) + 1
         return Labelled(square_matrix(rows, columns, table[:, 2], size), None)
     if words == 5:
-        return _of_nodes(entry_table(body.replace(",", " "), 5))
+        return _of_nodes(entry_table(body, 5))
     raise ValueError(f"a line holds {words} numbers; 3 or 5 are known, and MatrixMarket files")
 
 
 def abaqus_keys(path: Path) -> tuple[str, ...]:
     """Return the names of the matrices of a substructure; of other files none."""
-    lines = path.read_text(encoding="ascii", errors="replace").splitlines()
+    lines = plain(path.read_bytes(), "latin-1").splitlines()
     return tuple(match[1].lower() for match in map(_MATRIX.match, lines) if match)
 
 
@@ -79,9 +81,12 @@ def _of_nodes(table: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Label
 
 def _substructure(lines: list[str], key: str | None) -> Labelled:
     """Return the lower triangle by rows below *MATRIX, mirrored."""
-    starts = {
-        match[1].lower(): at for at, line in enumerate(lines) if (match := _MATRIX.match(line))
-    }
+    found = [
+        (match[1].lower(), at) for at, line in enumerate(lines) if (match := _MATRIX.match(line))
+    ]
+    starts = dict(found)
+    if len(starts) < len(found):
+        raise ValueError("a matrix is given twice")
     if key is None and len(starts) == 1:
         key = next(iter(starts))
     if key not in starts:
@@ -94,8 +99,8 @@ def _substructure(lines: list[str], key: str | None) -> Labelled:
         body.append(line)
     if not body or not body[-1].endswith("\n"):
         raise ValueError("the last line does not end; the file was cut short")
-    words = " ".join(body).upper().replace("D", "E").split(",")
-    values = np.array([word for word in words if word.strip()], dtype=np.float64)
+    words = [word.strip() for line in body for word in line.rstrip().removesuffix(",").split(",")]
+    values = np.array([real_field(word) for word in words])
     size = len(names)
     if values.size != size * (size + 1) // 2:
         raise ValueError(

@@ -35,6 +35,7 @@ dofs, stiffness, mass = full.load_km(as_sparse=True, sort=False)
 chosen = {"stiffness": stiffness, "mass": mass}[sys.argv[3]]
 if chosen is None:
     sys.exit("the file holds no such matrix")
+chosen.sum_duplicates()
 chosen = chosen.tocoo()
 np.savez(sys.argv[2], dofs=dofs, held=full.const, rows=chosen.row, columns=chosen.col,
          values=chosen.data, size=len(dofs))

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from stickslip.checks import is_file
 from stickslip.io.label import Labelled, counted, entry_table, square_matrix
+from stickslip.io.source import read_text
 
 __all__ = ["read_calculix", "read_calculix_dofs"]
 
-_NAME = re.compile(r"[1-9]\d*\.[0-6]")
+_NAME = re.compile(r"[1-9][0-9]*\.[0-6]")
 
 
 def read_calculix(path: Path) -> Labelled:
@@ -35,7 +37,7 @@ def read_calculix(path: Path) -> Labelled:
     Dhondt, "CalculiX CrunchiX User's Manual", keyword *FREQUENCY.
     """
     names = read_calculix_dofs(path.with_suffix(".dof"))
-    table = entry_table(path.read_text(encoding="ascii"), 3)
+    table = entry_table(read_text(path), 3)
     rows, columns = counted(table[:, 0], "row") - 1, counted(table[:, 1], "column") - 1
     largest = int(max(rows.max(), columns.max())) + 1
     if largest != len(names):
@@ -61,9 +63,9 @@ def read_calculix_dofs(path: Path) -> tuple[str, ...]:
     ValueError
         If the file is missing or damaged.
     """
-    if not path.is_file():
+    if not is_file(path):
         raise ValueError(f"{path.name} must lie beside it: it names the rows")
-    text = path.read_text(encoding="ascii")
+    text = read_text(path)
     names = tuple(text.split())
     wrong = next((name for name in names if not _NAME.fullmatch(name)), None)
     if wrong is not None or not text.endswith("\n") or not names:

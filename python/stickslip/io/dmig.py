@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.io.fields import real_field, whole_field
 from stickslip.io.label import Labelled, node_names, square_matrix
+from stickslip.io.source import read_text
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
 __all__ = ["read_dmig"]
 
-_BARE_EXPONENT = re.compile(r"(?<=[0-9.])([+-]\d+)$")
 _Place = tuple[int, int]
 """Grid point and component."""
 
@@ -56,7 +57,7 @@ def read_dmig(path: Path) -> dict[str, Labelled]:
     ----------
     MSC Software, "MSC Nastran Quick Reference Guide", bulk data entry DMIG.
     """
-    text = path.read_text(encoding="ascii")
+    text = read_text(path)
     if not text.endswith("\n"):
         raise ValueError("the last line does not end; the file was cut short")
     matrices: dict[str, _Entries] = {}
@@ -65,7 +66,7 @@ def read_dmig(path: Path) -> dict[str, Labelled]:
         if fields[1] == "0":
             if name in matrices:
                 raise ValueError(f"matrix {name!r} is given twice")
-            matrices[name] = _Entries(_integer(fields[2]), _integer(fields[3]))
+            matrices[name] = _Entries(whole_field(fields[2]), whole_field(fields[3]))
         elif name not in matrices:
             raise ValueError(f"matrix {name!r} has columns, but no first card")
         else:
@@ -99,7 +100,10 @@ def _cards(lines: list[str]) -> Iterator[list[str]]:
 
 def _fields(line: str) -> list[str]:
     if "," in line:
-        return [word.strip() for word in (*line.split(",")[1:9], *[""] * 8)][:8]
+        _, *words = map(str.strip, line.split(","))
+        if any(words[9:]):
+            raise ValueError(f"line {line[:40]!r} is longer than a card")
+        return [*words, *[""] * 8][:8]
     wide = "*" in line[:8]
     width, count = (16, 4) if wide else (8, 8)
     if len(line) > 8 + width * count + 8:
@@ -108,7 +112,7 @@ def _fields(line: str) -> list[str]:
 
 
 def _add_column(entries: _Entries, fields: list[str]) -> None:
-    column = _integer(fields[1]), _integer(fields[2])
+    column = whole_field(fields[1]), whole_field(fields[2])
     if fields[3]:
         raise ValueError(f"{fields[3]!r} stands where column {column[0]}.{column[1]} is blank")
     body = fields[4:]
@@ -116,11 +120,11 @@ def _add_column(entries: _Entries, fields: list[str]) -> None:
         grid, component, real, imaginary = (*body[at : at + 4], *[""] * 4)[:4]
         if not (grid or component or real or imaginary):
             continue
-        if imaginary and _real(imaginary) != 0.0:
+        if imaginary and real_field(imaginary) != 0.0:
             raise ValueError("the matrix is complex; export real matrices")
-        entries.rows.append((_integer(grid), _integer(component or "0")))
+        entries.rows.append((whole_field(grid), whole_field(component or "0")))
         entries.columns.append(column)
-        entries.values.append(_real(real))
+        entries.values.append(real_field(real))
 
 
 def _matrix(name: str, entries: _Entries, index: dict[_Place, int]) -> coo_array:
@@ -140,16 +144,3 @@ def _matrix(name: str, entries: _Entries, index: dict[_Place, int]) -> coo_array
     if np.unique(rows * len(index) + columns).size < rows.size:
         raise ValueError(f"matrix {name!r}: an entry is given twice")
     return coo_array((values, (rows, columns)), shape=(len(index),) * 2)
-
-
-def _integer(word: str) -> int:
-    if not re.fullmatch(r"\d+", word):
-        raise ValueError(f"{word!r} stands where a whole number must be")
-    return int(word)
-
-
-def _real(word: str) -> float:
-    number = word.upper().replace("D", "E")
-    if not re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)(E?[-+]?\d+)?", number):
-        raise ValueError(f"{word!r} is no real number")
-    return float(_BARE_EXPONENT.sub(r"E\1", number) if "E" not in number else number)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, choice, file_path, members, text
+from stickslip.checks import brief, choice, file_path, is_file, members, text
 from stickslip.errors import ModelError
 from stickslip.files import write
 
@@ -150,7 +150,7 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
         response function per force.
     """
     file = file_path(path, "path")
-    if not file.is_file():
+    if not is_file(file):
         raise ModelError(f"{file}: no such file; check the path")
     pyuff = _pyuff(file)
     try:

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.triangle import require_whole_numbers, whole_matrix
+from stickslip.io.fields import real_field, whole_field
+from stickslip.io.source import read_text
+from stickslip.io.triangle import columns_of, require_whole_numbers, whole_matrix
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -23,10 +25,11 @@ if TYPE_CHECKING:
 __all__ = ["read_harwell_boeing"]
 
 _FORMAT = re.compile(
-    r"\(\s*(?P<scale>\d+\s*P\s*,?\s*)?(?P<repeat>\d*)\s*(?P<kind>[IEDFG])\s*(?P<width>\d+)", re.I
+    r"\(\s*(?P<scale>[0-9]+\s*P\s*,?\s*)?(?P<repeat>[0-9]*)\s*(?P<kind>[IEDFG])"
+    r"\s*(?P<width>[0-9]+)",
+    re.I,
 )
-# Fortran drops the letter of an exponent of three digits: 1.5-101.
-_BARE_EXPONENT = re.compile(r"(?<=[0-9.])([+-]\d+)$")
+_COUNT = re.compile("[0-9]{1,18}")
 
 
 @dataclass(frozen=True)
@@ -46,28 +49,32 @@ class _Columns:
             raise ValueError(f"unsupported number format {written!r}")
         return columns
 
+    def cards(self, count: int) -> int:
+        """Return how many lines `count` numbers fill."""
+        return -(-count // self.repeat)
+
     def fields(self, lines: list[str], count: int) -> Iterator[str]:
-        """Cut the first `count` numbers out of the lines."""
+        """Cut `count` numbers out of the lines that they fill."""
         left = count
         for line in lines:
             expected = min(self.repeat, left)
             # Columns count where numbers touch; SciPy's writer does not keep to its own columns.
             words = line.split()
             if len(words) != expected:
-                places = range(0, expected * self.width, self.width)
-                words = [line[place : place + self.width].strip() for place in places]
-            if not all(words):
+                end = expected * self.width
+                words = [line[at : at + self.width].strip() for at in range(0, end, self.width)]
+                if line[end:].strip():
+                    words = []
+            if not words or not all(words):
                 raise ValueError(f"{expected} numbers announced in line {line.strip()[:60]!r}")
             yield from words
             left -= expected
-        if left:
-            raise ValueError(f"{count} numbers announced, {count - left} present")
 
     def integers(self, lines: list[str], count: int) -> NDArray[np.int64]:
-        return np.fromiter(map(int, self.fields(lines, count)), dtype=np.int64, count=count)
+        return np.fromiter(map(whole_field, self.fields(lines, count)), np.int64, count)
 
     def reals(self, lines: list[str], count: int) -> NDArray[np.float64]:
-        return np.fromiter(map(_real, self.fields(lines, count)), dtype=np.float64, count=count)
+        return np.fromiter(map(real_field, self.fields(lines, count)), np.float64, count)
 
 
 @dataclass(frozen=True)
@@ -78,31 +85,47 @@ class _Header:
     rows: int
     columns: int
     entries: int
-    lengths: tuple[int, int, int]
     formats: tuple[_Columns, _Columns, _Columns]
+    cards: tuple[int, ...]
+    """Lines of pointers, rows, values and right-hand sides."""
     lines: int
+    """Lines of the header."""
 
     @classmethod
     def parse(cls, lines: list[str]) -> _Header:
         if len(lines) < 4:
             raise ValueError(f"the header has 4 lines, the file {len(lines)}")
-        cards = _whole_numbers(lines[1], 4)
+        total, *cards = _whole_numbers(lines[1], 4)
         kind = lines[2][:3].upper()
         _require_supported(kind)
         rows, columns, entries = _whole_numbers(lines[2][3:], 3)[:3]
         formats = [_Columns.parse(written) for written in re.findall(r"\([^()]*\)", lines[3])[:3]]
         if len(formats) < 3:
             raise ValueError("line 4 does not hold three number formats")
-        has_right_side = len(cards) > 4 and cards[4] > 0
-        return cls(
+        header = cls(
             kind,
             rows,
             columns,
             entries,
-            (cards[1], cards[2], cards[3]),
             (formats[0], formats[1], formats[2]),
-            5 if has_right_side else 4,
+            tuple(cards[:4]),
+            5 if sum(cards[3:4]) else 4,
         )
+        header.require_cards(total, len(lines))
+        return header
+
+    def require_cards(self, total: int, lines: int) -> None:
+        """Refuse counts of lines that contradict each other, the numbers or the file."""
+        counts = (self.columns + 1, self.entries, self.entries)
+        named = zip(("pointers", "rows", "values"), counts, self.formats, self.cards, strict=False)
+        for name, count, written, cards in named:
+            if written.cards(count) != cards:
+                needed = written.cards(count)
+                raise ValueError(f"{cards} lines of {name} announced, {count} fill {needed}")
+        if total != sum(self.cards):
+            raise ValueError(f"{total} lines announced in all, but {sum(self.cards)} by parts")
+        if self.lines + total != lines:
+            raise ValueError(f"{self.lines + total} lines announced, {lines} present")
 
 
 def read_harwell_boeing(path: Path) -> coo_array:
@@ -129,24 +152,19 @@ def read_harwell_boeing(path: Path) -> coo_array:
     Duff, Grimes and Lewis, "Users' guide for the Harwell-Boeing sparse matrix collection" (1992);
     "The Rutherford-Boeing sparse matrix collection" (1997).
     """
-    text = path.read_text(encoding="latin-1")
-    lines = text.splitlines()
+    text = read_text(path, "latin-1")
+    lines = text.rstrip().split("\n") if text.strip() else []
     header = _Header.parse(lines)
     require_whole_numbers(text)
     blocks = []
     start = header.lines
-    for length in header.lengths:
+    for length in header.cards[:3]:
         blocks.append(lines[start : start + length])
         start += length
-    if len(lines) < start:
-        raise ValueError(f"{start} lines announced, {len(lines)} present")
     pointers = header.formats[0].integers(blocks[0], header.columns + 1) - 1
     rows = header.formats[1].integers(blocks[1], header.entries) - 1
     values = header.formats[2].reals(blocks[2], header.entries)
-    steps = np.diff(pointers)
-    if pointers[0] != 0 or pointers[-1] != header.entries or (steps < 0).any():
-        raise ValueError("the column pointers do not ascend from 1 to the number of entries + 1")
-    columns = np.repeat(np.arange(header.columns), steps)
+    columns = columns_of(pointers, rows)
     symmetry = {"S": "symmetric", "Z": "skew-symmetric"}.get(header.kind[1], "general")
     return whole_matrix((header.rows, header.columns), rows, columns, values, symmetry)
 
@@ -164,14 +182,6 @@ def _require_supported(kind: str) -> None:
 
 def _whole_numbers(line: str, least: int) -> list[int]:
     words = line.split()
-    if len(words) < least or not all(word.isdigit() for word in words):
+    if len(words) < least or not all(map(_COUNT.fullmatch, words)):
         raise ValueError(f"header line {line.strip()[:60]!r} does not hold {least} counts")
     return list(map(int, words))
-
-
-def _real(field: str) -> float:
-    try:
-        return float(field)
-    except ValueError:
-        number = field.upper().replace("D", "E")
-        return float(_BARE_EXPONENT.sub(r"E\1", number) if "E" not in number else number)

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from stickslip.io.fields import require_representable
+from stickslip.io.triangle import require_size
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -43,18 +47,21 @@ def entry_table(text: str, words: int) -> NDArray[np.float64]:
     ------
     ValueError
         If the last line does not end, the sign of a file cut short, a line holds another count of
-        numbers, or a number cannot be read.
+        numbers, or a number cannot be read or told from zero.
     """
     if not text.endswith("\n"):
         raise ValueError("the last line does not end; the file was cut short")
+    if re.search(r",[ \t]*,", text):
+        raise ValueError("nothing stands between two commas")
     if not text.split():
         raise ValueError("the file holds no entries")
-    text = text.upper().replace("D", "E")
+    text = text.upper().replace("D", "E").replace(",", " ")
     if not set(text) <= set("0123456789+-.E \t\r\n"):
         raise ValueError("characters that are no part of a number")
     table = np.loadtxt(io.StringIO(text), dtype=np.float64, ndmin=2)
     if table.shape[1] != words:
         raise ValueError(f"{table.shape[1]} numbers in a line, {words} expected")
+    require_representable(text)
     return table
 
 
@@ -105,6 +112,7 @@ def square_matrix(
     """
     from scipy.sparse import coo_array
 
+    require_size(size)
     places = rows * size + columns
     if np.unique(places).size < places.size:
         raise ValueError("an entry is given twice")

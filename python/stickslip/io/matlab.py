@@ -1,14 +1,21 @@
-"""MATLAB files of version 5, walked through before SciPy reads them.
+"""MATLAB files of version 4 and 5, walked through before SciPy reads them.
 
 SciPy's compiled reader (1.17) trusts types and lengths: a damaged one takes the process down.
 """
 
 from __future__ import annotations
 
+import math
 import struct
 import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.io.source import inflate
+from stickslip.io.triangle import columns_of
 
 __all__ = ["require_sound"]
 
@@ -17,10 +24,14 @@ _WIDTHS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8, 16: 1, 
 _MATRIX, _COMPRESSED = 14, 15
 _SPARSE, _NUMERIC = 5, range(6, 16)
 _HEADER = 128
+_KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 12: "i8", 13: "u8"}
+"""Whole numbers, by type of element."""
+_WIDTHS_4 = (8, 4, 4, 2, 2, 1)
+"""Bytes per number in version 4, by the tens of its type."""
 
 
 def require_sound(path: Path) -> None:
-    """Check the elements of a file of version 5; any other is left to its reader.
+    """Check that sizes, counts and bytes of a file agree.
 
     Parameters
     ----------
@@ -31,7 +42,7 @@ def require_sound(path: Path) -> None:
     ------
     ValueError
         If an element is of an unknown type, ends outside the file or its matrix, or stands where
-        another must be.
+        another must be; if a matrix has not the numbers that its size asks for.
     zlib.error
         If a compressed element is damaged.
 
@@ -41,18 +52,27 @@ def require_sound(path: Path) -> None:
     """
     content = memoryview(path.read_bytes())
     if 0 in content[:4]:
-        return  # version 4
+        _require_version_4(content)
+        return
     if len(content) < _HEADER:
         raise ValueError("the file ends inside its header")
     order = "<" if bytes(content[126:_HEADER]) == b"IM" else ">"
     for kind, body in _elements(content[_HEADER:], order):
         found: Iterable[tuple[int, memoryview]] = [(kind, body)]
         if kind == _COMPRESSED:
-            found = _elements(memoryview(zlib.decompress(body)), order)
+            found = _elements(_unpacked(body, order), order)
         for part, matrix in found:
             if part != _MATRIX:
                 raise ValueError(f"an element of type {part} stands where a matrix must be")
             _require_matrix(matrix, order)
+
+
+def _unpacked(body: memoryview, order: str) -> memoryview:
+    """Return the one element that is packed; its tag says how long it is."""
+    tag = zlib.decompressobj().decompress(body, 8)
+    if len(tag) < 8:
+        raise ValueError("the file is damaged: a packed element has no tag")
+    return memoryview(inflate(body, 8 + struct.unpack(f"{order}II", tag)[1]))
 
 
 def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
@@ -87,3 +107,52 @@ def _require_matrix(body: memoryview, order: str) -> None:
     named = len(kinds) == parts and kinds[1] in (5, 6) and kinds[2] in (1, 16)
     if not named or not set(kinds) <= set(_WIDTHS):
         raise ValueError(f"the file is damaged: a matrix is made of elements of types {kinds}")
+    shape = tuple(map(int, _integers(kinds[1], bodies[1], order)))
+    counts = [len(part) // _WIDTHS[kind] for kind, part in zip(kinds[3:], bodies[3:], strict=True)]
+    if len(shape) < 2 or min(shape) < 0:
+        raise ValueError(f"the file is damaged: a matrix of shape {shape}")
+    if form == _SPARSE:
+        _, room = struct.unpack_from(f"{order}II", bodies[0])
+        rows = _integers(kinds[3], bodies[3], order)
+        pointers = _integers(kinds[4], bodies[4], order)
+        if counts[1] != shape[1] + 1 or max(counts[0], *counts[2:]) > max(room, 1):
+            raise ValueError(f"the file is damaged: {counts} numbers in a sparse matrix {shape}")
+        _require_columns(shape[0], pointers, rows, min(counts[2:]))
+    elif set(counts) != {math.prod(shape)}:
+        raise ValueError(f"the file is damaged: {counts} numbers in a matrix of shape {shape}")
+
+
+def _integers(kind: int, body: memoryview, order: str) -> NDArray[np.int64]:
+    if kind not in _KINDS:
+        raise ValueError(f"the file is damaged: elements of type {kind} count something")
+    return np.frombuffer(body, f"{order}{_KINDS[kind]}").astype(np.int64)
+
+
+def _require_columns(
+    size: int, pointers: NDArray[np.int64], rows: NDArray[np.int64], values: int
+) -> None:
+    """Check rows and columns of a sparse matrix; MATLAB leaves room behind its entries."""
+    entries = int(pointers[-1])
+    if not 0 <= entries <= min(rows.size, values):
+        raise ValueError(f"{entries} entries announced, {min(rows.size, values)} present")
+    used = rows[:entries]
+    columns_of(pointers, used)
+    if entries and not 0 <= used.min() <= used.max() < size:
+        raise ValueError(f"a row index lies outside 1 to {size}")
+
+
+def _require_version_4(content: memoryview) -> None:
+    """Walk from matrix to matrix."""
+    place = 0
+    order = "<" if int.from_bytes(content[:4], "little") < 5000 else ">"
+    while place < len(content):
+        if len(content) - place < 20:
+            raise ValueError("the file ends inside the header of a matrix")
+        kind, rows, columns, imaginary, name = struct.unpack_from(f"{order}5i", content, place)
+        width = kind // 10 % 10
+        sound = 0 <= kind < 5000 and width < len(_WIDTHS_4) and imaginary in (0, 1)
+        if not sound or min(rows, columns, name) < 0:
+            raise ValueError("the header of a matrix of version 4 is damaged")
+        place += 20 + name + rows * columns * _WIDTHS_4[width] * (1 + imaginary)
+    if place != len(content):
+        raise ValueError(f"{place} bytes announced, {len(content)} present")

@@ -10,17 +10,31 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
-from stickslip.checks import Matrix, brief, file_path, listed, real_matrix, text, unknown
+from stickslip.checks import (
+    Matrix,
+    SparseMatrix,
+    brief,
+    file_path,
+    is_file,
+    listed,
+    real_matrix,
+    text,
+    unknown,
+)
 from stickslip.errors import ModelError
 from stickslip.io.abaqus import abaqus_keys, read_abaqus
 from stickslip.io.ansys import ANSYS_KEYS, read_ansys
 from stickslip.io.calculix import read_calculix, read_calculix_dofs
 from stickslip.io.dmig import read_dmig
 from stickslip.io.harwell_boeing import read_harwell_boeing
+from stickslip.io.hdf5 import require_held, require_own
 from stickslip.io.label import Labelled
 from stickslip.io.matlab import require_sound
 from stickslip.io.matrix_market import read_matrix_market
+from stickslip.io.npz import require_sound_npy
 from stickslip.io.op4 import read_op4
+from stickslip.io.source import plain
+from stickslip.io.triangle import columns_of, require_size
 
 if TYPE_CHECKING:
     import h5py  # type: ignore[import-untyped, unused-ignore]
@@ -86,7 +100,8 @@ def read_matrix(
     file = file_path(path, "path")
     loaded = _load(file, key)
     if sparse:
-        return _sparse(loaded.matrix, _entry(file, key))
+        with _readable(file):
+            return _sparse(loaded.matrix, _entry(file, key))
     with _readable(file):
         matrix = real_matrix(loaded.matrix, _entry(file, key))
     if not np.isfinite(matrix).all():
@@ -116,7 +131,7 @@ def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str
     """
     file = file_path(path, "path")
     if _ending(file) == ".dof":
-        if not os.path.isfile(file):
+        if not is_file(file):
             raise ModelError(f"{file}: no such file; check the path")
         with _readable(file):
             return read_calculix_dofs(file)
@@ -133,12 +148,14 @@ def _load(file: Path, key: str | None) -> Labelled:
     reader = _READERS.get(_ending(file))
     if reader is None:
         raise ModelError(f"{file}: {unknown('file ending', _ending(file), _READERS)}")
-    if not os.path.isfile(file):
+    if not is_file(file):
         raise ModelError(f"{file}: no such file; check the path")
     with _readable(file):
         loaded = reader(file, key)
         if not isinstance(loaded, Labelled):
             loaded = Labelled(loaded, None)
+        if isinstance(loaded.matrix, SparseMatrix):
+            require_size(*loaded.matrix.shape)
         if hasattr(loaded.matrix, "check_format"):
             # Damaged sparse indices would write outside the dense array.
             loaded.matrix.check_format(full_check=True)
@@ -210,6 +227,7 @@ def _refuse_key(file: Path, key: str | None) -> None:
 
 def _read_numpy(file: Path, key: str | None) -> object:
     with file.open("rb") as stream:
+        require_sound_npy(stream)
         loaded = np.load(stream, allow_pickle=False)
         if isinstance(loaded, np.ndarray):
             _refuse_key(file, key)
@@ -232,7 +250,10 @@ def _read_matlab(file: Path, key: str | None) -> object:
     from scipy.io import loadmat, whosmat
 
     require_sound(file)
-    kinds = {name: kind for name, _, kind in whosmat(file)}
+    found = whosmat(file)
+    kinds = {name: kind for name, _, kind in found}
+    if len(kinds) < len(found):
+        raise ValueError("two matrices have the same name")
     name = _choose(file, key, kinds)
     if kinds[name] not in _MATLAB_NUMBERS:
         raise ModelError(f"{file}: {brief(name)} is a {kinds[name]}; save the matrix by itself")
@@ -248,6 +269,7 @@ def _read_matlab_hdf5(file: Path, key: str | None) -> object:
         ) from None
     with h5py.File(file, "r") as variables:
         name = _choose(file, key, (name for name in variables if not name.startswith("#")))
+        require_own(variables, name)
         variable = variables[name]
         if isinstance(variable, h5py.Group):
             return _read_matlab_sparse(file, name, variable)
@@ -256,6 +278,7 @@ def _read_matlab_hdf5(file: Path, key: str | None) -> object:
             raise ModelError(f"{file}: {brief(name)} is a {kind}; save the matrix by itself")
         if variable.dtype.names:
             raise ModelError(f"{file}: {brief(name)}: complex entries; give real matrices")
+        require_held(variable)
         # HDF5 counts in rows, MATLAB in columns.
         return np.asarray(variable[()]).T
 
@@ -265,21 +288,30 @@ def _read_matlab_sparse(file: Path, name: str, group: h5py.Group) -> object:
 
     if "MATLAB_sparse" not in group.attrs:
         raise ModelError(f"{file}: {brief(name)} is a struct; save the matrix by itself")
-    pointers = group["jc"][()]
-    rows = int(group.attrs["MATLAB_sparse"])
-    if "data" not in group:
+    parts = {}
+    for part in ("jc", "ir", "data"):
+        if part in group:
+            require_own(group, part)
+            require_held(group[part])
+            parts[part] = group[part][()]
+    rows, pointers = int(group.attrs["MATLAB_sparse"]), parts["jc"].astype(np.int64)
+    if "data" not in parts:
+        if pointers.any():
+            raise ValueError(f"{pointers.max()} entries announced, 0 present")
         return csc_array((rows, len(pointers) - 1))
-    values = group["data"][()]
+    values, places = parts["data"], parts["ir"].astype(np.int64)
     if values.dtype.names:
         raise ModelError(f"{file}: {brief(name)}: complex entries; give real matrices")
-    return csc_array((values, group["ir"][()], pointers), shape=(rows, len(pointers) - 1))
+    columns_of(pointers, places)
+    return csc_array((values, places, pointers), shape=(rows, len(pointers) - 1))
 
 
 def _read_mtx(file: Path, key: str | None) -> object:
     """Read MatrixMarket, or what Abaqus calls .mtx."""
     if _ending(file) == ".mtx":
-        start = file.read_bytes()[:512].lstrip()
-        if start[:1].isdigit() or start[:1] == b"*":
+        with file.open("rb") as stream:
+            start = plain(stream.read(512), "latin-1").lstrip()
+        if start[:1] in (*"0123456789", "*"):
             keys = abaqus_keys(file)
             if keys:
                 return read_abaqus(file, _choose(file, key, keys))

@@ -7,14 +7,17 @@ down on truncated numbers; this one refuses both.
 from __future__ import annotations
 
 import gzip
-import io
 import re
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.checks import MAX_DENSE
+from stickslip.io.fields import require_representable
+from stickslip.io.source import plain, unzip
 from stickslip.io.triangle import SIGNS, require_whole_numbers, whole_matrix
 
 if TYPE_CHECKING:
@@ -22,9 +25,45 @@ if TYPE_CHECKING:
 
 __all__ = ["read_matrix_market"]
 
-_FIELDS = ("real", "double", "integer", "unsigned-integer")
+_FIELDS = {"real": False, "double": False, "integer": True, "unsigned-integer": True}
+"""Whether the values are whole numbers."""
 _ENTRY = np.dtype([("row", np.int64), ("column", np.int64), ("value", np.float64)])
 _COMMENTS = re.compile(r"(?:[ \t]*(?:%[^\n]*)?\n)*")
+_HEAD, _LINE, _LARGEST = 2**20, 256, 2**28
+"""Bytes of comments, of one entry and of all that a packed file may have unpacked."""
+
+
+@dataclass(frozen=True)
+class _Head:
+    """What the file says before its entries."""
+
+    layout: str
+    whole: bool
+    symmetry: str
+    rows: int
+    columns: int
+    entries: int
+    end: int
+    """Where the entries begin."""
+
+    @classmethod
+    def parse(cls, text: str) -> _Head:
+        header, _, rest = text.partition("\n")
+        layout, whole, symmetry = _header(header)
+        comments = _COMMENTS.match(rest)
+        start = comments.end() if comments else 0
+        line = rest[start:].partition("\n")[0]
+        end = len(header) + 1 + start + len(line) + 1
+        if layout == "coordinate":
+            rows, columns, entries = _sizes(line, 3)
+        else:
+            rows, columns = _sizes(line, 2)
+            if rows * columns > MAX_DENSE**2:
+                raise ValueError(f"{rows} x {columns} entries; write such a matrix in coordinates")
+            # A triangle has its diagonal, a skew one not.
+            sign = SIGNS[symmetry]
+            entries = rows * (rows + sign) // 2 if sign else rows * columns
+        return cls(layout, whole, symmetry, rows, columns, entries, end)
 
 
 def read_matrix_market(path: Path) -> coo_array:
@@ -50,29 +89,30 @@ def read_matrix_market(path: Path) -> coo_array:
     ----------
     Boisvert, Pozo and Remington, "The Matrix Market exchange formats", NISTIR 5935 (1996).
     """
-    packed = path.suffix.lower() == ".gz"
-    content = gzip.decompress(path.read_bytes()) if packed else path.read_bytes()
-    header, _, text = content.decode("latin-1").replace("\r\n", "\n").partition("\n")
-    layout, symmetry = _header(header)
+    content = _unpacked(path) if path.suffix.lower() == ".gz" else path.read_bytes()
+    text = plain(content, "latin-1")
+    head = _Head.parse(text)
     require_whole_numbers(text)
-    start = _COMMENTS.match(text)
-    sizes, _, body = text[start.end() if start else 0 :].partition("\n")
-    if layout == "coordinate":
-        rows, columns, entries = _sizes(sizes, 3)
-        table = _table(body, _ENTRY, entries)
+    if head.layout == "coordinate":
+        table = _table(text[head.end :], _ENTRY, head.entries)
         row, column, values = table["row"] - 1, table["column"] - 1, table["value"]
     else:
-        rows, columns = _sizes(sizes, 2)
-        # A triangle has its diagonal, a skew one not.
-        sign = SIGNS[symmetry]
-        entries = rows * (rows + sign) // 2 if sign else rows * columns
-        values = _table(body, np.dtype(np.float64), entries)
-        row, column = _places(rows, columns, sign)
-    return whole_matrix((rows, columns), row, column, values, symmetry)
+        values = _table(text[head.end :], np.dtype(np.float64), head.entries)
+        row, column = _places(head.rows, head.columns, SIGNS[head.symmetry])
+    if head.whole and (values != np.rint(values)).any():
+        raise ValueError("integers announced, and an entry is none")
+    return whole_matrix((head.rows, head.columns), row, column, values, head.symmetry)
 
 
-def _header(line: str) -> tuple[str, str]:
-    """Return layout and symmetry."""
+def _unpacked(path: Path) -> bytes:
+    with gzip.open(path) as packed:
+        start = packed.read(_HEAD)
+    entries = _Head.parse(plain(start, "latin-1")).entries
+    return unzip(path, min(_LARGEST, _HEAD + _LINE * entries))
+
+
+def _header(line: str) -> tuple[str, bool, str]:
+    """Return layout, whether the values are whole numbers, and symmetry."""
     words = line.lower().split()
     if len(words) != 5 or words[:2] != ["%%matrixmarket", "matrix"]:
         raise ValueError("no %%MatrixMarket matrix header")
@@ -85,7 +125,7 @@ def _header(line: str) -> tuple[str, str]:
         raise ValueError("the file holds a pattern without values")
     if field not in _FIELDS or symmetry not in SIGNS:
         raise ValueError(f"unknown kind of matrix {field!r}, {symmetry!r}")
-    return layout, symmetry
+    return layout, _FIELDS[field], symmetry
 
 
 def _sizes(line: str, count: int) -> list[int]:
@@ -99,9 +139,14 @@ def _table(text: str, dtype: np.dtype[Any], entries: int) -> NDArray[Any]:
     """Read one entry per line."""
     table = np.empty(0, dtype)
     if text.strip():
+        if not text.isascii() or "_" in text:
+            text = re.sub(r"%[^\n]*", "", text)
+        if not text.isascii() or "_" in text:
+            raise ValueError("characters that are no part of a number")
         # Fortran writes exponents with a D.
-        lines = io.StringIO(text.upper().replace("D", "E"))
+        lines = (line.upper().replace("D", "E") for line in text.split("\n"))
         table = np.loadtxt(lines, dtype, comments="%", ndmin=1)
+        require_representable(text)
     if table.size != entries:
         raise ValueError(f"{entries} entries announced, {table.size} present")
     return table

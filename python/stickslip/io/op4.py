@@ -17,6 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.io.fields import real_field, whole_field
+from stickslip.io.source import plain
+from stickslip.io.triangle import require_size
+
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
@@ -108,6 +112,7 @@ def _matrix(header: _Header, columns: list[tuple[int, list[_Piece]]]) -> coo_arr
     if header.kind > 2:
         raise ValueError(f"matrix {header.name!r} is complex; export real matrices")
     size = abs(header.rows)
+    require_size(size, header.columns)
     before, rows, places, values = 0, [], [], []
     for column, pieces in columns:
         if not before < column <= header.columns:
@@ -209,7 +214,7 @@ def _strings(
 
 def _text(content: bytes) -> Iterator[_Column]:
     """Walk through the lines of fixed columns."""
-    text = content.decode("ascii")
+    text = plain(content, "ascii")
     if not text.endswith("\n"):
         raise ValueError("the last line does not end; the file was cut short")
     lines = _Lines(text.splitlines())
@@ -287,7 +292,7 @@ class _Lines(Iterator[str]):
                     f"{expected} numbers of {width} characters expected: {line[:40]!r}"
                 )
             fields += [line[at : at + width] for at in range(0, len(line), width)]
-        return np.array([field.replace("D", "E") for field in fields], dtype=np.float64)
+        return np.array([real_field(field) for field in fields])
 
 
 def _integers(line: str, count: int, width: int = 8) -> list[int]:
@@ -295,7 +300,7 @@ def _integers(line: str, count: int, width: int = 8) -> list[int]:
     if len(words) != count:  # they touch where they are long
         words = [line[at : at + width].strip() for at in range(0, width * count, width)]
     try:
-        return [int(word) for word in words]
+        return [whole_field(word, signed=True) for word in words]
     except ValueError:
         raise ValueError(f"{count} integers expected, found {line[:40]!r}") from None
 

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from stickslip.checks import brief, file_path, listed
+from stickslip.checks import brief, file_path, is_file, listed
 from stickslip.errors import ModelError
 from stickslip.files import refusal, require_place, write
+from stickslip.io.hdf5 import require_held, require_own
 from stickslip.results.bounds import require_bounds
 from stickslip.results.seal import SEAL, require_harmless, seal_variable, sealed, sealed_whole
 from stickslip.results.stored_model import model_of, model_variables
@@ -38,6 +39,9 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "stability_map": ("stickslip.results.stability_map", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
+
+_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"
+"""Marks what has a length and no numbers."""
 
 FORMAT = 2
 """Version of the layout of the file; it rises when an older reader could not read it."""
@@ -102,8 +106,8 @@ def load(path: str | os.PathLike[str]) -> Any:
         If there is no such file, it is damaged, from elsewhere, or of a newer format.
     """
     source = file_path(path, "path")
-    if not os.path.isfile(source):
-        raise ModelError(f"{source}: {'is a folder' if os.path.isdir(source) else 'no such file'}")
+    if not is_file(source):
+        raise ModelError(f"{source}: no such file")
     dataset = _read(source)
     kind = _required_kind(dataset, source)
     try:
@@ -136,6 +140,7 @@ def content_of(source: Path) -> bytes:
 
 
 def _read(source: Path) -> xr.Dataset:
+    import h5py
     import xarray as xr
 
     content = content_of(source)
@@ -145,6 +150,11 @@ def _read(source: Path) -> xr.Dataset:
     try:
         if whole is None:
             require_harmless(content)
+        with h5py.File(io.BytesIO(content)) as stored:
+            for name in stored:
+                require_own(stored, name)
+                if _NO_VARIABLE not in str(stored[name].attrs.get("NAME", "")):
+                    require_held(stored[name])
         # Nothing is decoded: the numbers must come back bit by bit.
         dataset = xr.load_dataset(
             io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
@@ -13,7 +14,7 @@ from stickslip.checks import MAX_COUNT, brief
 from stickslip.disk import Coupling
 from stickslip.disk.pattern import DISTRIBUTIONS, mistuning_pattern
 from stickslip.errors import ModelError
-from stickslip.study.entries import HERE, Count, Dof, Ratio, StiffnessValue, Table
+from stickslip.study.entries import HERE, Count, Dof, Number, Ratio, StiffnessValue, Table
 from stickslip.study.structure_table import DampingSource, MatrixSource
 
 __all__ = ["CouplingTable", "DiskTable", "InterfaceTable", "MistuningTable"]
@@ -24,7 +25,7 @@ def _harmonics(value: object) -> object:
     if not isinstance(value, Mapping):
         return value
     for key in value:
-        if not (isinstance(key, int) or (isinstance(key, str) and key.isdecimal())):
+        if not (isinstance(key, int) or (isinstance(key, str) and re.fullmatch("[0-9]{1,9}", key))):
             raise ModelError(f"{HERE}: {brief(key)} is no harmonic; write {{3 = 6}}")
     return {int(key): order for key, order in value.items()}
 
@@ -40,8 +41,8 @@ class CouplingTable(Table):
         default=None, description="DOF of the next sector; left out: the same."
     )
     stiffness: StiffnessValue = Field(description="Stiffness.")
-    damping: Annotated[float, Field(ge=0.0), WithJsonSchema({"type": "number"})] = Field(
-        default=0.0, strict=False, description="Viscous damping [kg/s]."
+    damping: Annotated[Number, Field(ge=0.0)] = Field(
+        default=0.0, description="Viscous damping [kg/s]."
     )
 
     def build(self) -> Coupling:

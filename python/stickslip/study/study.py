@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
-from os.path import isfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import ValidationError
 
-from stickslip.checks import brief, file_path
+from stickslip.checks import brief, file_path, is_file, is_reserved, vanished
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.arguments import NEXT
 from stickslip.errors import ModelError
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 __all__ = ["Case", "Study", "json_schema", "notable_dofs"]
 
 _SHOWN_DOFS = 4
+_LONGEST_NAME = 150
+"""Bytes; file names have at most 255, with level, ending and marks of unfinished files."""
 
 
 @dataclass(frozen=True)
@@ -103,12 +105,10 @@ class Study:
             beginning with the path.
         """
         path = file_path(path, "study file")
+        if not is_file(path):
+            raise ModelError(f"{path}: no such study file{_neighbour(path)}")
         try:
-            text = path.read_text(encoding="utf-8")
-        except FileNotFoundError:
-            raise ModelError(f"{path}: no such study file{_neighbour(path)}") from None
-        except IsADirectoryError:
-            raise ModelError(f"{path}: is a folder; name the study file in it") from None
+            text = path.read_text(encoding="utf-8-sig")
         except UnicodeDecodeError:
             raise ModelError(f"{path}: is not text in UTF-8; give a TOML study file") from None
         except OSError as error:
@@ -147,6 +147,7 @@ class Study:
             tables = with_matrices(_read(text), Path(folder))
             model = _model(tables, Path(folder))
             _check_dofs(tables, model)
+            _check_name(tables.name or name)
         return cls(tables.name or name, tables, model, source)
 
     @property
@@ -240,9 +241,11 @@ def json_schema() -> dict[str, object]:
 
 def _read(text: str) -> StudyTables:
     try:
-        content = tomllib.loads(text)
+        content = tomllib.loads(text, parse_float=_real)
     except tomllib.TOMLDecodeError as error:
         raise ModelError(f"not valid TOML: {error}") from None
+    except ModelError:
+        raise
     except (ValueError, RecursionError):
         # Python reads integers of at most 4300 digits; lists nest without end.
         raise ModelError("not readable: a number is too long, or lists nest too deep") from None
@@ -251,6 +254,16 @@ def _read(text: str) -> StudyTables:
         return StudyTables.model_validate(content)
     except ValidationError as error:
         raise ModelError(complaint(error)) from None
+
+
+def _real(text: str) -> float:
+    number = float(text)
+    if vanished(text, number) or (math.isinf(number) and "inf" not in text):
+        size = "small" if number == 0.0 else "large"
+        raise ModelError(
+            f"{brief(text)} is too {size} for a number; write 0 or inf if that is meant"
+        )
+    return number
 
 
 def _model(tables: StudyTables, folder: Path) -> Model:
@@ -344,7 +357,7 @@ def _matrix(source: str | MatrixFile | Rows, folder: Path, entry: str) -> Matrix
         return np.array(source, dtype=np.float64)
     name, key = (source, None) if isinstance(source, str) else (source.file, source.key)
     path = folder / file_path(name, entry)
-    if not isfile(path):
+    if not is_file(path):
         place = path.parent.resolve()
         raise ModelError(f"{entry} = {brief(name)}: no such file in {place}{_neighbour(path)}")
     with _named(entry):
@@ -358,6 +371,19 @@ def _neighbour(path: Path) -> str:
         return f"; there is no folder {folder} either"
     near = get_close_matches(path.name, [file.name for file in folder.iterdir()], 1, 0.75)
     return f"; did you mean '{near[0]}'?" if near else ""
+
+
+def _check_name(name: str) -> None:
+    """Refuse a name that no result file can have, before anything is computed."""
+    if is_reserved(name):
+        raise ModelError(
+            f"name = {brief(name)} is that of a device on Windows; give the study another 'name'"
+        )
+    if len(name.encode(errors="replace")) > _LONGEST_NAME:
+        raise ModelError(
+            f"name = {brief(name)} has more than {_LONGEST_NAME} bytes, too long for the names of "
+            "result files; give the study a shorter 'name'"
+        )
 
 
 def _check_dofs(tables: StudyTables, model: Model) -> None:

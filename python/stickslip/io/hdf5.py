@@ -1,0 +1,83 @@
+"""HDF5 files, checked for the numbers that they announce before any is read."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from typing import TYPE_CHECKING
+
+from stickslip.io.source import LARGEST_UNPACKED, inflate
+
+if TYPE_CHECKING:
+    import h5py  # type: ignore[import-untyped, unused-ignore]
+
+__all__ = ["require_held", "require_own"]
+
+_DEFLATE = 1
+"""Number of the filter in HDF5."""
+_RATIO = 1032
+"""The most by which deflate packs."""
+
+
+def require_own(group: h5py.Group, name: str) -> None:
+    """Refuse a name that leads into another file, or out of the group.
+
+    Raises
+    ------
+    ValueError
+        If it is a link rather than a part of the file.
+    """
+    import h5py
+
+    if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+        raise ValueError(f"{name!r} is a link, not a part of the file")
+
+
+def require_held(dataset: h5py.Dataset) -> None:
+    """Refuse numbers that the file announces and does not hold, or that unpack to too many.
+
+    Parameters
+    ----------
+    dataset : h5py.Dataset
+        The numbers.
+
+    Raises
+    ------
+    ValueError
+        If parts of them were never written, are in another file, or are packed and take more than
+        `LARGEST_UNPACKED` bytes.
+    """
+    name = dataset.name.lstrip("/")
+    if dataset.is_virtual or dataset.external:
+        raise ValueError(f"the numbers of {name!r} are in another file")
+    if dataset.shape is None:
+        return
+    width = dataset.dtype.itemsize
+    announced, held = math.prod(dataset.shape) * width, dataset.id.get_storage_size()
+    if dataset.chunks is None:
+        if held < announced:
+            raise ValueError(f"{name!r} announces {announced} bytes and holds {held}")
+        return
+    chunk = math.prod(dataset.chunks) * width
+    if max(announced, chunk) > LARGEST_UNPACKED and announced > held:
+        raise ValueError(f"{name!r} unpacks to {announced} bytes; reduce the model")
+    counts = (-(-size // step) for size, step in zip(dataset.shape, dataset.chunks, strict=True))
+    parts: list[h5py.h5d.StoreInfo] = []
+    dataset.id.chunk_iter(parts.append)
+    if len(parts) < (needed := math.prod(counts)):
+        raise ValueError(f"{name!r} has {needed} parts, the file holds {len(parts)} of them")
+    for part in parts:
+        if part.size * _RATIO > LARGEST_UNPACKED:
+            _require_chunk(dataset, part.chunk_offset, chunk)
+
+
+def _require_chunk(dataset: h5py.Dataset, place: tuple[int, ...], size: int) -> None:
+    """Refuse a part that unpacks to more than its size; HDF5 would follow it to any length."""
+    packed = dataset.id.get_create_plist()
+    filters = [packed.get_filter(number)[0] for number in range(packed.get_nfilters())]
+    if _DEFLATE in filters:
+        _, stored = dataset.id.read_direct_chunk(place)
+        try:
+            inflate(stored, size)
+        except zlib.error as error:
+            raise ValueError(f"a part of {dataset.name!r} cannot be unpacked: {error}") from None

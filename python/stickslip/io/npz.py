@@ -1,0 +1,69 @@
+"""NumPy's files, looked at before NumPy makes room for what they announce."""
+
+from __future__ import annotations
+
+import math
+import os
+import zipfile
+from typing import IO
+
+import numpy as np
+
+from stickslip.io.source import LARGEST_UNPACKED
+
+__all__ = ["require_sound_npy"]
+
+_HEADERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
+
+
+def require_sound_npy(stream: IO[bytes]) -> None:
+    """Check `.npy` and `.npz`, and go back to the beginning.
+
+    Parameters
+    ----------
+    stream : binary file
+        The file, opened for reading.
+
+    Raises
+    ------
+    ValueError
+        If an array has more or fewer bytes than its header announces, two have the same name, or
+        one unpacks to more than `LARGEST_UNPACKED`.
+    zipfile.BadZipFile
+        If the archive is damaged.
+    """
+    if stream.read(2) == b"PK":
+        with zipfile.ZipFile(stream) as archive:
+            if len(set(archive.namelist())) < len(archive.namelist()):
+                raise ValueError("two arrays have the same name")
+            for member in archive.infolist():
+                _require_member(archive, member)
+    else:
+        size = stream.seek(0, os.SEEK_END)
+        stream.seek(0)
+        _require_held(stream, size)
+    stream.seek(0)
+
+
+def _require_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
+    size = member.file_size
+    if size > LARGEST_UNPACKED and member.compress_type != zipfile.ZIP_STORED:
+        raise ValueError(f"{member.filename!r} unpacks to {size} bytes; save it unpacked")
+    if member.filename.endswith(".npy"):
+        with archive.open(member) as stream:
+            _require_held(stream, size)
+
+
+def _require_held(stream: IO[bytes], size: int) -> None:
+    """Compare the header of an array with the bytes that follow."""
+    version = np.lib.format.read_magic(stream)
+    if version not in _HEADERS:
+        raise ValueError(f"an array of format {version}")
+    shape, _, dtype = _HEADERS[version](stream)
+    announced, held = math.prod(shape) * dtype.itemsize, size - stream.tell()
+    # NumPy refuses objects by itself.
+    if not dtype.hasobject and (announced != held or min(shape, default=0) < 0):
+        raise ValueError(f"shape {shape} takes {announced} bytes, {held} are there")
