@@ -5,13 +5,14 @@ use crate::problem::Problem;
 use crate::response::{status_code, ResidualArgument};
 use crate::settings::{evaluated, settings};
 use crate::variation::Varied;
-use crate::watch::Watch;
+use crate::watch;
 use numpy::{
     Complex64, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods as _,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::Arc;
 use stickslip_core::balance::{Cause, Linearised, Method, Settings, Unknowns};
 use stickslip_core::design::{optimum, peak_curve, Curve, Peak, Target};
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
@@ -139,14 +140,14 @@ impl Design {
 }
 
 /// Runs an analysis that Ctrl-C may end early.
-fn watched<T: Send>(
+fn watched<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, stickslip_core::Error> + Send,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, stickslip_core::Error> + Send + 'static,
 ) -> PyResult<T> {
-    let (result, raised) = Watch::during(py, progress, work);
+    let (result, raised) = watch::watched(py, progress, work)?;
     raised.raise_unless_interrupt(py)?;
-    result.map_err(refused)
+    result.ok_or_else(watch::given_up)?.map_err(refused)
 }
 
 /// The peak at every value of a parameter.
@@ -160,9 +161,9 @@ pub fn damper_curve(
 ) -> PyResult<Peaks> {
     let (variation, target, settings) = design.parse()?;
     let values = values.as_array().to_vec();
-    let model: &Model = &problem.model;
-    let curve = watched(py, progress.as_ref(), |look| {
-        peak_curve(model, settings, &variation, &values, &target, look)
+    let model = Arc::clone(&problem.model);
+    let curve = watched(py, progress.as_ref(), move |look| {
+        peak_curve(&model, settings, &variation, &values, &target, look)
     })?;
     Ok(curve.into())
 }
@@ -177,9 +178,9 @@ pub fn optimal_damper(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Peaks, Peaks)> {
     let (variation, target, settings) = design.parse()?;
-    let model: &Model = &problem.model;
-    let found = watched(py, progress.as_ref(), |look| {
-        optimum(model, settings, &variation, bounds, &target, look)
+    let model = Arc::clone(&problem.model);
+    let found = watched(py, progress.as_ref(), move |look| {
+        optimum(&model, settings, &variation, bounds, &target, look)
     })?;
     let minima = Peaks { peaks: found.minima, curve: found.curve.clone() };
     Ok((minima, found.curve.into()))

@@ -78,6 +78,8 @@ class Solution:
     @property
     def dissipation(self) -> Float: ...
     @property
+    def computed(self) -> int: ...
+    @property
     def interrupted(self) -> bool: ...
     @property
     def timings(self) -> dict[str, float]: ...
@@ -171,7 +173,6 @@ def summits(
     quest: Quest,
     march: March = None,
     max_samples: int = ...,
-    progress: Callable[[float], None] | None = None,
 ) -> list[Summit]: ...
 def mistuning_study(
     disks: Sequence[TunedDisk],

@@ -6,7 +6,7 @@ use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::start::start_of;
 use super::survey::Survey;
-use crate::balance::{ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Settings};
+use crate::balance::{ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings};
 use crate::model::Model;
 use crate::motion::{Event, ModalSystem, State};
 use crate::solve::{newton, NewtonSettings, Outcome, System as _};
@@ -57,6 +57,7 @@ pub struct PeriodicOrbits<'a> {
     half_wave: bool,
     quadrature: Quadrature,
     progress: &'a Progress<'a>,
+    pub(super) kept: Option<&'a Kept<Orbit>>,
     share: f64,
     /// Steps of the flow, transition matrices and time.
     pub(super) profile: Profile,
@@ -87,6 +88,7 @@ impl<'a> PeriodicOrbits<'a> {
             half_wave: model.is_symmetric() && settings.residual.is_symmetric(),
             quadrature: Quadrature::default(),
             progress: &|_| true,
+            kept: None,
             share: 0.0,
             profile: Profile::default(),
         })
@@ -96,6 +98,13 @@ impl<'a> PeriodicOrbits<'a> {
     #[must_use]
     pub fn watched(mut self, progress: &'a Progress<'a>) -> Self {
         self.progress = progress;
+        self
+    }
+
+    /// Has a sweep put its orbits into `kept` as they are found, too.
+    #[must_use]
+    pub fn keeping(mut self, kept: &'a Kept<Orbit>) -> Self {
+        self.kept = Some(kept);
         self
     }
 

@@ -19,6 +19,7 @@ __all__ = [
     "Span",
     "grid_of",
     "observed_dofs",
+    "prepare",
     "require_forced",
     "require_held",
     "require_model",
@@ -41,6 +42,11 @@ def require_model(model: object) -> None:
     """Refuse what is no `Model`."""
     if not isinstance(model, Model):
         raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+
+
+def prepare(model: Model) -> None:
+    """Decompose a model while Ctrl-C still ends an analysis at any line: nothing is lost yet."""
+    _ = model.problem
 
 
 def require_time(model: Model) -> None:

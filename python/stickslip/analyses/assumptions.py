@@ -288,7 +288,7 @@ def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> str:
 
 
 def _frequencies(settings: Settings, arrays: Arrays, missing: int, *, interrupted: bool) -> str:
-    count = arrays.omega.size
+    count = int((arrays.status != Status.NOT_COMPUTED.code).sum())
     reached = f"{arrays.omega[-1] if count else np.nan:.6g} rad/s"
     if settings.span is None:
         if not missing:

@@ -12,6 +12,7 @@ import numpy as np
 from stickslip.analyses.arguments import (
     Progress,
     observed_dofs,
+    prepare,
     require_model,
     require_progress,
     require_time,
@@ -19,7 +20,8 @@ from stickslip.analyses.arguments import (
 from stickslip.analyses.assumptions import transient_assumptions, turn_per_step
 from stickslip.analyses.memory import require_numbers
 from stickslip.checks import brief, choice, real_number, whole_number
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.transient import Transient
@@ -170,17 +172,13 @@ def transient(
     _require_stable(model, settings)
     first = _start(model, start)
     _require_room(model, settings, dofs)
-    history = _solve(model, settings, dofs, first, progress)
-    result = _result(model, settings, dofs, start, history)
-    if result.interrupted:
-        raise Interrupted(
-            f"transient interrupted after {result.periods} of {settings.periods} periods, which "
-            "the result of this exception holds",
-            result,
-        )
-    if progress is not None:
-        progress(1.0)
-    return result
+    prepare(model)
+    with Interruption(progress) as watch:
+        history = _solve(model, settings, dofs, first, watch)
+        result = _result(model, settings, dofs, start, history)
+        if result.interrupted:
+            raise stopped("transient", f"{result.periods} of {settings.periods} periods", result)
+        return watch.completed(result, "transient")
 
 
 def _start(model: Model, start: object) -> State | None:
