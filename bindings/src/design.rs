@@ -250,25 +250,34 @@ pub fn sensitivity<'py>(
     {
         return Err(PyValueError::new_err("sensitivity: arrays of another model"));
     }
-    let view = contact_displacement.as_array();
-    let mut rows = Vec::with_capacity(points * causes.len());
-    let mut last: Option<SampleTable> = None;
-    for (n, (&omega, &highest)) in omega.iter().zip(&harmonics).enumerate() {
-        let highest = usize::try_from(highest).unwrap_or(0).clamp(1, orders.max(2) - 1);
-        let sample_table = match last.take() {
-            Some(table) if table.harmonics().highest() == highest => table,
-            _ => SampleTable::new(Harmonics::new(highest, half_wave)),
-        };
-        let values = (0..contacts)
-            .flat_map(|i| series(sample_table.harmonics(), |k| view[[n, k, i]]))
-            .collect();
-        let solution = Unknowns::new(sample_table.harmonics().clone(), values);
-        let march = usize::try_from(samples[n]).ok().filter(|&march| march > 0);
-        let marched = evaluated(problem, march)?;
-        let slopes = Linearised::new(&marched, &sample_table, residual, omega, &solution)
-            .and_then(|mut linearised| linearised.amplitude(dof, measure, &causes));
-        rows.extend(slopes.map_err(refused)?.1);
-        last = Some(sample_table);
-    }
-    table(py, points, causes.len(), rows)
+    let solved: Vec<Complex64> = contact_displacement.as_array().iter().copied().collect();
+    let amplitude = move |n: usize, k: usize, i: usize| solved[(n * orders + k) * contacts + i];
+    let (own, columns) = (Arc::clone(&problem.model), causes.len());
+    let rows = watch::whole(py, move |look| {
+        let mut rows = Vec::with_capacity(points * causes.len());
+        let mut last: Option<SampleTable> = None;
+        for (n, (&omega, &highest)) in omega.iter().zip(&harmonics).enumerate() {
+            let highest = usize::try_from(highest).unwrap_or(0).clamp(1, orders.max(2) - 1);
+            if !look(n as f64 / points as f64) {
+                return Ok(Vec::new());
+            }
+            let sample_table = match last.take() {
+                Some(table) if table.harmonics().highest() == highest => table,
+                _ => SampleTable::new(Harmonics::new(highest, half_wave)),
+            };
+            let values = (0..contacts)
+                .flat_map(|i| series(sample_table.harmonics(), |k| amplitude(n, k, i)))
+                .collect();
+            let solution = Unknowns::new(sample_table.harmonics().clone(), values);
+            let march = usize::try_from(samples[n]).ok().filter(|&march| march > 0);
+            let marched = evaluated(&own, march)?;
+            let slopes = Linearised::new(&marched, &sample_table, residual, omega, &solution)
+                .and_then(|mut linearised| linearised.amplitude(dof, measure, &causes));
+            rows.extend(slopes?.1);
+            last = Some(sample_table);
+        }
+        Ok(rows)
+    })?
+    .map_err(refused)?;
+    table(py, points, columns, rows)
 }

@@ -15,6 +15,7 @@ use stickslip_core::balance::{
     self, refine_peak, sweep, sweep_range, ForcedBalance, Kept, Point, PointStatus, Progress,
     HIGHEST_ORDER,
 };
+use stickslip_core::contact::PointSummary;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::orbit::Rescue;
 use stickslip_core::timing::Profile;
@@ -84,9 +85,10 @@ impl Solution {
         &self,
         py: Python<'py>,
         columns: usize,
-        of: impl Fn(&Point) -> Vec<f64>,
+        add: impl Fn(&Point, &mut Vec<f64>),
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let values = self.points().iter().flat_map(|p| of(p)).collect();
+        let mut values = Vec::with_capacity(self.points().len() * columns);
+        self.points().iter().for_each(|point| add(point, &mut values));
         table(py, self.points().len(), columns, values)
     }
 }
@@ -148,19 +150,19 @@ impl Solution {
 
     #[getter]
     fn error_estimate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.observed, |p| p.error_estimate.clone())
+        self.rows(py, self.observed, |p, out| out.extend_from_slice(&p.error_estimate))
     }
 
     #[getter]
     fn slip_fraction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let share = |p: &Point| p.contacts.iter().map(|c| c.slip_fraction).collect();
-        self.rows(py, self.contacts, share)
+        let share = |c: &PointSummary| c.slip_fraction;
+        self.rows(py, self.contacts, |p, out| out.extend(p.contacts.iter().map(share)))
     }
 
     #[getter]
     fn dissipation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let work = |p: &Point| p.contacts.iter().map(|c| c.dissipation).collect();
-        self.rows(py, self.contacts, work)
+        let work = |c: &PointSummary| c.dissipation;
+        self.rows(py, self.contacts, |p, out| out.extend(p.contacts.iter().map(work)))
     }
 
     /// Number of points that were computed.
@@ -197,6 +199,7 @@ pub fn status_code(status: PointStatus) -> u8 {
         PointStatus::HarmonicsLimit => 4,
         // 5 is an orbit that did not close.
         PointStatus::SamplesLimit => 6,
+        PointStatus::StepsLimit => 7,
     }
 }
 

@@ -16,6 +16,8 @@ March = int | Literal["auto"] | None
 
 __version__: str
 
+class TooFastError(ValueError): ...
+
 class Problem:
     def __init__(
         self,

@@ -22,6 +22,8 @@ pub enum PointStatus {
     HarmonicsLimit,
     /// Solved, but automatic samples reached their limit above their share of the tolerance.
     SamplesLimit,
+    /// An exact orbit was not found within the steps of the flow that it is granted.
+    StepsLimit,
 }
 
 impl PointStatus {

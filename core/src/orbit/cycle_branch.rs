@@ -50,6 +50,11 @@ pub fn limit_cycles(
     };
     let onset = Onset::new(&given, settings.mode, ratio)?;
     let orbits = CycleOrbits::new(&family)?;
+    // Without orbits a balance goes without its stability.
+    let orbits = match orbits.map(|orbits| orbits.paced(onset.mode.omega)).transpose() {
+        Err(_) if !settings.exact => None,
+        orbits => orbits?,
+    };
     let mut finder = Finder { given, family: &family, onset: &onset, settings, ratio };
     if settings.exact && orbits.is_none() {
         return Err(Error::TravellingWave);

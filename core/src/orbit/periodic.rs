@@ -21,6 +21,10 @@ const START_HARMONICS: usize = 9;
 const ROUNDS: usize = 9;
 const FIRST_SPANS: usize = 4;
 
+/// Highest rate of a motion over its frequency that is followed: ten thousand steps of the flow per
+/// period.
+pub(super) const FASTEST: f64 = 3e4;
+
 /// Closing error, relative to the motion, of an orbit.
 const CLOSED: f64 = 1e-10;
 
@@ -145,8 +149,9 @@ impl<'a> PeriodicOrbits<'a> {
     /// The orbit at one frequency [rad/s], from the state of a neighbour or from harmonic balance.
     ///
     /// # Errors
-    /// The eigenvalues of a transition matrix cannot be found.
+    /// The eigenvalues of a transition matrix cannot be found; a DOF that has hardly any mass.
     pub fn solve(&mut self, omega: f64, neighbour: Option<&State>) -> Result<Orbit, Error> {
+        self.system.check_pace(self.model, omega, FASTEST)?;
         let (progress, share) = (self.progress, self.share);
         let interrupted = || !progress(share);
         let system = Arc::clone(&self.system);
@@ -162,7 +167,9 @@ impl<'a> PeriodicOrbits<'a> {
         let size = crate::solve::norm(&y).max(f64::MIN_POSITIVE);
         let closing = crate::solve::norm(&residual) / size;
         if closing.is_nan() || closing > CLOSED {
-            let mut orbit = self.empty(omega, PointStatus::Stalled);
+            let spent = shooting.flow.is_spent();
+            let status = if spent { PointStatus::StepsLimit } else { PointStatus::Stalled };
+            let mut orbit = self.empty(omega, status);
             orbit.response.residual = closing;
             orbit.response.iterations = iterations;
             return Ok(orbit);
@@ -221,6 +228,8 @@ impl<'a> PeriodicOrbits<'a> {
             match report.outcome {
                 Outcome::Converged => return Some((trial, iterations)),
                 Outcome::Interrupted => return None,
+                Outcome::Stalled | Outcome::Singular if shooting.interrupted() => return None,
+                Outcome::Stalled | Outcome::Singular if shooting.flow.is_spent() => break,
                 Outcome::Stalled | Outcome::Singular => {}
             }
         }
@@ -242,6 +251,7 @@ impl<'a> PeriodicOrbits<'a> {
         let Ok(mut balance) = ForcedBalance::new(self.model, settings, &self.everywhere) else {
             return rest;
         };
+        balance = balance.watched(self.progress);
         match balance.solve(omega, None) {
             Ok(point) if point.status == PointStatus::Converged => start_of(
                 self.model,

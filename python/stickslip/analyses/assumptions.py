@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -320,7 +319,8 @@ def _observed(model: Model, dofs: tuple[str, ...]) -> str:
 def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> str:
     # The exact half range of every dof and point would cost as much as the solution; the root
     # sum of squares finds the point, and only there is the range taken.
-    size = np.sqrt((np.abs(arrays.displacement[:, 1:]) ** 2).sum(axis=1))
+    parts = arrays.displacement[:, 1:].real, arrays.displacement[:, 1:].imag
+    size = np.sqrt(sum(np.einsum("nkd,nkd->nd", part, part) for part in parts))
     size[~(arrays.solved[:, None] & np.isfinite(size))] = 0.0
     if not size.max(initial=0.0) > 0.0:
         return ""
@@ -343,8 +343,9 @@ def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> str:
 
 
 def _failures(arrays: Arrays) -> str:
-    counts = Counter(Status.from_code(int(code)) for code in arrays.status)
-    failed = [f"{count} {status}" for status, count in counts.items() if status != "converged"]
+    codes, firsts, counts = np.unique(arrays.status, return_index=True, return_counts=True)
+    kinds = [(Status.from_code(int(codes[n])), counts[n]) for n in np.argsort(firsts)]
+    failed = [f"{count} {status}" for status, count in kinds if status is not Status.CONVERGED]
     if not failed:
         return ""
     return f"Of {arrays.omega.size} points not all met every tolerance: {', '.join(failed)}."

@@ -13,6 +13,7 @@ from stickslip.analyses.arguments import (
     Progress,
     observed_dofs,
     prepare,
+    refusal,
     require_model,
     require_progress,
     require_time,
@@ -205,7 +206,7 @@ def fates_of(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
 
 
 def fate_assumptions(model: Model, settings: ClassifySettings) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from stickslip.analyses.arguments import (
     grid_of,
     observed_dofs,
     prepare,
+    refusal,
     require_held,
     require_model,
     require_progress,
@@ -220,7 +221,7 @@ def _solve(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
 
 
 def _result(

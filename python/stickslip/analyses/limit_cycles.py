@@ -12,6 +12,7 @@ from stickslip.analyses.arguments import (
     Progress,
     Span,
     prepare,
+    refusal,
     require_model,
     require_progress,
     require_time,
@@ -240,7 +241,7 @@ def solve(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
 
 
 def _settings(

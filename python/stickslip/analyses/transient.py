@@ -13,6 +13,7 @@ from stickslip.analyses.arguments import (
     Progress,
     observed_dofs,
     prepare,
+    refusal,
     require_model,
     require_progress,
     require_time,
@@ -36,6 +37,7 @@ SCHEMES = ("exact", "rk4")
 """The exact flow between events, and the classical Runge-Kutta method of fourth order."""
 
 STABLE_TURN = 2.8
+MOST_STEPS = 2_000_000
 """Largest angle per step at which the classical Runge-Kutta method is stable: sqrt(8), rounded."""
 
 PERIODS, STEPS, SAMPLES = 200, 1000, 128
@@ -198,8 +200,9 @@ def _start(model: Model, start: object) -> State | None:
 def _require_stable(model: Model, settings: TransientSettings) -> None:
     """Refuse Runge-Kutta steps in which the fastest stuck motion would grow without bound."""
     turn = turn_per_step(model, settings)
-    if turn > STABLE_TURN:
-        needed = math.ceil(settings.steps * turn / STABLE_TURN)
+    needed = math.ceil(settings.steps * turn / STABLE_TURN)
+    # The core names the dof of a motion that needs more.
+    if settings.steps < needed < MOST_STEPS:
         raise ModelError(
             f"steps: {settings.steps} Runge-Kutta steps per period are unstable: the highest stuck "
             f"natural frequency turns by {turn:.3g} rad in one, and may by {STABLE_TURN:g}; give "
@@ -209,6 +212,8 @@ def _require_stable(model: Model, settings: TransientSettings) -> None:
 
 def _require_room(model: Model, settings: TransientSettings, dofs: tuple[str, ...]) -> None:
     points = sum(contact.points for contact in model.contacts)
+    loads = 2 * settings.steps * len(model.structure) if settings.scheme == "rk4" else 0
+    require_numbers(loads, f"the load at {settings.steps} steps per period", "give fewer steps")
     kept = min(settings.keep or settings.periods, settings.periods)
     rows = kept * settings.samples + 1
     each = 2 * len(model.structure) + points + 2 * len(dofs) + 1
@@ -245,7 +250,7 @@ def _solve(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
 
 
 def _result(
