@@ -12,7 +12,7 @@ use stickslip_core::fourier::Harmonics;
 pub fn refused(error: stickslip_core::Error) -> PyErr {
     match error {
         stickslip_core::Error::TooFast { dof, ratio, omega } => {
-            TooFast::new_err((dof, ratio, omega))
+            TooFastError::new_err((dof, ratio, omega))
         }
         other => PyValueError::new_err(other.to_string()),
     }
