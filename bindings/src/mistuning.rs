@@ -116,7 +116,8 @@ pub fn summits(
 }
 
 /// The highest blade of every pattern, one row of `deviations` each, of the disk at its position in
-/// `disks`; groups hold DOFs of a sector. `deliver(index, rows, points)` is called as they come.
+/// `disks`; groups hold DOFs of a sector. `deliver(index, rows, points)` is called as they come,
+/// `progress` from time to time.
 /// Whether all were computed: Ctrl-C ends the study early.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
@@ -129,6 +130,7 @@ pub fn mistuning_study(
     orders: Vec<usize>,
     threads: usize,
     deliver: Py<PyAny>,
+    progress: Py<PyAny>,
 ) -> PyResult<bool> {
     let (quest, settings) = quest.parse()?;
     let disks: Vec<Arc<design::TunedDisk>> =
@@ -139,7 +141,7 @@ pub fn mistuning_study(
     let deliver = |py: Python<'_>, (index, rows, points): (usize, Vec<Row>, usize)| {
         deliver.call1(py, (index, rows, points)).map(drop)
     };
-    let (result, raised) = watched_parts(py, None, deliver, move |look, hand_over| {
+    let (result, raised) = watched_parts(py, Some(&progress), deliver, move |look, hand_over| {
         let disks: Vec<&design::TunedDisk> = disks.iter().map(AsRef::as_ref).collect();
         let patterns: Vec<Pattern<'_>> =
             rows.iter().zip(which).map(|(deviations, disk)| Pattern { disk, deviations }).collect();

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 const LOOK: Duration = Duration::from_millis(50);
 /// Time that work has to hand over what it has computed once it was told to end: with the look
 /// before it and the result to build behind it, Ctrl-C is heeded within a second.
-const PATIENCE: Duration = Duration::from_millis(400);
+const PATIENCE: Duration = Duration::from_millis(500);
 /// Stack of the working thread, as large as that of the first one usually is.
 const STACK: usize = 8 << 20;
 

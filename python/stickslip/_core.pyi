@@ -184,6 +184,7 @@ def mistuning_study(
     orders: Sequence[int],
     threads: int,
     deliver: Callable[[int, list[Summit], int], None],
+    progress: Callable[[float], None],
 ) -> bool: ...
 
 class Orbits(Solution):
