@@ -7,10 +7,18 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stickslip_core::fourier::Harmonics;
 
-/// A core error as a Python `ValueError`.
+/// A core error as a Python `ValueError`; one of a DOF that hardly has a mass carries its position,
+/// its rate over the frequency and the frequency, since the core knows no names.
 pub fn refused(error: stickslip_core::Error) -> PyErr {
-    PyValueError::new_err(error.to_string())
+    match error {
+        stickslip_core::Error::TooFast { dof, ratio, omega } => {
+            TooFastError::new_err((dof, ratio, omega))
+        }
+        other => PyValueError::new_err(other.to_string()),
+    }
 }
+
+pyo3::create_exception!(_core, TooFastError, PyValueError);
 
 /// A dense matrix from a two-dimensional array.
 pub fn matrix(array: &PyReadonlyArray2<'_, f64>) -> faer::Mat<f64> {
@@ -74,13 +82,12 @@ pub fn padded<'py, 'a>(
     use numpy::PyArrayMethods as _;
     let count = points.len();
     let orders = 1 + points.clone().map(|(highest, _)| highest).max().unwrap_or(0);
-    let mut values = vec![Complex64::new(0.0, 0.0); count * orders * columns];
+    let mut values = Vec::with_capacity(count * orders * columns);
     for (n, (highest, amplitudes)) in points.enumerate() {
-        for (column, series) in amplitudes.chunks_exact(highest + 1).enumerate() {
-            for (order, value) in series.iter().enumerate() {
-                values[(n * orders + order) * columns + column] = *value;
-            }
+        for order in 0..=highest {
+            values.extend(amplitudes.iter().skip(order).step_by(highest + 1).take(columns));
         }
+        values.resize((n + 1) * orders * columns, Complex64::new(0.0, 0.0));
     }
     PyArray1::from_vec(py, values).reshape([count, orders, columns])
 }

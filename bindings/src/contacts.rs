@@ -1,6 +1,6 @@
 //! What a friction law does along a given motion.
 
-use crate::arrays::{is_half_wave, series, table, vector};
+use crate::arrays::{is_half_wave, refused, series, table, vector};
 use crate::problem::Problem;
 use crate::settings::{evaluated, ResidualArgument};
 use numpy::{Complex64, PyArray1, PyArray2, PyReadonlyArray2};
@@ -18,7 +18,7 @@ fn along<R>(
     march: Option<usize>,
     work: impl FnOnce(&dyn FrictionLaw, Motion<'_>) -> R,
 ) -> PyResult<R> {
-    let model = evaluated(problem, march)?;
+    let model = evaluated(&problem.model, march).map_err(refused)?;
     let Some(law) = model.laws().get(contact) else {
         return Err(PyValueError::new_err(format!(
             "contact = {contact}: the model has {} contacts",

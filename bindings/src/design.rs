@@ -5,13 +5,14 @@ use crate::problem::Problem;
 use crate::response::{status_code, ResidualArgument};
 use crate::settings::{evaluated, settings};
 use crate::variation::Varied;
-use crate::watch::Watch;
+use crate::watch;
 use numpy::{
     Complex64, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods as _,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::Arc;
 use stickslip_core::balance::{Cause, Linearised, Method, Settings, Unknowns};
 use stickslip_core::design::{optimum, peak_curve, Curve, Peak, Target};
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
@@ -139,14 +140,14 @@ impl Design {
 }
 
 /// Runs an analysis that Ctrl-C may end early.
-fn watched<T: Send>(
+fn watched<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, stickslip_core::Error> + Send,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, stickslip_core::Error> + Send + 'static,
 ) -> PyResult<T> {
-    let (result, raised) = Watch::during(py, progress, work);
+    let (result, raised) = watch::watched(py, progress, work)?;
     raised.raise_unless_interrupt(py)?;
-    result.map_err(refused)
+    result.ok_or_else(watch::given_up)?.map_err(refused)
 }
 
 /// The peak at every value of a parameter.
@@ -160,9 +161,9 @@ pub fn damper_curve(
 ) -> PyResult<Peaks> {
     let (variation, target, settings) = design.parse()?;
     let values = values.as_array().to_vec();
-    let model: &Model = &problem.model;
-    let curve = watched(py, progress.as_ref(), |look| {
-        peak_curve(model, settings, &variation, &values, &target, look)
+    let model = Arc::clone(&problem.model);
+    let curve = watched(py, progress.as_ref(), move |look| {
+        peak_curve(&model, settings, &variation, &values, &target, look)
     })?;
     Ok(curve.into())
 }
@@ -177,9 +178,9 @@ pub fn optimal_damper(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Peaks, Peaks)> {
     let (variation, target, settings) = design.parse()?;
-    let model: &Model = &problem.model;
-    let found = watched(py, progress.as_ref(), |look| {
-        optimum(model, settings, &variation, bounds, &target, look)
+    let model = Arc::clone(&problem.model);
+    let found = watched(py, progress.as_ref(), move |look| {
+        optimum(&model, settings, &variation, bounds, &target, look)
     })?;
     let minima = Peaks { peaks: found.minima, curve: found.curve.clone() };
     Ok((minima, found.curve.into()))
@@ -249,25 +250,34 @@ pub fn sensitivity<'py>(
     {
         return Err(PyValueError::new_err("sensitivity: arrays of another model"));
     }
-    let view = contact_displacement.as_array();
-    let mut rows = Vec::with_capacity(points * causes.len());
-    let mut last: Option<SampleTable> = None;
-    for (n, (&omega, &highest)) in omega.iter().zip(&harmonics).enumerate() {
-        let highest = usize::try_from(highest).unwrap_or(0).clamp(1, orders.max(2) - 1);
-        let sample_table = match last.take() {
-            Some(table) if table.harmonics().highest() == highest => table,
-            _ => SampleTable::new(Harmonics::new(highest, half_wave)),
-        };
-        let values = (0..contacts)
-            .flat_map(|i| series(sample_table.harmonics(), |k| view[[n, k, i]]))
-            .collect();
-        let solution = Unknowns::new(sample_table.harmonics().clone(), values);
-        let march = usize::try_from(samples[n]).ok().filter(|&march| march > 0);
-        let marched = evaluated(problem, march)?;
-        let slopes = Linearised::new(&marched, &sample_table, residual, omega, &solution)
-            .and_then(|mut linearised| linearised.amplitude(dof, measure, &causes));
-        rows.extend(slopes.map_err(refused)?.1);
-        last = Some(sample_table);
-    }
-    table(py, points, causes.len(), rows)
+    let solved: Vec<Complex64> = contact_displacement.as_array().iter().copied().collect();
+    let amplitude = move |n: usize, k: usize, i: usize| solved[(n * orders + k) * contacts + i];
+    let (own, columns) = (Arc::clone(&problem.model), causes.len());
+    let rows = watch::whole(py, move |look| {
+        let mut rows = Vec::with_capacity(points * causes.len());
+        let mut last: Option<SampleTable> = None;
+        for (n, (&omega, &highest)) in omega.iter().zip(&harmonics).enumerate() {
+            let highest = usize::try_from(highest).unwrap_or(0).clamp(1, orders.max(2) - 1);
+            if !look(n as f64 / points as f64) {
+                return Ok(Vec::new());
+            }
+            let sample_table = match last.take() {
+                Some(table) if table.harmonics().highest() == highest => table,
+                _ => SampleTable::new(Harmonics::new(highest, half_wave)),
+            };
+            let values = (0..contacts)
+                .flat_map(|i| series(sample_table.harmonics(), |k| amplitude(n, k, i)))
+                .collect();
+            let solution = Unknowns::new(sample_table.harmonics().clone(), values);
+            let march = usize::try_from(samples[n]).ok().filter(|&march| march > 0);
+            let marched = evaluated(&own, march)?;
+            let slopes = Linearised::new(&marched, &sample_table, residual, omega, &solution)
+                .and_then(|mut linearised| linearised.amplitude(dof, measure, &causes));
+            rows.extend(slopes?.1);
+            last = Some(sample_table);
+        }
+        Ok(rows)
+    })?
+    .map_err(refused)?;
+    table(py, points, columns, rows)
 }

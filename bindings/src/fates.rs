@@ -2,9 +2,10 @@
 
 use crate::arrays::{refused, table, vector};
 use crate::problem::Problem;
-use crate::watch::Watch;
+use crate::watch::{given_up, watched};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
+use std::sync::Arc;
 use stickslip_core::motion::{self, Fate, FateSettings, Reason};
 
 /// What becomes of some starts.
@@ -111,11 +112,12 @@ pub fn fates(
     let settings = FateSettings { periods, tolerance };
     let model = &problem.model;
     let began = std::time::Instant::now();
-    let (inner, watch) = Watch::during(py, progress.as_ref(), |look| {
-        motion::fates(model, settings, &starts, threads, look)
-    });
-    watch.raise_unless_interrupt(py)?;
-    let inner = inner.map_err(refused)?;
+    let own = Arc::clone(model);
+    let (inner, raised) = watched(py, progress.as_ref(), move |look| {
+        motion::fates(&own, settings, &starts, threads, look)
+    })?;
+    raised.raise_unless_interrupt(py)?;
+    let inner = inner.ok_or_else(given_up)?.map_err(refused)?;
     let interrupted = inner
         .iter()
         .any(|fate| fate.as_ref().is_none_or(|fate| fate.reason == Reason::Interrupted));

@@ -21,6 +21,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("TooFastError", module.py().get_type::<arrays::TooFastError>())?;
     module.add_class::<problem::Problem>()?;
     module.add_class::<response::Solution>()?;
     module.add_function(wrap_pyfunction!(response::forced_response, module)?)?;

@@ -4,11 +4,12 @@ use crate::arrays::{matrix, padded, refused, table, vector};
 use crate::problem::Problem;
 use crate::response::{counters, status_code, timings};
 use crate::variation::Varied;
-use crate::watch::Watch;
+use crate::watch::{given_up, watched};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::Arc;
 use stickslip_core::balance::{HarmonicChoice, Point};
 use stickslip_core::model::{NegativeDamping, Variation};
 use stickslip_core::orbit::{self, ChangeKind, Cycle, CycleSettings};
@@ -306,12 +307,13 @@ pub fn limit_cycles(
         most: max_points,
     };
     let model = &problem.model;
-    let (inner, watch) = Watch::during(py, progress.as_ref(), |look| {
-        orbit::limit_cycles(model, &negative, &variation, ratio, &settings, look)
-    });
-    watch.raise_unless_interrupt(py)?;
+    let own = Arc::clone(model);
+    let (inner, raised) = watched(py, progress.as_ref(), move |look| {
+        orbit::limit_cycles(&own, &negative, &variation, ratio, &settings, look)
+    })?;
+    raised.raise_unless_interrupt(py)?;
     Ok(LimitCycles {
-        inner: inner.map_err(refused)?,
+        inner: inner.ok_or_else(given_up)?.map_err(refused)?,
         dofs: model.compliance().dofs(),
         contacts: model.compliance().contacts(),
     })

@@ -4,10 +4,9 @@ use crate::arrays::{matrix, refused};
 use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
 use crate::response::{status_code, ResidualArgument};
 use crate::settings::{settings, March};
-use crate::watch::{Raised, Watch};
+use crate::watch::{watched_parts, whole};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use std::cell::RefCell;
 use std::sync::Arc;
 use stickslip_core::balance::{Method, Settings};
 use stickslip_core::design::{self, study, Pattern, Summit};
@@ -55,7 +54,8 @@ impl TunedDisk {
     /// The ring whose sectors' stiffnesses deviate.
     fn mistuned(&self, py: Python<'_>, deviations: PyReadonlyArray1<'_, f64>) -> PyResult<Problem> {
         let deviations = deviations.as_array().to_vec();
-        let model = py.detach(|| self.disk.mistuned(&deviations)).map_err(refused)?;
+        let disk = Arc::clone(&self.disk);
+        let model = whole(py, move |_| disk.mistuned(&deviations))?.map_err(refused)?;
         Ok(Problem { model: Arc::new(model) })
     }
 }
@@ -100,27 +100,24 @@ fn row(summit: &Summit) -> Row {
 
 /// The highest point of every group of DOFs.
 #[pyfunction]
-#[pyo3(signature = (problem, quest, march=None, max_samples=0, progress=None))]
+#[pyo3(signature = (problem, quest, march=None, max_samples=0))]
 pub fn summits(
     py: Python<'_>,
     problem: &Problem,
     quest: Quest,
     march: Option<March>,
     max_samples: usize,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Row>> {
     let model = Arc::clone(&problem.model);
     let (quest, settings) = quest.parse()?;
     let settings = March::applied(march, max_samples, settings)?;
-    let (found, raised) = Watch::during(py, progress.as_ref(), |look| {
-        design::summits(&model, settings, &quest, None, look)
-    });
-    raised.raise()?;
+    let found = whole(py, move |look| design::summits(&model, settings, &quest, None, look))?;
     Ok(found.map_err(refused)?.summits.iter().map(row).collect())
 }
 
 /// The highest blade of every pattern, one row of `deviations` each, of the disk at its position in
-/// `disks`; groups hold DOFs of a sector. `deliver(index, rows, points)` is called as they come.
+/// `disks`; groups hold DOFs of a sector. `deliver(index, rows, points)` is called as they come,
+/// `progress` from time to time.
 /// Whether all were computed: Ctrl-C ends the study early.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
@@ -133,6 +130,7 @@ pub fn mistuning_study(
     orders: Vec<usize>,
     threads: usize,
     deliver: Py<PyAny>,
+    progress: Py<PyAny>,
 ) -> PyResult<bool> {
     let (quest, settings) = quest.parse()?;
     let disks: Vec<Arc<design::TunedDisk>> =
@@ -140,29 +138,21 @@ pub fn mistuning_study(
     let rows: Vec<Vec<f64>> =
         deviations.as_array().outer_iter().map(|row| row.iter().copied().collect()).collect();
     let orders: Vec<Option<usize>> = orders.into_iter().map(Some).collect();
-    let (result, raised) = py.detach(|| {
+    let deliver = |py: Python<'_>, (index, rows, points): (usize, Vec<Row>, usize)| {
+        deliver.call1(py, (index, rows, points)).map(drop)
+    };
+    let (result, raised) = watched_parts(py, Some(&progress), deliver, move |look, hand_over| {
         let disks: Vec<&design::TunedDisk> = disks.iter().map(AsRef::as_ref).collect();
         let patterns: Vec<Pattern<'_>> =
             rows.iter().zip(which).map(|(deviations, disk)| Pattern { disk, deviations }).collect();
-        let raised = RefCell::new(None);
-        let ask = |question: &dyn Fn(Python<'_>) -> PyResult<()>| match Python::attach(question) {
-            Ok(()) => true,
-            Err(error) => {
-                raised.replace(Some(error));
-                false
-            }
+        let mut deliver = |index: usize, found: design::Summits| {
+            hand_over((index, found.summits.iter().map(row).collect(), found.points))
         };
-        let mut hand_over = |index: usize, found: design::Summits| {
-            let rows: Vec<Row> = found.summits.iter().map(row).collect();
-            ask(&|py| deliver.call1(py, (index, rows.clone(), found.points)).map(drop))
-        };
-        let mut wait = || ask(&|py| py.check_signals());
-        let result =
-            study(&disks, &patterns, settings, &quest, &orders, threads, &mut hand_over, &mut wait);
-        (result, Raised::from(raised.into_inner()))
-    });
+        let mut wait = || look(0.0);
+        study(&disks, &patterns, settings, &quest, &orders, threads, &mut deliver, &mut wait)
+    })?;
     let complete = raised.is_empty();
     raised.raise_unless_interrupt(py)?;
-    result.map_err(refused)?;
+    result.map_or(Ok(()), |ended| ended.map_err(refused))?;
     Ok(complete)
 }

@@ -3,15 +3,18 @@
 use crate::arrays::{indices, padded, refused, table, vector};
 use crate::problem::Problem;
 use crate::response::{counters, timings, ResidualArgument};
-use crate::watch::Watch;
+use crate::watch::{given_up, watched, whole};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stickslip_core::balance::Point;
+use std::mem::take;
+use std::sync::Arc;
+use stickslip_core::balance::{Kept, Point, PointStatus};
 use stickslip_core::contact::PointState;
 use stickslip_core::fourier::Measure;
 use stickslip_core::motion::{transient, Event, Scheme, TransientSettings};
 use stickslip_core::orbit::{orbit_peak, orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits};
+use stickslip_core::timing::Profile;
 
 /// Times, contact points and kinds of events.
 pub type EventColumns<'py> =
@@ -41,7 +44,7 @@ pub struct Orbits {
 }
 
 impl Orbits {
-    fn points(&self) -> &[Orbit] {
+    fn points(&self) -> &[Arc<Orbit>] {
         &self.inner.points
     }
 
@@ -60,7 +63,7 @@ impl Orbits {
         columns: usize,
         of: impl Fn(&Orbit) -> Vec<T>,
     ) -> PyResult<Bound<'py, PyArray2<T>>> {
-        table(py, self.points().len(), columns, self.points().iter().flat_map(of).collect())
+        table(py, self.points().len(), columns, self.points().iter().flat_map(|o| of(o)).collect())
     }
 }
 
@@ -192,6 +195,13 @@ impl Orbits {
         (vector(py, offsets), time, point, kind)
     }
 
+    /// Number of points that were computed.
+    #[getter]
+    fn computed(&self) -> usize {
+        let computed = |status: PointStatus| status != PointStatus::NotComputed;
+        self.points().iter().filter(|p| computed(p.response.status)).count()
+    }
+
     #[getter]
     fn interrupted(&self) -> bool {
         self.inner.interrupted
@@ -225,19 +235,29 @@ pub fn exact_response(
     let settings = OrbitSettings { harmonics, residual: residual.parse()?, max_iterations };
     let observe = indices(&observe)?;
     let grid = omega.as_array().to_vec();
+    let observed = observe.len();
+    let kept = Arc::new(Kept::default());
+    let (model, own_kept) = (Arc::clone(&problem.model), Arc::clone(&kept));
+    let (inner, raised) = watched(py, progress.as_ref(), move |look| {
+        PeriodicOrbits::new(&model, settings, &observe)
+            .and_then(|orbits| orbit_sweep(orbits.watched(look).keeping(&own_kept), &grid))
+    })?;
+    raised.raise_unless_interrupt(py)?;
     let model = &problem.model;
-    let (inner, watch) = Watch::during(py, progress.as_ref(), |look| {
-        PeriodicOrbits::new(model, settings, &observe)
-            .and_then(|orbits| orbit_sweep(orbits.watched(look), &grid))
-    });
-    watch.raise_unless_interrupt(py)?;
+    let inner = match inner {
+        Some(inner) => inner.map_err(refused)?,
+        None => {
+            let points = kept.lock().map(|mut points| take(&mut *points)).unwrap_or_default();
+            let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
+            if points.is_empty() {
+                return Err(given_up());
+            }
+            let profile = Profile::default();
+            stickslip_core::orbit::Orbits { points, half_wave, interrupted: true, profile }
+        }
+    };
     let (points, dofs) = (model.compliance().contacts(), model.compliance().dofs());
-    Ok(Orbits {
-        inner: inner.map_err(refused)?,
-        observed: observe.len(),
-        contacts: points,
-        states: 2 * dofs + points,
-    })
+    Ok(Orbits { inner, observed, contacts: points, states: 2 * dofs + points })
 }
 
 /// Frequency and exact amplitude at the true maximum of one DOF in a bracket.
@@ -258,11 +278,9 @@ pub fn exact_peak(
     let settings = OrbitSettings { residual, max_iterations, ..OrbitSettings::default() };
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
-    let (found, watch) = Watch::during(py, None, |look| {
-        orbit_peak(&problem.model, settings, dof, measure, bracket, look)
-    });
-    watch.raise()?;
-    found.map_err(refused)
+    let model = Arc::clone(&problem.model);
+    whole(py, move |look| orbit_peak(&model, settings, dof, measure, bracket, look))?
+        .map_err(refused)
 }
 
 type OrbitHistory<'py> = (
@@ -293,8 +311,8 @@ pub fn orbit_history<'py>(
         keep: None,
     };
     let model = &problem.model;
-    let history = py
-        .detach(|| transient(model, &settings, Some(&state), &observe, &|_| true))
+    let (own, dofs) = (Arc::clone(model), observe.clone());
+    let history = whole(py, move |look| transient(&own, &settings, Some(&state), &dofs, look))?
         .map_err(refused)?;
     let points = model.compliance().contacts();
     // The end of the period is its beginning.

@@ -1,6 +1,7 @@
 //! The problem: structure, contacts and loads in numbers.
 
 use crate::arrays::{matrices, matrix, refused, vector};
+use crate::watch::whole;
 use numpy::{Complex64, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -42,19 +43,15 @@ impl Problem {
             .map(|(name, rows, dictionary)| Ok((name, matrix(&rows), parameters(&dictionary)?)))
             .collect::<PyResult<Vec<_>>>()?;
         let loads = harmonic_loads(forces);
-        let model = py
-            .detach(|| {
-                let contacts = specs
-                    .into_iter()
-                    .map(|(name, rows, parameters)| {
-                        Ok(Contact { law: law(&name, &parameters)?, rows })
-                    })
-                    .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
-                let structure =
-                    Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
-                Model::new(structure, contacts, loads)
-            })
-            .map_err(refused)?;
+        let model = whole(py, move |_| {
+            let contacts = specs
+                .into_iter()
+                .map(|(name, rows, parameters)| Ok(Contact { law: law(&name, &parameters)?, rows }))
+                .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
+            let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
+            Model::new(structure, contacts, loads)
+        })?
+        .map_err(refused)?;
         Ok(Self { model: Arc::new(model) })
     }
 
@@ -78,8 +75,8 @@ impl Problem {
         let cyclic = CyclicStructure { mass, damping, stiffness, sectors, engine_order };
         let contacts = sector_contacts(contacts)?;
         let loads = harmonic_loads(forces);
-        let model =
-            py.detach(|| Model::travelling_wave(cyclic, contacts, loads)).map_err(refused)?;
+        let model = whole(py, move |_| Model::travelling_wave(cyclic, contacts, loads))?
+            .map_err(refused)?;
         Ok(Self { model: Arc::new(model) })
     }
 
@@ -103,17 +100,16 @@ impl Problem {
             [mass.0, damping.0, stiffness.0].map(|stack| matrices(&stack));
         let contacts = contacts.into_iter().map(sector_contacts).collect::<PyResult<Vec<_>>>()?;
         let loads = forces.into_iter().map(harmonic_loads).collect();
-        let model = py
-            .detach(|| {
-                let structures = mass
-                    .iter()
-                    .zip(&damping)
-                    .zip(&stiffness)
-                    .map(|((m, c), k)| Structure::new(m.as_ref(), c.as_ref(), k.as_ref()))
-                    .collect::<Result<Vec<_>, _>>()?;
-                Model::ring(structures, coupling, contacts, loads)
-            })
-            .map_err(refused)?;
+        let model = whole(py, move |_| {
+            let structures = mass
+                .iter()
+                .zip(&damping)
+                .zip(&stiffness)
+                .map(|((m, c), k)| Structure::new(m.as_ref(), c.as_ref(), k.as_ref()))
+                .collect::<Result<Vec<_>, _>>()?;
+            Model::ring(structures, coupling, contacts, loads)
+        })?
+        .map_err(refused)?;
         Ok(Self { model: Arc::new(model) })
     }
 
@@ -125,8 +121,9 @@ impl Problem {
         diameter: usize,
         slipping: Vec<(usize, usize)>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let model = Arc::clone(&self.model);
         let frequencies =
-            py.detach(|| self.model.wave_frequencies(diameter, &slipping)).map_err(refused)?;
+            whole(py, move |_| model.wave_frequencies(diameter, &slipping))?.map_err(refused)?;
         Ok(vector(py, frequencies))
     }
 
@@ -136,8 +133,9 @@ impl Problem {
         py: Python<'py>,
         slipping: Vec<(usize, usize)>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let model = Arc::clone(&self.model);
         let frequencies =
-            py.detach(|| self.model.natural_frequencies(&slipping)).map_err(refused)?;
+            whole(py, move |_| model.natural_frequencies(&slipping))?.map_err(refused)?;
         Ok(vector(py, frequencies))
     }
 

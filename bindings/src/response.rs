@@ -4,19 +4,22 @@ use crate::arrays::{indices, is_half_wave, padded, refused, series, table, vecto
 use crate::problem::Problem;
 pub use crate::settings::ResidualArgument;
 use crate::settings::{parse_method, settings, March};
-use crate::watch::Watch;
+use crate::watch::{given_up, watched, whole};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, refine_peak, sweep, sweep_range, ForcedBalance, Point, PointStatus, Progress,
+    self, refine_peak, sweep, sweep_range, ForcedBalance, Kept, Point, PointStatus, Progress,
     HIGHEST_ORDER,
 };
+use stickslip_core::contact::PointSummary;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::orbit::Rescue;
 use stickslip_core::timing::Profile;
+use stickslip_core::Model;
 
 /// Frequencies: a grid, or a range whose steps the core chooses.
 #[derive(FromPyObject)]
@@ -31,12 +34,29 @@ pub fn swept(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
     observed: usize,
-    contacts: usize,
-    work: impl FnOnce(&Progress<'_>) -> Result<balance::Solution, stickslip_core::Error> + Send,
+    model: &Arc<Model>,
+    work: impl FnOnce(
+            &Model,
+            &Kept<Point>,
+            &Progress<'_>,
+        ) -> Result<balance::Solution, stickslip_core::Error>
+        + Send
+        + 'static,
 ) -> PyResult<Solution> {
-    let (inner, watch) = Watch::during(py, progress, work);
-    watch.raise_unless_interrupt(py)?;
-    Ok(Solution { inner: inner.map_err(refused)?, observed, contacts })
+    let kept = Arc::new(Kept::default());
+    let (own_model, own_kept) = (Arc::clone(model), Arc::clone(&kept));
+    let (inner, raised) = watched(py, progress, move |look| work(&own_model, &own_kept, look))?;
+    raised.raise_unless_interrupt(py)?;
+    let inner = match inner {
+        Some(inner) => inner.map_err(refused)?,
+        None => {
+            let points = kept.lock().map(|mut points| take(&mut *points)).unwrap_or_default();
+            let first = points.first().and_then(|point| point.unknowns()).ok_or_else(given_up)?;
+            let half_wave = first.harmonics().half_wave();
+            balance::Solution { points, half_wave, interrupted: true, profile: Profile::default() }
+        }
+    };
+    Ok(Solution { inner, observed, contacts: model.compliance().contacts() })
 }
 
 /// A curve of periodic responses.
@@ -48,7 +68,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    fn points(&self) -> &[Point] {
+    fn points(&self) -> &[Arc<Point>] {
         &self.inner.points
     }
 
@@ -65,9 +85,10 @@ impl Solution {
         &self,
         py: Python<'py>,
         columns: usize,
-        of: impl Fn(&Point) -> Vec<f64>,
+        add: impl Fn(&Point, &mut Vec<f64>),
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let values = self.points().iter().flat_map(of).collect();
+        let mut values = Vec::with_capacity(self.points().len() * columns);
+        self.points().iter().for_each(|point| add(point, &mut values));
         table(py, self.points().len(), columns, values)
     }
 }
@@ -129,19 +150,26 @@ impl Solution {
 
     #[getter]
     fn error_estimate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.observed, |p| p.error_estimate.clone())
+        self.rows(py, self.observed, |p, out| out.extend_from_slice(&p.error_estimate))
     }
 
     #[getter]
     fn slip_fraction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let share = |p: &Point| p.contacts.iter().map(|c| c.slip_fraction).collect();
-        self.rows(py, self.contacts, share)
+        let share = |c: &PointSummary| c.slip_fraction;
+        self.rows(py, self.contacts, |p, out| out.extend(p.contacts.iter().map(share)))
     }
 
     #[getter]
     fn dissipation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let work = |p: &Point| p.contacts.iter().map(|c| c.dissipation).collect();
-        self.rows(py, self.contacts, work)
+        let work = |c: &PointSummary| c.dissipation;
+        self.rows(py, self.contacts, |p, out| out.extend(p.contacts.iter().map(work)))
+    }
+
+    /// Number of points that were computed.
+    #[getter]
+    fn computed(&self) -> usize {
+        let computed = |status: PointStatus| status != PointStatus::NotComputed;
+        self.points().iter().filter(|p| computed(p.status)).count()
     }
 
     #[getter]
@@ -171,6 +199,7 @@ pub fn status_code(status: PointStatus) -> u8 {
         PointStatus::HarmonicsLimit => 4,
         // 5 is an orbit that did not close.
         PointStatus::SamplesLimit => 6,
+        PointStatus::StepsLimit => 7,
     }
 }
 
@@ -238,12 +267,13 @@ pub fn forced_response(
         Frequencies::Grid(_) => None,
     };
     let model = Arc::clone(&problem.model);
-    let contacts = model.compliance().contacts();
-    swept(py, progress.as_ref(), observe.len(), contacts, |look| {
-        let rescue = Rescue::new(&model, settings.residual, look);
+    swept(py, progress.as_ref(), observe.len(), &model, move |model, kept, look| {
+        let rescue = Rescue::new(model, settings.residual, look);
         let fresh_start = |omega: f64, highest: usize| rescue.amplitudes(omega, highest);
-        let balance =
-            ForcedBalance::new(&model, settings, &observe)?.watched(look).rescued(&fresh_start);
+        let balance = ForcedBalance::new(model, settings, &observe)?
+            .watched(look)
+            .rescued(&fresh_start)
+            .keeping(kept);
         match range {
             Some((from, to)) => sweep_range(balance, from, to),
             None => sweep(balance, &grid),
@@ -279,10 +309,8 @@ pub fn peak(
     let model = Arc::clone(&problem.model);
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
-    let (found, watch) =
-        Watch::during(py, None, |look| refine_peak(&model, settings, dof, measure, bracket, look));
-    watch.raise()?;
-    found.map_err(refused)
+    whole(py, move |look| refine_peak(&model, settings, dof, measure, bracket, look))?
+        .map_err(refused)
 }
 
 /// Amplitudes of series `X_0, X_1, …`, one per row, with the exact extrema of their polynomials.

@@ -1,7 +1,5 @@
 //! What Python gives as settings, as the core has them.
 
-use crate::arrays::refused;
-use crate::problem::Problem;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -91,9 +89,9 @@ pub fn parse_method(method: &str, jacobian: &str) -> PyResult<Method> {
 }
 
 /// The model with its laws evaluated exactly, or marched through some samples per period.
-pub fn evaluated(problem: &Problem, march: Option<usize>) -> PyResult<Arc<Model>> {
-    march.map_or_else(
-        || Ok(Arc::clone(&problem.model)),
-        |samples| problem.model.marched(samples).map(Arc::new).map_err(refused),
-    )
+pub fn evaluated(
+    model: &Arc<Model>,
+    march: Option<usize>,
+) -> Result<Arc<Model>, stickslip_core::Error> {
+    march.map_or_else(|| Ok(Arc::clone(model)), |samples| model.marched(samples).map(Arc::new))
 }

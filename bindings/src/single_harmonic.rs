@@ -25,9 +25,8 @@ pub fn single_harmonic(
         ..Settings::default()
     };
     let (grid, observe) = (omega.as_array().to_vec(), indices(&observe)?);
-    let model = &problem.model;
-    swept(py, progress.as_ref(), observe.len(), model.compliance().contacts(), |look| {
-        let balance = ForcedBalance::new(model, settings, &observe)?.watched(look);
+    swept(py, progress.as_ref(), observe.len(), &problem.model, move |model, kept, look| {
+        let balance = ForcedBalance::new(model, settings, &observe)?.watched(look).keeping(kept);
         balance::single_harmonic(balance, &grid, estimate)
     })
 }

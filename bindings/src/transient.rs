@@ -3,11 +3,12 @@
 use crate::arrays::{indices, refused, table, vector};
 use crate::orbits::{event_columns, EventColumns};
 use crate::problem::Problem;
-use crate::watch::Watch;
+use crate::watch::{given_up, watched};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::Arc;
 use stickslip_core::motion::{self, Halt, Scheme, TransientSettings};
 
 /// A motion from a start state.
@@ -144,17 +145,19 @@ pub fn transient(
     let settings = TransientSettings { omega, scheme, periods, tolerance, samples, keep };
     let observe = indices(&observe)?;
     let start = start.map(|state| state.as_array().to_vec());
+    let observed = observe.len();
+    let own = Arc::clone(&problem.model);
+    let (inner, raised) = watched(py, progress.as_ref(), move |look| {
+        motion::transient(&own, &settings, start.as_deref(), &observe, look)
+    })?;
+    raised.raise_unless_interrupt(py)?;
+    let inner = inner.ok_or_else(given_up)?.map_err(refused)?;
     let model = &problem.model;
-    let (inner, watch) = Watch::during(py, progress.as_ref(), |look| {
-        motion::transient(model, &settings, start.as_deref(), &observe, look)
-    });
-    watch.raise_unless_interrupt(py)?;
-    let inner = inner.map_err(refused)?;
     if inner.halt == Some(Halt::Contradiction) {
         return Err(PyValueError::new_err(
             "transient: the contacts do not settle on stick or slip at one instant; perturb the start state slightly, or use scheme = \"rk4\"",
         ));
     }
     let (points, dofs) = (model.compliance().contacts(), model.compliance().dofs());
-    Ok(History { inner, observed: observe.len(), contacts: points, states: 2 * dofs + points })
+    Ok(History { inner, observed, contacts: points, states: 2 * dofs + points })
 }

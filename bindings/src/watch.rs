@@ -1,68 +1,143 @@
 //! Progress out of the core, Ctrl-C into it.
+//!
+//! The core works in a thread of its own, which knows no Python. The thread that called it waits,
+//! tells how far the work is and asks for signals, whatever the core is doing: a factorisation of a
+//! large matrix asks nobody. Work that does not end soon after it was told to is left to itself.
 
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
-use std::cell::{Cell, RefCell};
+use std::convert::Infallible;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{sync_channel, RecvTimeoutError};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Time between two looks at Python: often enough for Ctrl-C, rare enough to cost nothing.
-const LOOK: Duration = Duration::from_millis(100);
+const LOOK: Duration = Duration::from_millis(50);
+/// Time that work has to hand over what it has computed once it was told to end: with the look
+/// before it and the result to build behind it, Ctrl-C is heeded within a second.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// Stack of the working thread, as large as that of the first one usually is.
+const STACK: usize = 8 << 20;
 
-/// Looks at Python from time to time while the core works: progress out, Ctrl-C in.
-pub struct Watch<'a> {
-    progress: Option<&'a Py<PyAny>>,
-    last: Cell<Instant>,
-    raised: RefCell<Option<PyErr>>,
+/// What the caller and the working thread tell each other.
+#[derive(Default)]
+struct Line {
+    stop: AtomicBool,
+    /// Bits of the share of the work done.
+    share: AtomicU64,
 }
 
-impl<'a> Watch<'a> {
-    fn new(progress: Option<&'a Py<PyAny>>) -> Self {
-        Self { progress, last: Cell::new(Instant::now()), raised: RefCell::new(None) }
-    }
+/// What the working thread hands over.
+enum Word<M, T> {
+    Part(M),
+    End(T),
+}
 
-    /// Runs `work` without the interpreter, looking at it from time to time.
-    pub fn during<T: Send>(
-        py: Python<'_>,
-        progress: Option<&'a Py<PyAny>>,
-        work: impl FnOnce(&dyn Fn(f64) -> bool) -> T + Send,
-    ) -> (T, Raised) {
-        py.detach(|| {
-            let watch = Watch::new(progress);
-            let value = work(&|share| watch.look(share));
-            (value, Raised(watch.raised.into_inner()))
-        })
-    }
+/// Runs `work` without the interpreter, looking at Python from time to time. `None` if the work was
+/// told to end and did not.
+///
+/// # Errors
+/// The system grants no thread.
+pub fn watched<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> T + Send + 'static,
+) -> PyResult<(Option<T>, Raised)> {
+    let nothing = |_: Python<'_>, never: Infallible| match never {};
+    watched_parts(py, progress, nothing, |look, _| work(look))
+}
 
-    /// `false` once an exception is pending.
-    fn look(&self, share: f64) -> bool {
-        if self.raised.borrow().is_some() {
-            return false;
-        }
-        if self.last.get().elapsed() < LOOK {
-            return true;
-        }
-        self.last.set(Instant::now());
-        Python::attach(|py| {
-            let told = self.progress.map_or(Ok(()), |call| call.call1(py, (share,)).map(drop));
-            match told.and_then(|()| py.check_signals()) {
-                Ok(()) => true,
-                Err(error) => {
-                    self.raised.replace(Some(error));
-                    false
+/// [`watched`] work that hands over parts of its result, each of which `deliver` takes.
+///
+/// # Errors
+/// The system grants no thread.
+pub fn watched_parts<M: Send + 'static, T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Py<PyAny>>,
+    mut deliver: impl FnMut(Python<'_>, M) -> PyResult<()> + Send,
+    work: impl FnOnce(&dyn Fn(f64) -> bool, &dyn Fn(M) -> bool) -> T + Send + 'static,
+) -> PyResult<(Option<T>, Raised)> {
+    let line = Arc::new(Line::default());
+    // Nothing is in flight: nobody listens to work that was left to itself.
+    let (sender, receiver) = sync_channel(0);
+    let own = Arc::clone(&line);
+    let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || {
+        let look = |share: f64| {
+            own.share.store(share.to_bits(), Ordering::Relaxed);
+            !own.stop.load(Ordering::Relaxed)
+        };
+        let value = work(&look, &|part| sender.send(Word::Part(part)).is_ok());
+        let _ = sender.send(Word::End(value));
+    })?;
+    py.detach(move || {
+        let mut ended: Option<(Instant, PyErr)> = None;
+        let mut last = Instant::now();
+        loop {
+            let mut asked = Ok(());
+            match receiver.recv_timeout(LOOK) {
+                Ok(Word::End(value)) => {
+                    return Ok((Some(value), Raised(ended.map(|(_, error)| error))));
                 }
+                Ok(Word::Part(part)) if ended.is_none() => {
+                    asked = Python::attach(|py| deliver(py, part));
+                }
+                Ok(Word::Part(_)) | Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => match worker.join() {
+                    Err(panic) => std::panic::resume_unwind(panic),
+                    Ok(()) => return Ok((None, Raised(ended.map(|(_, error)| error)))),
+                },
             }
-        })
-    }
+            match &ended {
+                None => {
+                    if asked.is_ok() && last.elapsed() >= LOOK {
+                        last = Instant::now();
+                        asked = look(progress, f64::from_bits(line.share.load(Ordering::Relaxed)));
+                    }
+                    if let Err(error) = asked {
+                        line.stop.store(true, Ordering::Relaxed);
+                        ended = Some((Instant::now(), error));
+                    }
+                }
+                Some((since, _)) if since.elapsed() > PATIENCE => {
+                    return Ok((None, Raised(ended.map(|(_, error)| error))));
+                }
+                Some(_) => {}
+            }
+        }
+    })
+}
+
+/// Runs `work` that hands over nothing before its end; Ctrl-C is raised.
+///
+/// # Errors
+/// What Python raises meanwhile.
+pub fn whole<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> T + Send + 'static,
+) -> PyResult<T> {
+    let (value, raised) = watched(py, None, work)?;
+    raised.raise()?;
+    value.ok_or_else(given_up)
+}
+
+/// The error of work that was left to itself without anything to keep.
+pub fn given_up() -> PyErr {
+    PyKeyboardInterrupt::new_err("nothing was computed yet that could be kept")
+}
+
+/// Tells how far the work is, and asks for signals.
+fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
+    Python::attach(|py| {
+        if let Some(call) = progress {
+            call.call1(py, (share,))?;
+        }
+        py.check_signals()
+    })
 }
 
 /// What Python has raised meanwhile.
 pub struct Raised(Option<PyErr>);
-
-impl From<Option<PyErr>> for Raised {
-    fn from(error: Option<PyErr>) -> Self {
-        Self(error)
-    }
-}
 
 impl Raised {
     /// Whether nothing was raised.

@@ -62,6 +62,18 @@ pub enum Error {
     /// Time-domain analysis of one sector.
     #[error("one sector of a travelling wave has no motion of its own in time; give the whole disk, disk.mistuned(0)")]
     TravellingWave,
+    /// A motion that the exact flow would follow in far too many steps.
+    #[error(
+        "dof {dof}: moves {ratio:.3e} times faster than omega = {omega} rad/s, for it has hardly any mass; condense it statically, or balance harmonics instead"
+    )]
+    TooFast {
+        /// The DOF with the highest rate, from 0.
+        dof: usize,
+        /// Its rate over the frequency of the period.
+        ratio: f64,
+        /// Frequency of the period in rad/s.
+        omega: f64,
+    },
     /// No limit cycle to begin a branch with.
     #[error(
         "mode = {mode}: no limit cycle was found next to the stuck mode of {omega:.6} rad/s, whose damping vanishes at r = {onset:.6}; ask for a ratio closer to it, or fewer harmonics"

@@ -338,11 +338,14 @@ fn an_interrupted_sweep_keeps_what_it_has() {
     let balance = ForcedBalance::new(&model, fixed(9), &[1]).unwrap().watched(&|share| share < 0.5);
     let curve = sweep(balance, &grid(20.0, 350.0, 50)).unwrap();
     assert!(curve.interrupted);
-    let done = curve.points.iter().filter(|p| p.status == PointStatus::Converged).count();
-    assert!((20..=30).contains(&done), "{done}");
-    assert_eq!(curve.points.len(), 50);
-    assert!(curve.points[49].status == PointStatus::NotComputed);
-    assert!(curve.points[49].displacement[0].re.is_nan());
+    // Points that were not computed take no memory.
+    assert_eq!(curve.points.len(), 25);
+    assert!(curve.points.iter().all(|p| p.status == PointStatus::Converged));
+    let balance = ForcedBalance::new(&model, fixed(9), &[1]).unwrap().watched(&|_| false);
+    let curve = sweep(balance, &grid(20.0, 350.0, 50)).unwrap();
+    assert_eq!(curve.points.len(), 1);
+    assert!(curve.points[0].status == PointStatus::NotComputed);
+    assert!(curve.points[0].displacement[0].re.is_nan());
 }
 
 #[test]

@@ -16,6 +16,8 @@ March = int | Literal["auto"] | None
 
 __version__: str
 
+class TooFastError(ValueError): ...
+
 class Problem:
     def __init__(
         self,
@@ -77,6 +79,8 @@ class Solution:
     def slip_fraction(self) -> Float: ...
     @property
     def dissipation(self) -> Float: ...
+    @property
+    def computed(self) -> int: ...
     @property
     def interrupted(self) -> bool: ...
     @property
@@ -171,7 +175,6 @@ def summits(
     quest: Quest,
     march: March = None,
     max_samples: int = ...,
-    progress: Callable[[float], None] | None = None,
 ) -> list[Summit]: ...
 def mistuning_study(
     disks: Sequence[TunedDisk],
@@ -181,6 +184,7 @@ def mistuning_study(
     orders: Sequence[int],
     threads: int,
     deliver: Callable[[int, list[Summit], int], None],
+    progress: Callable[[float], None],
 ) -> bool: ...
 
 class Orbits(Solution):

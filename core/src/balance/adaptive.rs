@@ -2,6 +2,7 @@
 
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
+use super::keep;
 use super::scale::OF_STEPS;
 use super::solution::{Point, PointStatus, Solution};
 use super::sweep::{check_frequency, finish};
@@ -9,6 +10,7 @@ use super::unknowns::Unknowns;
 use crate::solve::System as _;
 use crate::Error;
 use faer::c64;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Longest step as a share of the range: a curve needs points to be looked at.
@@ -38,8 +40,9 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
     let stops = stops(&balance, from, to);
     let longest = LONGEST * (to - from).abs();
     let fine = balance.model.compliance().narrowest_bandwidth().clamp(1e-6 * longest, longest);
-    let mut points = vec![balance.solve(from, None)?];
+    let mut points = vec![Arc::new(balance.solve(from, None)?)];
     balance.scale.include(&points[0]);
+    keep(balance.kept, &points[0]);
     let mut step = 0.1 * longest;
     let mut interrupted = false;
     for stop in stops {
@@ -82,6 +85,8 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
                 if point.is_solved() {
                     balance.scale.include(&point);
                 }
+                let point = Arc::new(point);
+                keep(balance.kept, &point);
                 points.push(point);
             }
         }
@@ -140,8 +145,9 @@ fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<
 
 /// Largest relative distance of the observed DOFs from a straight line between the last point
 /// and `new`, from the curvature through the last three points.
-fn line_error(balance: &ForcedBalance<'_>, points: &[Point], new: &Point) -> Option<f64> {
+fn line_error(balance: &ForcedBalance<'_>, points: &[Arc<Point>], new: &Point) -> Option<f64> {
     let [.., before, last] = points else { return None };
+    let (before, last): (&Point, &Point) = (before, last);
     if ![before, last, new].into_iter().all(Point::is_solved) {
         return None;
     }

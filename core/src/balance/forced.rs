@@ -7,7 +7,7 @@ use super::scale::{Scale, OF_HARMONICS};
 use super::settings::{Method, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
-use super::{FreshStart, Progress};
+use super::{FreshStart, Kept, Progress};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{broyden, homotopy, newton, norm, Outcome, Report, System as _};
@@ -32,6 +32,7 @@ pub struct ForcedBalance<'a> {
     pub(super) ladder: Ladder,
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
+    pub(super) kept: Option<&'a Kept<Point>>,
     rescue: &'a FreshStart<'a>,
     share: f64,
     pub(super) profile: Profile,
@@ -78,6 +79,7 @@ impl<'a> ForcedBalance<'a> {
             evaluations: Evaluations::new(model),
             scale: Scale::default(),
             progress: &|_| true,
+            kept: None,
             rescue: &|_, _| None,
             share: 0.0,
             profile: Profile::default(),
@@ -88,6 +90,13 @@ impl<'a> ForcedBalance<'a> {
     #[must_use]
     pub fn watched(mut self, progress: &'a Progress<'a>) -> Self {
         self.progress = progress;
+        self
+    }
+
+    /// Has a sweep put its points into `kept` as they are solved, too.
+    #[must_use]
+    pub fn keeping(mut self, kept: &'a Kept<Point>) -> Self {
+        self.kept = Some(kept);
         self
     }
 
@@ -217,6 +226,12 @@ impl<'a> ForcedBalance<'a> {
         Ok(solved)
     }
 
+    /// A point that was not computed.
+    pub(super) fn not_computed(&self, omega: f64) -> Point {
+        let contacts = self.model.compliance().contacts();
+        Point::empty(omega, PointStatus::NotComputed, self.observe.len(), contacts)
+    }
+
     pub(crate) fn add_profile(&mut self, profile: &Profile) {
         self.profile.add(profile);
     }
@@ -258,8 +273,7 @@ impl<'a> ForcedBalance<'a> {
         }
         let status = match report.outcome {
             Outcome::Interrupted => {
-                let (status, observed) = (PointStatus::NotComputed, self.observe.len());
-                return Ok(Point::empty(omega, status, observed, contacts));
+                return Ok(self.not_computed(omega));
             }
             Outcome::Converged => PointStatus::Converged,
             Outcome::Stalled => PointStatus::Stalled,

@@ -45,6 +45,16 @@ pub use unknowns::Unknowns;
 /// harmonic may start at a frequency [rad/s] at which Newton's method has failed.
 pub type FreshStart<'a> = dyn Fn(f64, usize) -> Option<Vec<faer::c64>> + 'a;
 
+/// Where a sweep puts its points as they are solved, for one who does not wait for its end.
+pub type Kept<T> = std::sync::Mutex<Vec<std::sync::Arc<T>>>;
+
+/// Puts a point where it is kept.
+pub(crate) fn keep<T>(kept: Option<&Kept<T>>, point: &std::sync::Arc<T>) {
+    if let Some(Ok(mut points)) = kept.map(std::sync::Mutex::lock) {
+        points.push(std::sync::Arc::clone(point));
+    }
+}
+
 /// Called between points and between Newton iterations with the share of the work done; `false`
 /// ends the analysis and keeps what is solved.
 pub type Progress<'a> = dyn Fn(f64) -> bool + 'a;

@@ -5,6 +5,7 @@ use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
 use crate::timing::Profile;
 use faer::c64;
+use std::sync::Arc;
 
 /// How the solution at one frequency ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,6 +22,8 @@ pub enum PointStatus {
     HarmonicsLimit,
     /// Solved, but automatic samples reached their limit above their share of the tolerance.
     SamplesLimit,
+    /// An exact orbit was not found within the steps of the flow that it is granted.
+    StepsLimit,
 }
 
 impl PointStatus {
@@ -105,8 +108,9 @@ impl Point {
 /// A whole curve.
 #[derive(Debug, Clone)]
 pub struct Solution {
-    /// Points in the order of the sweep.
-    pub points: Vec<Point>,
+    /// Points in the order of the sweep; of one that was ended early those that were computed, or
+    /// else the first, which says so.
+    pub points: Vec<Arc<Point>>,
     /// Whether only odd harmonics were solved for.
     pub half_wave: bool,
     /// Whether the analysis was ended before its last point.

@@ -1,10 +1,12 @@
 //! A curve over given frequencies.
 
 use super::forced::ForcedBalance;
+use super::keep;
 use super::solution::{Point, PointStatus, Solution};
 use super::unknowns::Unknowns;
 use crate::timing::Profile;
 use crate::Error;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Solves at the frequencies `omega` [rad/s] in the order given, each from an extrapolation of
@@ -26,21 +28,24 @@ pub(super) fn sweep_with<'a>(
     for (index, &frequency) in omega.iter().enumerate() {
         check_frequency(&format!("omega[{index}]"), frequency)?;
     }
-    let contacts = balance.model.compliance().contacts();
-    let mut points: Vec<Point> = Vec::with_capacity(omega.len());
+    let mut points: Vec<Arc<Point>> = Vec::new();
     let mut interrupted = false;
-    for &frequency in omega {
-        let share = points.len() as f64 / omega.len() as f64;
-        interrupted = interrupted || !balance.report(share);
+    for (index, &frequency) in omega.iter().enumerate() {
+        interrupted = !balance.report(index as f64 / omega.len() as f64);
         if interrupted {
-            let (status, observed) = (PointStatus::NotComputed, balance.observe.len());
-            points.push(Point::empty(frequency, status, observed, contacts));
-            continue;
+            break;
         }
         let guess = predict(&points, frequency);
-        let point = solve(&mut balance, frequency, guess.as_ref())?;
+        let point = Arc::new(solve(&mut balance, frequency, guess.as_ref())?);
         interrupted = point.status == PointStatus::NotComputed;
+        if interrupted {
+            break;
+        }
+        keep(balance.kept, &point);
         points.push(point);
+    }
+    if points.is_empty() {
+        points.extend(omega.first().map(|&first| Arc::new(balance.not_computed(first))));
     }
     Ok(finish(balance, points, interrupted, start))
 }
@@ -55,7 +60,7 @@ pub(crate) fn check_frequency(entry: &str, omega: f64) -> Result<(), Error> {
 
 pub(super) fn finish(
     balance: ForcedBalance<'_>,
-    points: Vec<Point>,
+    points: Vec<Arc<Point>>,
     interrupted: bool,
     start: Instant,
 ) -> Solution {
@@ -75,8 +80,8 @@ const REACH: [f64; 2] = [3.0, 1.5];
 
 /// Polynomial extrapolation from the last points that converged, of the degree that would have
 /// predicted the last one best.
-fn predict(points: &[Point], omega: f64) -> Option<Unknowns> {
-    let usable = |point: &&Point| point.is_solved();
+fn predict(points: &[Arc<Point>], omega: f64) -> Option<Unknowns> {
+    let usable = |point: &&Arc<Point>| point.is_solved();
     let last = points.last().filter(usable)?.unknowns.as_ref()?;
     let known: Vec<(f64, Vec<f64>)> = points
         .iter()

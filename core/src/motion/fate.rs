@@ -22,6 +22,8 @@ const DRIFT: f64 = 0.05;
 const SETTLING: f64 = 0.5;
 /// Slow periods over which a motion without period is surveyed at the end.
 const SURVEYED: usize = 32;
+/// Highest rate of a motion over the lowest natural frequency that is followed.
+const FASTEST: f64 = 1e6;
 /// Slow periods between two choices of the section.
 const CHOICE: usize = 32;
 
@@ -127,6 +129,7 @@ impl<'a> Fates<'a> {
             let remedy = "no motion of the stuck structure oscillates; ground the structure";
             return Err(Error::value("stiffness", highest, remedy));
         };
+        system.check_pace(model, lowest.sqrt(), FASTEST)?;
         Ok(Self {
             model,
             settings,
@@ -147,7 +150,8 @@ impl<'a> Fates<'a> {
     pub fn of(&self, start: &[f64], go_on: &dyn Fn() -> bool) -> Result<Fate, Error> {
         let mut state = State::from_dofs(&self.system, start)?;
         let coordinates = Transition::new(&self.system, TAU / self.slow);
-        let mut flow = Flow::new(self.model, &self.system, TAU / self.slow);
+        let ended = || !go_on();
+        let mut flow = Flow::new(self.model, &self.system, TAU / self.slow).watched(&ended);
         let mut returns = Returns::new(self.shape(0), self.settings.tolerance);
         let (mut section, mut trend) = (usize::MAX, Trend::default());
         let mut period = f64::NAN;
@@ -174,7 +178,7 @@ impl<'a> Fates<'a> {
             // The section is the coordinate that moves most: its maxima are far from grazing.
             if passed % CHOICE == 0 {
                 let mut ahead = state.clone();
-                let chosen = match self.survey(&mut ahead, self.slow) {
+                let chosen = match self.survey(&mut ahead, self.slow, go_on) {
                     Ok(survey) => survey.mode().0,
                     Err(_) => section,
                 };
@@ -195,10 +199,11 @@ impl<'a> Fates<'a> {
                 Ok(()) => passed += 1,
                 Err(Halt::Unbounded) => break Reason::Overflow,
                 Err(Halt::Contradiction) => break Reason::Contradiction,
+                Err(Halt::Interrupted | Halt::Steps) => break Reason::Interrupted,
             }
         };
         let time = passed as f64 * self.slow;
-        Ok(self.concluded(reason, period, time, &state, flow.events))
+        Ok(self.concluded(reason, period, time, &state, flow.events, go_on))
     }
 
     /// Surveys the end of a motion.
@@ -209,6 +214,7 @@ impl<'a> Fates<'a> {
         time: f64,
         state: &State,
         events: usize,
+        go_on: &dyn Fn() -> bool,
     ) -> Fate {
         let mut fate = Fate {
             reason,
@@ -226,7 +232,7 @@ impl<'a> Fates<'a> {
             Reason::Outgrown | Reason::Overflow | Reason::Contradiction => return fate,
             _ => SURVEYED as f64 * self.slow,
         };
-        if let Ok(survey) = self.survey(&mut state.clone(), span) {
+        if let Ok(survey) = self.survey(&mut state.clone(), span, go_on) {
             fate.amplitude = survey.range.iter().map(|[low, high]| 0.5 * (high - low)).collect();
             if !matches!(reason, Reason::Held | Reason::Passive) {
                 let (mode, share) = survey.mode();
@@ -242,9 +248,15 @@ impl<'a> Fates<'a> {
     }
 
     /// Follows a motion over a span [s]: ranges of the DOFs, kinetic energies of the stuck modes.
-    fn survey(&self, state: &mut State, span: f64) -> Result<Survey, Halt> {
+    fn survey(
+        &self,
+        state: &mut State,
+        span: f64,
+        go_on: &dyn Fn() -> bool,
+    ) -> Result<Survey, Halt> {
         let n = self.system.modes();
-        let mut flow = Flow::new(self.model, &self.system, TAU / self.slow);
+        let ended = || !go_on();
+        let mut flow = Flow::new(self.model, &self.system, TAU / self.slow).watched(&ended);
         let shapes: Vec<Vec<f64>> = (0..n).map(|dof| self.system.shape(dof).collect()).collect();
         let mut survey =
             Survey { range: vec![[f64::INFINITY, f64::NEG_INFINITY]; n], kinetic: vec![0.0; n] };

@@ -14,6 +14,8 @@ use crate::model::Model;
 const AT_LIMIT: f64 = 1e-14;
 /// The same for the next coefficients of a point that is at its limit.
 const AT_REST: f64 = 1e-9;
+/// Steps between two questions whether to end.
+const LOOK: usize = 32;
 /// Changes of state at one instant after which the states are contradictory.
 const CHANGES: usize = 8;
 
@@ -74,6 +76,10 @@ pub enum Halt {
     Unbounded,
     /// Contacts change state without end at one instant.
     Contradiction,
+    /// All steps that were granted are taken.
+    Steps,
+    /// The caller has ended the run.
+    Interrupted,
 }
 
 /// What a contact point is to do next.
@@ -93,6 +99,8 @@ pub struct Flow<'a> {
     omega: f64,
     series: PowerSeries,
     scratch: Vec<f64>,
+    interrupted: Option<&'a dyn Fn() -> bool>,
+    granted: usize,
     /// Steps taken since the start.
     pub steps: usize,
     /// Events met since the start.
@@ -104,13 +112,44 @@ impl<'a> Flow<'a> {
     #[must_use]
     pub fn new(model: &'a Model, system: &'a ModalSystem, omega: f64) -> Self {
         let series = PowerSeries::new(system, omega);
-        Self { model, system, omega, series, scratch: Vec::new(), steps: 0, events: 0 }
+        Self {
+            model,
+            system,
+            omega,
+            series,
+            scratch: Vec::new(),
+            interrupted: None,
+            granted: usize::MAX,
+            steps: 0,
+            events: 0,
+        }
+    }
+
+    /// Has the flow ask between its steps whether to end.
+    #[must_use]
+    pub fn watched(mut self, interrupted: &'a dyn Fn() -> bool) -> Self {
+        self.interrupted = Some(interrupted);
+        self
+    }
+
+    /// Grants a number of steps in all.
+    #[must_use]
+    pub fn granted(mut self, steps: usize) -> Self {
+        self.granted = steps;
+        self
+    }
+
+    /// Whether all steps that were granted are taken.
+    #[must_use]
+    pub fn is_spent(&self) -> bool {
+        self.steps >= self.granted
     }
 
     /// Moves a state on to the time `until` [s].
     ///
     /// # Errors
-    /// The motion becomes unbounded, or contacts do not settle on a state.
+    /// The motion becomes unbounded, contacts do not settle on a state, the steps are spent, or the
+    /// caller ends the run.
     pub fn run(
         &mut self,
         state: &mut State,
@@ -122,6 +161,12 @@ impl<'a> Flow<'a> {
         while state.time < until {
             if !state.is_bounded() {
                 return Err(Halt::Unbounded);
+            }
+            if self.is_spent() {
+                return Err(Halt::Steps);
+            }
+            if self.steps % LOOK == 0 && self.interrupted.is_some_and(|ask| ask()) {
+                return Err(Halt::Interrupted);
             }
             self.series.expand(self.system, &regime, self.omega, state);
             self.steps += 1;

@@ -142,6 +142,28 @@ impl ModalSystem {
         self.rate.max(omega * highest as f64)
     }
 
+    /// Refuses a motion whose highest rate is more than `fastest` times a frequency [rad/s]: the
+    /// flow would follow it step by step.
+    ///
+    /// # Errors
+    /// The DOF with the highest rate, which hardly has a mass.
+    pub(crate) fn check_pace(&self, model: &Model, omega: f64, fastest: f64) -> Result<(), Error> {
+        let ratio = self.rate / omega;
+        if ratio <= fastest {
+            return Ok(());
+        }
+        let structure = model.structure();
+        let rows = &model.ports().rows;
+        let held = rows.transpose() * model.contact_stiffness() * rows;
+        let rate = |dof: usize| {
+            let mass = structure.mass()[(dof, dof)];
+            let stiffness = structure.stiffness()[(dof, dof)] + held[(dof, dof)];
+            (stiffness.abs() / mass).sqrt() + structure.damping()[(dof, dof)].abs() / mass
+        };
+        let dof = (0..self.modes()).max_by(|a, b| rate(*a).total_cmp(&rate(*b))).unwrap_or(0);
+        Err(Error::TooFast { dof, ratio, omega })
+    }
+
     /// Displacement of DOF `dof` per modal coordinate.
     pub fn shape(&self, dof: usize) -> impl Iterator<Item = f64> + '_ {
         (0..self.modes()).map(move |j| self.shapes[(dof, j)])

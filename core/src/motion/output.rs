@@ -48,15 +48,17 @@ impl<'a> Output<'a> {
         TAU / self.settings.omega * sample as f64 / self.settings.samples as f64
     }
 
-    /// Follows the exact flow over one period that begins at `begin` [s].
+    /// Follows the exact flow over one period that begins at `begin` [s]. `false` if the caller has
+    /// ended the run, which then keeps whole periods alone.
     pub(super) fn follow(
         &self,
         flow: &mut Flow<'_>,
         state: &mut State,
         begin: f64,
         history: &mut History,
-    ) -> Result<(), Halt> {
+    ) -> Result<bool, Halt> {
         let until = TAU / self.settings.omega;
+        let kept = (history.trace.time.len(), history.events.len());
         let slack = ROUNDING * self.instant(1);
         let mut sample = 1;
         let mut range = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.shapes.len()];
@@ -87,8 +89,13 @@ impl<'a> Output<'a> {
                 events.push(Event { time: begin + event.time, ..event });
             }
         });
+        if run == Err(Halt::Interrupted) {
+            self.truncate(&mut history.trace, kept.0);
+            history.events.truncate(kept.1);
+            return Ok(false);
+        }
         history.range.extend(range);
-        run
+        run.map(|()| true)
     }
 
     /// Takes the Runge-Kutta steps of one period that begins at `begin` [s]. Between steps, motions

@@ -10,8 +10,13 @@ use crate::balance::{check_frequency, Progress};
 use crate::model::Model;
 use crate::solve::norm;
 use crate::Error;
+use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
+
+/// Highest rate of a motion over the frequency of its period that is followed: a period of more than
+/// a million steps is one of a mass that is hardly there.
+const FASTEST: f64 = 1e6;
 
 /// How time is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +132,7 @@ pub fn transient(
     let began = Instant::now();
     settings.check()?;
     let system = ModalSystem::new(model)?;
+    system.check_pace(model, settings.omega, FASTEST)?;
     if let Some(&dof) = observe.iter().find(|&&dof| dof >= system.modes()) {
         let remedy = format!("the structure has {} DOFs", system.modes());
         return Err(Error::value("observe", dof as f64, &remedy));
@@ -136,8 +142,13 @@ pub fn transient(
         None => State::rest(&system),
     };
     let output = Output::new(&system, settings, observe);
+    let share = Cell::new(0.0);
+    let go_on = || progress(share.get());
+    let ended = || !go_on();
     let mut integrator = match settings.scheme {
-        Scheme::Exact => Integrator::Exact(Flow::new(model, &system, settings.omega)),
+        Scheme::Exact => {
+            Integrator::Exact(Flow::new(model, &system, settings.omega).watched(&ended))
+        }
         Scheme::RungeKutta(steps) => {
             Integrator::RungeKutta(RungeKutta::new(model, &system, settings.omega, steps))
         }
@@ -148,18 +159,16 @@ pub fn transient(
     output.push(0.0, &state.displacement, &state.velocity, &state.force, &mut history.trace);
     let mut before = coordinates.coordinates(&state);
     for number in 0..settings.periods {
-        if !progress(number as f64 / settings.periods as f64) {
+        share.set(number as f64 / settings.periods as f64);
+        if !go_on() {
             history.interrupted = true;
             break;
         }
         let begin = number as f64 * TAU / settings.omega;
         state.time = 0.0;
         let passed = match &mut integrator {
-            Integrator::Exact(flow) => {
-                output.follow(flow, &mut state, begin, &mut history).map(|()| true)
-            }
+            Integrator::Exact(flow) => output.follow(flow, &mut state, begin, &mut history),
             Integrator::RungeKutta(scheme) => {
-                let go_on = || progress(number as f64 / settings.periods as f64);
                 output.step_through(scheme, &mut state, begin, &mut history, &go_on)
             }
         };

@@ -21,7 +21,7 @@ const START_HARMONICS: usize = 15;
 /// First ratio beyond the onset, relative to it, where the range does not say.
 const BEYOND_ONSET: f64 = 0.01;
 /// Time that an ended analysis may take to read off what it has traced.
-const PATIENCE: Duration = Duration::from_millis(400);
+const PATIENCE: Duration = Duration::from_millis(200);
 /// Motion, relative to the onset of slip, at which a branch counts as going to infinity.
 const ENDLESS: f64 = 1e5;
 
@@ -50,6 +50,11 @@ pub fn limit_cycles(
     };
     let onset = Onset::new(&given, settings.mode, ratio)?;
     let orbits = CycleOrbits::new(&family)?;
+    // Without orbits a balance goes without its stability.
+    let orbits = match orbits.map(|orbits| orbits.paced(onset.mode.omega)).transpose() {
+        Err(_) if !settings.exact => None,
+        orbits => orbits?,
+    };
     let mut finder = Finder { given, family: &family, onset: &onset, settings, ratio };
     if settings.exact && orbits.is_none() {
         return Err(Error::TravellingWave);

@@ -6,6 +6,7 @@
 //! steers Newton's method. The phase is held across the velocity of the last accepted point, which
 //! never fails, and reported orbits begin at a maximum of the DOF that moves most.
 
+use super::periodic::FASTEST;
 use super::segments::{follow, halved, product_eigenvalues, suited, Segment, Suited};
 use super::shooting::Shooting;
 use super::start::start_of;
@@ -55,6 +56,15 @@ impl<'a> CycleOrbits<'a> {
         let damping = system.project(&family.model().structure().damping().to_owned());
         let negative = system.project(negative);
         Ok(Some(Self { family, system, damping, negative }))
+    }
+
+    /// Refuses a family whose motions the flow would follow in far too many steps per period.
+    ///
+    /// # Errors
+    /// The DOF that has hardly any mass.
+    pub(super) fn paced(self, omega: f64) -> Result<Self, Error> {
+        self.system.check_pace(self.family.model(), omega, FASTEST)?;
+        Ok(self)
     }
 
     /// The member at a value of the scalar.

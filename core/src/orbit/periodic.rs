@@ -6,7 +6,7 @@ use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::start::start_of;
 use super::survey::Survey;
-use crate::balance::{ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Settings};
+use crate::balance::{ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings};
 use crate::model::Model;
 use crate::motion::{Event, ModalSystem, State};
 use crate::solve::{newton, NewtonSettings, Outcome, System as _};
@@ -20,6 +20,10 @@ const START_HARMONICS: usize = 9;
 /// Rounds of following the motion itself, and spans in the first: each round doubles them.
 const ROUNDS: usize = 9;
 const FIRST_SPANS: usize = 4;
+
+/// Highest rate of a motion over its frequency that is followed: ten thousand steps of the flow per
+/// period.
+pub(super) const FASTEST: f64 = 3e4;
 
 /// Closing error, relative to the motion, of an orbit.
 const CLOSED: f64 = 1e-10;
@@ -57,6 +61,7 @@ pub struct PeriodicOrbits<'a> {
     half_wave: bool,
     quadrature: Quadrature,
     progress: &'a Progress<'a>,
+    pub(super) kept: Option<&'a Kept<Orbit>>,
     share: f64,
     /// Steps of the flow, transition matrices and time.
     pub(super) profile: Profile,
@@ -87,6 +92,7 @@ impl<'a> PeriodicOrbits<'a> {
             half_wave: model.is_symmetric() && settings.residual.is_symmetric(),
             quadrature: Quadrature::default(),
             progress: &|_| true,
+            kept: None,
             share: 0.0,
             profile: Profile::default(),
         })
@@ -96,6 +102,13 @@ impl<'a> PeriodicOrbits<'a> {
     #[must_use]
     pub fn watched(mut self, progress: &'a Progress<'a>) -> Self {
         self.progress = progress;
+        self
+    }
+
+    /// Has a sweep put its orbits into `kept` as they are found, too.
+    #[must_use]
+    pub fn keeping(mut self, kept: &'a Kept<Orbit>) -> Self {
+        self.kept = Some(kept);
         self
     }
 
@@ -136,8 +149,9 @@ impl<'a> PeriodicOrbits<'a> {
     /// The orbit at one frequency [rad/s], from the state of a neighbour or from harmonic balance.
     ///
     /// # Errors
-    /// The eigenvalues of a transition matrix cannot be found.
+    /// The eigenvalues of a transition matrix cannot be found; a DOF that has hardly any mass.
     pub fn solve(&mut self, omega: f64, neighbour: Option<&State>) -> Result<Orbit, Error> {
+        self.system.check_pace(self.model, omega, FASTEST)?;
         let (progress, share) = (self.progress, self.share);
         let interrupted = || !progress(share);
         let system = Arc::clone(&self.system);
@@ -153,7 +167,9 @@ impl<'a> PeriodicOrbits<'a> {
         let size = crate::solve::norm(&y).max(f64::MIN_POSITIVE);
         let closing = crate::solve::norm(&residual) / size;
         if closing.is_nan() || closing > CLOSED {
-            let mut orbit = self.empty(omega, PointStatus::Stalled);
+            let spent = shooting.flow.is_spent();
+            let status = if spent { PointStatus::StepsLimit } else { PointStatus::Stalled };
+            let mut orbit = self.empty(omega, status);
             orbit.response.residual = closing;
             orbit.response.iterations = iterations;
             return Ok(orbit);
@@ -212,6 +228,8 @@ impl<'a> PeriodicOrbits<'a> {
             match report.outcome {
                 Outcome::Converged => return Some((trial, iterations)),
                 Outcome::Interrupted => return None,
+                Outcome::Stalled | Outcome::Singular if shooting.interrupted() => return None,
+                Outcome::Stalled | Outcome::Singular if shooting.flow.is_spent() => break,
                 Outcome::Stalled | Outcome::Singular => {}
             }
         }
@@ -233,6 +251,7 @@ impl<'a> PeriodicOrbits<'a> {
         let Ok(mut balance) = ForcedBalance::new(self.model, settings, &self.everywhere) else {
             return rest;
         };
+        balance = balance.watched(self.progress);
         match balance.solve(omega, None) {
             Ok(point) if point.status == PointStatus::Converged => start_of(
                 self.model,

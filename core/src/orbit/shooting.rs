@@ -11,6 +11,10 @@ use faer::{c64, Mat};
 /// orbit: at a resonance that nothing bounds it does not.
 const SINGULAR: f64 = 1e-13;
 
+/// Steps of the flow that an orbit is granted: some thousand periods of a motion of a hundred modes, or
+/// minutes of one of many more. What needs more has hardly any mass somewhere, or no orbit.
+const STEPS: usize = 1 << 22;
+
 /// The closing condition of a periodic orbit at one frequency, in the coordinates of
 /// [`Transition`].
 pub(super) struct Shooting<'a> {
@@ -57,8 +61,13 @@ impl<'a> Shooting<'a> {
         coordinates: Transition<'a>,
     ) -> Self {
         let period = std::f64::consts::TAU / omega;
+        let flow = Flow::new(model, system, omega).granted(STEPS);
+        let flow = match interrupted {
+            Some(interrupted) => flow.watched(interrupted),
+            None => flow,
+        };
         Self {
-            flow: Flow::new(model, system, omega),
+            flow,
             coordinates,
             limits: system.limits(),
             idle: system.points() - system.strains(),

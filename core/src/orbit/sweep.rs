@@ -2,12 +2,13 @@
 
 use super::periodic::{Orbit, PeriodicOrbits};
 use super::settings::OrbitSettings;
-use crate::balance::{brent, check_frequency, PointStatus, Progress};
+use crate::balance::{brent, check_frequency, keep, PointStatus, Progress};
 use crate::fourier::Measure;
 use crate::model::Model;
 use crate::motion::State;
 use crate::timing::Profile;
 use crate::Error;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Relative distance in frequency up to which a neighbour is the better start.
@@ -16,8 +17,9 @@ const NEIGHBOUR: f64 = 0.05;
 /// Exact orbits over frequency.
 #[derive(Debug, Clone)]
 pub struct Orbits {
-    /// In the order of the sweep.
-    pub points: Vec<Orbit>,
+    /// In the order of the sweep; of one that was ended early those that were computed, or else the
+    /// first, which says so.
+    pub points: Vec<Arc<Orbit>>,
     /// Whether the orbits are half-wave symmetric.
     pub half_wave: bool,
     /// Whether the analysis was ended before its last point.
@@ -36,19 +38,25 @@ pub fn orbit_sweep(mut orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbi
     for (index, &frequency) in omega.iter().enumerate() {
         check_frequency(&format!("omega[{index}]"), frequency)?;
     }
-    let mut points: Vec<Orbit> = Vec::with_capacity(omega.len());
+    let mut points: Vec<Arc<Orbit>> = Vec::new();
     let mut interrupted = false;
-    for &frequency in omega {
-        let share = points.len() as f64 / omega.len() as f64;
-        interrupted = interrupted || !orbits.report(share);
+    for (index, &frequency) in omega.iter().enumerate() {
+        interrupted = !orbits.report(index as f64 / omega.len() as f64);
         if interrupted {
-            points.push(orbits.empty(frequency, PointStatus::NotComputed));
-            continue;
+            break;
         }
         let guess = predict(&points, frequency);
-        let orbit = orbits.solve(frequency, guess.as_ref())?;
+        let orbit = Arc::new(orbits.solve(frequency, guess.as_ref())?);
         interrupted = orbit.response.status == PointStatus::NotComputed;
+        if interrupted {
+            break;
+        }
+        keep(orbits.kept, &orbit);
         points.push(orbit);
+    }
+    if points.is_empty() {
+        let empty = |&first| Arc::new(orbits.empty(first, PointStatus::NotComputed));
+        points.extend(omega.first().map(empty));
     }
     Ok(Orbits {
         points,
@@ -59,7 +67,7 @@ pub fn orbit_sweep(mut orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbi
 }
 
 /// Linear extrapolation from the last two orbits, or the last one; nothing if it is far away.
-fn predict(points: &[Orbit], omega: f64) -> Option<State> {
+fn predict(points: &[Arc<Orbit>], omega: f64) -> Option<State> {
     let last = points.last()?;
     let start = last.start()?;
     if (omega - last.response.omega).abs() > NEIGHBOUR * omega {

@@ -17,6 +17,7 @@ from stickslip.analyses.uniqueness import damping_assumption
 from stickslip.model import Model, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
 from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_tolerances, present
+from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip.analyses.exact_response import ExactSettings
@@ -308,7 +309,7 @@ def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> Diagnosti
 def _frequencies(
     settings: Settings, arrays: Arrays, missing: int, *, interrupted: bool
 ) -> Diagnostic | None:
-    count = arrays.omega.size
+    count = int((arrays.status != Status.NOT_COMPUTED.code).sum())
     reached = f"{arrays.omega[-1] if count else np.nan:.6g} rad/s"
     if settings.span is None:
         if not missing:
@@ -347,7 +348,8 @@ def _observed(model: Model, dofs: tuple[str, ...]) -> Diagnostic | None:
 def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> Diagnostic | None:
     # The exact half range of every dof and point would cost as much as the solution; the root
     # sum of squares finds the point, and only there is the range taken.
-    size = np.sqrt((np.abs(arrays.displacement[:, 1:]) ** 2).sum(axis=1))
+    parts = arrays.displacement[:, 1:].real, arrays.displacement[:, 1:].imag
+    size = np.sqrt(sum(np.einsum("nkd,nkd->nd", part, part) for part in parts))
     size[~(arrays.solved[:, None] & np.isfinite(size))] = 0.0
     if not size.max(initial=0.0) > 0.0:
         return None

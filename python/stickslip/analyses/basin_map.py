@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.analyses.arguments import Progress, observed_dofs, require_progress
+from stickslip.analyses.arguments import Progress, observed_dofs, prepare, require_progress
 from stickslip.analyses.classify import (
     PERIODS,
     TOLERANCE,
@@ -21,7 +21,8 @@ from stickslip.analyses.classify import (
 )
 from stickslip.analyses.memory import require_numbers
 from stickslip.checks import brief, members, unknown, whole_number
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
@@ -111,28 +112,24 @@ def basin_map(
         if base is not None:
             raise ModelError("base: given beside starts; put it into them")
         states = _listed(alone, starts)
-    fates = fates_of(alone, states, settings, workers, progress)
-    arrays = FateArrays.of(fates, states, [alone.structure.index(dof) for dof in dofs])
-    result = BasinMap(
-        model=alone,
-        dofs=dofs,
-        settings=settings,
-        arrays=arrays,
-        interrupted=fates.interrupted,
-        timings={"total": fates.seconds},
-        counters={"events": int(arrays.events.sum())},
-        diagnostics=fate_assumptions(model, settings),
-    )
-    if result.interrupted:
-        done = sum(reason != "interrupted" for reason in result.reason)
-        raise Interrupted(
-            f"basin map interrupted after {done} of {len(result)} starts, which the result of this "
-            "exception holds",
-            result,
+    prepare(alone)
+    with Interruption(progress) as watch:
+        fates = fates_of(alone, states, settings, workers, watch)
+        arrays = FateArrays.of(fates, states, [alone.structure.index(dof) for dof in dofs])
+        result = BasinMap(
+            model=alone,
+            dofs=dofs,
+            settings=settings,
+            arrays=arrays,
+            interrupted=fates.interrupted,
+            timings={"total": fates.seconds},
+            counters={"events": int(arrays.events.sum())},
+            diagnostics=fate_assumptions(model, settings),
         )
-    if progress is not None:
-        progress(1.0)
-    return result
+        if result.interrupted:
+            done = sum(reason != "interrupted" for reason in result.reason)
+            raise stopped("basin map", f"{done} of {len(result)} starts", result)
+        return watch.completed(result, "basin map")
 
 
 def _axes(model: Model, axes: object) -> tuple[tuple[Axis, tuple[float, ...]], ...]:

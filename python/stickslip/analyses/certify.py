@@ -13,6 +13,7 @@ from stickslip.analyses.arguments import Progress, require_progress
 from stickslip.analyses.exact_response import exact_response
 from stickslip.checks import brief, members, whole_number
 from stickslip.errors import Interrupted, ModelError
+from stickslip.interruption import Interruption
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Int
 from stickslip.results.certificate import Certificate
@@ -77,33 +78,33 @@ def certify(
     require_progress(progress)
     compared = _dofs(result, dofs)
     indices = _indices(result, points, seed)
-    scaled = None if progress is None else lambda share: progress(_ORBITS * share)
-    try:
-        exact = exact_response(
-            result.model,
-            result.omega[indices],
-            harmonics=1,
-            residual=result.settings.residual,
-            observe=compared,
-            progress=scaled,
-        )
-    except Interrupted as stop:
-        found: ExactResponse = stop.result  # type: ignore[assignment]
-        raise _interrupted(result, found, indices, _unknown(found), 0) from None
-    apart = _unknown(exact)
-    compare = _comparison(result, exact, indices)
-    reported, place = monotonic(), 0
-    try:
-        for place in range(indices.size):
-            apart[place] = compare(place)
-            if progress is not None and monotonic() > reported + _REPORT_EVERY:
-                progress(_ORBITS + (1.0 - _ORBITS) * (place + 1) / indices.size)
-                reported = monotonic()
-    except KeyboardInterrupt:
-        raise _interrupted(result, exact, indices, apart, place) from None
-    if progress is not None:
-        progress(1.0)
-    return replace(result, certificate=_certificate(result, exact, indices, apart))
+    with Interruption(progress) as watch:
+        try:
+            exact = exact_response(
+                result.model,
+                result.omega[indices],
+                harmonics=1,
+                residual=result.settings.residual,
+                observe=compared,
+                progress=lambda share: watch(_ORBITS * share),
+            )
+        except Interrupted as stop:
+            found: ExactResponse = stop.result  # type: ignore[assignment]
+            raise _interrupted(result, found, indices, _unknown(found), 0) from None
+        apart = _unknown(exact)
+        reported, place = monotonic(), 0
+        try:
+            with watch.at_once():
+                compare = _comparison(result, exact, indices)
+                for place in range(indices.size):
+                    apart[place] = compare(place)
+                    if monotonic() > reported + _REPORT_EVERY:
+                        watch(_ORBITS + (1.0 - _ORBITS) * (place + 1) / indices.size)
+                        reported = monotonic()
+        except KeyboardInterrupt:
+            raise _interrupted(result, exact, indices, apart, place) from None
+        certified = replace(result, certificate=_certificate(result, exact, indices, apart))
+        return watch.completed(certified, "certification")
 
 
 def _unknown(exact: ExactResponse) -> Float:

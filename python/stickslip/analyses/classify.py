@@ -12,6 +12,8 @@ import numpy as np
 from stickslip.analyses.arguments import (
     Progress,
     observed_dofs,
+    prepare,
+    refusal,
     require_model,
     require_progress,
     require_time,
@@ -19,6 +21,7 @@ from stickslip.analyses.arguments import (
 from stickslip.analyses.memory import require_numbers
 from stickslip.checks import brief, real_number, whole_number
 from stickslip.errors import Interrupted, ModelError
+from stickslip.interruption import Interruption
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
@@ -143,28 +146,31 @@ def classify(
     first = start_of(alone, start, "start")
     omega, samples = _tail_grid(alone, len(dofs))
     columns = [alone.structure.index(dof) for dof in dofs]
-    fates = fates_of(alone, first.vector[None], settings, 1, progress)
-    arrays = FateArrays.of(fates, first.vector[None], columns)
-    tail, interrupted = _tail(alone, arrays, omega, samples, columns, interrupted=fates.interrupted)
-    result = MotionClass(
-        model=alone,
-        dofs=dofs,
-        settings=settings,
-        arrays=arrays,
-        step=2.0 * np.pi / omega / samples,
-        tail=tail,
-        interrupted=interrupted,
-        timings={"total": fates.seconds},
-        counters={"events": int(arrays.events.sum())},
-        diagnostics=fate_assumptions(model, settings),
-    )
-    if interrupted:
-        raise Interrupted(
-            "classification interrupted; the result of this exception is undecided", result
+    prepare(alone)
+    with Interruption(progress) as watch:
+        fates = fates_of(alone, first.vector[None], settings, 1, watch)
+        arrays = FateArrays.of(fates, first.vector[None], columns)
+        stopped = fates.interrupted
+        tail, interrupted = _tail(
+            alone, arrays, omega, samples, columns, watch, interrupted=stopped
         )
-    if progress is not None:
-        progress(1.0)
-    return result
+        result = MotionClass(
+            model=alone,
+            dofs=dofs,
+            settings=settings,
+            arrays=arrays,
+            step=2.0 * np.pi / omega / samples,
+            tail=tail,
+            interrupted=interrupted,
+            timings={"total": fates.seconds},
+            counters={"events": int(arrays.events.sum())},
+            diagnostics=fate_assumptions(model, settings),
+        )
+        if interrupted:
+            raise Interrupted(
+                "classification interrupted; the result of this exception is undecided", result
+            )
+        return watch.completed(result, "classification")
 
 
 def free(model: Model) -> Model:
@@ -201,7 +207,7 @@ def fates_of(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
 
 
 def fate_assumptions(model: Model, settings: ClassifySettings) -> tuple[Diagnostic, ...]:
@@ -258,6 +264,7 @@ def _tail(
     omega: float,
     samples: int,
     columns: list[int],
+    watch: Interruption,
     *,
     interrupted: bool,
 ) -> tuple[Float, bool]:
@@ -280,6 +287,6 @@ def _tail(
         observe,
         samples,
         None,
-        None,
+        lambda _: watch.heed(),
     )
     return history.displacement[1:], history.interrupted

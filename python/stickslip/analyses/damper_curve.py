@@ -12,6 +12,7 @@ from stickslip.analyses.arguments import (
     Progress,
     Residual,
     Span,
+    prepare,
     require_forced,
     require_held,
     require_model,
@@ -30,7 +31,8 @@ from stickslip.analyses.variation import (
     local_stiffness,
     resonance_range,
 )
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.results.arrays import Bool, Float, Measure
 from stickslip.results.damper_curve import DamperArrays, DamperCurve
@@ -147,17 +149,13 @@ def damper_curve(
     )
     start = _rigid_from(model, settings.variation)
     rigid = start if _is_rigid(values, start).any() else None
-    result = curve_of(model, settings, _peaks(model, settings, values, rigid, progress), rigid)
-    if result.interrupted:
-        done = int(result.arrays.solved.sum())
-        raise Interrupted(
-            f"damper curve interrupted after {done} of {values.size} values, which the result of "
-            "this exception holds",
-            result,
-        )
-    if progress is not None:
-        progress(1.0)
-    return result
+    prepare(model)
+    with Interruption(progress) as watch:
+        result = curve_of(model, settings, _peaks(model, settings, values, rigid, watch), rigid)
+        if result.interrupted:
+            done = int(result.arrays.solved.sum())
+            raise stopped("damper curve", f"{done} of {values.size} values", result)
+        return watch.completed(result, "damper curve")
 
 
 def settings_for(

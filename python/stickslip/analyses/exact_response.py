@@ -15,6 +15,8 @@ from stickslip.analyses.arguments import (
     Span,
     grid_of,
     observed_dofs,
+    prepare,
+    refusal,
     require_held,
     require_model,
     require_progress,
@@ -30,11 +32,11 @@ from stickslip.analyses.forced_response import (
 from stickslip.analyses.memory import require_memory
 from stickslip.checks import whole_number
 from stickslip.errors import Interrupted, ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.exact_response import ExactResponse
 from stickslip.results.orbit_arrays import OrbitArrays
-from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip import _core
@@ -154,29 +156,25 @@ def exact_response(
     dofs = observed_dofs(observe, model)
     require_progress(progress)
     require_held(model, settings.residual)
-    if isinstance(grid, tuple):
-        grid = _frequencies(model, settings, dofs, progress)
-        progress = _later(progress)
-    orders = settings.fixed_harmonics or REPORTED_HARMONICS
-    points = sum(contact.points for contact in model.contacts)
-    state = 2 * len(model.structure) + points
-    require_memory(grid.size, orders, len(dofs), points, extra=3 * grid.size * state)
-    solution = _solve(model, grid, dofs, settings, progress)
-    result = _result(model, settings, dofs, solution)
-    if result.interrupted:
-        done = sum(status is not Status.NOT_COMPUTED for status in result.status)
-        raise Interrupted(
-            f"exact response interrupted after {done} of {grid.size} points, which the result of "
-            "this exception holds",
-            result,
-        )
-    if progress is not None:
-        progress(1.0)
-    return result
+    prepare(model)
+    with Interruption(progress) as watch:
+        share: Progress = watch
+        if isinstance(grid, tuple):
+            grid = _frequencies(model, settings, dofs, watch)
+            share = _later(watch)
+        orders = settings.fixed_harmonics or REPORTED_HARMONICS
+        points = sum(contact.points for contact in model.contacts)
+        state = 2 * len(model.structure) + points
+        require_memory(grid.size, orders, len(dofs), points, extra=3 * grid.size * state)
+        solution = _solve(model, grid, dofs, settings, share)
+        result = _result(model, settings, dofs, solution, grid.size - solution.computed)
+        if result.interrupted:
+            raise stopped("exact response", f"{solution.computed} of {grid.size} points", result)
+        return watch.completed(result, "exact response")
 
 
 def _frequencies(
-    model: Model, settings: ExactSettings, dofs: tuple[str, ...], progress: Progress
+    model: Model, settings: ExactSettings, dofs: tuple[str, ...], watch: Interruption
 ) -> Float:
     """Return the frequencies that an adaptive harmonic balance chooses in a range."""
     assert settings.span is not None
@@ -187,7 +185,7 @@ def _frequencies(
             tolerance=settings.tolerance,
             residual=settings.residual,
             observe=dofs,
-            progress=None if progress is None else lambda share: progress(_CHOOSING * share),
+            progress=lambda share: watch(_CHOOSING * share),
         ).omega
     except Interrupted as stop:
         raise Interrupted(
@@ -197,10 +195,8 @@ def _frequencies(
         ) from None
 
 
-def _later(progress: Progress) -> Progress:
-    if progress is None:
-        return None
-    return lambda share: progress(_CHOOSING + (1.0 - _CHOOSING) * share)
+def _later(watch: Interruption) -> Progress:
+    return lambda share: watch(_CHOOSING + (1.0 - _CHOOSING) * share)
 
 
 def _solve(
@@ -225,11 +221,15 @@ def _solve(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
 
 
 def _result(
-    model: Model, settings: ExactSettings, dofs: tuple[str, ...], solution: _core.Orbits
+    model: Model,
+    settings: ExactSettings,
+    dofs: tuple[str, ...],
+    solution: _core.Orbits,
+    missing: int,
 ) -> ExactResponse:
     arrays = OrbitArrays.of_orbits(solution)
     return ExactResponse(
@@ -247,6 +247,6 @@ def _result(
             dofs,
             arrays,
             half_wave=solution.half_wave,
-            missing=solution.omega.size - arrays.omega.size,
+            missing=missing,
         ),
     )

@@ -15,6 +15,7 @@ from stickslip.analyses.arguments import (
     Span,
     grid_of,
     observed_dofs,
+    prepare,
     require_forced,
     require_held,
     require_model,
@@ -26,11 +27,11 @@ from stickslip.analyses.arguments import (
 from stickslip.analyses.assumptions import assumptions_of
 from stickslip.analyses.memory import require_memory
 from stickslip.checks import choice, whole_number
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Arrays
-from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip import _core
@@ -250,19 +251,14 @@ def forced_response(
     entry = "max_harmonics" if fixed is None else "harmonics"
     require_forced(model, settings.max_harmonics if fixed is None else fixed, entry)
     require_held(model, settings.residual)
-    solution = _solve(model, grid, dofs, settings, progress)
-    result = _result(model, settings, dofs, solution)
-    if result.interrupted:
-        done = sum(status is not Status.NOT_COMPUTED for status in result.status)
-        of_all = f" of {grid.size}" if isinstance(grid, np.ndarray) else ""
-        raise Interrupted(
-            f"forced response interrupted after {done}{of_all} points, which the result of this "
-            "exception holds",
-            result,
-        )
-    if progress is not None:
-        progress(1.0)
-    return result
+    prepare(model)
+    with Interruption(progress) as watch:
+        solution = _solve(model, grid, dofs, settings, watch)
+        result = _result(model, settings, dofs, solution, grid)
+        if result.interrupted:
+            of_all = f" of {grid.size}" if isinstance(grid, np.ndarray) else ""
+            raise stopped("forced response", f"{solution.computed}{of_all} points", result)
+        return watch.completed(result, "forced response")
 
 
 def _solve(
@@ -297,9 +293,14 @@ def _solve(
 
 
 def _result(
-    model: Model, settings: Settings, dofs: tuple[str, ...], solution: _core.Solution
+    model: Model,
+    settings: Settings,
+    dofs: tuple[str, ...],
+    solution: _core.Solution,
+    grid: NDArray[np.float64] | Span,
 ) -> ForcedResponse:
     arrays = Arrays.of(solution)
+    missing = grid.size - solution.computed if isinstance(grid, np.ndarray) else 0
     return ForcedResponse(
         model=model,
         settings=settings,
@@ -315,7 +316,7 @@ def _result(
             dofs,
             arrays,
             half_wave=solution.half_wave,
-            missing=solution.omega.size - arrays.omega.size,
+            missing=missing,
             interrupted=solution.interrupted,
         ),
     )

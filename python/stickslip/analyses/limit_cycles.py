@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.analyses.arguments import (
     Progress,
     Span,
+    prepare,
+    refusal,
     require_model,
     require_progress,
     require_time,
@@ -20,7 +22,8 @@ from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSe
 from stickslip.analyses.forced_response import MAX_HARMONICS
 from stickslip.analyses.variation import Common, Contacts, Parameter, Variation, chosen_contacts
 from stickslip.checks import brief, real_number
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import negative_matrix
@@ -143,28 +146,24 @@ def limit_cycles(
     )
     if settings.method == "exact":
         require_time(model)
-    solution = solve(model, matrix, settings, progress)
-    arrays = CycleArrays.of(solution)
-    result = LimitCycles(
-        model=model,
-        dofs=model.structure.dofs,
-        settings=settings,
-        arrays=arrays,
-        negative_damping=matrix,
-        interrupted=solution.interrupted,
-        timings=dict(solution.timings),
-        counters={**solution.counters, "jumps": solution.jumps},
-        diagnostics=cycle_assumptions(model, settings, arrays, solution),
-    )
-    if result.interrupted:
-        raise Interrupted(
-            f"limit cycles interrupted after {result.ratio.size} points, which the result of this "
-            "exception holds",
-            result,
+    prepare(model)
+    with Interruption(progress) as watch:
+        solution = solve(model, matrix, settings, watch)
+        arrays = CycleArrays.of(solution)
+        result = LimitCycles(
+            model=model,
+            dofs=model.structure.dofs,
+            settings=settings,
+            arrays=arrays,
+            negative_damping=matrix,
+            interrupted=solution.interrupted,
+            timings=dict(solution.timings),
+            counters={**solution.counters, "jumps": solution.jumps},
+            diagnostics=cycle_assumptions(model, settings, arrays, solution),
         )
-    if progress is not None:
-        progress(1.0)
-    return result
+        if result.interrupted:
+            raise stopped("limit cycles", f"{result.ratio.size} points", result)
+        return watch.completed(result, "limit cycles")
 
 
 def negative_damping_of(given: ArrayLike | DampingLaw, model: Model) -> NDArray[Any]:
@@ -242,7 +241,7 @@ def solve(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
 
 
 def _settings(

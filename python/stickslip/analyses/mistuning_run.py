@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.analyses.arguments import Progress
 from stickslip.analyses.mistuning_assumptions import mistuning_assumptions
 from stickslip.analyses.mistuning_disks import Series
 from stickslip.analyses.mistuning_settings import MistuningSettings
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
+from stickslip.interruption import Interruption
 from stickslip.results.arrays import Float
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.mistuning_arrays import MistuningArrays
@@ -117,7 +117,7 @@ class Work:
         for name, value in row._replace(blade=blade)._asdict().items():
             self.arrays[name][place] = value
 
-    def run(self, threads: int, progress: Progress, store: PatternStore | None) -> bool:
+    def run(self, threads: int, watch: Interruption, store: PatternStore | None) -> bool:
         """Compute what is missing; False if Ctrl-C has ended it."""
         from stickslip import _core
         from stickslip.disk.family import family
@@ -125,7 +125,7 @@ class Work:
         missing = np.argwhere(~self.known)
         if not missing.size:
             return True
-        report = _reporter(progress)
+        report = _reporter(watch)
 
         def deliver(index: int, found: list[_core.Summit], points: int) -> None:
             d, c, p = (int(at) for at in missing[index])
@@ -149,6 +149,7 @@ class Work:
                 [max(row.harmonics for row in one.tuned) for one in self.series],
                 threads,
                 deliver,
+                lambda _: watch.heed(),
             )
         except ModelError:
             raise
@@ -182,14 +183,14 @@ class Work:
         )
 
 
-def _reporter(progress: Progress) -> Callable[[float], None]:
+def _reporter(watch: Interruption) -> Callable[[float], None]:
     """Return what tells a callback how far a run is, not too often."""
     last = time.monotonic()
 
     def report(share: float) -> None:
         nonlocal last
-        if progress is not None and time.monotonic() - last >= OFTEN:
+        if time.monotonic() - last >= OFTEN:
             last = time.monotonic()
-            progress(share)
+            watch(share)
 
     return report

@@ -26,7 +26,8 @@ from stickslip.analyses.pattern_store import PatternStore
 from stickslip.checks import brief, whole_number
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.pattern import Distribution
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.results.arrays import Measure
 from stickslip.results.mistuning import MistuningStudy
 
@@ -151,21 +152,18 @@ def mistuning_study(
     start = time.perf_counter()
     series = [Series(one, value, tuned_peaks(one, settings, names)) for value, one in disks]
     work = Work(disk, settings, names, deviations, series, rows)
-    if store is None:
-        complete = work.run(pool, progress, None)
-    else:
-        identity = identity_of(disk, settings, names, rows, given=coupling_stiffness is not None)
-        with PatternStore(store, identity) as kept_rows:
-            work.recall(kept_rows)
-            complete = work.run(pool, progress, kept_rows)
-    result = work.result(time.perf_counter() - start, interrupted=not complete)
-    if not complete:
-        rest = "" if store is None else f"; {os.fspath(store)} goes on from there"
-        raise Interrupted(
-            f"mistuning study interrupted after {work.done} of {work.total} disks, which the "
-            f"result of this exception holds{rest}",
-            result,
-        )
-    if progress is not None:
-        progress(1.0)
-    return result
+    with Interruption(progress) as watch:
+        if store is None:
+            complete = work.run(pool, watch, None)
+        else:
+            identity = identity_of(
+                disk, settings, names, rows, given=coupling_stiffness is not None
+            )
+            with PatternStore(store, identity) as kept_rows:
+                work.recall(kept_rows)
+                complete = work.run(pool, watch, kept_rows)
+        result = work.result(time.perf_counter() - start, interrupted=not complete)
+        if not complete:
+            rest = "" if store is None else f"; {os.fspath(store)} goes on from there"
+            raise stopped("mistuning study", f"{work.done} of {work.total} disks", result, rest)
+        return watch.completed(result, "mistuning study")

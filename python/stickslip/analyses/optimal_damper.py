@@ -7,7 +7,14 @@ from typing import Literal
 
 import numpy as np
 
-from stickslip.analyses.arguments import Progress, Residual, Span, require_model, require_progress
+from stickslip.analyses.arguments import (
+    Progress,
+    Residual,
+    Span,
+    prepare,
+    require_model,
+    require_progress,
+)
 from stickslip.analyses.damper_curve import curve_of, settings_for
 from stickslip.analyses.damper_settings import DamperSettings
 from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS, forced_response
@@ -22,7 +29,8 @@ from stickslip.analyses.variation import (
     located,
 )
 from stickslip.checks import choice, real_number
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import Measure, amplitude_of
@@ -136,33 +144,30 @@ def optimal_damper(
         max_iterations=max_iterations,
     )
     low, high = given if given is not None else _default_bounds(model, variation, settings)
-    try:
-        minima, peaks = _core.optimal_damper(
-            model.problem, settings.design(model), (low, high), progress
-        )
-    except ModelError:
-        raise
-    except ValueError as error:
-        raise ModelError(str(error)) from error
-    curve = curve_of(model, settings, (DamperArrays.of(peaks), peaks))
-    if curve.interrupted:
-        raise Interrupted(
-            f"optimal damper interrupted after {curve.values.size} peaks, which the result of this "
-            "exception holds",
-            curve,
-        )
-    rows = zip(minima.value, minima.omega, minima.amplitude, strict=True)
-    found = tuple(LeastPeak(*map(float, row)) for row in rows)
-    if not found:
-        raise ModelError(
-            f"optimal damper: {curve.arrays.solved.sum()} peaks were found between {low:g} and "
-            f"{high:g}, none of them a minimum; try other bounds, or damper_curve for the status "
-            "of each value"
-        )
-    if progress is not None:
-        progress(1.0)
-    result = OptimalDamper.of(found, (low, high), curve, ())
-    return replace(result, diagnostics=_diagnostics(result))
+    prepare(model)
+    with Interruption(progress) as watch:
+        try:
+            minima, peaks = _core.optimal_damper(
+                model.problem, settings.design(model), (low, high), watch
+            )
+        except ModelError:
+            raise
+        except ValueError as error:
+            raise ModelError(str(error)) from error
+        curve = curve_of(model, settings, (DamperArrays.of(peaks), peaks))
+        if curve.interrupted:
+            raise stopped("optimal damper", f"{curve.values.size} peaks", curve)
+        rows = zip(minima.value, minima.omega, minima.amplitude, strict=True)
+        found = tuple(LeastPeak(*map(float, row)) for row in rows)
+        if not found:
+            raise ModelError(
+                f"optimal damper: {curve.arrays.solved.sum()} peaks were found between {low:g} and "
+                f"{high:g}, none of them a minimum; try other bounds, or damper_curve for the "
+                "status of each value"
+            )
+        result = OptimalDamper.of(found, (low, high), curve, ())
+        result = replace(result, diagnostics=_diagnostics(result))
+        return watch.completed(result, "optimal damper")
 
 
 def _diagnostics(result: OptimalDamper) -> tuple[Diagnostic, ...]:

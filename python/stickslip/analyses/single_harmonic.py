@@ -11,6 +11,7 @@ from stickslip.analyses.arguments import (
     Progress,
     grid_of,
     observed_dofs,
+    prepare,
     require_model,
     require_progress,
 )
@@ -18,7 +19,8 @@ from stickslip.analyses.assumptions import assumptions_of
 from stickslip.analyses.forced_response import MAX_ITERATIONS, Settings
 from stickslip.analyses.memory import require_memory
 from stickslip.checks import brief
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Arrays
@@ -108,17 +110,13 @@ def single_harmonic(
                 "takes forces of harmonic 1 alone, use forced_response"
             )
     require_memory(grid.size, 1, len(dofs), sum(contact.points for contact in model.contacts))
-    result = _solve(model, grid, dofs, settings, estimate, progress)
-    if result.interrupted:
-        done = sum(status is not Status.NOT_COMPUTED for status in result.status)
-        raise Interrupted(
-            f"single-harmonic response interrupted after {done} of {grid.size} points, which the "
-            "result of this exception holds",
-            result,
-        )
-    if progress is not None:
-        progress(1.0)
-    return result
+    prepare(model)
+    with Interruption(progress) as watch:
+        result = _solve(model, grid, dofs, settings, estimate, watch)
+        if result.interrupted:
+            done = int((result.arrays.status != Status.NOT_COMPUTED.code).sum())
+            raise stopped("single-harmonic response", f"{done} of {grid.size} points", result)
+        return watch.completed(result, "single-harmonic response")
 
 
 def _solve(
@@ -151,7 +149,7 @@ def _solve(
         dofs,
         arrays,
         half_wave=solution.half_wave,
-        missing=solution.omega.size - arrays.omega.size,
+        missing=grid.size - solution.computed,
         interrupted=solution.interrupted,
         single=True,
     )

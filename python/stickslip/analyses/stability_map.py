@@ -13,7 +13,8 @@ from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSe
 from stickslip.analyses.forced_response import MAX_HARMONICS
 from stickslip.analyses.limit_cycles import MAX_POINTS, negative_damping_of, solve
 from stickslip.analyses.variation import Common, Contacts, Parameter, Variation, chosen_contacts
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
@@ -100,60 +101,59 @@ def stability_map(
     rows: list[tuple[float, float, float]] = []
     told: list[Diagnostic] = []
     interrupted = False
-    for place, value in enumerate(values):
-        share = _share(progress, place, len(values))
+    with Interruption(progress) as watch:
         try:
-            solution = solve(variation.apply(model, value), matrix, cycles, share)
-        except ModelError as error:
-            rows.append((np.nan, np.nan, np.nan))
-            told.append(_without_limit(name, value, str(error)))
-            continue
-        if solution.interrupted:
+            with watch.at_once():
+                for place, value in enumerate(values):
+                    share = _share(watch, place, len(values))
+                    try:
+                        solution = solve(variation.apply(model, value), matrix, cycles, share)
+                    except ModelError as error:
+                        rows.append((np.nan, np.nan, np.nan))
+                        told.append(_without_limit(name, value, str(error)))
+                        continue
+                    if solution.interrupted:
+                        interrupted = True
+                        break
+                    arrays = CycleArrays.of(solution)
+                    ratio, omega = arrays.turn
+                    rows.append((ratio, omega, _stable_limit(arrays)))
+                    if np.isnan(ratio):
+                        told.append(_without_limit(name, value, "the branch does not turn"))
+        except KeyboardInterrupt:
             interrupted = True
-            break
-        arrays = CycleArrays.of(solution)
-        ratio, omega = arrays.turn
-        rows.append((ratio, omega, _stable_limit(arrays)))
-        if np.isnan(ratio):
-            told.append(_without_limit(name, value, "the branch does not turn"))
-    done = len(rows)
-    limit, omega, stable = np.array(rows, dtype=np.float64).reshape(-1, 3).T
-    unknown = int((np.isfinite(limit) & ~np.isfinite(stable)).sum())
-    if unknown:
-        text = f"The stability of {unknown} values is not known."
-        told.append(diagnostic("stability-unknown", text, count=unknown))
-    result = StabilityMap(
-        model=model,
-        dofs=model.structure.dofs,
-        settings=MapSettings(variation=variation, mode=mode, harmonics=harmonics, method=method),
-        arrays=MapArrays(
-            value=np.array(values[:done]), limit=limit, omega=omega, stable_limit=stable
-        ),
-        negative_damping=matrix,
-        interrupted=interrupted,
-        timings={},
-        counters={"branches": done},
-        diagnostics=tuple(told),
-    )
-    if interrupted:
-        raise Interrupted(
-            f"stability map interrupted after {done} of {len(values)} values, which the result of "
-            "this exception holds",
-            result,
+        done = len(rows)
+        limit, omega, stable = np.array(rows, dtype=np.float64).reshape(-1, 3).T
+        unknown = int((np.isfinite(limit) & ~np.isfinite(stable)).sum())
+        if unknown:
+            text = f"The stability of {unknown} values is not known."
+            told.append(diagnostic("stability-unknown", text, count=unknown))
+        result = StabilityMap(
+            model=model,
+            dofs=model.structure.dofs,
+            settings=MapSettings(
+                variation=variation, mode=mode, harmonics=harmonics, method=method
+            ),
+            arrays=MapArrays(
+                value=np.array(values[:done]), limit=limit, omega=omega, stable_limit=stable
+            ),
+            negative_damping=matrix,
+            interrupted=interrupted,
+            timings={},
+            counters={"branches": done},
+            diagnostics=tuple(told),
         )
-    if progress is not None:
-        progress(1.0)
-    return result
+        if interrupted:
+            raise stopped("stability map", f"{done} of {len(values)} values", result)
+        return watch.completed(result, "stability map")
 
 
 def _without_limit(name: str, value: float, cause: str) -> Diagnostic:
     return diagnostic("no-limit", f"{name} = {value:.6g}: {cause}", value=float(value))
 
 
-def _share(progress: Progress, place: int, total: int) -> Progress:
-    if progress is None:
-        return None
-    return lambda part: progress((place + part) / total)
+def _share(watch: Interruption, place: int, total: int) -> Progress:
+    return lambda part: watch((place + part) / total)
 
 
 def _stable_limit(arrays: CycleArrays) -> float:

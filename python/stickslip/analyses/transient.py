@@ -12,6 +12,8 @@ import numpy as np
 from stickslip.analyses.arguments import (
     Progress,
     observed_dofs,
+    prepare,
+    refusal,
     require_model,
     require_progress,
     require_time,
@@ -19,7 +21,8 @@ from stickslip.analyses.arguments import (
 from stickslip.analyses.assumptions import transient_assumptions, turn_per_step
 from stickslip.analyses.memory import require_numbers
 from stickslip.checks import brief, choice, real_number, whole_number
-from stickslip.errors import Interrupted, ModelError
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.transient import Transient
@@ -34,6 +37,7 @@ SCHEMES = ("exact", "rk4")
 """The exact flow between events, and the classical Runge-Kutta method of fourth order."""
 
 STABLE_TURN = 2.8
+MOST_STEPS = 2_000_000
 """Largest angle per step at which the classical Runge-Kutta method is stable: sqrt(8), rounded."""
 
 PERIODS, STEPS, SAMPLES = 200, 1000, 128
@@ -170,17 +174,13 @@ def transient(
     _require_stable(model, settings)
     first = _start(model, start)
     _require_room(model, settings, dofs)
-    history = _solve(model, settings, dofs, first, progress)
-    result = _result(model, settings, dofs, start, history)
-    if result.interrupted:
-        raise Interrupted(
-            f"transient interrupted after {result.periods} of {settings.periods} periods, which "
-            "the result of this exception holds",
-            result,
-        )
-    if progress is not None:
-        progress(1.0)
-    return result
+    prepare(model)
+    with Interruption(progress) as watch:
+        history = _solve(model, settings, dofs, first, watch)
+        result = _result(model, settings, dofs, start, history)
+        if result.interrupted:
+            raise stopped("transient", f"{result.periods} of {settings.periods} periods", result)
+        return watch.completed(result, "transient")
 
 
 def _start(model: Model, start: object) -> State | None:
@@ -200,8 +200,9 @@ def _start(model: Model, start: object) -> State | None:
 def _require_stable(model: Model, settings: TransientSettings) -> None:
     """Refuse Runge-Kutta steps in which the fastest stuck motion would grow without bound."""
     turn = turn_per_step(model, settings)
-    if turn > STABLE_TURN:
-        needed = math.ceil(settings.steps * turn / STABLE_TURN)
+    needed = math.ceil(settings.steps * turn / STABLE_TURN)
+    # The core names the dof of a motion that needs more.
+    if settings.steps < needed < MOST_STEPS:
         raise ModelError(
             f"steps: {settings.steps} Runge-Kutta steps per period are unstable: the highest stuck "
             f"natural frequency turns by {turn:.3g} rad in one, and may by {STABLE_TURN:g}; give "
@@ -211,6 +212,8 @@ def _require_stable(model: Model, settings: TransientSettings) -> None:
 
 def _require_room(model: Model, settings: TransientSettings, dofs: tuple[str, ...]) -> None:
     points = sum(contact.points for contact in model.contacts)
+    loads = 2 * settings.steps * len(model.structure) if settings.scheme == "rk4" else 0
+    require_numbers(loads, f"the load at {settings.steps} steps per period", "give fewer steps")
     kept = min(settings.keep or settings.periods, settings.periods)
     rows = kept * settings.samples + 1
     each = 2 * len(model.structure) + points + 2 * len(dofs) + 1
@@ -247,7 +250,7 @@ def _solve(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
 
 
 def _result(

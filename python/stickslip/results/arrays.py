@@ -84,8 +84,6 @@ class Arrays:
     def of(cls, solution: _core.Solution) -> Arrays:
         """Take over what the core returns, blanking the numbers that mean nothing.
 
-        Of an interrupted run only the computed points are kept, unless there is none.
-
         Parameters
         ----------
         solution : _core.Solution
@@ -96,11 +94,7 @@ class Arrays:
         Arrays
             Copies.
         """
-        computed = solution.status != Status.NOT_COMPUTED.code
-        kept = computed if computed.any() else slice(None)
-        values = {
-            entry.name: np.array(getattr(solution, entry.name)[kept]) for entry in fields(cls)
-        }
+        values = {entry.name: getattr(solution, entry.name) for entry in fields(cls)}
         # Where nothing was solved the core keeps no harmonic, and zeros would look like motion.
         missing = values["harmonics"] == 0
         for name in ("displacement", "contact_displacement", "contact_force"):

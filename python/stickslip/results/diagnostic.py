@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.results.status import Status
 
@@ -119,19 +122,19 @@ def present(diagnostics: Iterable[Diagnostic | None]) -> tuple[Diagnostic, ...]:
     return tuple(one for one in diagnostics if one is not None)
 
 
-def missed_tolerances(codes: Iterable[int], noun: str) -> Diagnostic | None:
+def missed_tolerances(codes: NDArray[np.integer[Any]], noun: str) -> Diagnostic | None:
     """Count the points that did not converge, by the codes of their status."""
-    counts = Counter(Status.from_code(int(code)) for code in codes)
-    total = counts.total()
-    counts.pop(Status.CONVERGED, None)
-    if not counts:
+    kinds, firsts, counts = np.unique(codes, return_index=True, return_counts=True)
+    met = kinds == Status.CONVERGED.code
+    if met.all():
         return None
-    listed = ", ".join(f"{count} {status}" for status, count in counts.items())
+    missed = [n for n in np.argsort(firsts) if not met[n]]
+    listed = ", ".join(f"{counts[n]} {Status.from_code(int(kinds[n]))}" for n in missed)
     return diagnostic(
         "tolerances-missed",
-        f"Of {total} {noun} not all met every tolerance: {listed}.",
-        total=total,
-        missed=counts.total(),
+        f"Of {codes.size} {noun} not all met every tolerance: {listed}.",
+        total=codes.size,
+        missed=int(counts[~met].sum()),
     )
 
 

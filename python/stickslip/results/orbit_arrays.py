@@ -49,7 +49,7 @@ class OrbitArrays(Arrays):
 
     @classmethod
     def of_orbits(cls, solution: _core.Orbits) -> Self:
-        """Take over what the core returns; of an interrupted run only what was computed.
+        """Take over what the core returns, blanking the numbers that mean nothing.
 
         Parameters
         ----------
@@ -61,12 +61,8 @@ class OrbitArrays(Arrays):
         OrbitArrays
             Copies.
         """
-        computed = solution.status != Status.NOT_COMPUTED.code
-        kept = computed if computed.any() else np.ones_like(computed)
         per_point = [entry.name for entry in fields(cls) if not entry.name.startswith("event")]
-        values: dict[str, Any] = {
-            name: np.array(getattr(solution, name)[kept]) for name in per_point
-        }
+        values: dict[str, Any] = {name: getattr(solution, name) for name in per_point}
         status = values["status"]
         status[status == Status.STALLED.code] = Status.ORBIT_STALLED.code
         solved = status == Status.CONVERGED.code
@@ -86,20 +82,16 @@ class OrbitArrays(Arrays):
             blank = complex(np.nan, np.nan) if values[name].dtype.kind == "c" else np.nan
             values[name][~solved] = blank
         values["neutral"][~solved] = 0
-        return cls(**values, **_events(solution, kept, solved))
+        return cls(**values, **_events(solution, solved))
 
 
-def _events(
-    solution: _core.Orbits, kept: NDArray[np.bool_], solved: NDArray[np.bool_]
-) -> dict[str, NDArray[Any]]:
-    """Return the events of the points that are kept and solved."""
+def _events(solution: _core.Orbits, solved: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
+    """Return the events of the points that are solved."""
     offsets, time, point, kind = solution.events
-    wanted = kept.copy()
-    wanted[kept] = solved
-    counts = np.where(wanted, np.diff(offsets), 0)
-    chosen = np.repeat(wanted, np.diff(offsets))
+    counts = np.where(solved, np.diff(offsets), 0)
+    chosen = np.repeat(solved, np.diff(offsets))
     return {
-        "event_offset": np.concatenate(([0], np.cumsum(counts[kept]))).astype(np.int64),
+        "event_offset": np.concatenate(([0], np.cumsum(counts))).astype(np.int64),
         "event_time": time[chosen],
         "event_point": point[chosen],
         "event_kind": kind[chosen],

@@ -22,6 +22,7 @@ class Status(StrEnum):
     HARMONICS_LIMIT = "harmonics limit"
     ORBIT_STALLED = "orbit stalled"
     SAMPLES_LIMIT = "samples limit"
+    STEPS_LIMIT = "steps limit"
 
     @classmethod
     def from_code(cls, code: int) -> Status:
@@ -31,17 +32,16 @@ class Status(StrEnum):
         ----------
         code : int
             0 converged, 1 stalled, 2 singular, 3 not computed, 4 harmonics limit,
-            5 orbit stalled, 6 samples limit.
+            5 orbit stalled, 6 samples limit, 7 steps limit.
 
         Raises
         ------
         ModelError
             If there is no such status.
         """
-        members = tuple(cls)
-        if not 0 <= code < len(members):
-            raise ModelError(f"status {code} is unknown; known: 0 to {len(members) - 1}")
-        return members[code]
+        if not 0 <= code < len(_MEMBERS):
+            raise ModelError(f"status {code} is unknown; known: 0 to {len(_MEMBERS) - 1}")
+        return _MEMBERS[code]
 
     @property
     def code(self) -> int:
@@ -63,6 +63,8 @@ class Status(StrEnum):
         """Cause and next action, one sentence each."""
         return _ADVICE[self]
 
+
+_MEMBERS = tuple(Status)
 
 _ADVICE = {
     Status.CONVERGED: (
@@ -94,5 +96,10 @@ _ADVICE = {
         "max_samples was reached before the sampling error of the marched friction laws met its "
         "share of the tolerance. "
         "Read error_estimate, and raise max_samples or tolerance, or evaluate the laws exactly."
+    ),
+    Status.STEPS_LIMIT: (
+        "The orbit was not found within the steps that it is granted: the motion does not settle, "
+        "or some of it is much faster than omega. See with transient whether it settles, condense "
+        "light dofs statically, or balance harmonics."
     ),
 }

@@ -1,0 +1,130 @@
+"""Ctrl-C while an analysis runs: heeded where what was computed can be kept."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType, TracebackType
+from typing import Any, Self, TypeVar
+
+from stickslip.errors import Interrupted
+
+__all__ = ["SIGNALS", "Interruption", "stopped"]
+
+SIGNALS = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
+"""Signals that end an analysis, where a handler in Python is installed for them."""
+
+_IMPATIENT = 0.5
+"""Seconds after which a second signal is one of its own, not an echo of the first."""
+
+Kind = TypeVar("Kind")
+
+
+class Interruption:
+    """A block in which signals wait until what was computed is safe.
+
+    Between the end of the core's work and the result, a `KeyboardInterrupt` at any line would lose
+    both. So signals are noted, and their handlers called when the core asks how to go on, while the
+    caller's own callback runs, and at the end. A second signal, half a second later or more, is
+    heeded at once. Signals that are ignored or have no handler in Python are left alone, and all of
+    them outside the main thread, which alone receives them.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Called with the share of the work done.
+    """
+
+    def __init__(self, progress: Callable[[float], None] | None = None) -> None:
+        self._progress = progress
+        self._handlers: dict[int, Callable[[int, FrameType | None], Any]] = {}
+        self._noted: tuple[int, float] | None = None
+        self._at_once = False
+
+    def __enter__(self) -> Self:
+        if threading.current_thread() is threading.main_thread():
+            for number in SIGNALS:
+                handler = signal.getsignal(number)
+                if callable(handler):
+                    self._handlers[number] = handler
+                    signal.signal(number, self._note)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        for number, handler in self._handlers.items():
+            signal.signal(number, handler)
+        if not isinstance(error, KeyboardInterrupt):
+            self.heed()
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        again = self._noted is not None and time.monotonic() > self._noted[1] + _IMPATIENT
+        if self._at_once or again:
+            self._noted = None
+            self._handlers[number](number, frame)
+        elif self._noted is None:
+            self._noted = number, time.monotonic()
+
+    def heed(self) -> None:
+        """Call the handler of a signal that was noted.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            By the handler, as Python's own does.
+        """
+        if self._noted is not None:
+            number, self._noted = self._noted[0], None
+            self._handlers[number](number, None)
+
+    @contextmanager
+    def at_once(self) -> Iterator[None]:
+        """Heed signals at any line of a block that can be left anywhere."""
+        before, self._at_once = self._at_once, True
+        try:
+            self.heed()
+            yield
+        finally:
+            self._at_once = before
+
+    def __call__(self, share: float) -> None:
+        """Heed signals, and tell how much of the work is done."""
+        self.heed()
+        if self._progress is not None:
+            with self.at_once():
+                self._progress(share)
+
+    def completed(self, result: Kind, what: str) -> Kind:
+        """Tell that all is done, and return the result.
+
+        Raises
+        ------
+        Interrupted
+            If a signal came after the last point; it holds the complete result.
+        """
+        try:
+            self(1.0)
+        except KeyboardInterrupt:
+            raise Interrupted(
+                f"{what} interrupted when all was computed; the result of this exception is "
+                "complete",
+                result,
+            ) from None
+        return result
+
+
+def stopped(what: str, count: str, result: object, advice: str = "") -> Interrupted:
+    """Return the exception of an analysis that was stopped, which holds what was computed."""
+    return Interrupted(
+        f"{what} interrupted after {count}, which the result of this exception holds{advice}",
+        result,
+    )
