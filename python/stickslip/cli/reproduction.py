@@ -10,7 +10,7 @@ import typer
 
 from stickslip.cli.commands import app
 from stickslip.cli.guard import Command, guarded
-from stickslip.files import make_folder
+from stickslip.files import make_folder, require_writable
 
 __all__ = ["reproduce"]
 
@@ -49,6 +49,7 @@ def reproduce(
         return
     wanted = chosen(names)
     make_folder(out)
+    require_writable(out)
     resolution = COARSE if coarse else FULL
     for done, item in enumerate(wanted):
         begin = time.perf_counter()
