@@ -72,11 +72,14 @@ def test_a_second_contact_of_the_same_name_is_refused(folder):
     [
         (["run", "none.toml"], "error: none.toml: no such study file"),
         (["run", "."], "error: .: is a folder; give the name of a file in it"),
-        (["run", "study.toml", "--out", "study.toml"], "error: study.toml: File exists"),
+        (
+            ["run", "study.toml", "--out", "study.toml"],
+            "error: study.toml: cannot be made (File exists)",
+        ),
         (["show", "none.nc"], "error: none.nc: no such file"),
         (["show", "study.toml"], "error: study.toml: "),
         (["plot", "study.toml"], "error: study.toml: "),
-        (["schema", "--out", "none/x.json"], "error: none/x.json: No such file or directory"),
+        (["schema", "--out", "none/x.json"], "error: none/x.json: there is no folder none;"),
     ],
 )
 def test_a_bad_argument_ends_with_one_line_and_exit_code_2(folder, arguments, message):

@@ -222,7 +222,7 @@ def test_failed_write_leaves_the_old_file(tmp_path, monkeypatch):
     def broken(self, target):
         raise OSError("no space left")
 
-    monkeypatch.setattr("pathlib.Path.replace", broken)
+    monkeypatch.setattr("os.replace", broken)
     with pytest.raises(ss.ModelError, match="no space"):
         write(item, numbers, 1.0, COARSE, tmp_path)
     assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before

@@ -20,7 +20,7 @@ from pathlib import Path
 from stickslip.checks import is_reserved
 from stickslip.errors import ModelError
 
-__all__ = ["make_folder", "refusal", "require_place", "write"]
+__all__ = ["make_folder", "refusal", "require_place", "require_writable", "write"]
 
 _MARK, _END = ".stickslip-", ".part"
 _HOST = f"{zlib.crc32(platform.node().encode()):08x}"
@@ -37,6 +37,8 @@ _REMEDIES = {
     errno.EROFS: _CLOSED,
     errno.EACCES: _CLOSED,
     errno.EPERM: _CLOSED,
+    errno.EEXIST: "name a folder, not a file",
+    errno.ENOTDIR: "name a folder, not a file",
     errno.ENAMETOOLONG: "choose a shorter name",
 }
 
@@ -90,17 +92,27 @@ def require_place(target: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder and those above it, unless they are there, and see that it takes files.
+    """Make a folder and those above it, unless they are there.
 
     Raises
     ------
     ModelError
-        If it cannot be made, or no file can be made in it; better now than when all is computed.
+        If it cannot be made.
     """
     try:
         os.makedirs(folder, exist_ok=True)
     except OSError as error:
         raise refusal(folder, "made", error) from error
+
+
+def require_writable(folder: Path) -> None:
+    """Refuse a folder in which no file can be made; better now than when all is computed.
+
+    Raises
+    ------
+    ModelError
+        With the reason.
+    """
     probe = _beside(folder / "probe")
     try:
         _write_anew(probe, memoryview(b""))

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from stickslip.files import make_folder
+from stickslip.files import make_folder, require_writable
 
 __all__ = ["reproduce"]
 
@@ -40,6 +40,7 @@ def reproduce(
         return
     wanted = chosen(names)
     make_folder(out)
+    require_writable(out)
     resolution = COARSE if coarse else FULL
     for done, item in enumerate(wanted):
         begin = time.perf_counter()

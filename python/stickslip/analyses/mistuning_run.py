@@ -102,6 +102,10 @@ class Work:
         for name, (value, least, most) in checks.items():
             if value < least or value > most:
                 return f"{name} is {value:.6g}, outside {least:.6g} to {most:.6g}"
+        solved = Status.from_code(row.status).solved
+        found = [math.isfinite(one) for one in (row.omega, row.amplitude)]
+        if found != [solved] * 2 or (solved and row.harmonics == 0):
+            return f"it is {Status.from_code(row.status)}, and its numbers are not"
         return None
 
     def _take(self, place: tuple[int, ...], rows: Iterable[tuple[int, Row]], points: int) -> None:

@@ -270,7 +270,8 @@ class PatternStore:
         """Turn what the data base complains of into one line."""
         try:
             yield
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeError) as error:
+            # A damaged schema may be quoted in the message, which then is no text.
             cause = " ".join(str(error).split())
             remedy = _REMEDIES.get(getattr(error, "sqlite_errorcode", 0) & 0xFF)
             if remedy is not None:

@@ -21,7 +21,7 @@ import typer
 
 from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, count, guarded
 from stickslip.errors import Interrupted, ModelError
-from stickslip.files import make_folder, require_place, write
+from stickslip.files import make_folder, require_place, require_writable, write
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
@@ -132,6 +132,7 @@ def run(
     with clock("reading the study"):
         loaded = storing(Study.load(study), out)
         make_folder(out)
+        require_writable(out)
     curves = _compute(loaded, out, clock, quiet=quiet)
     if not quiet:
         with clock("refining peaks, printing"):

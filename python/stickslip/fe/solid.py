@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import os
+import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import file_path, real_number
 from stickslip.errors import ModelError
-from stickslip.files import write
+from stickslip.files import refusal, write
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -215,9 +216,16 @@ class Solid:
         file = file_path(path, "path")
         values = {name: np.asarray(value, dtype=np.float64) for name, value in fields.items()}
         cells = [("hexahedron20", self._vtk_cells)]
-        content = io.BytesIO()
-        meshio.Mesh(self.nodes, cells, point_data=values).write(content, file_format="vtu")
-        write(file, content.getbuffer())
+        mesh = meshio.Mesh(self.nodes, cells, point_data=values)
+        try:
+            # meshio writes to files by name only.
+            with tempfile.TemporaryDirectory() as folder:
+                made = Path(folder) / "mesh.vtu"
+                mesh.write(made)
+                content = made.read_bytes()
+        except OSError as error:
+            raise refusal(file, "written", error) from error
+        write(file, content)
 
     def _assembled(self, whole: NDArray[np.float64]) -> csc_array:
         """Add up matrices of elements, shape (elements, 20, 3, 20, 3)."""

@@ -26,6 +26,7 @@ class Bound(NamedTuple):
     """Largest value, or the dimension in which the entries are positions."""
 
 
+_TYPES = {kind: np.dtype(name) for kind, name in zip("fiub", ("f8", "i8", "u1", "?"), strict=True)}
 _COUNT = Bound("i", 0)
 _SIZE = Bound("f", 0.0)
 _SHARE = Bound("f", 0.0, 1.0 + 1e-6)  # sums of times are rounded
@@ -120,8 +121,8 @@ def require_bounds(dataset: xr.Dataset) -> None:
 
 
 def _require(name: str, values: NDArray[Any], bound: Bound, sizes: Mapping[Any, int]) -> None:
-    if values.dtype.kind != bound.kind:
-        raise ValueError(f"{name} holds {values.dtype.name} instead of kind '{bound.kind}'")
+    if values.dtype != _TYPES[bound.kind]:
+        raise ValueError(f"{name} holds {values.dtype.name} instead of {_TYPES[bound.kind].name}")
     most = sizes.get(bound.most, 0) - 1 if isinstance(bound.most, str) else bound.most
     outside = (values < bound.least) | (values > most)
     if outside.any():
