@@ -275,6 +275,8 @@ def _require_datasets(file: Path) -> None:
         elif number:
             kind = line.rstrip() if number == 1 else kind
             number += 1
+            if not kind[:6].strip().isdigit():
+                raise ModelError(f"{file}: a dataset without its number; the file is damaged")
             if number > _HEAD and kind == _TEXT and not _NUMBERS.fullmatch(line):
                 shown = brief(line.decode("latin-1").strip())
                 raise ModelError(f"{file}: {shown} holds no numbers; the file is damaged")
