@@ -4,6 +4,7 @@ import shutil
 import subprocess
 import sys
 
+import h5py
 import pytest
 
 import stickslip as ss
@@ -150,6 +151,27 @@ app(["run", "study.toml"])
     assert partial.interrupted
     assert partial.converged.all()
     assert 0 < partial.omega.size < 4000
+
+
+def test_a_complete_run_removes_what_an_interrupted_one_left(folder):
+    analysis = "omega = [170.0]\nharmonics = 3"
+    (folder / "study.toml").write_text('name = "beam"\n' + study_text(analysis))
+    assert invoke("run", "study.toml", "--no-plot").exit_code == 0
+    results = folder / "results"
+    first, *_ = sorted(results.iterdir())
+    partial = first.with_name(f"{first.stem}-partial.nc")
+    shutil.copy(first, partial)  # of a study of this name: it says that it is whole
+    assert invoke("run", "study.toml", "--no-plot").exit_code == 0
+    assert partial.exists()
+    with h5py.File(partial, "r+") as stored:
+        stored.attrs["interrupted"] = 1
+    (results / "other-partial.nc").write_text("of another study")
+    assert invoke("run", "study.toml", "--no-plot").exit_code == 0
+    assert not partial.exists()
+    assert (results / "other-partial.nc").exists()
+    partial.write_text("no result")
+    assert invoke("run", "study.toml", "--no-plot").exit_code == 0
+    assert partial.exists()
 
 
 @pytest.mark.parametrize(

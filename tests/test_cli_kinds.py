@@ -147,6 +147,10 @@ def test_certify_puts_the_error_into_the_file(folder):
     [
         (["--points", "some"], "--points = 'some': give a number, or all"),
         (["--points", "0"], "points: 0 lies below 1"),
+        (["--points", "1_0"], "--points = '1_0': give a number, or all"),
+        (["--points", "\u0661"], "--points = '\u0661': give a number, or all"),
+        (["--seed", "1_0"], "'1_0' is not a whole number"),
+        (["--seed", "\u0661"], "'\u0661' is not a whole number"),
         (["--seed", "-1"], "seed: -1 lies below 0"),
         (["--dof", "tpi"], "unknown dof 'tpi'; did you mean 'tip'?"),
         (["--out", "none/x.nc"], "there is no folder none; create it first"),

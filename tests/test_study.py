@@ -184,6 +184,66 @@ def test_a_study_file_that_cannot_be_read_is_named(name, content, message, tmp_p
         Study.load(tmp_path / name)
 
 
+@pytest.mark.parametrize("slip_force", ["1e400", "-1e400", "1e-400", "-0.1E-999"])
+def test_numbers_that_no_float_holds_are_refused(slip_force):
+    text = SMALL.replace("slip_force = 2", f"slip_force = {slip_force}")
+    with pytest.raises(ModelError, match=f"'{slip_force}' is too (small|large) for a number"):
+        Study.parse(text)
+    Study.parse(SMALL.replace("slip_force = 2", "slip_force = inf"))
+    Study.parse(SMALL.replace("slip_force = 2", "slip_force = 0e-400"))
+    assert Study.parse(SMALL.replace("slip_force = 2", "slip_force = 2_0")).model.contacts
+
+
+def test_harmonics_of_engine_orders_are_plain_digits():
+    disk = "[disk]\nsectors = 6\nengine_order = 1\nengine_orders = {%s = 2}\n"
+    Study.parse(SMALL + disk % "3")
+    for key in ('"1_0"', '"\u0663"', '"+3"'):
+        with pytest.raises(ModelError, match=r"is no harmonic; write \{3 = 6\}"):
+            Study.parse(SMALL + disk % key)
+
+
+@pytest.mark.parametrize("damping", ['"1_0"', '"3"', "inf", "nan", "-1", "true"])
+def test_damping_of_couplings_is_a_number(damping):
+    text = SMALL + "[disk]\nsectors = 6\nengine_order = 1\n[[coupling]]\ndof = 'tip'\n"
+    Study.parse(text + "stiffness = 1\ndamping = 3")
+    with pytest.raises(ModelError, match="coupling 1: damping"):
+        Study.parse(text + f"stiffness = 1\ndamping = {damping}")
+
+
+@pytest.mark.parametrize("name", ["nul", "AUX", "con.beam", "Lpt1", "com\u00b2", "prn "])
+def test_names_of_devices_are_refused(name, tmp_path):
+    with pytest.raises(ModelError, match="is that of a device on Windows; give the study another"):
+        Study.parse(f'name = "{name}"\n' + SMALL)
+    (tmp_path / f"{name}.toml").write_text(SMALL)
+    with pytest.raises(ModelError, match="is that of a device on Windows; give the study another"):
+        Study.load(tmp_path / f"{name}.toml")
+    for sound in ("null", "console", "beam.nul", "com", "com10"):
+        assert Study.parse(f'name = "{sound}"\n' + SMALL).name == sound
+
+
+def test_a_name_too_long_for_its_results_is_refused_before_they_are_computed(tmp_path):
+    with pytest.raises(ModelError, match="more than 150 bytes, too long for the names of result"):
+        Study.parse(f'name = "{"n" * 151}"\n' + SMALL)
+    (tmp_path / ("\u00fc" * 80 + ".toml")).write_text(SMALL)
+    with pytest.raises(ModelError, match="more than 150 bytes"):
+        Study.load(tmp_path / ("\u00fc" * 80 + ".toml"))
+    assert Study.parse(f'name = "{"n" * 150}"\n' + SMALL).name == "n" * 150
+
+
+@pytest.mark.parametrize("part", ["[", "{a = ", ".x", " . 'x'"])
+def test_what_nests_too_deep_is_refused(part):
+    start = "x" if "." in part else "x = "
+    with pytest.raises(ModelError, match="nest too deep"):
+        Study.parse(start + part * 10**5 + " = 1\n" + SMALL)
+
+
+def test_thousands_of_contacts_are_named_at_once():
+    contact = '[[contact]]\nlaw = "jenkins"\ndof = "tip"\nstiffness = 1\nslip_force = 1\n'
+    names = Study.parse(SMALL + 3000 * contact).model.contact_names
+    assert names[:3] == ("jenkins", "jenkins-2", "jenkins-3")
+    assert len(set(names)) == 3001
+
+
 def test_matrix_files_are_relative_to_the_study_and_named_when_missing_or_damaged(tmp_path):
     shutil.copytree(EXAMPLE, tmp_path / "beam")
     mass = tmp_path / "beam" / "mass.mtx"

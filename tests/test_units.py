@@ -1,4 +1,5 @@
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -38,6 +39,9 @@ from stickslip.units import quantity
         ("0.026 ms", "s", 2.6e-5),
         ("10 µm", "m", 1e-5),
         ("3 N*m", "J", 3.0),
+        ("0.0e-400 N", "N", 0.0),
+        ("5\u00a0N", "N", 5.0),
+        ("1e-300 N", "N", 1e-300),
     ],
 )
 def test_a_number_or_a_text_with_a_unit_is_read_in_si(value, unit, expected):
@@ -57,6 +61,16 @@ def test_a_number_or_a_text_with_a_unit_is_read_in_si(value, unit, expected):
         ("twenty N", "N", "'twenty N' is not a force"),
         ("nan N", "N", "'nan N' is not a force"),
         ("1e400 N", "N", "'1e400 N' is not finite"),
+        ("1e-400 N", "N", "'1e-400 N' is too small"),
+        ("-0.02e-400 N", "N", "'-0.02e-400 N' is too small"),
+        ("1e-320 nN", "N", "'1e-320 nN' is too small"),
+        (Fraction(1, 10**400), "N", "is too small"),
+        ("1_0 N", "N", "'1_0 N' has an unknown unit '_0 N'"),
+        ("\u0661\u0662 N", "N", "is not a force"),
+        ("1\u0662 N", "N", "has an unknown unit"),
+        ("1 " + "*".join(["N"] * 3000), "N", "has a unit of 5999 characters"),
+        ("1 " + "(" * 3000 + "N" + ")" * 3000, "N", "has a unit of 6001 characters"),
+        ("1" * 5000 + " N", "N", "is not finite"),
         ("20,5 N", "N", "'20,5 N' has a decimal comma"),
         ("20.3 n", "N", "has an unknown unit 'n'"),
         ("20.3 Newtons!", "N", "has an unknown unit 'Newtons!'"),

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, cast
 
 import typer
 
-from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, count, guarded
+from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded, integer
 from stickslip.errors import Interrupted, ModelError
 from stickslip.files import make_folder, require_place, require_writable, write
 
@@ -386,7 +386,7 @@ def certify(
         str, typer.Option(help="How many points, chosen at random, or 'all'.", metavar="NUMBER")
     ] = "20",
     seed: Annotated[
-        int, typer.Option(help="Of the random choice.", metavar="INTEGER", parser=count)
+        int, typer.Option(help="Of the random choice.", metavar="INTEGER", parser=integer)
     ] = 0,
     dof: Annotated[
         list[str] | None, typer.Option(help="DOF to compare, repeatable; default: all.")
@@ -422,7 +422,7 @@ def _points(text: str) -> int | Literal["all"]:
     if text == "all":
         return "all"
     try:
-        return count(text)
+        return integer(text)
     except typer.BadParameter:
         raise ModelError(f"--points = {text!r}: give a number, or all") from None
 

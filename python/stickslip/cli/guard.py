@@ -16,7 +16,7 @@ from typer.core import TyperCommand, TyperGroup
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 
-__all__ = ["NOT_CONVERGED", "Command", "Commands", "count", "guarded"]
+__all__ = ["NOT_CONVERGED", "Command", "Commands", "guarded", "integer"]
 
 NOT_CONVERGED, REFUSED, DEFECT, STOPPED = 1, 2, 70, 130
 
@@ -89,10 +89,10 @@ class Commands(TyperGroup):
         sys.exit(code if isinstance(code, int) else 0)
 
 
-def count(written: object) -> int:
-    """Read an option that counts; Python's own reading takes 1_0 and the digits of all scripts."""
+def integer(written: object) -> int:
+    """Read an option; Python's own reading takes 1_0 and the digits of all scripts."""
     text = str(written)
-    if not re.fullmatch("[0-9]{1,18}", text):
+    if not re.fullmatch("-?[0-9]{1,18}", text):
         raise typer.BadParameter(f"{brief(text)} is not a whole number; give 0, 1, ...")
     return int(text)
 

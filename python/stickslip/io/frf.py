@@ -28,6 +28,9 @@ Quantity: TypeAlias = Literal["displacement", "velocity", "acceleration"]
 _QUANTITIES = {8: "displacement", 11: "velocity", 12: "acceleration"}
 _DERIVATIVES = {"displacement": 0, "velocity": 1, "acceleration": 2}
 _FREQUENCY, _FORCE, _FRF = 18, 13, 4
+_END, _TEXT, _HEAD = b"    -1", b"    58", 13
+"""What ends and begins a dataset, what text says of itself, and its lines before the numbers."""
+_NUMBERS = re.compile(rb"[-+.0-9eEdD \t]*")
 _NODE_DOF = re.compile(r"([1-9]\d{0,9})\.([1-6])(-?)")
 _LONGEST = 10
 """Characters that the format leaves for the name of an entity."""
@@ -153,6 +156,7 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
     if not is_file(file):
         raise ModelError(f"{file}: no such file; check the path")
     pyuff = _pyuff(file)
+    _require_datasets(file)
     try:
         universal = pyuff.UFF(str(file))
         kinds = np.atleast_1d(universal.get_set_types())
@@ -163,7 +167,6 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
         raise ModelError(
             f"{file}: cannot be read as Universal File: {cause}; write the file again"
         ) from error
-    _require_end(file)
     if not found:
         raise ModelError(f"{file}: it holds no frequency response function (dataset 58, type 4)")
     return tuple(found)
@@ -261,9 +264,21 @@ def _dataset(pyuff: ModuleType, frf: Frf) -> object:
     )
 
 
-def _require_end(file: Path) -> None:
-    """Refuse a file whose last dataset does not end."""
-    with file.open("rb") as stream:
-        content = stream.read()
-    if not content.rstrip().endswith(b"    -1") or content.count(b"    -1") < 2:
+def _require_datasets(file: Path) -> None:
+    """Refuse what pyuff passes over: a lost delimiter, and characters that are no numbers."""
+    kind, number, ended = b"", 0, False
+    for line in file.read_bytes().splitlines():
+        if line.rstrip().endswith(_END):
+            ended, number = number > 0, 0 if number else 1
+        elif number:
+            kind = line.rstrip() if number == 1 else kind
+            number += 1
+            if not kind[:6].strip().isdigit():
+                raise ModelError(f"{file}: a dataset without its number; the file is damaged")
+            if number > _HEAD and kind == _TEXT and not _NUMBERS.fullmatch(line):
+                shown = brief(line.decode("latin-1").strip())
+                raise ModelError(f"{file}: {shown} holds no numbers; the file is damaged")
+        elif line.strip():
+            raise ModelError(f"{file}: a line stands outside the datasets; the file is damaged")
+    if number or not ended:
         raise ModelError(f"{file}: the last dataset does not end; the file was cut short")

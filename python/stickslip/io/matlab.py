@@ -26,8 +26,9 @@ _SPARSE, _NUMERIC = 5, range(6, 16)
 _HEADER = 128
 _KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 12: "i8", 13: "u8"}
 """Whole numbers, by type of element."""
-_WIDTHS_4 = (8, 4, 4, 2, 2, 1)
-"""Bytes per number in version 4, by the tens of its type."""
+_KINDS_4 = ("f8", "f4", "i4", "i2", "u2", "u1")
+"""Numbers of version 4, by the tens of its type."""
+_SPARSE_4 = 2
 
 
 def require_sound(path: Path) -> None:
@@ -150,9 +151,25 @@ def _require_version_4(content: memoryview) -> None:
             raise ValueError("the file ends inside the header of a matrix")
         kind, rows, columns, imaginary, name = struct.unpack_from(f"{order}5i", content, place)
         width = kind // 10 % 10
-        sound = 0 <= kind < 5000 and width < len(_WIDTHS_4) and imaginary in (0, 1)
+        sound = 0 <= kind < 5000 and width < len(_KINDS_4) and imaginary in (0, 1)
         if not sound or min(rows, columns, name) < 0:
             raise ValueError("the header of a matrix of version 4 is damaged")
-        place += 20 + name + rows * columns * _WIDTHS_4[width] * (1 + imaginary)
-    if place != len(content):
-        raise ValueError(f"{place} bytes announced, {len(content)} present")
+        begin, count = place + 20 + name, rows * columns
+        dtype = np.dtype(f"{order}{_KINDS_4[width]}")
+        place = begin + count * dtype.itemsize * (1 + imaginary)
+        if place > len(content):
+            raise ValueError(f"{place} bytes announced, {len(content)} present")
+        if kind % 10 == _SPARSE_4:
+            table = np.frombuffer(content, dtype, count, begin).reshape(columns, rows)
+            _require_triplets(table.astype(np.float64))
+
+
+def _require_triplets(table: NDArray[np.float64]) -> None:
+    """Check a sparse matrix of version 4: rows, columns, values, and behind them its size."""
+    if table.shape[0] not in (3, 4) or not table.shape[1]:
+        raise ValueError(f"a sparse matrix of shape {table.shape[::-1]}")
+    for index in table[:2]:
+        if not ((index >= 1) & (index <= index[-1]) & (index == np.rint(index))).all():
+            raise ValueError(f"a row or column index lies outside 1 to {index[-1]:g}")
+    if np.unique(table[:2, :-1], axis=1).shape[1] < table.shape[1] - 1:
+        raise ValueError("an entry is given twice")

@@ -131,7 +131,7 @@ def _header(line: str) -> tuple[str, bool, str]:
 def _sizes(line: str, count: int) -> list[int]:
     words = line.split()
     if len(words) != count or not all(word.isdigit() and word.isascii() for word in words):
-        raise ValueError(f"size line {line.strip()[:60]!r} does not hold {count} counts")
+        raise ValueError(f"size line {line.strip()[:30]!r} does not hold {count} counts")
     return list(map(int, words))
 
 

@@ -6,7 +6,7 @@ count from 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Iterator, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, count
@@ -355,16 +355,13 @@ def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
             )
         if contact.name is not None:
             taken[contact.name] = number
-    names: list[str] = []
-    for contact in contacts:
-        name = contact.name or _free_name(contact.law, taken.keys() | set(names))
-        names.append(name)
-    return tuple(contact.named(name) for contact, name in zip(contacts, names, strict=True))
+    free = {law: _free_names(law, taken.keys()) for law in {contact.law for contact in contacts}}
+    return tuple(contact.named(contact.name or next(free[contact.law])) for contact in contacts)
 
 
-def _free_name(law: str, taken: Set[str]) -> str:
+def _free_names(law: str, taken: Set[str]) -> Iterator[str]:
     numbered = (f"{law}-{number}" for number in count(2))
-    return next(name for name in chain([law], numbered) if name not in taken)
+    return (name for name in chain([law], numbered) if name not in taken)
 
 
 def _require_position(kind: str, position: int, size: int, owner: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 __all__ = ["Case", "Study", "json_schema", "notable_dofs"]
 
 _SHOWN_DOFS = 4
+# tomllib takes hours for a key of 100 000 parts.
+_DEEP = re.compile(r"(?<![\w.'\"-])(?:[\w'\"-]+[ \t]*\.[ \t]*){40}")
 _LONGEST_NAME = 150
 """Bytes; file names have at most 255, with level, ending and marks of unfinished files."""
 
@@ -108,7 +111,7 @@ class Study:
         if not is_file(path):
             raise ModelError(f"{path}: no such study file{_neighbour(path)}")
         try:
-            text = path.read_text(encoding="utf-8-sig")
+            text = path.read_text(encoding="utf-8")
         except UnicodeDecodeError:
             raise ModelError(f"{path}: is not text in UTF-8; give a TOML study file") from None
         except OSError as error:
@@ -240,6 +243,10 @@ def json_schema() -> dict[str, object]:
 
 
 def _read(text: str) -> StudyTables:
+    text = text.removeprefix("\ufeff")
+    if deep := _DEEP.search(text):
+        line = text.count("\n", 0, deep.start()) + 1
+        raise ModelError(f"line {line}: {brief(deep[0])}: keys nest too deep")
     try:
         content = tomllib.loads(text, parse_float=_real)
     except tomllib.TOMLDecodeError as error:
