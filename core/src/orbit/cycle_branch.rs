@@ -142,11 +142,11 @@ impl Finder<'_> {
             let mut out = self.result(&traced, cycles, highest);
             out.profile.evaluations = curve.evaluations;
             if let (Some(orbits), true) = (orbits, settings.stability) {
-                let starts = out
-                    .cycles
-                    .iter()
-                    .map(|cycle| orbits.start(&cycle.response, cycle.value, scale))
-                    .collect();
+                let start = |cycle: &Cycle| {
+                    let wanted = (!interrupted()).then_some(cycle)?;
+                    orbits.start(&wanted.response, wanted.value, scale)
+                };
+                let starts = out.cycles.iter().map(start).collect();
                 judge(&self.judge(orbits, false), starts, &mut out, interrupted, share);
             }
             return Ok(out);

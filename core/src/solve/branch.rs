@@ -186,6 +186,9 @@ impl Branch {
             (place(after), after.to_vec()),
         ];
         for _ in 0..80 {
+            if curve.interrupted() {
+                break;
+            }
             let best = (1..known.len() - 1).max_by(|&i, &j| {
                 (sign * parameter(&known[i].1)).total_cmp(&(sign * parameter(&known[j].1)))
             })?;
