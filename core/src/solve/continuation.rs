@@ -37,8 +37,6 @@ const GROWTH: f64 = 1.6;
 const BEND: f64 = 0.95;
 /// … unless it is so short, against the longest, that the bend must be a corner.
 const CORNER: f64 = 2e-3;
-/// Cosine at a corner below which the point found lies behind.
-const BEHIND: f64 = -0.95;
 /// Points in a row at steps below a hundredth of the longest after which the walk only crawls: the
 /// equations are worse than their unknowns are known.
 const CRAWL: usize = 150;
@@ -66,6 +64,9 @@ pub struct Continuation {
     /// Jumps over places where short steps failed.
     pub jumps: usize,
     direction: Vec<f64>,
+    /// Sign of the determinant of the equations bordered by the tangent in the direction of the
+    /// walk: it is the same all along a curve, around folds and past corners.
+    orientation: f64,
     step: f64,
     steps: Steps,
     /// Short steps in a row.
@@ -81,13 +82,15 @@ impl Continuation {
         let weights = curve.weights(&start);
         let mut ahead = vec![0.0; start.len()];
         *ahead.last_mut()? = sign;
-        let direction = tangent(curve, &start, &weights, &ahead).unwrap_or(ahead);
+        let (direction, orientation) =
+            oriented(curve, &start, &weights, &ahead).unwrap_or((ahead, 1.0));
         let first = steps.first;
         Some(Self {
             point: start,
             iterations: 0,
             jumps: 0,
             direction,
+            orientation,
             step: first,
             steps,
             short: 0,
@@ -98,6 +101,10 @@ impl Continuation {
     pub(super) fn restart(&mut self, curve: &mut dyn Curve, before: &[f64], point: &[f64]) {
         self.point = before.to_vec();
         self.move_to(curve, point.to_vec());
+        let weights = curve.weights(point);
+        if let Some((_, orientation)) = oriented(curve, point, &weights, &self.direction.clone()) {
+            self.orientation = orientation;
+        }
     }
 
     /// Takes one step.
@@ -106,6 +113,7 @@ impl Continuation {
         let unit = normalised(&self.direction, &weights);
         self.short = if self.step < 0.01 * self.steps.longest { self.short + 1 } else { 0 };
         if self.short > CRAWL {
+            if std::env::var("DBG").is_ok() {eprintln!("CRAWL at {:?}", &self.point[self.point.len()-2..]);}
             return Advance::Stalled;
         }
         while self.step >= self.steps.shortest {
@@ -118,13 +126,20 @@ impl Continuation {
                 let corner = self.step <= CORNER * self.steps.longest;
                 if distance < 3.0 * self.step && (cosine > BEND || (corner && cosine > 0.0)) {
                     let turn = self.turn(curve, &point, &weights);
-                    let bend = turn.as_ref().map_or(-1.0, |(cosine, _)| *cosine);
-                    if bend > BEND || corner {
+                    let (bend, orientation) =
+                        turn.as_ref().map_or((-1.0, self.orientation), |(bend, _, sign)| (*bend, *sign));
+                    let same = orientation == self.orientation;
+                    if (bend > BEND && same) || corner {
                         let easy = iterations <= EASY && cosine.min(bend) > 0.5 * (1.0 + BEND);
                         let factor = if easy { GROWTH } else { 1.0 };
                         self.move_to(curve, point);
-                        if let Some((_, tangent)) = turn.filter(|_| bend > BEND) {
-                            self.direction = tangent;
+                        if let Some((_, tangent, orientation)) = turn {
+                            // Bifurcations change it.
+                            if orientation!=self.orientation && std::env::var("DBG").is_ok() {eprintln!("flip at {:?} step {} bend {bend}", &self.point[self.point.len()-2..], self.step);}
+                            self.orientation = orientation;
+                            if bend > BEND {
+                                self.direction = tangent;
+                            }
                         }
                         self.step = (factor * self.step).min(self.steps.longest);
                         return Advance::Point;
@@ -143,17 +158,18 @@ impl Continuation {
         curve: &mut dyn Curve,
         point: &[f64],
         weights: &[f64],
-    ) -> Option<(f64, Vec<f64>)> {
+    ) -> Option<(f64, Vec<f64>, f64)> {
         let way: Vec<f64> = point.iter().zip(&self.point).map(|(a, b)| a - b).collect();
-        let tangent = tangent(curve, point, weights, &way)?;
+        let (tangent, orientation) = oriented(curve, point, weights, &way)?;
         let rest = vec![0.0; way.len()];
         let (a, b) = (difference(&way, &rest, weights), difference(&tangent, &rest, weights));
         let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
-        Some((product / norm(&a).max(f64::MIN_POSITIVE), tangent))
+        Some((product / norm(&a).max(f64::MIN_POSITIVE), tangent, orientation))
     }
 
     /// Looks around where short steps fail: on spheres about the last point, along the secant and
-    /// along the tangents here and a little ahead, where other equations may hold.
+    /// along the tangents here and a little ahead, where other equations may hold. The curve leaves
+    /// a corner in one direction alone, with the orientation that it came with.
     fn jump(&mut self, curve: &mut dyn Curve, unit: &[f64], weights: &[f64]) -> Advance {
         for share in JUMPS {
             let radius = share * self.steps.longest;
@@ -165,18 +181,23 @@ impl Continuation {
                 let found = self.correct(curve, &direction, weights, radius, true);
                 let Some((point, _)) = found else { continue };
                 let (cosine, distance) = self.compare(&point, unit, weights);
-                let lies_ahead = cosine > BEHIND && (distance - radius).abs() < 0.5 * radius;
+                let turn = self.turn(curve, &point, weights);
+                let ahead = turn.as_ref().is_some_and(|(_, _, sign)| *sign == self.orientation);
+                if std::env::var("DBG").is_ok() {eprintln!("  cand r={radius} cos={cosine} bend {:?} ahead={ahead} z {:?}", turn.map(|t|t.0), &point[point.len()-2..]);}
+                let lies_ahead = ahead && (distance - radius).abs() < 0.5 * radius;
                 if lies_ahead && best.as_ref().is_none_or(|(known, _)| cosine > *known) {
                     best = Some((cosine, point));
                 }
             }
-            if let Some((_, point)) = best {
+            if let Some((cosine, point)) = best {
+                if std::env::var("DBG").is_ok() {eprintln!("jump at {:?} r={radius} cos={cosine}", &self.point[self.point.len()-2..]);}
                 self.move_to(curve, point);
                 self.jumps += 1;
                 self.step = (0.5 * radius).max(2.0 * self.steps.shortest);
                 return Advance::Point;
             }
         }
+        if std::env::var("DBG").is_ok() {eprintln!("STALL at {:?}", &self.point[self.point.len()-2..]);}
         Advance::Stalled
     }
 
@@ -260,9 +281,19 @@ pub fn tangent(
     weights: &[f64],
     ahead: &[f64],
 ) -> Option<Vec<f64>> {
+    oriented(curve, z, weights, ahead).map(|(tangent, _)| tangent)
+}
+
+/// The tangent with the orientation of the curve in its direction.
+fn oriented(
+    curve: &mut dyn Curve,
+    z: &[f64],
+    weights: &[f64],
+    ahead: &[f64],
+) -> Option<(Vec<f64>, f64)> {
     let unit = normalised(ahead, weights);
-    let tangent = Bordered::tangent(curve, z, weights, &unit)?;
-    Some(normalised(&tangent, weights))
+    let (tangent, orientation) = Bordered::tangent(curve, z, weights, &unit)?;
+    Some((normalised(&tangent, weights), orientation))
 }
 
 /// The point of the curve with its parameter at `value`, from a start nearby.
