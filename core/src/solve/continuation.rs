@@ -37,6 +37,8 @@ const GROWTH: f64 = 1.6;
 const BEND: f64 = 0.95;
 /// … unless it is so short, against the longest, that the bend must be a corner.
 const CORNER: f64 = 2e-3;
+/// Cosine above which a step that short goes straight on.
+const STRAIGHT: f64 = 0.999;
 /// Points in a row at steps below a hundredth of the longest after which the walk only crawls: the
 /// equations are worse than their unknowns are known.
 const CRAWL: usize = 150;
@@ -126,23 +128,23 @@ impl Continuation {
                 let corner = self.step <= CORNER * self.steps.longest;
                 if distance < 3.0 * self.step && (cosine > BEND || (corner && cosine > 0.0)) {
                     let turn = self.turn(curve, &point, &weights);
-                    let (bend, orientation) =
-                        turn.as_ref().map_or((-1.0, self.orientation), |(bend, _, sign)| (*bend, *sign));
-                    let same = orientation == self.orientation;
-                    if (bend > BEND && same) || corner {
-                        let easy = iterations <= EASY && cosine.min(bend) > 0.5 * (1.0 + BEND);
-                        let factor = if easy { GROWTH } else { 1.0 };
-                        self.move_to(curve, point);
-                        if let Some((_, tangent, orientation)) = turn {
-                            // Bifurcations change it.
-                            if orientation!=self.orientation && std::env::var("DBG").is_ok() {eprintln!("flip at {:?} step {} bend {bend}", &self.point[self.point.len()-2..], self.step);}
+                    if let Some((bend, tangent, orientation)) = turn {
+                        let straight = cosine.min(bend);
+                        let same = orientation == self.orientation;
+                        // What changes the orientation and does not bend is a bifurcation.
+                        let passes = if corner { same || straight > STRAIGHT } else { same && bend > BEND };
+                        if passes {
+                            let easy = iterations <= EASY && straight > 0.5 * (1.0 + BEND);
+                            if !same && std::env::var("DBG").is_ok() {eprintln!("flip at {:?} step {} bend {bend}", &self.point[self.point.len()-2..], self.step);}
+                            self.move_to(curve, point);
                             self.orientation = orientation;
                             if bend > BEND {
                                 self.direction = tangent;
                             }
+                            let factor = if easy { GROWTH } else { 1.0 };
+                            self.step = (factor * self.step).min(self.steps.longest);
+                            return Advance::Point;
                         }
-                        self.step = (factor * self.step).min(self.steps.longest);
-                        return Advance::Point;
                     }
                 }
             }
