@@ -48,7 +48,9 @@ impl Bordered<'_> {
             }
             curve.jacobian(z, &mut matrix);
             self.border(z, &mut matrix);
-            let Some((step, _)) = solve(&mut matrix, &residual, self.weights) else { return failed };
+            let Some((step, _)) = solve(&mut matrix, &residual, self.weights) else {
+                return failed;
+            };
             let length = norm(&weighted(&step, self.weights));
             if !length.is_finite() {
                 return failed;

@@ -2,8 +2,10 @@
 //!
 //! The curve is given as a [`Curve`]: one equation less than unknowns, of which the last one is the
 //! parameter. Where the equations are only piecewise smooth the curve has corners: its tangent
-//! jumps, and so a turn counts only if the point found lies ahead and the curve passes through it
-//! in the direction of the way there (Allgower and Georg 2003, chapter 6, for the smooth case).
+//! jumps, by more than a right angle too. What stays is the orientation: the sign of the determinant
+//! of the equations bordered by the tangent is the same all along a curve, around folds and past
+//! corners (Allgower and Georg 2003, chapters 2 and 12). So a point counts only if the curve passes
+//! through it in the direction of the way there with this orientation.
 
 use super::bordered::{Bordered, Condition};
 use super::curve::Curve;
@@ -115,7 +117,6 @@ impl Continuation {
         let unit = normalised(&self.direction, &weights);
         self.short = if self.step < 0.01 * self.steps.longest { self.short + 1 } else { 0 };
         if self.short > CRAWL {
-            if std::env::var("DBG").is_ok() {eprintln!("CRAWL at {:?}", &self.point[self.point.len()-2..]);}
             return Advance::Stalled;
         }
         while self.step >= self.steps.shortest {
@@ -132,10 +133,10 @@ impl Continuation {
                         let straight = cosine.min(bend);
                         let same = orientation == self.orientation;
                         // What changes the orientation and does not bend is a bifurcation.
-                        let passes = if corner { same || straight > STRAIGHT } else { same && bend > BEND };
+                        let passes =
+                            if corner { same || straight > STRAIGHT } else { same && bend > BEND };
                         if passes {
                             let easy = iterations <= EASY && straight > 0.5 * (1.0 + BEND);
-                            if !same && std::env::var("DBG").is_ok() {eprintln!("flip at {:?} step {} bend {bend}", &self.point[self.point.len()-2..], self.step);}
                             self.move_to(curve, point);
                             self.orientation = orientation;
                             if bend > BEND {
@@ -185,21 +186,18 @@ impl Continuation {
                 let (cosine, distance) = self.compare(&point, unit, weights);
                 let turn = self.turn(curve, &point, weights);
                 let ahead = turn.as_ref().is_some_and(|(_, _, sign)| *sign == self.orientation);
-                if std::env::var("DBG").is_ok() {eprintln!("  cand r={radius} cos={cosine} bend {:?} ahead={ahead} z {:?}", turn.map(|t|t.0), &point[point.len()-2..]);}
                 let lies_ahead = ahead && (distance - radius).abs() < 0.5 * radius;
                 if lies_ahead && best.as_ref().is_none_or(|(known, _)| cosine > *known) {
                     best = Some((cosine, point));
                 }
             }
-            if let Some((cosine, point)) = best {
-                if std::env::var("DBG").is_ok() {eprintln!("jump at {:?} r={radius} cos={cosine}", &self.point[self.point.len()-2..]);}
+            if let Some((_, point)) = best {
                 self.move_to(curve, point);
                 self.jumps += 1;
                 self.step = (0.5 * radius).max(2.0 * self.steps.shortest);
                 return Advance::Point;
             }
         }
-        if std::env::var("DBG").is_ok() {eprintln!("STALL at {:?}", &self.point[self.point.len()-2..]);}
         Advance::Stalled
     }
 
@@ -393,5 +391,65 @@ mod tests {
         let (z, _) = at_parameter(&mut curve, &[-0.8, 0.4], 0.19, 20).unwrap();
         assert!((z[0] + 0.9).abs() < 1e-12);
         assert!(at_parameter(&mut curve, &[-0.3, 0.9], 1.1, 20).is_none());
+    }
+
+    /// One equation in `x` and the parameter.
+    struct Plane<F: Fn(f64, f64) -> [f64; 3]>(F);
+
+    impl<F: Fn(f64, f64) -> [f64; 3]> Curve for Plane<F> {
+        fn unknowns(&self) -> usize {
+            2
+        }
+
+        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
+            out[0] = self.0(z[0], z[1])[0];
+        }
+
+        fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+            let [_, by_x, by_p] = self.0(z[0], z[1]);
+            (out[(0, 0)], out[(0, 1)]) = (by_x, by_p);
+        }
+
+        fn weights(&self, _: &[f64]) -> Vec<f64> {
+            vec![1.0, 1.0]
+        }
+
+        fn accept(&mut self, _: &[f64]) {}
+    }
+
+    /// `p = −1 … 0` on `x = 0`, and back along `x = p/4`: the boundary of a wedge.
+    #[test]
+    fn a_walk_passes_a_corner_that_turns_by_more_than_a_right_angle() {
+        let wedge = |x: f64, p: f64| {
+            let (a, b) = (-x, x - 0.25 * p);
+            if a < b {
+                [a, -1.0, 0.0]
+            } else {
+                [b, 1.0, -0.25]
+            }
+        };
+        let mut curve = Plane(wedge);
+        let mut walk =
+            Continuation::new(&mut curve, vec![0.0, -1.0], 1.0, Steps::default()).unwrap();
+        for _ in 0..200 {
+            assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
+            if walk.point[1] < -0.9 && walk.point[0] < -0.1 {
+                return;
+            }
+        }
+        panic!("{:?}", walk.point);
+    }
+
+    /// `x² − p² = ε²`: two branches that nearly cross, and are left to either side of each other.
+    #[test]
+    fn a_walk_does_not_change_over_to_a_branch_that_comes_near() {
+        let hyperbola = |x: f64, p: f64| [x * x - p * p - 1e-6, 2.0 * x, -2.0 * p];
+        let mut curve = Plane(hyperbola);
+        let start = vec![-(1.0_f64 + 1e-6).sqrt(), -1.0];
+        let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default()).unwrap();
+        while walk.point[1] < 1.0 {
+            assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
+            assert!(walk.point[0] < 0.0, "{:?}", walk.point);
+        }
     }
 }

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.analyses.cycle_settings import CycleSettings
+from stickslip.analyses.cycle_settings import MOST_HARMONICS, CycleSettings
 from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
 
@@ -14,14 +14,6 @@ if TYPE_CHECKING:
     from stickslip import _core
 
 __all__ = ["cycle_assumptions"]
-
-
-_REMEDIES = {
-    "newton": "Keep other harmonics, or use method='exact'.",
-    "exact": (
-        "Contacts may begin or cease to slip at several places at once there; use method='newton'."
-    ),
-}
 
 
 def cycle_assumptions(
@@ -46,12 +38,12 @@ def cycle_assumptions(
             texts.append(
                 f"Stalled: at {settings.followed} = {value:.6g} the walk turned back on itself, or "
                 "closed a loop: no way ahead was found at a corner of the branch, which may go on "
-                "to a farther limit; try method='newton' with more harmonics, or 'exact'."
+                f"to a farther limit. {_remedy(model, settings, arrays)}"
             )
         if end == "stalled":
             texts.append(
                 f"Stalled: the {name} side ends at {settings.followed} = {value:.6g}, where no "
-                f"continuation was found. {_REMEDIES[settings.method]}"
+                f"continuation was found. {_remedy(model, settings, arrays)}"
             )
         if end == "points":
             texts.append(f"The branch ends after {settings.max_points} points; raise max_points.")
@@ -83,7 +75,25 @@ def cycle_assumptions(
         worst = float(np.where(np.isnan(share), 0.0, share).max(initial=0.0))
         if worst > settings.tolerance:
             texts.append(
-                f"The discarded harmonics could still change amplitudes by up to {worst:.1e}; keep "
-                "more harmonics, or use method='exact'."
+                f"The discarded harmonics could still change amplitudes by up to {worst:.1e}; try "
+                f"{_finer(model, arrays)}."
             )
     return tuple(texts)
+
+
+def _remedy(model: Model, settings: CycleSettings, arrays: CycleArrays) -> str:
+    """Return what to do about a branch that ends early: what has not been done already."""
+    if settings.method == "exact":
+        return (
+            "Follow it by harmonic balance, method='newton', which rounds the corners of exact "
+            "orbits off."
+        )
+    return f"Try {_finer(model, arrays)}."
+
+
+def _finer(model: Model, arrays: CycleArrays) -> str:
+    """Return what is more accurate than a harmonic balance with the harmonics kept."""
+    kept = int(arrays.harmonics.max(initial=0))
+    ways = [f"more harmonics than the {kept} kept"] if kept < MOST_HARMONICS else []
+    # One sector of a wave has no motion in time.
+    return " or ".join(ways + ([] if model.travels else ["method='exact'"]))
