@@ -1,3 +1,6 @@
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from matplotlib import pyplot
@@ -200,6 +203,60 @@ def test_a_damper_between_masses_and_damping_that_no_modes_share():
     for dof in "abc":
         assert balance.amplitude(dof) == pytest.approx(exact.amplitude(dof), rel=1e-4)
     assert balance.multipliers == pytest.approx(exact.multipliers, abs=1e-8)
+
+
+def beams(springs, slip_forces):
+    """SNECMA beams with dampers, joined by springs `(beam, beam, stiffness)` at the tips."""
+    names = [str(number) for number in range(len(slip_forces))]
+    free = ss.join({name: ss.reference.beams.snecma_structure() for name in names})
+    stiff = np.array(free.stiffness)
+    for first, second, spring in springs:
+        ends = [free.index(f"{first}.tip"), free.index(f"{second}.tip")]
+        stiff[np.ix_(ends, ends)] += spring * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    structure = ss.Structure(free.mass, stiff, None, free.dofs)
+    dampers = [
+        ss.Jenkins(f"{name}.damper", stiffness=2.4e7, slip_force=limit)
+        for name, limit in zip(names, slip_forces, strict=True)
+        if limit
+    ]
+    return ss.Model(structure, dampers), ss.reference.negative_damping(structure)
+
+
+# exact: largest r by exact orbits; the balance has the error of its harmonics
+@pytest.mark.parametrize(
+    ("springs", "slip_forces", "mode", "harmonics", "exact", "error"),
+    [
+        ([(0, 1, 5e3)], [246, 200], 0, 15, 4.893083, 0.08),
+        ([(0, 1, 5e3)], [246, 200], 0, 31, 4.893083, 1e-3),
+        ([(0, 1, 3.0862686e4)], [364.23651, 288.67139], 1, 11, 4.2014, 0.11),
+        ([(0, 1, 8e4), (1, 2, 3.9e4)], [292.6, None, 92.9], 1, 15, 3.137285, 0.01),
+    ],
+)
+def test_beams_with_different_dampers_are_followed(
+    springs, slip_forces, mode, harmonics, exact, error
+):
+    branch = ss.limit_cycles(
+        *beams(springs, slip_forces), mode=mode, harmonics=harmonics, stability=False
+    )
+    assert not any("Stalled" in text for text in branch.assumptions)
+    assert branch.ratio[-1] == pytest.approx(0.01)
+    assert branch.limit.ratio == pytest.approx(exact, rel=error)
+
+
+@pytest.mark.parametrize("end", ["stalled", "returned"])
+@pytest.mark.parametrize("method", ["newton", "exact"])
+def test_a_branch_that_ends_early_says_what_has_not_been_tried(whole, end, method):
+    from stickslip.analyses.cycle_assumptions import cycle_assumptions
+
+    ends = SimpleNamespace(
+        onset=(0.0, 225.4), phase_dof=0, jumps=0, ends=[("range", 0.01), (end, 3.08)]
+    )
+    settings = replace(whole.settings, method=method)
+    texts = cycle_assumptions(whole.model, settings, whole.arrays, ends)
+    (text,) = [text for text in texts if text.startswith("Stalled")]
+    assert f"method='{method}'" not in text
+    assert ("more harmonics than the 31 kept" in text) == (method == "newton")
+    assert "ratio = 3.08" in text
 
 
 def test_a_wave_of_a_disk_satisfies_its_equations():

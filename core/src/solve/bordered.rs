@@ -48,7 +48,9 @@ impl Bordered<'_> {
             }
             curve.jacobian(z, &mut matrix);
             self.border(z, &mut matrix);
-            let Some(step) = solve(&mut matrix, &residual, self.weights) else { return failed };
+            let Some((step, _)) = solve(&mut matrix, &residual, self.weights) else {
+                return failed;
+            };
             let length = norm(&weighted(&step, self.weights));
             if !length.is_finite() {
                 return failed;
@@ -101,13 +103,14 @@ impl Bordered<'_> {
         }
     }
 
-    /// Solution of `J t = 0` with `unit · t = 1`.
+    /// Solution of `J t = 0` with `unit · t = 1`, and the sign of the determinant of the equations
+    /// bordered by t.
     pub(super) fn tangent(
         curve: &mut dyn Curve,
         z: &[f64],
         weights: &[f64],
         unit: &[f64],
-    ) -> Option<Vec<f64>> {
+    ) -> Option<(Vec<f64>, f64)> {
         let size = z.len();
         let mut right = vec![0.0; size];
         curve.residual(z, &mut right[..size - 1]);
@@ -128,8 +131,9 @@ fn weighted(x: &[f64], weights: &[f64]) -> Vec<f64> {
     x.iter().zip(weights).map(|(x, w)| x * w).collect()
 }
 
-/// Solves with the columns scaled by the weights; nothing if the matrix is singular.
-fn solve(matrix: &mut Mat<f64>, right: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
+/// Solves with the columns scaled by the weights, and says the sign of the determinant; nothing if
+/// the matrix is singular.
+fn solve(matrix: &mut Mat<f64>, right: &[f64], weights: &[f64]) -> Option<(Vec<f64>, f64)> {
     let size = right.len();
     for (j, weight) in weights.iter().enumerate() {
         for i in 0..size {
@@ -137,7 +141,27 @@ fn solve(matrix: &mut Mat<f64>, right: &[f64], weights: &[f64]) -> Option<Vec<f6
         }
     }
     let mut x = Mat::from_fn(size, 1, |i, _| right[i]);
-    matrix.partial_piv_lu().solve_in_place(&mut x);
+    let factors = matrix.partial_piv_lu();
+    factors.solve_in_place(&mut x);
     let step: Vec<f64> = weights.iter().enumerate().map(|(i, w)| x[(i, 0)] / w).collect();
-    step.iter().all(|s| s.is_finite()).then_some(step)
+    let pivots = factors.U().diagonal().column_vector().iter().map(|pivot| pivot.signum());
+    let sign = pivots.product::<f64>() * parity(factors.P().arrays().0);
+    step.iter().all(|s| s.is_finite()).then_some((step, sign))
+}
+
+/// Sign of a permutation.
+fn parity(order: &[usize]) -> f64 {
+    let mut seen = vec![false; order.len()];
+    let mut sign = 1.0;
+    for first in 0..order.len() {
+        let mut at = first;
+        while !seen[at] {
+            seen[at] = true;
+            at = order[at];
+            if at != first {
+                sign = -sign;
+            }
+        }
+    }
+    sign
 }

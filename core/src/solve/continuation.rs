@@ -2,8 +2,10 @@
 //!
 //! The curve is given as a [`Curve`]: one equation less than unknowns, of which the last one is the
 //! parameter. Where the equations are only piecewise smooth the curve has corners: its tangent
-//! jumps, and so a turn counts only if the point found lies ahead and the curve passes through it
-//! in the direction of the way there (Allgower and Georg 2003, chapter 6, for the smooth case).
+//! jumps, by more than a right angle too. What stays is the orientation: the sign of the determinant
+//! of the equations bordered by the tangent is the same all along a curve, around folds and past
+//! corners (Allgower and Georg 2003, chapters 2 and 12). So a point counts only if the curve passes
+//! through it in the direction of the way there with this orientation.
 
 use super::bordered::{Bordered, Condition};
 use super::curve::Curve;
@@ -37,8 +39,8 @@ const GROWTH: f64 = 1.6;
 const BEND: f64 = 0.95;
 /// … unless it is so short, against the longest, that the bend must be a corner.
 const CORNER: f64 = 2e-3;
-/// Cosine at a corner below which the point found lies behind.
-const BEHIND: f64 = -0.95;
+/// Cosine above which a step that short goes straight on.
+const STRAIGHT: f64 = 0.999;
 /// Points in a row at steps below a hundredth of the longest after which the walk only crawls: the
 /// equations are worse than their unknowns are known.
 const CRAWL: usize = 150;
@@ -66,6 +68,9 @@ pub struct Continuation {
     /// Jumps over places where short steps failed.
     pub jumps: usize,
     direction: Vec<f64>,
+    /// Sign of the determinant of the equations bordered by the tangent in the direction of the
+    /// walk: it is the same all along a curve, around folds and past corners.
+    orientation: f64,
     step: f64,
     steps: Steps,
     /// Short steps in a row.
@@ -81,13 +86,15 @@ impl Continuation {
         let weights = curve.weights(&start);
         let mut ahead = vec![0.0; start.len()];
         *ahead.last_mut()? = sign;
-        let direction = tangent(curve, &start, &weights, &ahead).unwrap_or(ahead);
+        let (direction, orientation) =
+            oriented(curve, &start, &weights, &ahead).unwrap_or((ahead, 1.0));
         let first = steps.first;
         Some(Self {
             point: start,
             iterations: 0,
             jumps: 0,
             direction,
+            orientation,
             step: first,
             steps,
             short: 0,
@@ -98,6 +105,10 @@ impl Continuation {
     pub(super) fn restart(&mut self, curve: &mut dyn Curve, before: &[f64], point: &[f64]) {
         self.point = before.to_vec();
         self.move_to(curve, point.to_vec());
+        let weights = curve.weights(point);
+        if let Some((_, orientation)) = oriented(curve, point, &weights, &self.direction.clone()) {
+            self.orientation = orientation;
+        }
     }
 
     /// Takes one step.
@@ -118,16 +129,23 @@ impl Continuation {
                 let corner = self.step <= CORNER * self.steps.longest;
                 if distance < 3.0 * self.step && (cosine > BEND || (corner && cosine > 0.0)) {
                     let turn = self.turn(curve, &point, &weights);
-                    let bend = turn.as_ref().map_or(-1.0, |(cosine, _)| *cosine);
-                    if bend > BEND || corner {
-                        let easy = iterations <= EASY && cosine.min(bend) > 0.5 * (1.0 + BEND);
-                        let factor = if easy { GROWTH } else { 1.0 };
-                        self.move_to(curve, point);
-                        if let Some((_, tangent)) = turn.filter(|_| bend > BEND) {
-                            self.direction = tangent;
+                    if let Some((bend, tangent, orientation)) = turn {
+                        let straight = cosine.min(bend);
+                        let same = orientation == self.orientation;
+                        // What changes the orientation and does not bend is a bifurcation.
+                        let passes =
+                            if corner { same || straight > STRAIGHT } else { same && bend > BEND };
+                        if passes {
+                            let easy = iterations <= EASY && straight > 0.5 * (1.0 + BEND);
+                            self.move_to(curve, point);
+                            self.orientation = orientation;
+                            if bend > BEND {
+                                self.direction = tangent;
+                            }
+                            let factor = if easy { GROWTH } else { 1.0 };
+                            self.step = (factor * self.step).min(self.steps.longest);
+                            return Advance::Point;
                         }
-                        self.step = (factor * self.step).min(self.steps.longest);
-                        return Advance::Point;
                     }
                 }
             }
@@ -143,17 +161,18 @@ impl Continuation {
         curve: &mut dyn Curve,
         point: &[f64],
         weights: &[f64],
-    ) -> Option<(f64, Vec<f64>)> {
+    ) -> Option<(f64, Vec<f64>, f64)> {
         let way: Vec<f64> = point.iter().zip(&self.point).map(|(a, b)| a - b).collect();
-        let tangent = tangent(curve, point, weights, &way)?;
+        let (tangent, orientation) = oriented(curve, point, weights, &way)?;
         let rest = vec![0.0; way.len()];
         let (a, b) = (difference(&way, &rest, weights), difference(&tangent, &rest, weights));
         let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
-        Some((product / norm(&a).max(f64::MIN_POSITIVE), tangent))
+        Some((product / norm(&a).max(f64::MIN_POSITIVE), tangent, orientation))
     }
 
     /// Looks around where short steps fail: on spheres about the last point, along the secant and
-    /// along the tangents here and a little ahead, where other equations may hold.
+    /// along the tangents here and a little ahead, where other equations may hold. The curve leaves
+    /// a corner in one direction alone, with the orientation that it came with.
     fn jump(&mut self, curve: &mut dyn Curve, unit: &[f64], weights: &[f64]) -> Advance {
         for share in JUMPS {
             let radius = share * self.steps.longest;
@@ -165,7 +184,9 @@ impl Continuation {
                 let found = self.correct(curve, &direction, weights, radius, true);
                 let Some((point, _)) = found else { continue };
                 let (cosine, distance) = self.compare(&point, unit, weights);
-                let lies_ahead = cosine > BEHIND && (distance - radius).abs() < 0.5 * radius;
+                let turn = self.turn(curve, &point, weights);
+                let ahead = turn.as_ref().is_some_and(|(_, _, sign)| *sign == self.orientation);
+                let lies_ahead = ahead && (distance - radius).abs() < 0.5 * radius;
                 if lies_ahead && best.as_ref().is_none_or(|(known, _)| cosine > *known) {
                     best = Some((cosine, point));
                 }
@@ -260,9 +281,19 @@ pub fn tangent(
     weights: &[f64],
     ahead: &[f64],
 ) -> Option<Vec<f64>> {
+    oriented(curve, z, weights, ahead).map(|(tangent, _)| tangent)
+}
+
+/// The tangent with the orientation of the curve in its direction.
+fn oriented(
+    curve: &mut dyn Curve,
+    z: &[f64],
+    weights: &[f64],
+    ahead: &[f64],
+) -> Option<(Vec<f64>, f64)> {
     let unit = normalised(ahead, weights);
-    let tangent = Bordered::tangent(curve, z, weights, &unit)?;
-    Some(normalised(&tangent, weights))
+    let (tangent, orientation) = Bordered::tangent(curve, z, weights, &unit)?;
+    Some((normalised(&tangent, weights), orientation))
 }
 
 /// The point of the curve with its parameter at `value`, from a start nearby.
@@ -360,5 +391,65 @@ mod tests {
         let (z, _) = at_parameter(&mut curve, &[-0.8, 0.4], 0.19, 20).unwrap();
         assert!((z[0] + 0.9).abs() < 1e-12);
         assert!(at_parameter(&mut curve, &[-0.3, 0.9], 1.1, 20).is_none());
+    }
+
+    /// One equation in `x` and the parameter.
+    struct Plane<F: Fn(f64, f64) -> [f64; 3]>(F);
+
+    impl<F: Fn(f64, f64) -> [f64; 3]> Curve for Plane<F> {
+        fn unknowns(&self) -> usize {
+            2
+        }
+
+        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
+            out[0] = self.0(z[0], z[1])[0];
+        }
+
+        fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+            let [_, by_x, by_p] = self.0(z[0], z[1]);
+            (out[(0, 0)], out[(0, 1)]) = (by_x, by_p);
+        }
+
+        fn weights(&self, _: &[f64]) -> Vec<f64> {
+            vec![1.0, 1.0]
+        }
+
+        fn accept(&mut self, _: &[f64]) {}
+    }
+
+    /// `p = −1 … 0` on `x = 0`, and back along `x = p/4`: the boundary of a wedge.
+    #[test]
+    fn a_walk_passes_a_corner_that_turns_by_more_than_a_right_angle() {
+        let wedge = |x: f64, p: f64| {
+            let (a, b) = (-x, x - 0.25 * p);
+            if a < b {
+                [a, -1.0, 0.0]
+            } else {
+                [b, 1.0, -0.25]
+            }
+        };
+        let mut curve = Plane(wedge);
+        let mut walk =
+            Continuation::new(&mut curve, vec![0.0, -1.0], 1.0, Steps::default()).unwrap();
+        for _ in 0..200 {
+            assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
+            if walk.point[1] < -0.9 && walk.point[0] < -0.1 {
+                return;
+            }
+        }
+        panic!("{:?}", walk.point);
+    }
+
+    /// `x² − p² = ε²`: two branches that nearly cross, and are left to either side of each other.
+    #[test]
+    fn a_walk_does_not_change_over_to_a_branch_that_comes_near() {
+        let hyperbola = |x: f64, p: f64| [x * x - p * p - 1e-6, 2.0 * x, -2.0 * p];
+        let mut curve = Plane(hyperbola);
+        let start = vec![-(1.0_f64 + 1e-6).sqrt(), -1.0];
+        let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default()).unwrap();
+        while walk.point[1] < 1.0 {
+            assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
+            assert!(walk.point[0] < 0.0, "{:?}", walk.point);
+        }
     }
 }

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.analyses.cycle_settings import CycleSettings
+from stickslip.analyses.cycle_settings import MOST_HARMONICS, CycleSettings
 from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
@@ -15,14 +15,6 @@ if TYPE_CHECKING:
     from stickslip import _core
 
 __all__ = ["cycle_assumptions"]
-
-
-_REMEDIES = {
-    "newton": "Keep other harmonics, or use method='exact'.",
-    "exact": (
-        "Contacts may begin or cease to slip at several places at once there; use method='newton'."
-    ),
-}
 
 
 def cycle_assumptions(
@@ -63,8 +55,7 @@ def cycle_assumptions(
                     "branch-turned-back",
                     f"Stalled: at {settings.followed} = {value:.6g} the walk turned back on "
                     "itself, or closed a loop: no way ahead was found at a corner of the branch, "
-                    "which may go on to a farther limit; try method='newton' with more harmonics, "
-                    "or 'exact'.",
+                    f"which may go on to a farther limit. {_remedy(model, settings, arrays)}",
                     value=value,
                 )
             )
@@ -73,7 +64,7 @@ def cycle_assumptions(
                 diagnostic(
                     "branch-stalled",
                     f"Stalled: the {name} side ends at {settings.followed} = {value:.6g}, where no "
-                    f"continuation was found. {_REMEDIES[settings.method]}",
+                    f"continuation was found. {_remedy(model, settings, arrays)}",
                     side=name,
                     value=value,
                 )
@@ -141,8 +132,26 @@ def cycle_assumptions(
                 diagnostic(
                     "truncation",
                     f"The discarded harmonics could still change amplitudes by up to {worst:.1e}; "
-                    "keep more harmonics, or use method='exact'.",
+                    f"try {_finer(model, arrays)}.",
                     share=worst,
                 )
             )
     return tuple(told)
+
+
+def _remedy(model: Model, settings: CycleSettings, arrays: CycleArrays) -> str:
+    """Return what to do about a branch that ends early: what has not been done already."""
+    if settings.method == "exact":
+        return (
+            "Follow it by harmonic balance, method='newton', which rounds the corners of exact "
+            "orbits off."
+        )
+    return f"Try {_finer(model, arrays)}."
+
+
+def _finer(model: Model, arrays: CycleArrays) -> str:
+    """Return what is more accurate than a harmonic balance with the harmonics kept."""
+    kept = int(arrays.harmonics.max(initial=0))
+    ways = [f"more harmonics than the {kept} kept"] if kept < MOST_HARMONICS else []
+    # One sector of a wave has no motion in time.
+    return " or ".join(ways + ([] if model.travels else ["method='exact'"]))

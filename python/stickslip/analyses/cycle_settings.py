@@ -14,14 +14,15 @@ from stickslip.analyses.variation import Variation
 from stickslip.checks import brief, choice, real_number, whole_number
 from stickslip.errors import ModelError
 
-__all__ = ["LOWEST_RATIO", "CycleMethod", "CycleSettings", "wanted"]
+__all__ = ["LOWEST_RATIO", "MOST_HARMONICS", "CycleMethod", "CycleSettings", "wanted"]
 
 CycleMethod = Literal["newton", "exact"]
 
 LOWEST_RATIO = 0.01
 """Ratio at which whole branches begin and end."""
 
-_MOST = 1000
+MOST_HARMONICS = 1000
+"""Highest harmonic that may be kept."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,12 +78,12 @@ class CycleSettings:
         if self.harmonics != "auto":
             if isinstance(self.harmonics, str):
                 raise ModelError(f'harmonics: {self.harmonics!r}; give a number or "auto"')
-            whole_number(self.harmonics, "harmonics", smallest=1, largest=_MOST)
+            whole_number(self.harmonics, "harmonics", smallest=1, largest=MOST_HARMONICS)
         choice(self.method, "method", get_args(CycleMethod))
         object.__setattr__(self, "tolerance", tolerance_of(self.tolerance))
         if not isinstance(self.stability, bool | np.bool_):
             raise ModelError(f"stability: {brief(self.stability)}; give True or False")
-        whole_number(self.max_harmonics, "max_harmonics", smallest=1, largest=_MOST)
+        whole_number(self.max_harmonics, "max_harmonics", smallest=1, largest=MOST_HARMONICS)
         whole_number(self.max_points, "max_points", smallest=2)
 
     @property
