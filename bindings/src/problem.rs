@@ -26,8 +26,10 @@ pub struct Problem {
 #[pymethods]
 impl Problem {
     /// Builds the problem from matrices, contacts `(law, rows, parameters)` and forces
-    /// `(harmonic, amplitude per DOF)`.
+    /// `(harmonic, amplitude per DOF)`; `proportional` says that a law made the damping, one that
+    /// couples none of the modes without contacts.
     #[new]
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         mass: PyReadonlyArray2<'_, f64>,
@@ -35,6 +37,7 @@ impl Problem {
         stiffness: PyReadonlyArray2<'_, f64>,
         contacts: Vec<ContactSpec<'_>>,
         forces: Forces<'_>,
+        proportional: bool,
     ) -> PyResult<Self> {
         let (mass, damping, stiffness) = (matrix(&mass), matrix(&damping), matrix(&stiffness));
         let specs = contacts
@@ -52,7 +55,7 @@ impl Problem {
                     .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
                 let structure =
                     Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
-                Model::new(structure, contacts, loads)
+                Model::new(structure.with_law(proportional), contacts, loads)
             })
             .map_err(refused)?;
         Ok(Self { model: Arc::new(model) })
@@ -72,10 +75,12 @@ impl Problem {
         engine_order: usize,
         contacts: Vec<SectorContactSpec<'_>>,
         forces: Forces<'_>,
+        proportional: bool,
     ) -> PyResult<Self> {
         let [mass, damping, stiffness] = [mass, damping, stiffness]
             .map(|(own, next)| CyclicMatrix::new(matrix(&own), matrix(&next)));
-        let cyclic = CyclicStructure { mass, damping, stiffness, sectors, engine_order };
+        let cyclic =
+            CyclicStructure { mass, damping, stiffness, sectors, engine_order, proportional };
         let contacts = sector_contacts(contacts)?;
         let loads = harmonic_loads(forces);
         let model =
@@ -86,6 +91,7 @@ impl Problem {
     /// Builds a ring of sectors that may differ. Matrices are `(blocks of the sectors, block that
     /// couples each to the next)`; contacts and forces are given sector by sector, as of a wave.
     #[staticmethod]
+    #[allow(clippy::too_many_arguments)]
     fn ring(
         py: Python<'_>,
         mass: (SectorMatrices<'_>, Matrix<'_>),
@@ -93,6 +99,7 @@ impl Problem {
         stiffness: (SectorMatrices<'_>, Matrix<'_>),
         contacts: Vec<Vec<SectorContactSpec<'_>>>,
         forces: Vec<Forces<'_>>,
+        proportional: bool,
     ) -> PyResult<Self> {
         let coupling = RingCoupling {
             mass: matrix(&mass.1),
@@ -109,8 +116,11 @@ impl Problem {
                     .iter()
                     .zip(&damping)
                     .zip(&stiffness)
-                    .map(|((m, c), k)| Structure::new(m.as_ref(), c.as_ref(), k.as_ref()))
-                    .collect::<Result<Vec<_>, _>>()?;
+                    .map(|((m, c), k)| {
+                        let sector = Structure::new(m.as_ref(), c.as_ref(), k.as_ref())?;
+                        Ok(sector.with_law(proportional))
+                    })
+                    .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
                 Model::ring(structures, coupling, contacts, loads)
             })
             .map_err(refused)?;

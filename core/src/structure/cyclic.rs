@@ -59,6 +59,8 @@ pub struct CyclicStructure {
     pub sectors: usize,
     /// Engine order E.
     pub engine_order: usize,
+    /// Whether a law made the damping, one that couples no modes of any nodal diameter.
+    pub proportional: bool,
 }
 
 /// Contacts and loads of a sector; rows act on the sector itself and on the next one.
@@ -241,7 +243,8 @@ impl CyclicCompliance {
                 structure.damping.standing(sign),
                 structure.stiffness.standing(sign),
             );
-            let whole = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
+            let whole = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?
+                .with_law(structure.proportional);
             let ports = Ports {
                 rows: &self.ports.own + faer::Scale(sign) * &self.ports.next,
                 stiffness: self.ports.stiffness.clone(),
@@ -259,8 +262,9 @@ impl CyclicCompliance {
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
         let loads = self.loads_at(diameter);
         let modal = ModalCompliance::of_wave(Wave {
-            in_stuck: stuck.project(damping.as_ref()),
-            in_free: free.project(damping.as_ref()),
+            in_stuck: stuck.damping(damping.as_ref()),
+            in_free: free.damping(damping.as_ref()),
+            law: structure.proportional,
             stuck,
             free,
             rows: rows.clone(),

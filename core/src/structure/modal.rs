@@ -9,16 +9,13 @@
 use super::flexibility::Flexibility;
 use super::modes::{real_modes, HermitianModes};
 use super::ports::{HarmonicLoad, Ports};
+use super::proportional::ModalDamping;
 use super::restraint::restrain;
-use super::spectrum::{complex_modes, real_spectrum, Spectrum};
+use super::spectrum::{complex_modes, Spectrum};
 use super::{Compliance, DirectCompliance, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 
-/// Modal damping between two modes, relative to their own, that still counts as none, …
-const COUPLING: f64 = 1e-10;
-/// … or, relative to the largest entry and per mode, that still counts as rounding.
-const ROUNDING: f64 = 1e-15;
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
 pub(super) const FREE_FLOOR: f64 = 1e-8;
 /// Distance to an undamped resonance, relative to the squared frequency, that is refused.
@@ -61,8 +58,10 @@ pub struct ModalCompliance {
 pub(super) struct Wave {
     pub(super) stuck: HermitianModes,
     pub(super) free: HermitianModes,
-    pub(super) in_stuck: Mat<c64>,
-    pub(super) in_free: Mat<c64>,
+    pub(super) in_stuck: ModalDamping,
+    pub(super) in_free: ModalDamping,
+    /// Whether a law says that the damping is diagonal in the free modes.
+    pub(super) law: bool,
     pub(super) rows: Mat<c64>,
     pub(super) stiffness: Mat<f64>,
     pub(super) loads: Vec<HarmonicLoad>,
@@ -102,8 +101,9 @@ impl ModalCompliance {
         let stuck = real_modes(structure.mass(), restrained.as_ref())?;
         let free = real_modes(structure.mass(), structure.stiffness())?;
         let wave = Wave {
-            in_stuck: complex(stuck.project(structure.damping()).as_ref()),
-            in_free: complex(free.project(structure.damping()).as_ref()),
+            in_stuck: stuck.damping(structure.damping()),
+            in_free: free.damping(structure.damping()),
+            law: structure.is_proportional(),
             stuck: stuck.to_hermitian(),
             free: free.to_hermitian(),
             rows: complex(ports.rows.as_ref()),
@@ -118,22 +118,24 @@ impl ModalCompliance {
 
     /// The modal form of complex matrices, without a static part.
     pub(super) fn of_wave(wave: Wave) -> Result<Option<Self>, Error> {
-        let Wave { stuck, free, in_stuck, in_free, rows, stiffness, loads } = wave;
+        let Wave { stuck, free, in_stuck, in_free, law, rows, stiffness, loads } = wave;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
-        let (base, spectrum, right, left, restraint) = if is_diagonal(in_stuck.as_ref()) {
-            let spectrum = real_spectrum(&stuck.omega_squared, in_stuck.as_ref(), 0.0);
-            let left = stuck.shapes.adjoint().to_owned();
-            (ModalBase::Stuck, spectrum, stuck.shapes, left, None)
-        } else if is_diagonal(in_free.as_ref()) {
-            let spectrum = real_spectrum(&free.omega_squared, in_free.as_ref(), FREE_FLOOR);
-            let left = free.shapes.adjoint().to_owned();
-            (ModalBase::Free, spectrum, free.shapes, left, Some(stiffness))
-        } else {
-            let modes =
-                complex_modes(&stuck.omega_squared, stuck.shapes.as_ref(), in_stuck.as_ref())?;
-            let Some((spectrum, right, left)) = modes else { return Ok(None) };
-            (ModalBase::Complex, spectrum, right, left, None)
+        let of_real = |(modes, damping): (HermitianModes, Vec<f64>), floor| {
+            let left = modes.shapes.adjoint().to_owned();
+            let spectrum = Spectrum::Real { omega_squared: modes.omega_squared, damping, floor };
+            (spectrum, modes.shapes, left)
         };
+        let (base, (spectrum, right, left), restraint) =
+            if let Some(separate) = in_stuck.clone().separated(stuck.clone(), false) {
+                (ModalBase::Stuck, of_real(separate, 0.0), None)
+            } else if let Some(separate) = in_free.separated(free, law) {
+                (ModalBase::Free, of_real(separate, FREE_FLOOR), Some(stiffness))
+            } else {
+                let damping = in_stuck.matrix().as_ref();
+                let modes = complex_modes(&stuck.omega_squared, stuck.shapes.as_ref(), damping)?;
+                let Some(modes) = modes else { return Ok(None) };
+                (ModalBase::Complex, modes, None)
+            };
         Ok(Some(Self {
             base,
             bandwidth: spectrum.narrowest_bandwidth(),
@@ -375,16 +377,6 @@ impl ModalCompliance {
     fn singular(&self) -> Error {
         Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
     }
-}
-
-pub(super) fn is_diagonal(matrix: MatRef<'_, c64>) -> bool {
-    let size = matrix.nrows();
-    let rounding = ROUNDING * size as f64 * matrix.norm_max();
-    let coupled = |i: usize, j: usize| {
-        let own = (matrix[(i, i)].norm() * matrix[(j, j)].norm()).sqrt();
-        i != j && matrix[(i, j)].norm() > (COUPLING * own).max(rounding)
-    };
-    !(0..size).any(|j| (0..size).any(|i| coupled(i, j)))
 }
 
 pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {

@@ -1,5 +1,7 @@
 //! Real modes of `(K − ω²M) φ = 0`, scaled to unit modal mass.
 
+use super::modal::complex;
+use super::proportional::ModalDamping;
 use crate::solve::hermitian_eigen;
 use crate::Error;
 use faer::linalg::solvers::DenseSolveCore as _;
@@ -57,8 +59,14 @@ impl RealModes {
     pub(super) fn to_hermitian(&self) -> HermitianModes {
         HermitianModes {
             omega_squared: self.omega_squared.clone(),
-            shapes: super::modal::complex(self.shapes.as_ref()),
+            shapes: complex(self.shapes.as_ref()),
         }
+    }
+
+    /// A damping matrix in these modes.
+    pub(crate) fn damping(&self, matrix: MatRef<'_, f64>) -> ModalDamping {
+        let modal = complex(self.project(matrix).as_ref());
+        ModalDamping::new(modal, &self.to_hermitian(), |i, j| c64::new(matrix[(i, j)], 0.0))
     }
 
     /// `Φᵀ A Φ` of a matrix A.
@@ -70,9 +78,9 @@ impl RealModes {
 
 /// Modes of a Hermitian problem: `Φᴴ M Φ = I`, `Φᴴ K Φ = diag(ω²)`.
 #[derive(Debug, Clone)]
-pub(super) struct HermitianModes {
-    pub(super) omega_squared: Vec<f64>,
-    pub(super) shapes: Mat<c64>,
+pub(crate) struct HermitianModes {
+    pub(crate) omega_squared: Vec<f64>,
+    pub(crate) shapes: Mat<c64>,
 }
 
 /// Modes of a Hermitian stiffness and a positive definite Hermitian mass.
@@ -88,6 +96,11 @@ impl HermitianModes {
     /// Natural frequencies [rad/s]; rounding below zero counts as a rigid-body mode.
     pub(super) fn frequencies(&self) -> Vec<f64> {
         self.omega_squared.iter().map(|w| w.max(0.0).sqrt()).collect()
+    }
+
+    /// A damping matrix in these modes.
+    pub(super) fn damping(&self, matrix: MatRef<'_, c64>) -> ModalDamping {
+        ModalDamping::new(self.project(matrix), self, |i, j| matrix[(i, j)])
     }
 
     /// `Φᴴ A Φ` of a matrix A.

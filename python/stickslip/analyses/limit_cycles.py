@@ -23,7 +23,7 @@ from stickslip.checks import brief, real_number
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
-from stickslip.model.destabilised import negative_matrix
+from stickslip.model.destabilised import is_proportional, negative_matrix
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.limit_cycles import LimitCycles
 
@@ -143,7 +143,8 @@ def limit_cycles(
     )
     if settings.method == "exact":
         require_time(model)
-    solution = solve(model, matrix, settings, progress)
+    law = is_proportional(negative_damping)
+    solution = solve(model, matrix, settings, progress, proportional=law)
     arrays = CycleArrays.of(solution)
     result = LimitCycles(
         model=model,
@@ -210,9 +211,14 @@ def negative_damping_of(given: ArrayLike | DampingLaw, model: Model) -> NDArray[
 
 
 def solve(
-    model: Model, matrix: NDArray[Any], settings: CycleSettings, progress: Progress
+    model: Model,
+    matrix: NDArray[Any],
+    settings: CycleSettings,
+    progress: Progress,
+    *,
+    proportional: bool,
 ) -> _core.LimitCycles:
-    """Return what the core makes of checked settings."""
+    """Return what the core makes of checked settings; a law may have made the matrix."""
     from stickslip import _core
 
     variation = settings.variation
@@ -229,6 +235,7 @@ def solve(
         return _core.limit_cycles(
             model.problem,
             matrix,
+            proportional,
             settings.mode,
             followed,
             exact,
