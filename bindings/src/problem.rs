@@ -157,6 +157,12 @@ impl Problem {
         self.model.modal_base()
     }
 
+    /// Whether a frequency costs a factorisation per harmonic, of the whole or of a sector.
+    #[getter]
+    fn is_direct(&self) -> bool {
+        self.model.compliance().is_direct()
+    }
+
     /// Whether rigid-body motion remains with all contacts stuck.
     #[getter]
     fn static_singular(&self) -> bool {

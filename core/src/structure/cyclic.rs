@@ -7,6 +7,7 @@
 use super::modal::Wave;
 use super::modes::hermitian_modes;
 use super::ports::{forced_harmonics, Ports};
+use super::proportional::follows_mass;
 use super::{
     compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Receptance, Structure,
 };
@@ -261,16 +262,17 @@ impl CyclicCompliance {
         let free = hermitian_modes(mass.as_ref(), free_stiffness.as_ref())?;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
         let loads = self.loads_at(diameter);
-        let modal = ModalCompliance::of_wave(Wave {
-            in_stuck: stuck.damping(damping.as_ref()),
-            in_free: free.damping(damping.as_ref()),
-            law: structure.proportional,
-            stuck,
-            free,
+        let wave = Wave {
+            law: structure.proportional && !follows_mass(damping.as_ref(), mass.as_ref()),
+            stuck: stuck.clone(),
+            free: free.clone(),
             rows: rows.clone(),
             stiffness: self.ports.stiffness.clone(),
             loads: loads.clone(),
-        })?;
+        };
+        let project =
+            |free_modes| if free_modes { &free } else { &stuck }.damping(damping.as_ref());
+        let modal = ModalCompliance::of_wave(wave, project)?;
         let matrices = [mass, damping, stuck_stiffness];
         let direct = DirectCompliance::of_matrices(matrices, rows, loads)
             .with_frequencies(stuck_frequencies, free_frequencies);
@@ -292,6 +294,11 @@ impl Compliance for CyclicCompliance {
 
     fn forced_harmonics(&self) -> Vec<usize> {
         self.forced.clone()
+    }
+
+    fn is_direct(&self) -> bool {
+        let made = self.waves.iter().filter_map(OnceLock::get);
+        made.flatten().any(|wave| wave.is_direct())
     }
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {

@@ -95,10 +95,16 @@ pub trait Compliance: Send + Sync {
         out: &mut [c64],
     ) -> Result<(), Error>;
 
+    /// Whether a frequency costs a factorisation per harmonic, of the whole or of a part.
+    fn is_direct(&self) -> bool {
+        false
+    }
+
     /// The ring of sectors that this is, if it is one: its equations need no dense receptance.
     fn ring(&self) -> Option<&Ring> {
         None
     }
+
     /// Displacement amplitudes under the slip loads alone: [`Compliance::displacement`] without
     /// the external load, linear in `contact` and `slip_load`.
     ///

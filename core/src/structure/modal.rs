@@ -9,7 +9,7 @@
 use super::flexibility::Flexibility;
 use super::modes::{real_modes, HermitianModes};
 use super::ports::{HarmonicLoad, Ports};
-use super::proportional::ModalDamping;
+use super::proportional::{follows_mass, ModalDamping};
 use super::restraint::restrain;
 use super::spectrum::{complex_modes, Spectrum};
 use super::{Compliance, DirectCompliance, Receptance, Structure};
@@ -53,14 +53,11 @@ pub struct ModalCompliance {
     forced: Vec<usize>,
 }
 
-/// What a modal compliance is made of: modes of the stuck and of the free structure, the damping in
-/// both, rows of B (complex in a travelling wave), contact stiffness and loads.
+/// What a modal compliance is made of: modes of the stuck and of the free structure, rows of B (complex in a travelling wave), contact stiffness and loads.
 pub(super) struct Wave {
     pub(super) stuck: HermitianModes,
     pub(super) free: HermitianModes,
-    pub(super) in_stuck: ModalDamping,
-    pub(super) in_free: ModalDamping,
-    /// Whether a law says that the damping is diagonal in the free modes.
+    /// Whether a law says that the damping is diagonal in the free modes, and in no others.
     pub(super) law: bool,
     pub(super) rows: Mat<c64>,
     pub(super) stiffness: Mat<f64>,
@@ -98,40 +95,52 @@ impl ModalCompliance {
         ports.check(structure.dofs())?;
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
-        let stuck = real_modes(structure.mass(), restrained.as_ref())?;
-        let free = real_modes(structure.mass(), structure.stiffness())?;
+        let (mass, damping) = (structure.mass(), structure.damping());
+        let free = real_modes(mass, structure.stiffness())?;
+        let stuck = if restrained.as_ref() == structure.stiffness() {
+            free.clone()
+        } else {
+            real_modes(mass, restrained.as_ref())?
+        };
         let wave = Wave {
-            in_stuck: stuck.damping(structure.damping()),
-            in_free: free.damping(structure.damping()),
-            law: structure.is_proportional(),
+            law: structure.is_proportional() && !follows_mass(damping, mass),
             stuck: stuck.to_hermitian(),
             free: free.to_hermitian(),
             rows: complex(ports.rows.as_ref()),
             stiffness: ports.stiffness.clone(),
             loads: ports.loads.clone(),
         };
-        let Some(modal) = Self::of_wave(wave)? else { return Ok(None) };
+        let project = |free_modes| if free_modes { &free } else { &stuck }.damping(damping);
+        let Some(modal) = Self::of_wave(wave, project)? else { return Ok(None) };
         let modal = Self { flexibility: Flexibility::new(&stuck, ports), ..modal };
         let direct = || DirectCompliance::of(structure, ports, restrained.as_ref());
         Ok(modal.reproduces(direct).then_some(modal))
     }
 
-    /// The modal form of complex matrices, without a static part.
-    pub(super) fn of_wave(wave: Wave) -> Result<Option<Self>, Error> {
-        let Wave { stuck, free, in_stuck, in_free, law, rows, stiffness, loads } = wave;
+    /// The modal form of complex matrices, without a static part; `project` gives the damping in the
+    /// free modes, or in those of the stuck structure.
+    pub(super) fn of_wave(
+        wave: Wave,
+        project: impl Fn(bool) -> ModalDamping,
+    ) -> Result<Option<Self>, Error> {
+        let Wave { stuck, free, law, rows, stiffness, loads } = wave;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
         let of_real = |(modes, damping): (HermitianModes, Vec<f64>), floor| {
             let left = modes.shapes.adjoint().to_owned();
             let spectrum = Spectrum::Real { omega_squared: modes.omega_squared, damping, floor };
             (spectrum, modes.shapes, left)
         };
+        let in_stuck = (!law).then(|| project(false));
+        let in_stuck_modes =
+            |damping: &ModalDamping| damping.clone().separated(stuck.clone(), false);
         let (base, (spectrum, right, left), restraint) =
-            if let Some(separate) = in_stuck.clone().separated(stuck.clone(), false) {
+            if let Some(separate) = in_stuck.as_ref().and_then(in_stuck_modes) {
                 (ModalBase::Stuck, of_real(separate, 0.0), None)
-            } else if let Some(separate) = in_free.separated(free, law) {
+            } else if let Some(separate) = project(true).separated(free, law) {
                 (ModalBase::Free, of_real(separate, FREE_FLOOR), Some(stiffness))
             } else {
-                let damping = in_stuck.matrix().as_ref();
+                let damping = in_stuck.unwrap_or_else(|| project(false));
+                let damping = damping.matrix().as_ref();
                 let modes = complex_modes(&stuck.omega_squared, stuck.shapes.as_ref(), damping)?;
                 let Some(modes) = modes else { return Ok(None) };
                 (ModalBase::Complex, modes, None)

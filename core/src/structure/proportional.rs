@@ -12,7 +12,8 @@
 //!   stiffness by 1e-15 N of the highest squared frequency changes.
 
 use super::modes::HermitianModes;
-use faer::{c64, Mat};
+use faer::traits::ComplexField;
+use faer::{c64, Mat, MatRef};
 
 /// Modal damping between two modes, relative to their own, that still counts as none.
 const COUPLING: f64 = 1e-10;
@@ -122,7 +123,7 @@ impl ModalDamping {
                 return Some((modes, self.diagonal()));
             }
         }
-        None
+        law.then(|| (modes, self.diagonal()))
     }
 
     /// Rounding of the stiffness, which leaves open how modes are coupled [1/s²].
@@ -163,6 +164,16 @@ impl ModalDamping {
             Pair::Turned(angle.cos(), ahead / coupling * angle.sin())
         }
     }
+}
+
+/// Whether a damping matrix is a multiple of the mass, so that no mode of any stiffness is coupled.
+pub(super) fn follows_mass<T: ComplexField<Real = f64>>(
+    damping: MatRef<'_, T>,
+    mass: MatRef<'_, T>,
+) -> bool {
+    let factor = T::real_part_impl(&damping[(0, 0)]) / T::real_part_impl(&mass[(0, 0)]);
+    let difference = damping - faer::Scale(T::from_f64_impl(factor)) * mass;
+    difference.norm_max() <= ROUNDING * damping.norm_max()
 }
 
 /// Combines two columns a and b to `cos a + sin̄ b` and `cos b − sin a`.

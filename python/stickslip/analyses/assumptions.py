@@ -24,7 +24,13 @@ if TYPE_CHECKING:
     from stickslip.analyses.forced_response import Settings
     from stickslip.analyses.transient import TransientSettings
 
-__all__ = ["assumptions_of", "orbit_assumptions", "transient_assumptions", "turn_per_step"]
+__all__ = [
+    "assumptions_of",
+    "direct_assumption",
+    "orbit_assumptions",
+    "transient_assumptions",
+    "turn_per_step",
+]
 
 LARGE_ERROR = 0.05
 """Share of the amplitude above which the discarded harmonics are worth a warning."""
@@ -43,8 +49,8 @@ _BASES = {
         "real modes, the stuck contacts added exactly."
     ),
     "complex modes": (
-        "The damping is not proportional: the compliance is the sum over the complex modes of the "
-        "stuck structure."
+        "The damping matrix couples the modes, or rounding leaves open whether it does: the "
+        "compliance is the sum over the complex modes of the stuck structure."
     ),
     "waves": (
         "All sectors are equal and move alike, one after the other: harmonic k of the motion meets "
@@ -52,13 +58,15 @@ _BASES = {
         "state."
     ),
     "sectors": (
-        "The sectors of the ring are solved one by one, from their own modes, and joined exactly "
-        "where neighbours touch."
-    ),
-    "direct": (
-        "The modes cannot be separated well: the compliance is solved for at every frequency."
+        "The sectors of the ring are solved one by one, and joined exactly where neighbours touch."
     ),
 }
+_DIRECT = (
+    "The damping matrix couples the modes, and the complex modes miss a direct solution by more "
+    "than 1e-8, as where two of them nearly coincide: every point costs a factorisation of the "
+    "whole dynamic stiffness per harmonic, and takes longer than modes would. Where the damping "
+    "follows a law, give that, Rayleigh or ModalDamping, instead of its matrix."
+)
 
 
 def assumptions_of(
@@ -98,13 +106,13 @@ def assumptions_of(
     tuple of str
         One sentence or two each; those that do not apply are left out.
     """
-    base = model.problem.modal_base
     # Numbers far outside any unit overflow when squared; what is not finite then is left out.
     with np.errstate(all="ignore"):
         texts = (
             "" if single else _harmonics(settings, arrays, half_wave),
             *contact_assumptions(model, settings, arrays),
-            _BASES.get(base, f"The compliance is evaluated by {base}."),
+            _BASES.get(model.problem.modal_base, ""),
+            direct_assumption(model),
             _frequencies(settings, arrays, missing, interrupted=interrupted),
             _observed(model, dofs),
             damping_assumption(model.structure.damping),
@@ -220,6 +228,22 @@ def transient_assumptions(
             damping_assumption(model.structure.damping),
         )
     return tuple(text for text in texts if text)
+
+
+def direct_assumption(model: Model) -> str:
+    """Say that points cost factorisations, and why, where no modes carry the compliance.
+
+    Parameters
+    ----------
+    model : Model
+        What was computed.
+
+    Returns
+    -------
+    str
+        A text, empty where modes serve.
+    """
+    return _DIRECT if model.problem.is_direct else ""
 
 
 def turn_per_step(model: Model, settings: TransientSettings) -> float:

@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from stickslip.analyses.assumptions import LARGE_ERROR
+from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption
 from stickslip.analyses.damper_settings import DamperSettings
 from stickslip.analyses.uniqueness import damping_assumption
 from stickslip.checks import listed
@@ -46,6 +46,7 @@ def damper_assumptions(
         f"A contact that never slips was taken to hold residual={settings.residual!r}.",
         _truncation(settings, arrays),
         damping_assumption(model.structure.damping),
+        direct_assumption(model),
         _failures(arrays),
     )
     return tuple(text for text in texts if text)
