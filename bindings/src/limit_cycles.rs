@@ -245,8 +245,9 @@ pub enum Negative<'py> {
 }
 
 impl Negative<'_> {
-    fn damping(&self) -> NegativeDamping {
+    fn damping(&self, proportional: bool) -> NegativeDamping {
         match self {
+            Self::Whole(array) if proportional => NegativeDamping::Proportional(matrix(array)),
             Self::Whole(array) => NegativeDamping::Whole(matrix(array)),
             Self::Wave(array) => {
                 let each = |one: numpy::ndarray::ArrayView2<'_, Complex64>| {
@@ -271,13 +272,15 @@ pub struct Followed {
     range: (f64, f64),
 }
 
-/// Limit cycles of a mode along what is varied.
+/// Limit cycles of a mode along what is varied; `proportional` says that a law made the negative
+/// damping, one that couples none of the modes without contacts.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn limit_cycles(
     py: Python<'_>,
     problem: &Problem,
     negative_damping: Negative<'_>,
+    proportional: bool,
     mode: usize,
     followed: Followed,
     exact: bool,
@@ -291,7 +294,7 @@ pub fn limit_cycles(
     if max_points < 2 {
         return Err(PyValueError::new_err("max_points: must be at least 2"));
     }
-    let negative = negative_damping.damping();
+    let negative = negative_damping.damping(proportional);
     let Followed { variation, ratio, values, range } = followed;
     let variation = Variation::from(variation);
     let settings = CycleSettings {

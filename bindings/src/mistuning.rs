@@ -23,7 +23,7 @@ impl TunedDisk {
     /// Builds the disk from the matrices of a sector: mass with what couplings add; stiffness
     /// without, and what they add; damping that does not deviate, that goes with the stiffness and
     /// that goes with its root; the blocks of mass, damping and stiffness to the next sector;
-    /// contacts of every sector, and forces sector by sector.
+    /// contacts of every sector, and forces sector by sector; whether a law made all of the damping.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -34,12 +34,14 @@ impl TunedDisk {
         coupling: (Matrix<'_>, Matrix<'_>, Matrix<'_>),
         contacts: Vec<SectorContactSpec<'_>>,
         forces: Vec<Forces<'_>>,
+        proportional: bool,
     ) -> PyResult<Self> {
         let disk = design::TunedDisk {
             mass: matrix(&mass),
             stiffness: matrix(&stiffness),
             coupled_stiffness: matrix(&coupled_stiffness),
             damping: [matrix(&damping.0), matrix(&damping.1), matrix(&damping.2)],
+            proportional,
             coupling: RingCoupling {
                 mass: matrix(&coupling.0),
                 damping: matrix(&coupling.1),

@@ -27,8 +27,10 @@ pub struct Problem {
 #[pymethods]
 impl Problem {
     /// Builds the problem from matrices, contacts `(law, rows, parameters)` and forces
-    /// `(harmonic, amplitude per DOF)`.
+    /// `(harmonic, amplitude per DOF)`; `proportional` says that a law made the damping, one that
+    /// couples none of the modes without contacts.
     #[new]
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         mass: PyReadonlyArray2<'_, f64>,
@@ -36,6 +38,7 @@ impl Problem {
         stiffness: PyReadonlyArray2<'_, f64>,
         contacts: Vec<ContactSpec<'_>>,
         forces: Forces<'_>,
+        proportional: bool,
     ) -> PyResult<Self> {
         let (mass, damping, stiffness) = (matrix(&mass), matrix(&damping), matrix(&stiffness));
         let specs = contacts
@@ -49,7 +52,7 @@ impl Problem {
                 .map(|(name, rows, parameters)| Ok(Contact { law: law(&name, &parameters)?, rows }))
                 .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
             let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
-            Model::new(structure, contacts, loads)
+            Model::new(structure.with_law(proportional), contacts, loads)
         })?
         .map_err(refused)?;
         Ok(Self { model: Arc::new(model) })
@@ -69,10 +72,12 @@ impl Problem {
         engine_order: usize,
         contacts: Vec<SectorContactSpec<'_>>,
         forces: Forces<'_>,
+        proportional: bool,
     ) -> PyResult<Self> {
         let [mass, damping, stiffness] = [mass, damping, stiffness]
             .map(|(own, next)| CyclicMatrix::new(matrix(&own), matrix(&next)));
-        let cyclic = CyclicStructure { mass, damping, stiffness, sectors, engine_order };
+        let cyclic =
+            CyclicStructure { mass, damping, stiffness, sectors, engine_order, proportional };
         let contacts = sector_contacts(contacts)?;
         let loads = harmonic_loads(forces);
         let model = whole(py, move |_| Model::travelling_wave(cyclic, contacts, loads))?
@@ -83,6 +88,7 @@ impl Problem {
     /// Builds a ring of sectors that may differ. Matrices are `(blocks of the sectors, block that
     /// couples each to the next)`; contacts and forces are given sector by sector, as of a wave.
     #[staticmethod]
+    #[allow(clippy::too_many_arguments)]
     fn ring(
         py: Python<'_>,
         mass: (SectorMatrices<'_>, Matrix<'_>),
@@ -90,6 +96,7 @@ impl Problem {
         stiffness: (SectorMatrices<'_>, Matrix<'_>),
         contacts: Vec<Vec<SectorContactSpec<'_>>>,
         forces: Vec<Forces<'_>>,
+        proportional: bool,
     ) -> PyResult<Self> {
         let coupling = RingCoupling {
             mass: matrix(&mass.1),
@@ -105,8 +112,11 @@ impl Problem {
                 .iter()
                 .zip(&damping)
                 .zip(&stiffness)
-                .map(|((m, c), k)| Structure::new(m.as_ref(), c.as_ref(), k.as_ref()))
-                .collect::<Result<Vec<_>, _>>()?;
+                .map(|((m, c), k)| {
+                    let sector = Structure::new(m.as_ref(), c.as_ref(), k.as_ref())?;
+                    Ok(sector.with_law(proportional))
+                })
+                .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
             Model::ring(structures, coupling, contacts, loads)
         })?
         .map_err(refused)?;
@@ -143,6 +153,12 @@ impl Problem {
     #[getter]
     fn modal_base(&self) -> &'static str {
         self.model.modal_base()
+    }
+
+    /// Whether a frequency costs a factorisation per harmonic, of the whole or of a sector.
+    #[getter]
+    fn is_direct(&self) -> bool {
+        self.model.compliance().is_direct()
     }
 
     /// Whether rigid-body motion remains with all contacts stuck.

@@ -52,6 +52,7 @@ fn disk(sectors: usize) -> TunedDisk {
         stiffness: beam.stiffness,
         coupled_stiffness: own,
         damping: [beam.damping, zero.clone(), zero.clone()],
+        proportional: false,
         coupling: RingCoupling { mass: zero.clone(), damping: zero, stiffness: next },
         contacts: vec![
             contact(STIFFNESS, SLIP_FORCE, row(0, 1.0), Mat::zeros(1, 3)),

@@ -218,6 +218,7 @@ fn ring(sectors: usize, deviations: &[f64]) -> Model {
         stiffness: beam.stiffness,
         coupled_stiffness: own,
         damping: [beam.damping, zero.clone(), zero.clone()],
+        proportional: false,
         coupling: RingCoupling { mass: zero.clone(), damping: zero, stiffness: next },
         contacts: vec![contact],
         loads: (0..sectors).map(load).collect(),

@@ -48,6 +48,7 @@ fn ring(sectors: usize, engine_order: usize, between: Option<(f64, f64)>) -> Mod
         stiffness: CyclicMatrix::new(stiffness, next),
         sectors,
         engine_order,
+        proportional: false,
     };
     Model::travelling_wave(cyclic, contacts, vec![HarmonicLoad { harmonic: 1, amplitude }]).unwrap()
 }

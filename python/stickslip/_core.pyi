@@ -26,6 +26,7 @@ class Problem:
         stiffness: Float,
         contacts: Sequence[Contact],
         forces: Sequence[tuple[int, Complex]],
+        proportional: bool,
     ) -> None: ...
     @staticmethod
     def travelling_wave(
@@ -36,6 +37,7 @@ class Problem:
         engine_order: int,
         contacts: Sequence[SectorContact],
         forces: Sequence[tuple[int, Complex]],
+        proportional: bool,
     ) -> Problem: ...
     @staticmethod
     def ring(
@@ -44,11 +46,14 @@ class Problem:
         stiffness: tuple[Float, Float],
         contacts: Sequence[Sequence[SectorContact]],
         forces: Sequence[Sequence[tuple[int, Complex]]],
+        proportional: bool,
     ) -> Problem: ...
     def wave_frequencies(self, diameter: int, slipping: Sequence[tuple[int, int]]) -> Float: ...
     def natural_frequencies(self, slipping: Sequence[tuple[int, int]]) -> Float: ...
     @property
     def modal_base(self) -> str: ...
+    @property
+    def is_direct(self) -> bool: ...
     @property
     def static_singular(self) -> bool: ...
 
@@ -167,6 +172,7 @@ class TunedDisk:
         coupling: tuple[Float, Float, Float],
         contacts: Sequence[SectorContact],
         forces: Sequence[Sequence[tuple[int, Complex]]],
+        proportional: bool,
     ) -> None: ...
     def mistuned(self, deviations: Float) -> Problem: ...
 
@@ -425,6 +431,7 @@ class LimitCycles:
 def limit_cycles(
     problem: Problem,
     negative_damping: NDArray[np.float64] | NDArray[np.complex128],
+    proportional: bool,
     mode: int,
     followed: Followed,
     exact: bool,

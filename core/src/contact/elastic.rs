@@ -7,9 +7,10 @@
 //! stiffness `D_TT − D_TS D_SS⁻¹ D_ST` (Guillen 1999, eqs. 6.14-6.17) wherever D_SS has an inverse
 //! and stays defined where it has none.
 
+use crate::solve::hermitian_eigen;
 use crate::Error;
 use faer::linalg::solvers::Solve as _;
-use faer::{Mat, MatRef, Side};
+use faer::{Mat, MatRef};
 
 /// Eigenvalues and directions below this share of the largest count as none.
 const NEGLIGIBLE: f64 = 1e-12;
@@ -46,14 +47,12 @@ impl Elastic {
                 inverse: Mat::from_fn(rank, 1, |_, _| 1.0 / root),
             });
         }
-        let eigen = stiffness
-            .self_adjoint_eigen(Side::Lower)
-            .map_err(|_| Error::Eigenvalues("contact stiffness".to_owned()))?;
-        let values: Vec<f64> = (0..size).map(|j| eigen.S()[j]).collect();
+        let (values, vectors) = hermitian_eigen(stiffness)
+            .ok_or_else(|| Error::Eigenvalues("contact stiffness".to_owned()))?;
         let largest = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let kept: Vec<usize> =
             (0..size).filter(|&j| values[j] > NEGLIGIBLE * largest && values[j] > 0.0).collect();
-        let at = |i: usize, j: usize| eigen.U()[(i, kept[j])];
+        let at = |i: usize, j: usize| vectors[(i, kept[j])];
         Ok(Self {
             root: Mat::from_fn(size, kept.len(), |i, j| at(i, j) * values[kept[j]].sqrt()),
             inverse: Mat::from_fn(kept.len(), size, |j, i| at(i, j) / values[kept[j]].sqrt()),

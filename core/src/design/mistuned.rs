@@ -22,6 +22,8 @@ pub struct TunedDisk {
     /// Damping that does not deviate, couplings included; that goes with the stiffness; that goes
     /// with its root [kg/s].
     pub damping: [Mat<f64>; 3],
+    /// Whether a law made all of the damping, see [`Structure::with_law`].
+    pub proportional: bool,
     /// What couples a sector to the next one.
     pub coupling: RingCoupling,
     /// Contacts of every sector.
@@ -78,7 +80,8 @@ impl TunedDisk {
         let damping = Mat::from_fn(size, size, |i, j| {
             constant[(i, j)] + factor * proportional[(i, j)] + factor.sqrt() * root[(i, j)]
         });
-        Structure::new(self.mass.as_ref(), damping.as_ref(), stiffness.as_ref())
+        let structure = Structure::new(self.mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
+        Ok(structure.with_law(self.proportional))
     }
 
     fn own_contacts(&self) -> Vec<SectorContact> {

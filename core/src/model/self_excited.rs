@@ -12,6 +12,8 @@ use faer::{c64, Mat};
 pub enum NegativeDamping {
     /// Of a whole structure, N × N [kg/s].
     Whole(Mat<f64>),
+    /// The same, made by a law that couples no modes without contacts.
+    Proportional(Mat<f64>),
     /// Of a sector in a travelling wave, one complex matrix per nodal diameter [kg/s]: the
     /// aerodynamic influence coefficients add `iω r C_neg` to the dynamic stiffness.
     Wave(Vec<Mat<c64>>),
@@ -52,13 +54,17 @@ impl<'a> SelfExcited<'a> {
         }
         let rows = model.ports().rows.as_ref();
         let destabilised = match (&negative, &model.body) {
-            (NegativeDamping::Whole(matrix), Body::Whole | Body::Ring(_)) => {
-                Destabilised::new(model.structure(), rows, matrix.as_ref())?
+            (
+                NegativeDamping::Whole(matrix) | NegativeDamping::Proportional(matrix),
+                Body::Whole | Body::Ring(_),
+            ) => {
+                let law = matches!(negative, NegativeDamping::Proportional(_));
+                Destabilised::new(model.structure(), rows, matrix.as_ref(), law)?
             }
             (NegativeDamping::Wave(matrices), Body::Wave { cyclic, next }) => {
                 Destabilised::travelling(cyclic, rows, next.as_ref().as_ref(), matrices)?
             }
-            (NegativeDamping::Whole(_), _) => {
+            (NegativeDamping::Whole(_) | NegativeDamping::Proportional(_), _) => {
                 return Err(Error::shape(
                     "negative_damping",
                     "one complex matrix per nodal diameter of a travelling wave",
@@ -100,7 +106,7 @@ impl<'a> SelfExcited<'a> {
     #[must_use]
     pub fn negative(&self) -> Option<&Mat<f64>> {
         match &self.negative {
-            NegativeDamping::Whole(matrix) => Some(matrix),
+            NegativeDamping::Whole(matrix) | NegativeDamping::Proportional(matrix) => Some(matrix),
             NegativeDamping::Wave(_) => None,
         }
     }

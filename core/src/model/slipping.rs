@@ -1,9 +1,10 @@
 //! Natural frequencies with some contact points slipping and all others stuck.
 
 use super::{Body, Model};
+use crate::solve::hermitian_eigen;
 use crate::structure::natural_frequencies;
 use crate::Error;
-use faer::{Mat, Side};
+use faer::Mat;
 
 impl Model {
     /// Natural frequencies [rad/s] with the contact points `slipping` at constant force and all
@@ -75,14 +76,12 @@ fn condensed(stiffness: &Mat<f64>, stick: &[usize], slip: &[usize]) -> Result<Ma
     if slip.is_empty() || stick.is_empty() {
         return Ok(stuck);
     }
-    let eigen = part(slip, slip)
-        .self_adjoint_eigen(Side::Lower)
-        .map_err(|_| Error::Eigenvalues("contact stiffness".to_owned()))?;
-    let largest = (0..slip.len()).map(|j| eigen.S()[j]).fold(0.0, f64::max);
-    let mut modal = eigen.U().transpose() * part(slip, stick);
+    let (values, vectors) = hermitian_eigen(part(slip, slip).as_ref())
+        .ok_or_else(|| Error::Eigenvalues("contact stiffness".to_owned()))?;
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let mut modal = vectors.transpose() * part(slip, stick);
     let mut weighted = modal.clone();
-    for i in 0..slip.len() {
-        let value = eigen.S()[i];
+    for (i, &value) in values.iter().enumerate() {
         let inverse = if value > 1e-12 * largest { 1.0 / value } else { 0.0 };
         for j in 0..stick.len() {
             weighted[(i, j)] *= inverse;

@@ -2,9 +2,9 @@
 
 use crate::contact::{Elastic, FrictionLaw, PointState};
 use crate::model::Model;
-use crate::structure::real_modes;
+use crate::structure::{real_modes, ModalDamping, RealModes};
 use crate::Error;
-use faer::{c64, Mat};
+use faer::{c64, Mat, MatRef};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ impl ModalSystem {
         }
         let structure = model.structure();
         let modes = real_modes(structure.mass(), structure.stiffness())?;
-        let damping = modes.project(structure.damping());
+        let damping = modes.damping(structure.damping());
         let size = modes.omega_squared.len();
         let rows = &model.ports().rows * &modes.shapes;
         let contacts =
@@ -78,7 +78,7 @@ impl ModalSystem {
             contacts: contacts.collect(),
             loads: loads.filter(|(_, load): &(_, Vec<c64>)| !is_zero(load)).collect(),
             rate: rate_of(model, &damping),
-            damping: Damping::of(damping),
+            damping: Damping::of(&damping),
             to_modes: modes.shapes.transpose() * structure.mass(),
             limits: limits_of(model),
             bodies: bodies(model)?,
@@ -92,10 +92,10 @@ impl ModalSystem {
     ///
     /// # Errors
     /// A contact whose stiffness has no eigenvalues.
-    pub(crate) fn undriven(&self, model: &Model, damping: Mat<f64>) -> Result<Self, Error> {
+    pub(crate) fn undriven(&self, model: &Model, damping: &ModalDamping) -> Result<Self, Error> {
         Ok(Self {
             loads: Vec::new(),
-            rate: rate_of(model, &damping),
+            rate: rate_of(model, damping),
             damping: Damping::of(damping),
             limits: limits_of(model),
             bodies: bodies(model)?,
@@ -103,9 +103,10 @@ impl ModalSystem {
         })
     }
 
-    /// `Φᵀ A Φ` of a matrix over the DOFs.
-    pub(crate) fn project(&self, matrix: &Mat<f64>) -> Mat<f64> {
-        self.shapes.transpose() * matrix * &self.shapes
+    /// A damping matrix over the DOFs in these modes.
+    pub(crate) fn project(&self, matrix: MatRef<'_, f64>) -> ModalDamping {
+        let (omega_squared, shapes) = (self.omega_squared.clone(), self.shapes.clone());
+        RealModes { omega_squared, shapes }.damping(matrix)
     }
 
     /// Accelerations η'' without loads, from displacements, velocities and contact forces.
@@ -296,23 +297,25 @@ impl Regime {
 }
 
 impl Damping {
-    /// From a modal matrix.
-    fn of(modal: Mat<f64>) -> Self {
-        let (size, largest) = (modal.nrows(), modal.norm_max());
-        let coupled = (0..size).any(|j| {
-            (0..size).any(|i| i != j && modal[(i, j)].abs() > 1e-14 * size as f64 * largest)
-        });
-        if coupled {
-            Self::Full(modal)
+    /// From a damping in the modes of the structure.
+    fn of(modal: &ModalDamping) -> Self {
+        if modal.is_diagonal() {
+            Self::Diagonal(modal.diagonal())
         } else {
-            Self::Diagonal((0..size).map(|j| modal[(j, j)]).collect())
+            Self::Full(real(modal))
         }
     }
 }
 
+fn real(modal: &ModalDamping) -> Mat<f64> {
+    let matrix = modal.matrix();
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].re)
+}
+
 /// Fastest rate of the free motion [1/s].
-fn rate_of(model: &Model, damping: &Mat<f64>) -> f64 {
-    model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0) + damping.norm_l2()
+fn rate_of(model: &Model, damping: &ModalDamping) -> f64 {
+    model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0)
+        + damping.matrix().norm_l2()
 }
 
 fn limits_of(model: &Model) -> Vec<f64> {

@@ -8,6 +8,7 @@ use super::modal_system::{dot, Damping, ModalSystem, Regime};
 use super::state::State;
 use crate::contact::PointState;
 use crate::model::Model;
+use crate::solve::hermitian_eigen;
 use crate::Error;
 use faer::linalg::solvers::{DenseSolveCore as _, Solve as _};
 use faer::{c64, Mat};
@@ -284,12 +285,7 @@ impl Sticking {
 
     /// Undamped modes of the stuck structure, in coordinates η: squared frequencies and shapes.
     pub(super) fn modes(&self) -> Result<(Vec<f64>, Mat<f64>), Error> {
-        let eigen = self
-            .phase
-            .stiffness
-            .self_adjoint_eigen(faer::Side::Lower)
-            .map_err(|_| Error::Eigenvalues("stiffness".to_owned()))?;
-        let squares = (0..self.phase.scale.len()).map(|j| eigen.S()[j]).collect();
-        Ok((squares, eigen.U().to_owned()))
+        hermitian_eigen(self.phase.stiffness.as_ref())
+            .ok_or_else(|| Error::Eigenvalues("stiffness".to_owned()))
     }
 }

@@ -15,6 +15,7 @@ use crate::contact::Residual;
 use crate::model::{Model, SelfExcited};
 use crate::motion::{ModalSystem, Regime, State, Transition};
 use crate::solve::{norm, Curve};
+use crate::structure::ModalDamping;
 use crate::Error;
 use faer::{c64, Mat};
 use std::f64::consts::PI;
@@ -28,8 +29,8 @@ pub struct CycleOrbits<'a> {
     family: &'a SelfExcited<'a>,
     system: ModalSystem,
     /// Modal damping and modal negative damping.
-    damping: Mat<f64>,
-    negative: Mat<f64>,
+    damping: ModalDamping,
+    negative: ModalDamping,
 }
 
 /// A member of the family.
@@ -53,8 +54,8 @@ impl<'a> CycleOrbits<'a> {
     pub fn new(family: &'a SelfExcited<'a>) -> Result<Option<Self>, Error> {
         let Some(negative) = family.negative() else { return Ok(None) };
         let system = ModalSystem::new(family.model())?;
-        let damping = system.project(&family.model().structure().damping().to_owned());
-        let negative = system.project(negative);
+        let damping = system.project(family.model().structure().damping());
+        let negative = system.project(negative.as_ref());
         Ok(Some(Self { family, system, damping, negative }))
     }
 
@@ -70,13 +71,13 @@ impl<'a> CycleOrbits<'a> {
     /// The member at a value of the scalar.
     pub(super) fn member(&self, value: f64) -> Result<Member<'a>, Error> {
         let given = self.family.model();
-        let damping = &self.damping + faer::Scale(self.family.ratio_at(value)) * &self.negative;
+        let damping = self.damping.plus(self.family.ratio_at(value), &self.negative);
         let own = if self.family.changes().is_empty() {
             None
         } else {
             Some(given.with_laws(self.family.laws_at(value)?)?)
         };
-        let system = self.system.undriven(own.as_ref().unwrap_or(given), damping)?;
+        let system = self.system.undriven(own.as_ref().unwrap_or(given), &damping)?;
         Ok(Member { own, given, system })
     }
 

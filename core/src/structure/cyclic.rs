@@ -7,6 +7,7 @@
 use super::modal::Wave;
 use super::modes::hermitian_modes;
 use super::ports::{forced_harmonics, Ports};
+use super::proportional::follows_mass;
 use super::{
     compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Receptance, Structure,
 };
@@ -59,6 +60,8 @@ pub struct CyclicStructure {
     pub sectors: usize,
     /// Engine order E.
     pub engine_order: usize,
+    /// Whether a law made the damping, one that couples no modes of any nodal diameter.
+    pub proportional: bool,
 }
 
 /// Contacts and loads of a sector; rows act on the sector itself and on the next one.
@@ -241,7 +244,8 @@ impl CyclicCompliance {
                 structure.damping.standing(sign),
                 structure.stiffness.standing(sign),
             );
-            let whole = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
+            let whole = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?
+                .with_law(structure.proportional);
             let ports = Ports {
                 rows: &self.ports.own + faer::Scale(sign) * &self.ports.next,
                 stiffness: self.ports.stiffness.clone(),
@@ -258,15 +262,17 @@ impl CyclicCompliance {
         let free = hermitian_modes(mass.as_ref(), free_stiffness.as_ref())?;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
         let loads = self.loads_at(diameter);
-        let modal = ModalCompliance::of_wave(Wave {
-            in_stuck: stuck.project(damping.as_ref()),
-            in_free: free.project(damping.as_ref()),
-            stuck,
-            free,
+        let wave = Wave {
+            law: structure.proportional && !follows_mass(damping.as_ref(), mass.as_ref()),
+            stuck: stuck.clone(),
+            free: free.clone(),
             rows: rows.clone(),
             stiffness: self.ports.stiffness.clone(),
             loads: loads.clone(),
-        })?;
+        };
+        let project =
+            |free_modes| if free_modes { &free } else { &stuck }.damping(damping.as_ref());
+        let modal = ModalCompliance::of_wave(wave, project)?;
         let matrices = [mass, damping, stuck_stiffness];
         let direct = DirectCompliance::of_matrices(matrices, rows, loads)
             .with_frequencies(stuck_frequencies, free_frequencies);
@@ -288,6 +294,11 @@ impl Compliance for CyclicCompliance {
 
     fn forced_harmonics(&self) -> Vec<usize> {
         self.forced.clone()
+    }
+
+    fn is_direct(&self) -> bool {
+        let made = self.waves.iter().filter_map(OnceLock::get);
+        made.flatten().any(|wave| wave.is_direct())
     }
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {

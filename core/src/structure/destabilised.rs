@@ -7,8 +7,8 @@
 //! | any other; a travelling wave | one complex factorisation per harmonic |
 
 use super::cyclic::CyclicStructure;
-use super::modal::{complex, is_diagonal, FREE_FLOOR};
-use super::modes::{hermitian_modes, real_modes};
+use super::modal::{complex, FREE_FLOOR};
+use super::modes::{hermitian_modes, real_modes, RealModes};
 use super::Structure;
 use crate::Error;
 use faer::linalg::solvers::{PartialPivLu, Solve as _};
@@ -77,7 +77,8 @@ pub struct Destabilised {
 }
 
 impl Destabilised {
-    /// Of a structure, the rows B of its contacts and its negative damping, N × N.
+    /// Of a structure, the rows B of its contacts and its negative damping, N × N, made by a `law`
+    /// that couples no modes without contacts, or any.
     ///
     /// # Errors
     /// A matrix of another shape or with entries that are not finite; an eigenvalue iteration
@@ -86,10 +87,10 @@ impl Destabilised {
         structure: &Structure,
         rows: MatRef<'_, f64>,
         negative: MatRef<'_, f64>,
+        law: bool,
     ) -> Result<Self, Error> {
         check(complex(negative).as_ref(), structure.dofs())?;
         let free = real_modes(structure.mass(), structure.stiffness())?;
-        let [damping, modal] = [structure.damping(), negative].map(|c| free.project(c));
         let whole = Matrices {
             mass: complex(structure.mass()),
             damping: complex(structure.damping()),
@@ -97,19 +98,10 @@ impl Destabilised {
             stiffness: complex(structure.stiffness()),
             rows: complex(rows),
         };
-        let diagonal = [&damping, &modal].iter().all(|c| is_diagonal(complex(c.as_ref()).as_ref()));
-        let form = if diagonal {
-            let size = free.omega_squared.len();
-            let contacts = rows * &free.shapes;
-            Form::Modes(Modes {
-                damping: (0..size).map(|j| damping[(j, j)]).collect(),
-                negative: (0..size).map(|j| modal[(j, j)]).collect(),
-                omega_squared: free.omega_squared,
-                shapes: free.shapes,
-                contacts,
-            })
-        } else {
-            Form::Whole(Box::new(whole.clone()))
+        let law = law && structure.is_proportional();
+        let form = match Modes::new(&free, structure.damping(), negative, rows, law) {
+            Some(modes) => Form::Modes(modes),
+            None => Form::Whole(Box::new(whole.clone())),
         };
         Ok(Self { form, whole })
     }
@@ -254,6 +246,33 @@ impl Destabilised {
 }
 
 impl Modes {
+    /// The free modes in which both dampings are diagonal, if there are such.
+    fn new(
+        free: &RealModes,
+        damping: MatRef<'_, f64>,
+        negative: MatRef<'_, f64>,
+        rows: MatRef<'_, f64>,
+        law: bool,
+    ) -> Option<Self> {
+        // A sum of both is diagonal where both are, and only there if its factor is no special one.
+        let [own, added] = [damping, negative].map(|c| free.damping(c));
+        let largest = |c: Vec<f64>| c.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+        let ratio = largest(own.diagonal()) / largest(added.diagonal());
+        let factor = if ratio > 0.0 && ratio.is_finite() { 0.618 * ratio } else { 1.0 };
+        let (modes, _) = own.plus(factor, &added).separated(free.to_hermitian(), law)?;
+        let size = modes.omega_squared.len();
+        let shapes = Mat::from_fn(size, size, |i, j| modes.shapes[(i, j)].re);
+        let modes = RealModes { omega_squared: modes.omega_squared, shapes };
+        let [own, added] = [damping, negative].map(|c| modes.damping(c));
+        (law || own.is_diagonal() && added.is_diagonal()).then(|| Self {
+            damping: own.diagonal(),
+            negative: added.diagonal(),
+            contacts: rows * &modes.shapes,
+            omega_squared: modes.omega_squared,
+            shapes: modes.shapes,
+        })
+    }
+
     /// Weight of a mode with its derivatives in its frequency and in r.
     fn weight(&self, j: usize, omega: f64, ratio: f64) -> [c64; 3] {
         let squared = omega * omega;

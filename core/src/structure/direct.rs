@@ -123,6 +123,10 @@ impl Compliance for DirectCompliance {
         forced_harmonics(&self.loads)
     }
 
+    fn is_direct(&self) -> bool {
+        true
+    }
+
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
         let contacts = self.contacts();
         out.reset(contacts);

@@ -11,6 +11,7 @@ mod flexibility;
 mod modal;
 mod modes;
 mod ports;
+mod proportional;
 mod restraint;
 mod ring;
 mod ring_compliance;
@@ -24,6 +25,7 @@ pub use direct::DirectCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
 pub use modes::{natural_frequencies, real_modes, RealModes};
 pub use ports::{HarmonicLoad, Ports};
+pub(crate) use proportional::ModalDamping;
 pub use ring::{Ring, RingCoupling, RingLayout, RingSector};
 pub use ring_order::{RingMotion, RingOrder};
 pub use system::Structure;
@@ -93,10 +95,16 @@ pub trait Compliance: Send + Sync {
         out: &mut [c64],
     ) -> Result<(), Error>;
 
+    /// Whether a frequency costs a factorisation per harmonic, of the whole or of a part.
+    fn is_direct(&self) -> bool {
+        false
+    }
+
     /// The ring of sectors that this is, if it is one: its equations need no dense receptance.
     fn ring(&self) -> Option<&Ring> {
         None
     }
+
     /// Displacement amplitudes under the slip loads alone: [`Compliance::displacement`] without
     /// the external load, linear in `contact` and `slip_load`.
     ///

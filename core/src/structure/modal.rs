@@ -9,16 +9,13 @@
 use super::flexibility::Flexibility;
 use super::modes::{real_modes, HermitianModes};
 use super::ports::{HarmonicLoad, Ports};
+use super::proportional::{follows_mass, ModalDamping};
 use super::restraint::restrain;
-use super::spectrum::{complex_modes, real_spectrum, Spectrum};
+use super::spectrum::{complex_modes, Spectrum};
 use super::{Compliance, DirectCompliance, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 
-/// Modal damping between two modes, relative to their own, that still counts as none, …
-const COUPLING: f64 = 1e-10;
-/// … or, relative to the largest entry and per mode, that still counts as rounding.
-const ROUNDING: f64 = 1e-15;
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
 pub(super) const FREE_FLOOR: f64 = 1e-8;
 /// Distance to an undamped resonance, relative to the squared frequency, that is refused.
@@ -56,13 +53,12 @@ pub struct ModalCompliance {
     forced: Vec<usize>,
 }
 
-/// What a modal compliance is made of: modes of the stuck and of the free structure, the damping in
-/// both, rows of B (complex in a travelling wave), contact stiffness and loads.
+/// What a modal compliance is made of: modes of the stuck and of the free structure, rows of B (complex in a travelling wave), contact stiffness and loads.
 pub(super) struct Wave {
     pub(super) stuck: HermitianModes,
     pub(super) free: HermitianModes,
-    pub(super) in_stuck: Mat<c64>,
-    pub(super) in_free: Mat<c64>,
+    /// Whether a law says that the damping is diagonal in the free modes, and in no others.
+    pub(super) law: bool,
     pub(super) rows: Mat<c64>,
     pub(super) stiffness: Mat<f64>,
     pub(super) loads: Vec<HarmonicLoad>,
@@ -99,41 +95,56 @@ impl ModalCompliance {
         ports.check(structure.dofs())?;
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
-        let stuck = real_modes(structure.mass(), restrained.as_ref())?;
-        let free = real_modes(structure.mass(), structure.stiffness())?;
+        let (mass, damping) = (structure.mass(), structure.damping());
+        let free = real_modes(mass, structure.stiffness())?;
+        let stuck = if restrained.as_ref() == structure.stiffness() {
+            free.clone()
+        } else {
+            real_modes(mass, restrained.as_ref())?
+        };
         let wave = Wave {
-            in_stuck: complex(stuck.project(structure.damping()).as_ref()),
-            in_free: complex(free.project(structure.damping()).as_ref()),
+            law: structure.is_proportional() && !follows_mass(damping, mass),
             stuck: stuck.to_hermitian(),
             free: free.to_hermitian(),
             rows: complex(ports.rows.as_ref()),
             stiffness: ports.stiffness.clone(),
             loads: ports.loads.clone(),
         };
-        let Some(modal) = Self::of_wave(wave)? else { return Ok(None) };
+        let project = |free_modes| if free_modes { &free } else { &stuck }.damping(damping);
+        let Some(modal) = Self::of_wave(wave, project)? else { return Ok(None) };
         let modal = Self { flexibility: Flexibility::new(&stuck, ports), ..modal };
         let direct = || DirectCompliance::of(structure, ports, restrained.as_ref());
         Ok(modal.reproduces(direct).then_some(modal))
     }
 
-    /// The modal form of complex matrices, without a static part.
-    pub(super) fn of_wave(wave: Wave) -> Result<Option<Self>, Error> {
-        let Wave { stuck, free, in_stuck, in_free, rows, stiffness, loads } = wave;
+    /// The modal form of complex matrices, without a static part; `project` gives the damping in the
+    /// free modes, or in those of the stuck structure.
+    pub(super) fn of_wave(
+        wave: Wave,
+        project: impl Fn(bool) -> ModalDamping,
+    ) -> Result<Option<Self>, Error> {
+        let Wave { stuck, free, law, rows, stiffness, loads } = wave;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
-        let (base, spectrum, right, left, restraint) = if is_diagonal(in_stuck.as_ref()) {
-            let spectrum = real_spectrum(&stuck.omega_squared, in_stuck.as_ref(), 0.0);
-            let left = stuck.shapes.adjoint().to_owned();
-            (ModalBase::Stuck, spectrum, stuck.shapes, left, None)
-        } else if is_diagonal(in_free.as_ref()) {
-            let spectrum = real_spectrum(&free.omega_squared, in_free.as_ref(), FREE_FLOOR);
-            let left = free.shapes.adjoint().to_owned();
-            (ModalBase::Free, spectrum, free.shapes, left, Some(stiffness))
-        } else {
-            let modes =
-                complex_modes(&stuck.omega_squared, stuck.shapes.as_ref(), in_stuck.as_ref())?;
-            let Some((spectrum, right, left)) = modes else { return Ok(None) };
-            (ModalBase::Complex, spectrum, right, left, None)
+        let of_real = |(modes, damping): (HermitianModes, Vec<f64>), floor| {
+            let left = modes.shapes.adjoint().to_owned();
+            let spectrum = Spectrum::Real { omega_squared: modes.omega_squared, damping, floor };
+            (spectrum, modes.shapes, left)
         };
+        let in_stuck = (!law).then(|| project(false));
+        let in_stuck_modes =
+            |damping: &ModalDamping| damping.clone().separated(stuck.clone(), false);
+        let (base, (spectrum, right, left), restraint) =
+            if let Some(separate) = in_stuck.as_ref().and_then(in_stuck_modes) {
+                (ModalBase::Stuck, of_real(separate, 0.0), None)
+            } else if let Some(separate) = project(true).separated(free, law) {
+                (ModalBase::Free, of_real(separate, FREE_FLOOR), Some(stiffness))
+            } else {
+                let damping = in_stuck.unwrap_or_else(|| project(false));
+                let damping = damping.matrix().as_ref();
+                let modes = complex_modes(&stuck.omega_squared, stuck.shapes.as_ref(), damping)?;
+                let Some(modes) = modes else { return Ok(None) };
+                (ModalBase::Complex, modes, None)
+            };
         Ok(Some(Self {
             base,
             bandwidth: spectrum.narrowest_bandwidth(),
@@ -375,16 +386,6 @@ impl ModalCompliance {
     fn singular(&self) -> Error {
         Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
     }
-}
-
-pub(super) fn is_diagonal(matrix: MatRef<'_, c64>) -> bool {
-    let size = matrix.nrows();
-    let rounding = ROUNDING * size as f64 * matrix.norm_max();
-    let coupled = |i: usize, j: usize| {
-        let own = (matrix[(i, i)].norm() * matrix[(j, j)].norm()).sqrt();
-        i != j && matrix[(i, j)].norm() > (COUPLING * own).max(rounding)
-    };
-    !(0..size).any(|j| (0..size).any(|i| coupled(i, j)))
 }
 
 pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {

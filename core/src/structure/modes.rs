@@ -1,7 +1,14 @@
 //! Real modes of `(K − ω²M) φ = 0`, scaled to unit modal mass.
 
+use super::modal::complex;
+use super::proportional::ModalDamping;
+use crate::solve::hermitian_eigen;
 use crate::Error;
 use faer::linalg::solvers::DenseSolveCore as _;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::traits::ComplexField;
 use faer::{c64, Mat, MatRef, Side};
 
 /// Undamped modes: `Φᵀ M Φ = I`, `Φᵀ K Φ = diag(ω²)`.
@@ -18,25 +25,27 @@ pub struct RealModes {
 /// # Errors
 /// Mass not positive definite, or the eigenvalue iteration fails.
 pub fn real_modes(mass: MatRef<'_, f64>, stiffness: MatRef<'_, f64>) -> Result<RealModes, Error> {
+    let (omega_squared, shapes) = modes(mass, stiffness)?;
+    Ok(RealModes { omega_squared, shapes })
+}
+
+/// Eigenvalues and mass-normalised eigenvectors of a Hermitian stiffness and mass.
+fn modes<T: ComplexField<Real = f64>>(
+    mass: MatRef<'_, T>,
+    stiffness: MatRef<'_, T>,
+) -> Result<(Vec<f64>, Mat<T>), Error> {
     let cholesky = mass.llt(Side::Lower).map_err(|_| Error::IndefiniteMass)?;
     let lower = cholesky.L();
     let mut reduced = stiffness.to_owned();
     let par = faer::Par::Seq;
-    // L⁻¹ K L⁻ᵀ, from the left and, after transposition, from the left again.
-    faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
-    let mut reduced = reduced.transpose().to_owned();
-    faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
-    let eigen = reduced
-        .self_adjoint_eigen(Side::Lower)
-        .map_err(|_| Error::Eigenvalues("stiffness".to_owned()))?;
-    let mut shapes = eigen.U().to_owned();
-    faer::linalg::triangular_solve::solve_upper_triangular_in_place(
-        lower.transpose(),
-        shapes.as_mut(),
-        par,
-    );
-    let omega_squared = (0..mass.nrows()).map(|j| eigen.S()[j]).collect();
-    Ok(RealModes { omega_squared, shapes })
+    // L⁻¹ K L⁻ᴴ, from the left and, after transposition, from the left again.
+    solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
+    let mut reduced = reduced.adjoint().to_owned();
+    solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
+    let failed = || Error::Eigenvalues("stiffness".to_owned());
+    let (omega_squared, mut shapes) = hermitian_eigen(reduced.as_ref()).ok_or_else(failed)?;
+    solve_upper_triangular_in_place(lower.adjoint(), shapes.as_mut(), par);
+    Ok((omega_squared, shapes))
 }
 
 impl RealModes {
@@ -50,8 +59,14 @@ impl RealModes {
     pub(super) fn to_hermitian(&self) -> HermitianModes {
         HermitianModes {
             omega_squared: self.omega_squared.clone(),
-            shapes: super::modal::complex(self.shapes.as_ref()),
+            shapes: complex(self.shapes.as_ref()),
         }
+    }
+
+    /// A damping matrix in these modes.
+    pub(crate) fn damping(&self, matrix: MatRef<'_, f64>) -> ModalDamping {
+        let modal = complex(self.project(matrix).as_ref());
+        ModalDamping::new(modal, &self.to_hermitian(), |i, j| c64::new(matrix[(i, j)], 0.0))
     }
 
     /// `Φᵀ A Φ` of a matrix A.
@@ -63,9 +78,9 @@ impl RealModes {
 
 /// Modes of a Hermitian problem: `Φᴴ M Φ = I`, `Φᴴ K Φ = diag(ω²)`.
 #[derive(Debug, Clone)]
-pub(super) struct HermitianModes {
-    pub(super) omega_squared: Vec<f64>,
-    pub(super) shapes: Mat<c64>,
+pub(crate) struct HermitianModes {
+    pub(crate) omega_squared: Vec<f64>,
+    pub(crate) shapes: Mat<c64>,
 }
 
 /// Modes of a Hermitian stiffness and a positive definite Hermitian mass.
@@ -73,23 +88,7 @@ pub(super) fn hermitian_modes(
     mass: MatRef<'_, c64>,
     stiffness: MatRef<'_, c64>,
 ) -> Result<HermitianModes, Error> {
-    let cholesky = mass.llt(Side::Lower).map_err(|_| Error::IndefiniteMass)?;
-    let lower = cholesky.L();
-    let mut reduced = stiffness.to_owned();
-    let par = faer::Par::Seq;
-    faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
-    let mut reduced = reduced.adjoint().to_owned();
-    faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
-    let eigen = reduced
-        .self_adjoint_eigen(Side::Lower)
-        .map_err(|_| Error::Eigenvalues("stiffness".to_owned()))?;
-    let mut shapes = eigen.U().to_owned();
-    faer::linalg::triangular_solve::solve_upper_triangular_in_place(
-        lower.adjoint(),
-        shapes.as_mut(),
-        par,
-    );
-    let omega_squared = (0..mass.nrows()).map(|j| eigen.S()[j].re).collect();
+    let (omega_squared, shapes) = modes(mass, stiffness)?;
     Ok(HermitianModes { omega_squared, shapes })
 }
 
@@ -97,6 +96,11 @@ impl HermitianModes {
     /// Natural frequencies [rad/s]; rounding below zero counts as a rigid-body mode.
     pub(super) fn frequencies(&self) -> Vec<f64> {
         self.omega_squared.iter().map(|w| w.max(0.0).sqrt()).collect()
+    }
+
+    /// A damping matrix in these modes.
+    pub(super) fn damping(&self, matrix: MatRef<'_, c64>) -> ModalDamping {
+        ModalDamping::new(self.project(matrix), self, |i, j| matrix[(i, j)])
     }
 
     /// `Φᴴ A Φ` of a matrix A.

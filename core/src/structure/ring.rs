@@ -28,7 +28,8 @@ pub struct RingCoupling {
 /// A sector with the rows of its contacts on itself and on the next sector, and its loads.
 #[derive(Debug, Clone)]
 pub struct RingSector {
-    /// Mass, damping and stiffness, its own share of the couplings included.
+    /// Mass, damping and stiffness, its own share of the couplings included; proportional only if a
+    /// law made the damping of the couplings too.
     pub structure: Structure,
     /// Rows of B on the sector itself, contacts × N.
     pub own: Mat<f64>,
@@ -259,7 +260,8 @@ impl Ring {
                 }
             }
         }
-        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?
+            .with_law(self.parts.iter().all(|part| part.structure.is_proportional()));
         Ok((structure, Ports { rows, stiffness: of_contacts, loads }))
     }
 
@@ -300,7 +302,9 @@ fn isolated(
     // Contacts of the sector before stick to this one with their part on it.
     let mut held = part.structure.stiffness().to_owned();
     held += before.next.transpose() * (&before.stiffness * &before.next);
-    let structure = Structure::new(part.structure.mass(), part.structure.damping(), held.as_ref())?;
+    // No law knows of contacts that hold the sector.
+    let structure = Structure::new(part.structure.mass(), part.structure.damping(), held.as_ref())?
+        .with_law(part.structure.is_proportional() && between.is_empty());
     let rows = Mat::from_fn(ports, *dofs, |i, j| {
         if i < *contacts {
             part.own[(i, j)]

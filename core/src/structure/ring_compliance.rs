@@ -90,6 +90,10 @@ impl Compliance for Ring {
         self.sectors.len() * self.layout.dofs
     }
 
+    fn is_direct(&self) -> bool {
+        self.sectors.iter().any(|sector| sector.is_direct())
+    }
+
     fn forced_harmonics(&self) -> Vec<usize> {
         self.forced.clone()
     }

@@ -52,19 +52,6 @@ impl Spectrum {
     }
 }
 
-/// Modal denominators of modes with a diagonal modal damping.
-pub(super) fn real_spectrum(
-    omega_squared: &[f64],
-    damping: MatRef<'_, c64>,
-    floor: f64,
-) -> Spectrum {
-    Spectrum::Real {
-        omega_squared: omega_squared.to_vec(),
-        damping: (0..damping.nrows()).map(|j| damping[(j, j)].re).collect(),
-        floor,
-    }
-}
-
 /// Poles, and both sides R and L of the modal sum.
 pub(super) type ComplexModes = (Spectrum, Mat<c64>, Mat<c64>);
 

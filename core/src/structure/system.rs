@@ -12,6 +12,7 @@ pub struct Structure {
     mass: Mat<f64>,
     damping: Mat<f64>,
     stiffness: Mat<f64>,
+    proportional: bool,
 }
 
 impl Structure {
@@ -50,9 +51,24 @@ impl Structure {
             mass: symmetric("mass", mass)?,
             damping: damping.to_owned(),
             stiffness: symmetric("stiffness", stiffness)?,
+            proportional: false,
         };
         structure.mass.llt(faer::Side::Lower).map_err(|_| Error::IndefiniteMass)?;
         Ok(structure)
+    }
+
+    /// The same structure, `proportional` if a law made its damping, such as `C = a M + b K` or
+    /// given ratios of its modes, so that it couples none of the modes without contacts. Of a matrix
+    /// rounding decides whether it does.
+    #[must_use]
+    pub fn with_law(self, proportional: bool) -> Self {
+        Self { proportional, ..self }
+    }
+
+    /// Whether a law made the damping, one that couples none of the modes without contacts.
+    #[must_use]
+    pub fn is_proportional(&self) -> bool {
+        self.proportional
     }
 
     /// Number of DOFs N.

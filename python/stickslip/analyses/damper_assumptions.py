@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.analyses.assumptions import LARGE_ERROR
+from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption
 from stickslip.analyses.uniqueness import damping_assumption
 from stickslip.checks import listed
 from stickslip.model import Model
@@ -51,6 +51,7 @@ def damper_assumptions(
             *peak_assumptions(settings, arrays, "values"),
             _truncation(settings, arrays),
             damping_assumption(model.structure.damping),
+            direct_assumption(model),
         )
     )
 

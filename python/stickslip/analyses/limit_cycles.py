@@ -26,7 +26,7 @@ from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
-from stickslip.model.destabilised import negative_matrix
+from stickslip.model.destabilised import is_proportional, negative_matrix
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.limit_cycles import LimitCycles
 
@@ -146,9 +146,10 @@ def limit_cycles(
     )
     if settings.method == "exact":
         require_time(model)
+    law = is_proportional(negative_damping)
     prepare(model)
     with Interruption(progress) as watch:
-        solution = solve(model, matrix, settings, watch)
+        solution = solve(model, matrix, settings, watch, proportional=law)
         arrays = CycleArrays.of(solution)
         result = LimitCycles(
             model=model,
@@ -209,9 +210,14 @@ def negative_damping_of(given: ArrayLike | DampingLaw, model: Model) -> NDArray[
 
 
 def solve(
-    model: Model, matrix: NDArray[Any], settings: CycleSettings, progress: Progress
+    model: Model,
+    matrix: NDArray[Any],
+    settings: CycleSettings,
+    progress: Progress,
+    *,
+    proportional: bool,
 ) -> _core.LimitCycles:
-    """Return what the core makes of checked settings."""
+    """Return what the core makes of checked settings; a law may have made the matrix."""
     from stickslip import _core
 
     variation = settings.variation
@@ -228,6 +234,7 @@ def solve(
         return _core.limit_cycles(
             model.problem,
             matrix,
+            proportional,
             settings.mode,
             followed,
             exact,

@@ -16,6 +16,7 @@ from stickslip.analyses.variation import Common, Contacts, Parameter, Variation,
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
+from stickslip.model.destabilised import is_proportional
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 from stickslip.results.stability_map import MapArrays, MapSettings, StabilityMap
@@ -80,6 +81,7 @@ def stability_map(
     require_time(model)
     require_progress(progress)
     matrix = negative_damping_of(negative_damping, model)
+    law = is_proportional(negative_damping)
     given: dict[Parameter, ArrayLike | None] = {"stiffness": stiffness, "slip_force": slip_force}
     names = [name for name, values in given.items() if values is not None]
     if len(names) != 1:
@@ -107,7 +109,8 @@ def stability_map(
                 for place, value in enumerate(values):
                     share = _share(watch, place, len(values))
                     try:
-                        solution = solve(variation.apply(model, value), matrix, cycles, share)
+                        changed = variation.apply(model, value)
+                        solution = solve(changed, matrix, cycles, share, proportional=law)
                     except ModelError as error:
                         rows.append((np.nan, np.nan, np.nan))
                         told.append(_without_limit(name, value, str(error)))

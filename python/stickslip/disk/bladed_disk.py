@@ -358,6 +358,7 @@ class BladedDisk(Model):
                 self.engine_order % self.sectors,
                 contacts,
                 loads,
+                self.matrices.proportional,
             )
         except ValueError as error:
             raise ModelError(str(error)) from error

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from stickslip.checks import Matrix
 from stickslip.disk.coupling import Coupling, Interface
+from stickslip.model.damping import makes_blocks
 from stickslip.model.structure import Structure
 
 __all__ = ["Blocks", "CyclicMatrices"]
@@ -40,6 +41,8 @@ class CyclicMatrices:
     """[kg/s]"""
     stiffness: Blocks
     """[N/m]"""
+    proportional: bool
+    """Whether a law made all of the damping, one that couples no modes of any nodal diameter."""
 
     @classmethod
     def of(
@@ -72,4 +75,8 @@ class CyclicMatrices:
                     own += factor * at_own
                     following += factor * at_next
             blocks[name] = Blocks(own, following)
-        return cls(**blocks)
+        if couplings or interface is not None:
+            known = makes_blocks(structure.damping_law, zip(*blocks.values(), strict=True))
+        else:
+            known = structure.proportional
+        return cls(**blocks, proportional=known)

@@ -56,6 +56,7 @@ def family(disk: BladedDisk) -> _core.TunedDisk:
             (matrices.mass.next, matrices.damping.next, matrices.stiffness.next),
             contacts,
             forces,
+            matrices.proportional,
         )
     except ValueError as error:
         raise ModelError(str(error)) from error

@@ -16,6 +16,7 @@ from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.ring import Ring, SectorContact
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
+from stickslip.model.damping import makes_blocks
 from stickslip.model.force import Force
 from stickslip.model.model import Model
 from stickslip.model.structure import Structure
@@ -129,6 +130,7 @@ class MistunedDisk(Model):
                 (ring.stiffness, ring.stiffness_next),
                 contacts,
                 forces,
+                ring.proportional,
             )
         except ValueError as error:
             raise ModelError(str(error)) from error
@@ -169,9 +171,17 @@ def deviating(
         return (sector,) * disk.sectors
     # A law makes new damping of the deviating matrices, a given matrix stays as it is.
     damping = sector.damping if sector.damping_law is None else sector.damping_law
-    return tuple(
+    blades = (
         Structure((1.0 + m) * sector.mass, (1.0 + k) * sector.stiffness, damping, sector.dofs)
         for m, k in zip(heavier, stiffer, strict=True)
+    )
+    # Mass and stiffness deviate as wholes, which leaves the mode shapes as they are.
+    return tuple(
+        Structure.of_law(
+            *(blade.mass, blade.stiffness, blade.damping, blade.dofs, blade.damping_law),
+            proportional=sector.proportional,
+        )
+        for blade in blades
     )
 
 
@@ -259,7 +269,14 @@ def _ring(
         added = blocks.own - getattr(disk.structure, name)
         parts[name] = np.stack([getattr(blade, name) + added for blade in blades])
         parts[f"{name}_next"] = blocks.next
-    return Ring(**parts, contacts=contacts, loads=loads)
+    names = ("mass", "damping", "stiffness")
+    blocks = [*zip(*(parts[name] for name in names), strict=True)]
+    if disk.couplings or disk.interface is not None:
+        blocks.append(tuple(parts[f"{name}_next"] for name in names))
+        known = makes_blocks(disk.structure.damping_law, blocks)
+    else:
+        known = all(blade.proportional for blade in blades)
+    return Ring(**parts, contacts=contacts, loads=loads, proportional=known)
 
 
 def _deviations(values: ArrayLike | None, entry: str, sectors: int) -> NDArray[np.float64]:

@@ -55,6 +55,8 @@ class Ring:
     """All contacts, those of sector 0 first."""
     loads: tuple[tuple[int, NDArray[np.complex128]], ...]
     """Harmonics in ascending order, each with the forces on all sectors, (n, N) [N]."""
+    proportional: bool
+    """Whether laws made all of the damping, so that it couples no modes of the whole."""
 
     def assembled(self, dofs: Sequence[str]) -> Structure:
         """Return the whole as one structure.
@@ -75,11 +77,13 @@ class Ring:
             If the whole mass is not positive definite.
         """
         names = [f"{sector}.{dof}" for sector in range(len(self.mass)) for dof in dofs]
-        return Structure(
+        return Structure.of_law(
             mass=_whole(self.mass, self.mass_next),
             stiffness=_whole(self.stiffness, self.stiffness_next),
             damping=_whole(self.damping, self.damping_next),
             dofs=names,
+            law=None,
+            proportional=self.proportional,
         )
 
 

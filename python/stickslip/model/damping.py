@@ -22,8 +22,12 @@ __all__ = [
     "Rayleigh",
     "held_stiffness",
     "law_from_spec",
+    "makes_blocks",
     "modal_damping",
 ]
+
+
+_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +49,11 @@ class Rayleigh:
 
     mass: float = 0.0
     stiffness: float = 0.0
+
+    @property
+    def proportional(self) -> bool:
+        """Whether it couples no modes of the structure by itself: always."""
+        return True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mass", real_number(self.mass, "Rayleigh mass factor"))
@@ -103,6 +112,11 @@ class ModalDamping:
 
     ratio: float | Sequence[float]
     stuck: Iterable[Contact] = ()
+
+    @property
+    def proportional(self) -> bool:
+        """Whether it couples no modes of the structure by itself: unless contacts are `stuck`."""
+        return not self.stuck
 
     def __post_init__(self) -> None:
         given = self.ratio.tolist() if isinstance(self.ratio, np.ndarray) else self.ratio
@@ -247,6 +261,30 @@ def _finite(damping: Matrix, law: Rayleigh | ModalDamping) -> Matrix:
 
 DampingLaw: TypeAlias = Rayleigh | ModalDamping
 """What makes a damping matrix of mass and stiffness."""
+
+
+def makes_blocks(law: DampingLaw | None, blocks: Iterable[tuple[Matrix, Matrix, Matrix]]) -> bool:
+    """Tell whether Rayleigh damping of a sector holds with what couples it to its neighbours.
+
+    Parameters
+    ----------
+    law : Rayleigh, ModalDamping or None
+        The law of the sector by itself.
+    blocks : iterable of (mass, damping, stiffness)
+        The blocks of the sector and of its coupling, or of several sectors.
+
+    Returns
+    -------
+    bool
+        Whether every damping block is what the law makes of mass and stiffness, but for rounding.
+        A law of modes does not know those of the coupled sectors.
+    """
+    if not isinstance(law, Rayleigh):
+        return False
+    return all(
+        bool(np.abs(law.matrix(M, K) - C).max() <= _ROUNDING * np.abs(C).max())
+        for M, C, K in blocks
+    )
 
 
 def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:

@@ -15,7 +15,7 @@ from stickslip.model.structure import Structure
 if TYPE_CHECKING:
     from stickslip.disk import BladedDisk
 
-__all__ = ["destabilised", "negative_matrix"]
+__all__ = ["destabilised", "is_proportional", "negative_matrix"]
 
 
 def destabilised(
@@ -53,7 +53,9 @@ def destabilised(
         raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
     added = real_number(ratio, "ratio") * negative_matrix(negative_damping, model.structure)
     own = model.structure
-    structure = Structure(own.mass, own.stiffness, own.damping + added, own.dofs)
+    damping = own.damping + added
+    proportional = own.proportional and is_proportional(negative_damping)
+    structure = Structure.of_law(own.mass, own.stiffness, damping, own.dofs, None, proportional)
     if not model.travels:
         return Model(structure, model.contacts, model.forces)
     from stickslip.disk import BladedDisk
@@ -69,6 +71,11 @@ def destabilised(
         engine_orders=disk.engine_orders,
         interface=disk.interface,
     )
+
+
+def is_proportional(damping: MatrixLike | DampingLaw) -> bool:
+    """Tell whether negative damping is known to couple no modes of the structure."""
+    return isinstance(damping, DampingLaw) and damping.proportional
 
 
 def negative_matrix(damping: MatrixLike | DampingLaw, structure: Structure) -> Matrix:

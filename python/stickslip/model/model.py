@@ -275,7 +275,12 @@ class Model:
         ]
         try:
             return _core.Problem(
-                structure.mass, structure.damping, structure.stiffness, contacts, self._loads()
+                structure.mass,
+                structure.damping,
+                structure.stiffness,
+                contacts,
+                self._loads(),
+                structure.proportional,
             )
         except ValueError as error:
             raise ModelError(str(error)) from error

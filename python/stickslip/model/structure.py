@@ -52,6 +52,9 @@ class Structure:
         Names of the degrees of freedom.
     damping_law : Rayleigh, ModalDamping or None
         What the damping was made of; None where it was given as a matrix.
+    proportional : bool
+        Whether the damping couples none of the structure's modes because of what it was made of: a
+        law, or parts of `join` that each have one. Of a matrix rounding decides whether it does.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class Structure:
     damping: Matrix
     dofs: tuple[str, ...]
     damping_law: DampingLaw | None
+    proportional: bool
 
     def __init__(
         self,
@@ -95,6 +99,8 @@ class Structure:
             object.__setattr__(self, field, value)
         law = damping if isinstance(damping, DampingLaw) else None
         object.__setattr__(self, "damping_law", law)
+        proportional = law.proportional if law is not None else not self.damping.any()
+        object.__setattr__(self, "proportional", proportional)
 
     def __repr__(self) -> str:
         shown = ", ".join(self.dofs[:_SHOWN]) + (", ..." if len(self) > _SHOWN else "")
@@ -106,7 +112,7 @@ class Structure:
     def __reduce__(self) -> tuple[object, ...]:
         # Unpickled arrays would be writeable; going through the constructor makes them constant.
         matrices = self.mass, self.stiffness, self.damping
-        return Structure.of_law, (*matrices, self.dofs, self.damping_law)
+        return Structure.of_law, (*matrices, self.dofs, self.damping_law, self.proportional)
 
     @classmethod
     def of_law(
@@ -116,6 +122,7 @@ class Structure:
         damping: MatrixLike | None,
         dofs: Iterable[str] | None,
         law: DampingLaw | None,
+        proportional: bool | None = None,
     ) -> Structure:
         """Return a structure with a damping matrix that a law made, to the last bit.
 
@@ -125,6 +132,8 @@ class Structure:
             As of a new structure.
         law : Rayleigh, ModalDamping or None
             The law that made the damping, if any.
+        proportional : bool, optional
+            Whether the damping is known to couple no modes. Default: what the law says.
 
         Returns
         -------
@@ -133,6 +142,9 @@ class Structure:
         """
         made = cls(mass, stiffness, damping, dofs)
         object.__setattr__(made, "damping_law", law)
+        if proportional is None and law is not None:
+            proportional = law.proportional
+        object.__setattr__(made, "proportional", made.proportional or bool(proportional))
         return made
 
     def index(self, name: str) -> int:
@@ -188,11 +200,13 @@ def join(structures: Mapping[str, Structure]) -> Structure:
         if not isinstance(structure, Structure):
             raise ModelError(f"join: part {brief(part)} is {brief(structure)}; give a Structure")
     parts = list(structures.values())
-    return Structure(
+    return Structure.of_law(
         mass=_blocks([part.mass for part in parts]),
         stiffness=_blocks([part.stiffness for part in parts]),
         damping=_blocks([part.damping for part in parts]),
         dofs=[f"{name}.{dof}" for name, part in structures.items() for dof in part.dofs],
+        law=None,
+        proportional=all(part.proportional for part in parts),
     )
 
 

@@ -39,6 +39,7 @@ SEVERITIES: Mapping[str, Severity] = MappingProxyType(
         "half-period": _NOTE,
         "half-wave": _NOTE,
         "modal-base": _NOTE,
+        "direct-solution": _NOTE,
         "frequencies": _NOTE,
         "observed-dofs": _NOTE,
         "tolerances-missed": _NOTE,

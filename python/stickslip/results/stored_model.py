@@ -123,6 +123,9 @@ def _mistuned(model: Any) -> dict[Hashable, object]:
         said = {"units": unit, "long_name": f"{meaning} of each sector by itself"}
         stack = np.stack([getattr(blade, name) for blade in mistuned.blades])
         variables[f"blade_{name}"] = (("blade", "row", "column"), stack, said)
+    said = {"units": "1", "long_name": "damping of each sector known to couple no modes"}
+    known = np.array([blade.proportional for blade in mistuned.blades], dtype=np.int8)
+    variables["blade_proportional"] = ("blade", known, said)
     return variables
 
 
@@ -131,7 +134,13 @@ def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
 
     disk = _read_bladed(dataset, "sector_")
     stacks = [dataset[f"blade_{name}"].values for name in ("mass", "stiffness", "damping")]
-    blades = [Structure(m, k, c, disk.structure.dofs) for m, k, c in zip(*stacks, strict=True)]
+    known = np.zeros(disk.sectors)
+    if "blade_proportional" in dataset:  # files of version 0.1 have none
+        known = dataset["blade_proportional"].values
+    blades = [
+        Structure.of_law(m, k, c, disk.structure.dofs, None, bool(proportional))
+        for m, k, c, proportional in zip(*stacks, known, strict=True)
+    ]
     return rebuilt(disk, blades, *_parts(dataset))
 
 
@@ -158,6 +167,9 @@ def _structure_variables(structure: Structure) -> dict[Hashable, object]:
         {"units": "1", "long_name": "degree of freedom of the structure"},
     )
     law = structure.damping_law
+    if law is None and structure.proportional and structure.damping.any():
+        said = {"units": "1", "long_name": "damping known to couple no modes"}
+        variables["damping_proportional"] = ((), np.int8(1), said)
     return variables | _texts("damping_law", [] if law is None else [law.to_spec()])
 
 
@@ -169,6 +181,7 @@ def _structure(dataset: xr.Dataset) -> Structure:
         dataset["damping"].values,
         list(map(str, dataset["row"].values)),
         law_from_spec(laws[0]) if laws else None,
+        "damping_proportional" in dataset or None,
     )
 
 

@@ -34,6 +34,7 @@ from stickslip.study.structure_table import (
 )
 
 if TYPE_CHECKING:
+    from stickslip.model.damping import DampingLaw
     from stickslip.results.limit_cycles import LimitCycles
     from stickslip.study.tables import StudyTables
 
@@ -165,7 +166,7 @@ class LimitCyclesTable(Table):
         }
         return limit_cycles(
             model,
-            self._matrix(model),
+            self._negative_damping(),
             mode=self.mode,
             ratio=ratio,
             stiffness=spans["stiffness"],
@@ -181,16 +182,14 @@ class LimitCyclesTable(Table):
             max_points=self.max_points,
         )
 
-    def _matrix(self, model: Model) -> np.ndarray:
+    def _negative_damping(self) -> np.ndarray | DampingLaw:
         from stickslip.model.structure import ModalDamping, Rayleigh
 
-        structure = model.structure
         match self.negative_damping:
             case RayleighDamping(rayleigh=factor):
-                law = Rayleigh(mass=factor.mass, stiffness=factor.stiffness)
-                return law.matrix(structure.mass, structure.stiffness)
+                return Rayleigh(mass=factor.mass, stiffness=factor.stiffness)
             case ModalDampingTable(modal=ratio):
-                return ModalDamping(ratio).matrix(structure.mass, structure.stiffness)
+                return ModalDamping(ratio)
             case tuple() as rows:
                 return np.array(rows, dtype=np.float64)
             case other:
