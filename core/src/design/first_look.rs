@@ -31,8 +31,8 @@ pub(super) struct FirstLook {
     pub(super) omega: Vec<f64>,
     /// Resonances, to be looked at unless they cannot be the highest.
     pub(super) candidates: Vec<Candidate>,
-    /// Whether friction does not bound a resonance that a group shows.
-    pub(super) unbounded: Vec<bool>,
+    /// A resonance that a group shows and friction does not bound [rad/s].
+    pub(super) unbounded: Vec<Option<f64>>,
 }
 
 impl FirstLook {
@@ -55,7 +55,8 @@ impl FirstLook {
         let unbounded = aim
             .groups
             .iter()
-            .map(|group| resonances.iter().any(|one| one.unbounded && reach(one, group) > 0.0))
+            .map(|group| resonances.iter().find(|one| one.unbounded && reach(one, group) > 0.0))
+            .map(|one| one.map(|one| one.omega))
             .collect();
         let narrowest = resonances.iter().filter(|one| one.forced).map(|one| one.bandwidth);
         let narrowest = narrowest.fold(high - low, f64::min).max(1e-9 * high);

@@ -90,12 +90,30 @@ pub(super) struct Top {
     pub(super) curve: usize,
 }
 
+/// Why a highest point is not known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Doubt {
+    pub(super) status: PointStatus,
+    /// Where the response grows beyond all bounds, not a number if it does not [rad/s].
+    pub(super) at: f64,
+}
+
+impl Doubt {
+    fn unsolved(status: PointStatus) -> Self {
+        Self { status, at: f64::NAN }
+    }
+
+    fn unbounded(at: f64) -> Self {
+        Self { status: PointStatus::Singular, at }
+    }
+}
+
 /// How a search ended.
 pub(super) struct Found {
     /// All points, by frequency.
     pub(super) samples: Vec<Sample>,
-    /// The highest point of each group, or why it is not known.
-    pub(super) tops: Vec<Result<Top, PointStatus>>,
+    /// The highest point of each group, or why there is none.
+    pub(super) tops: Vec<Result<Top, Doubt>>,
 }
 
 /// A search under way.
@@ -134,9 +152,9 @@ impl<'a, 'b> Search<'a, 'b> {
         look: &FirstLook,
         seeds: &[Sample],
     ) -> Result<Option<Found>, Error> {
-        let singular = |unbounded: &bool| unbounded.then_some(PointStatus::Singular);
-        if look.unbounded.iter().all(|unbounded| *unbounded) {
-            let tops = vec![Err(PointStatus::Singular); self.aim.groups.len()];
+        let unbounded = |at: &Option<f64>| at.map(Doubt::unbounded);
+        if look.unbounded.iter().all(Option::is_some) {
+            let tops = look.unbounded.iter().filter_map(unbounded).map(Err).collect();
             return Ok(Some(Found { samples: self.samples, tops }));
         }
         for &omega in &look.omega {
@@ -162,11 +180,10 @@ impl<'a, 'b> Search<'a, 'b> {
             }
         }
         let mut tops = Vec::with_capacity(self.aim.groups.len());
-        for (group, unbounded) in look.unbounded.iter().enumerate() {
-            let Some(top) = self.top(group) else { return Ok(None) };
-            let (sample, curve) = top;
-            let failure = singular(unbounded).or_else(|| self.doubt(group));
-            tops.push(failure.map_or(Ok(Top { sample, curve }), Err));
+        for (group, at) in look.unbounded.iter().enumerate() {
+            let Some((sample, curve)) = self.top(group) else { return Ok(None) };
+            let doubt = unbounded(at).or_else(|| self.doubt(group));
+            tops.push(doubt.map_or(Ok(Top { sample, curve }), Err));
         }
         Ok(Some(Found { samples: self.samples, tops }))
     }
@@ -278,22 +295,22 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Why the highest point may lie in a part of the range that could not be solved, that too many
     /// points have left open, or in which the response grows beyond all resolution.
-    fn doubt(&self, group: usize) -> Option<PointStatus> {
+    fn doubt(&self, group: usize) -> Option<Doubt> {
         let (first, last) = (self.samples.first()?, self.samples.last()?);
         let (low, high) = self.aim.span;
         let least = self.height(group) * (1.0 + DOUBT);
         let ends = first.at > low * (1.0 + 2.0 * ASIDE) || last.at < high;
         let promising = |gap: &&Gap| gap.promises[group].1 > least;
         if ends || self.gaps.iter().filter(promising).any(|gap| gap.closed) {
-            return Some(self.failure.unwrap_or(PointStatus::Stalled));
+            return Some(Doubt::unsolved(self.failure.unwrap_or(PointStatus::Stalled)));
         }
         for (gap, pair) in self.gaps.iter().zip(self.samples.windows(2)) {
             let short = is_shortest(pair);
             if short && gap.promises[group].1 > self.height(group) * (1.0 + UNRESOLVED) {
-                return Some(PointStatus::Singular);
+                return Some(Doubt::unbounded(pair[0].at));
             }
             if !short && promising(&gap) {
-                return Some(PointStatus::Stalled);
+                return Some(Doubt::unsolved(PointStatus::Stalled));
             }
         }
         None

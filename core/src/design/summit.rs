@@ -32,7 +32,7 @@ pub struct Quest {
 /// The highest point of a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summit {
-    /// Its frequency [rad/s].
+    /// Its frequency; of a missing summit, where nothing bounds the response, if that is why [rad/s].
     pub omega: f64,
     /// Its amplitude [m].
     pub amplitude: f64,
@@ -193,7 +193,7 @@ impl<'a> Climb<'a> {
             for (top, group) in found.tops.iter().zip(&quest.groups) {
                 summits.push(match top {
                     // A lower maximum is no summit.
-                    Err(status) => (Summit::missing(*status), 0),
+                    Err(doubt) => (Summit { omega: doubt.at, ..Summit::missing(doubt.status) }, 0),
                     Ok(top) => {
                         let best = &found.samples[top.sample];
                         let (status, kept, error_estimate) =
