@@ -1,16 +1,13 @@
 //! The damper curve: peak amplitude and frequency along a parameter.
 
 use super::member::Member;
-use super::summit::{Climb, Quest, Reached};
+use super::summit::{Climb, Quest, Reached, OF_CURVE};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Progress, Resolution, Settings};
 use crate::fourier::Measure;
 use crate::model::{Model, Variation};
 use crate::timing::Profile;
 use crate::Error;
 use std::time::Instant;
-
-/// Gain in height, relative, that is not worth another point of a search.
-const GAIN: f64 = 1e-11;
 
 /// What peak is followed.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,7 +120,7 @@ impl<'a> Follower<'a> {
         quest: &'a Quest,
         progress: &'a Progress<'a>,
     ) -> Result<Self, Error> {
-        let climb = Climb::new(model, settings, quest, GAIN, progress)?;
+        let climb = Climb::new(model, settings, quest, OF_CURVE, progress)?;
         let missing = Vec::new();
         Ok(Self { model, variation, climb, resolution: None, missing, interrupted: false })
     }

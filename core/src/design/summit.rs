@@ -13,8 +13,13 @@ use crate::timing::Profile;
 use crate::Error;
 use std::time::Instant;
 
-/// Gain in height, relative, that is not worth another point.
-const GAIN: f64 = 1e-8;
+/// Gain in height, relative, that is not worth another point: the frequency errs by the root of it,
+/// in bandwidths. Of a single peak, whose frequency and slopes are asked for, …
+const SINGLE: f64 = 1e-13;
+/// … of peaks along a parameter, …
+pub(super) const OF_CURVE: f64 = 1e-11;
+/// … and of many disks, of which the heights count.
+pub(super) const OF_STUDY: f64 = 1e-8;
 /// Points after which a search ends in any case.
 const MOST_POINTS: usize = 1000;
 
@@ -101,8 +106,20 @@ pub fn summits(
     order: Option<usize>,
     progress: &Progress<'_>,
 ) -> Result<Summits, Error> {
+    climbed(model, settings, quest, SINGLE, order, progress)
+}
+
+/// [`summits`] up to a gain that is not worth another point.
+pub(super) fn climbed(
+    model: &Model,
+    settings: Settings,
+    quest: &Quest,
+    gain: f64,
+    order: Option<usize>,
+    progress: &Progress<'_>,
+) -> Result<Summits, Error> {
     let start = Instant::now();
-    let mut climb = Climb::new(model, settings, quest, GAIN, progress)?;
+    let mut climb = Climb::new(model, settings, quest, gain, progress)?;
     let reached = climb.run(model, order, None)?;
     let profile = Profile { total: start.elapsed(), ..climb.memory.profile };
     let summits = reached.summits.into_iter().map(|(summit, _)| summit).collect();

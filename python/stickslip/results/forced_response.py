@@ -200,10 +200,16 @@ class ForcedResponse(BladeMotion, Sensitivities):
         UserWarning
             If a point beside the maximum is not solved, or nothing bounds the response.
         """
-        key = key_of(dof, measure)
-        if key not in self._peaks:
-            ((_, self._peaks[key]),) = summits(self, [[dof]], measure)
-        return self._peaks[key]
+        key_of(dof, measure)
+        return self._peaks_of([dof], measure)[0]
+
+    def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
+        """Return the peaks of several degrees of freedom, found together."""
+        groups = [[dof] for dof in dofs if (dof, measure) not in self._peaks]
+        found = summits(self, groups, measure) if groups else []
+        for (dof,), (_, peak) in zip(groups, found, strict=True):
+            self._peaks[dof, measure] = peak
+        return [self._peaks[dof, measure] for dof in dofs]
 
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
         return summits(self, [dofs], measure)[0]

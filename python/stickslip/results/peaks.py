@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
@@ -161,12 +162,13 @@ def _summit(
     index = int(np.argmax([amplitude.max() for _, amplitude, _ in curves]))
     omega, amplitude, gap = curves[index]
     best = int(amplitude.argmax())
-    peak, beside_gap = (float(omega[best]), float(amplitude[best])), bool(gap[best])
+    peak = (float(omega[best]), float(amplitude[best]))
+    beside_gap = bool(gap[_rivals(amplitude)].any())
     if row is not None:
         found, status = row[:2], Status.from_code(row[3])
         if status == Status.SINGULAR and np.isfinite(found[0]):
             return index, _unbounded(dofs[index], found[0])
-        beside_gap = not status.solved
+        beside_gap = beside_gap or not status.solved
         if found[1] > peak[1] * (1.0 + SAME):
             index, peak = row[2], found
     return index, _told(result, dofs[index], omega, peak, beside_gap)
@@ -183,7 +185,7 @@ def _told(
         warnings.warn(
             f"peak of {dof!r}: {unsolved} of {result.omega.size} points are not solved, some of "
             "them beside the maximum, which may be higher there; see status for the remedy",
-            stacklevel=5,
+            stacklevel=_outside(),
         )
     return Peak(*peak, at_edge, beside_gap)
 
@@ -193,9 +195,17 @@ def _unbounded(dof: str, omega: float) -> Peak:
     warnings.warn(
         f"peak of {dof!r}: neither damping nor friction bounds the resonance at {omega:.6g} rad/s; "
         "add damping, or more friction",
-        stacklevel=5,
+        stacklevel=_outside(),
     )
     return Peak(omega, np.inf, at_edge=False)
+
+
+def _outside() -> int:
+    """Return how far up the caller of this package is, for a warning of the function that asks."""
+    frame, level = sys._getframe(1), 1
+    while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == "stickslip":
+        frame, level = frame.f_back, level + 1
+    return level
 
 
 def rows(result: ForcedResponse, dofs: Iterable[str] | str) -> list[Summary]:
@@ -223,11 +233,13 @@ def rows(result: ForcedResponse, dofs: Iterable[str] | str) -> list[Summary]:
     names = (dofs,) if isinstance(dofs, str) else tuple(dofs)
     for dof in names:
         result.amplitude(dof)  # refuses what is unknown
-    return [_row(result, dof) for dof in names] if result.arrays.solved.any() else []
+    if not result.arrays.solved.any():
+        return []
+    peaks = result._peaks_of(names, "half_range")
+    return [_row(result, dof, peak) for dof, peak in zip(names, peaks, strict=True)]
 
 
-def _row(result: ForcedResponse, dof: str) -> Summary:
-    peak = result.peak(dof)
+def _row(result: ForcedResponse, dof: str, peak: Peak) -> Summary:
     solved = np.flatnonzero(result.arrays.solved)
     near = int(solved[np.abs(result.omega[solved] - peak.omega).argmin()])
     return Summary(
