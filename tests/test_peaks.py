@@ -98,13 +98,18 @@ def test_summary(frf):
 
 def test_summary_refines_only_the_peaks_asked_for(monkeypatch):
     frf = ss.forced_response(snecma_beam(), GRID, harmonics=5)
-    refined = []
-    whole = _core.peak
-    monkeypatch.setattr(_core, "peak", lambda *args: refined.append(args[4]) or whole(*args))
+    sought = []
+    whole = _core.summits
+    monkeypatch.setattr(
+        _core, "summits", lambda *args: sought.append(args[1]["groups"]) or whole(*args)
+    )
     (row,) = frf.summary(["tip"])
     assert frf.summary("tip") == [row]
     assert row.dof == "tip"
-    assert set(refined) == {frf.model.structure.index("tip")}
+    assert sought == [[[frf.model.structure.index("tip")]]]
+    frf.summary()
+    assert len(sought) == 2
+    assert len(sought[1]) == 2
 
 
 @pytest.mark.parametrize(
@@ -179,8 +184,12 @@ def test_the_order_of_the_sweep_hides_no_gap(frf):
         assert without(turned, [gap]).peak("tip").beside_gap
 
 
-def test_a_bracket_without_any_solution_leaves_the_computed_maximum(frf, monkeypatch):
-    monkeypatch.setattr(_core, "peak", lambda *_: (200.0, -np.inf))
+def test_a_search_without_any_solution_leaves_the_computed_maximum(frf, monkeypatch):
+    stalled = (np.nan, np.nan, 0, ss.Status.STALLED.code, 0, np.nan, False)
+    monkeypatch.setattr(_core, "summits", lambda *_: [stalled])
     fresh = replace(frf)
     amplitude = frf.amplitude("tip")
-    assert fresh.peak("tip")[:2] == (frf.omega[amplitude.argmax()], amplitude.max())
+    with pytest.warns(UserWarning, match="which may be higher there"):
+        peak = fresh.peak("tip")
+    assert peak[:2] == (frf.omega[amplitude.argmax()], amplitude.max())
+    assert peak.beside_gap

@@ -7,6 +7,7 @@ use super::scale::OF_STEPS;
 use super::solution::{Point, PointStatus, Solution};
 use super::sweep::{check_frequency, finish};
 use super::unknowns::Unknowns;
+use crate::model::Resonance;
 use crate::solve::System as _;
 use crate::Error;
 use faer::c64;
@@ -17,6 +18,8 @@ use std::time::Instant;
 const LONGEST: f64 = 1.0 / 60.0;
 /// Shortest step relative to the frequency.
 const SHORTEST: f64 = 1e-7;
+/// Resonances closer than this share of their bandwidths are one stop.
+const SEEN: f64 = 0.25;
 /// Distance, relative to the frequency, at which a step passes an undamped resonance.
 const ASIDE: f64 = 1e-8;
 
@@ -24,8 +27,8 @@ const ASIDE: f64 = 1e-8;
 /// between the points stay within the tolerance of the curve.
 ///
 /// Steps follow the curvature of the observed DOFs, which a narrow resonance between two points
-/// could hide; so each stuck and each free natural frequency in the range is a point, and
-/// steps beside it start at the bandwidth of the least damped mode.
+/// could hide; so each resonance in the range, in whatever state of the contacts, is a point, and
+/// steps behind it start at its bandwidth.
 ///
 /// # Errors
 /// As for a sweep over given frequencies; a range of no length.
@@ -37,19 +40,18 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
         return Err(Error::value("omega range: end", to, "must differ from its start"));
     }
     let direction = (to - from).signum();
-    let stops = stops(&balance, from, to);
     let longest = LONGEST * (to - from).abs();
-    let fine = balance.model.compliance().narrowest_bandwidth().clamp(1e-6 * longest, longest);
     let mut points = vec![Arc::new(balance.solve(from, None)?)];
     balance.scale.include(&points[0]);
     keep(balance.kept, &points[0]);
-    let mut step = 0.1 * longest;
+    // What lies outside the range may be narrow, too.
+    let fine = balance.model.compliance().narrowest_bandwidth().max(1e-6 * longest);
+    let mut step = fine.min(0.1 * longest);
     let mut interrupted = false;
-    for stop in stops {
+    for (stop, bandwidth) in stops(&mut balance, &points[0], from, to)? {
         if interrupted {
             break;
         }
-        step = step.min(fine);
         while (stop - points[points.len() - 1].omega) * direction > 0.0 {
             let last = &points[points.len() - 1];
             if !balance.report((last.omega - from) / (to - from)) {
@@ -90,31 +92,48 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
                 points.push(point);
             }
         }
+        step = step.min(bandwidth.max(1e-6 * longest));
     }
     Ok(finish(balance, points, interrupted, start))
 }
 
-/// Natural frequencies inside the range, and its end, in the order of the sweep.
-fn stops(balance: &ForcedBalance<'_>, from: f64, to: f64) -> Vec<f64> {
-    let compliance = balance.model.compliance();
+/// Resonances inside the range, each with its bandwidth, and the end, in the order of the sweep.
+/// Those of harmonics that no force excites count where friction can make them as high as the
+/// response is at the start.
+fn stops(
+    balance: &mut ForcedBalance<'_>,
+    first: &Point,
+    from: f64,
+    to: f64,
+) -> Result<Vec<(f64, f64)>, Error> {
     let (low, high) = (from.min(to), from.max(to));
-    let mut stops: Vec<f64> = compliance
-        .stuck_frequencies()
+    let table = balance.table(first.harmonics.max(1));
+    let resonances = balance.model.resonances((low, high), table.harmonics().orders())?;
+    let orders = first.harmonics + 1;
+    let rises = |reach: &Vec<f64>| {
+        let sizes = first.displacement.chunks_exact(orders);
+        let mut observed = balance.observe.iter().zip(sizes);
+        observed.any(|(&dof, series)| {
+            let size = series[1..].iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();
+            reach[dof] > size
+        })
+    };
+    let counts =
+        |one: &&Resonance| one.forced || one.reach.as_ref().is_none_or(|reach| rises(reach));
+    let mut stops: Vec<(f64, f64)> = resonances
         .iter()
-        .chain(compliance.free_frequencies())
+        .filter(counts)
         // A relative shift by 1e-7 keeps an undamped resonance at a distance.
-        .map(|w| w * (1.0 - 1e-7))
-        .filter(|w| *w > low && *w < high)
+        .map(|one| (one.omega * (1.0 - 1e-7), one.bandwidth))
+        .filter(|(w, _)| *w > low && *w < high)
         .collect();
-    stops.sort_by(f64::total_cmp);
-    stops.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * b.abs());
-    stops.push(high);
+    stops.dedup_by(|a, b| a.0 - b.0 < (SEEN * a.1.min(b.1)).max(1e-6 * b.0));
+    let end = (to, f64::INFINITY);
     if to < from {
         stops.reverse();
-        stops.remove(0);
-        stops.push(low);
     }
-    stops
+    stops.push(end);
+    Ok(stops)
 }
 
 /// Extrapolation along the tangent `dU/dω = J⁻¹ (dU^stuck/dω + dG/dω Q)`.

@@ -57,7 +57,8 @@ pub fn optimum(
     if !(low > 0.0 && low < high && high.is_finite()) {
         return Err(Error::value("bounds: upper", high, "must lie above the lower one, above 0"));
     }
-    let mut follower = Follower::new(model, settings, variation, target, progress)?;
+    let quest = target.quest();
+    let mut follower = Follower::new(model, settings, variation, &quest, progress)?;
     let mut trials = Vec::new();
     for i in 0..COARSE {
         let share = i as f64 / (COARSE - 1) as f64;

@@ -4,7 +4,7 @@
 //! the patterns before it nor on the number of threads, so that numbers are the same bit by bit.
 
 use super::mistuned::TunedDisk;
-use super::summit::{summits, Quest, Summits};
+use super::summit::{climbed, Quest, Summits, OF_STUDY};
 use crate::balance::Settings;
 use crate::Error;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -101,5 +101,6 @@ fn climb(
     };
     let quest = Quest { groups: quest.groups.iter().map(everywhere).collect(), ..quest.clone() };
     let model = disk.mistuned(pattern.deviations)?;
-    summits(&model, settings, &quest, order.get(pattern.disk).copied().flatten(), proceed)
+    let order = order.get(pattern.disk).copied().flatten();
+    climbed(&model, settings, &quest, OF_STUDY, order, proceed)
 }

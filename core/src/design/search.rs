@@ -1,11 +1,13 @@
 //! The highest point of a response over a range of frequencies, whichever of its maxima that is,
 //! and of whichever DOF of a group.
 //!
-//! Every point is solved with the exact slopes of all DOFs. Between two points an [`Interpolant`]
-//! says how high each curve may be; the interval that promises most is split next, until none
-//! promises more than what has been found. Jumps between rival maxima, and between the blades of a
-//! disk, are seen, because none is followed by itself.
+//! Every resonance is looked at that load and friction can make the highest. Every point is solved
+//! with the exact slopes of all DOFs. Between two points an [`Interpolant`] says how high each curve
+//! may be; the interval that promises most is split next, until none promises more than what has
+//! been found. Jumps between rival maxima, and between the blades of a disk, are seen, because none
+//! is followed by itself.
 
+use super::first_look::{Candidate, FirstLook};
 use super::interpolant::{Interpolant, Knot};
 use super::samples::{predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
@@ -14,8 +16,6 @@ use crate::fourier::Measure;
 use crate::Error;
 use std::ops::Range;
 
-/// Points of an even first look at the range.
-const LOOKS: usize = 9;
 /// Share by which an interpolant of that look may err: it may hide a maximum this much higher.
 const UNSEEN: f64 = 0.5;
 /// The error of an interpolant falls with the fourth power of its width; this times as much is
@@ -31,8 +31,12 @@ const MOST_FAILURES: usize = 40;
 const DOUBT: f64 = 1e-6;
 /// Distance at which an undamped resonance is passed, relative to the frequency.
 const ASIDE: f64 = 1e-8;
-/// Maxima from this share of the highest are looked at again in the next response.
-const RIVAL: f64 = 0.7;
+/// Resonances closer than this share of a bandwidth to a point are seen from there.
+const SEEN: f64 = 0.5;
+/// What a resonance may exceed the height by that its load and friction can give it.
+const SHARE: f64 = 2.0;
+/// Gain in height, relative, that the shortest interval must not promise.
+const UNRESOLVED: f64 = 1e-3;
 
 /// What is looked for.
 #[derive(Debug, Clone)]
@@ -84,16 +88,32 @@ pub(super) struct Top {
     pub(super) sample: usize,
     /// Position of its DOF among those of all groups.
     pub(super) curve: usize,
-    /// Why the highest point may lie elsewhere, where nothing could be solved.
-    pub(super) failure: Option<PointStatus>,
+}
+
+/// Why a highest point is not known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Doubt {
+    pub(super) status: PointStatus,
+    /// Where the response grows beyond all bounds, not a number if it does not [rad/s].
+    pub(super) at: f64,
+}
+
+impl Doubt {
+    fn unsolved(status: PointStatus) -> Self {
+        Self { status, at: f64::NAN }
+    }
+
+    fn unbounded(at: f64) -> Self {
+        Self { status: PointStatus::Singular, at }
+    }
 }
 
 /// How a search ended.
 pub(super) struct Found {
     /// All points, by frequency.
     pub(super) samples: Vec<Sample>,
-    /// The highest point of each group.
-    pub(super) tops: Vec<Top>,
+    /// The highest point of each group, or why there is none.
+    pub(super) tops: Vec<Result<Top, Doubt>>,
 }
 
 /// A search under way.
@@ -122,43 +142,135 @@ impl<'a, 'b> Search<'a, 'b> {
         Self { residual, aim, dofs, balance, samples, gaps, failures: 0, failure: None }
     }
 
-    /// Finds the highest points from a first look, ascending from one end of the range to the
-    /// other, and the samples of a similar response.
+    /// Finds the highest points from a first look and the samples of a similar response; `None` if
+    /// the analysis is to end, or nothing is solved.
     ///
     /// # Errors
     /// As for a solution at one frequency.
-    pub(super) fn run(mut self, looks: &[f64], seeds: &[Sample]) -> Result<Option<Found>, Error> {
-        for &omega in looks {
+    pub(super) fn run(
+        mut self,
+        look: &FirstLook,
+        seeds: &[Sample],
+    ) -> Result<Option<Found>, Error> {
+        let unbounded = |at: &Option<f64>| at.map(Doubt::unbounded);
+        if look.unbounded.iter().all(Option::is_some) {
+            let tops = look.unbounded.iter().filter_map(unbounded).map(Err).collect();
+            return Ok(Some(Found { samples: self.samples, tops }));
+        }
+        for &omega in &look.omega {
             let start = self.beside(seeds, omega);
             if let Some(sample) = self.solve(omega, start)? {
-                self.samples.push(sample);
+                self.insert(sample, vec![UNSEEN; self.dofs.len()]);
             }
-            if self.failure == Some(PointStatus::NotComputed) {
+            if self.is_interrupted() {
                 return Ok(None);
             }
         }
-        for interval in 1..self.samples.len() {
-            let gap = self.gap(interval - 1, vec![UNSEEN; self.dofs.len()], 0);
-            self.gaps.push(gap);
-        }
-        let most_points = self.aim.most_points.max(2 * looks.len());
-        while self.samples.len() < most_points {
-            let Some((interval, share)) = self.most_promising() else { break };
-            if !self.split(interval, share)? {
+        let mut open = vec![true; look.candidates.len()];
+        let mut more = true;
+        while more {
+            more = self.approach(&look.candidates, &mut open, seeds)?;
+            let most_points = self.aim.most_points.max(2 * self.samples.len());
+            while self.samples.len() < most_points && !self.is_interrupted() {
+                let Some((interval, share)) = self.most_promising() else { break };
+                self.split(interval, share)?;
+            }
+            if self.is_interrupted() {
                 return Ok(None);
             }
         }
-        let unfinished = self.samples.len() >= most_points;
         let mut tops = Vec::with_capacity(self.aim.groups.len());
-        for group in 0..self.aim.groups.len() {
+        for (group, at) in look.unbounded.iter().enumerate() {
             let Some((sample, curve)) = self.top(group) else { return Ok(None) };
-            let mut failure = if self.is_in_doubt(group, false) { self.failure } else { None };
-            if unfinished && failure.is_none() && self.is_in_doubt(group, true) {
-                failure = Some(PointStatus::Stalled);
-            }
-            tops.push(Top { sample, curve, failure });
+            let doubt = unbounded(at).or_else(|| self.doubt(group));
+            tops.push(doubt.map_or(Ok(Top { sample, curve }), Err));
         }
         Ok(Some(Found { samples: self.samples, tops }))
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.failure == Some(PointStatus::NotComputed)
+    }
+
+    /// Looks at the resonances that may be the highest, those that promise most first; whether there
+    /// were any.
+    fn approach(
+        &mut self,
+        candidates: &[Candidate],
+        open: &mut [bool],
+        seeds: &[Sample],
+    ) -> Result<bool, Error> {
+        let mut looked = false;
+        loop {
+            let promising = |&i: &usize| open[i] && self.may_lead(&candidates[i]);
+            let reach = |i: usize| candidates[i].reach.iter().copied().fold(0.0, f64::max);
+            let next = (0..candidates.len()).filter(promising);
+            let Some(next) = next.reduce(|a, b| if reach(b) > reach(a) { b } else { a }) else {
+                return Ok(looked);
+            };
+            (open[next], looked) = (false, true);
+            let Candidate { at, bandwidth, ref reach } = candidates[next];
+            let mut sample = None;
+            for aside in [0.0, -0.5, 0.5] {
+                let omega = (at + aside * bandwidth).clamp(self.aim.span.0, self.aim.span.1);
+                if sample.is_none() && !self.is_interrupted() && self.failures <= MOST_FAILURES {
+                    let start = self.beside(seeds, omega);
+                    sample = self.solve(omega, start)?;
+                }
+            }
+            if self.is_interrupted() {
+                return Ok(false);
+            }
+            match sample {
+                Some(sample) => self.insert(sample, vec![UNSEEN; self.dofs.len()]),
+                None => self.close(at, reach),
+            }
+        }
+    }
+
+    /// Whether a resonance that no point has seen may be higher than what has been found.
+    fn may_lead(&self, candidate: &Candidate) -> bool {
+        let after = self.samples.partition_point(|sample| sample.at < candidate.at);
+        let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
+        let around: Vec<&Sample> = around.filter_map(|i| self.samples.get(i)).collect();
+        let near = (SEEN * candidate.bandwidth).max(2.0 * ASIDE * candidate.at);
+        if around.iter().any(|sample| (sample.at - candidate.at).abs() <= near) {
+            return false;
+        }
+        candidate.reach.iter().enumerate().any(|(group, reach)| {
+            let heights = around.iter().flat_map(|sample| &sample.knots[self.curves(group)]);
+            let beside = heights.map(|knot| knot.height).fold(0.0, f64::max);
+            *reach > 0.0 && beside + SHARE * reach > self.height(group) * (1.0 + self.aim.gain)
+        })
+    }
+
+    /// Leaves the interval around an unsolved resonance to doubt.
+    fn close(&mut self, at: f64, reach: &[f64]) {
+        let after = self.samples.partition_point(|sample| sample.at < at);
+        if let Some(gap) = after.checked_sub(1).and_then(|interval| self.gaps.get_mut(interval)) {
+            gap.closed = true;
+            for (promise, reach) in gap.promises.iter_mut().zip(reach) {
+                promise.1 = promise.1.max(*reach);
+            }
+        }
+    }
+
+    /// Adds a sample, with the errors allowed for on both sides of it.
+    fn insert(&mut self, sample: Sample, errors: Vec<f64>) {
+        let after = self.samples.partition_point(|other| other.at < sample.at);
+        if self.samples.get(after).is_some_and(|other| other.at == sample.at) {
+            return;
+        }
+        self.samples.insert(after, sample);
+        let last = self.samples.len() - 1;
+        let parts: Vec<Gap> = [after.checked_sub(1), (after < last).then_some(after)]
+            .into_iter()
+            .flatten()
+            .map(|interval| self.gap(interval, errors.clone(), 0))
+            .collect();
+        let first = after.saturating_sub(1);
+        let replaced = usize::from(after > 0 && after < last);
+        self.gaps.splice(first..first + replaced, parts);
     }
 
     /// Positions of the DOFs of a group among all.
@@ -181,19 +293,27 @@ impl<'a, 'b> Search<'a, 'b> {
         self.top(group).map_or(0.0, |(at, curve)| self.samples[at].knots[curve].height)
     }
 
-    /// Whether a part of the range that could not be solved, or that `unfinished` points have left
-    /// open, may hold a higher point.
-    fn is_in_doubt(&self, group: usize, unfinished: bool) -> bool {
-        let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else {
-            return true;
-        };
+    /// Why the highest point may lie in a part of the range that could not be solved, that too many
+    /// points have left open, or in which the response grows beyond all resolution.
+    fn doubt(&self, group: usize) -> Option<Doubt> {
+        let (first, last) = (self.samples.first()?, self.samples.last()?);
         let (low, high) = self.aim.span;
         let least = self.height(group) * (1.0 + DOUBT);
         let ends = first.at > low * (1.0 + 2.0 * ASIDE) || last.at < high;
-        ends || self
-            .gaps
-            .iter()
-            .any(|gap| (gap.closed || unfinished) && gap.promises[group].1 > least)
+        let promising = |gap: &&Gap| gap.promises[group].1 > least;
+        if ends || self.gaps.iter().filter(promising).any(|gap| gap.closed) {
+            return Some(Doubt::unsolved(self.failure.unwrap_or(PointStatus::Stalled)));
+        }
+        for (gap, pair) in self.gaps.iter().zip(self.samples.windows(2)) {
+            let short = is_shortest(pair);
+            if short && gap.promises[group].1 > self.height(group) * (1.0 + UNRESOLVED) {
+                return Some(Doubt::unbounded(pair[0].at));
+            }
+            if !short && promising(&gap) {
+                return Some(Doubt::unsolved(PointStatus::Stalled));
+            }
+        }
+        None
     }
 
     /// An interval between two samples, with what it promises.
@@ -223,7 +343,7 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             for (i, pair) in self.samples.windows(2).enumerate() {
                 let gap = &self.gaps[i];
-                if gap.closed || pair[1].at - pair[0].at <= SHORTEST * pair[1].at {
+                if gap.closed || is_shortest(pair) {
                     continue;
                 }
                 let (share, promise) = gap.promises[group];
@@ -235,13 +355,13 @@ impl<'a, 'b> Search<'a, 'b> {
         best.0
     }
 
-    /// Solves inside an interval; `false` if the analysis is to end.
-    fn split(&mut self, interval: usize, share: f64) -> Result<bool, Error> {
+    /// Solves inside an interval.
+    fn split(&mut self, interval: usize, share: f64) -> Result<(), Error> {
         let gap = self.gaps[interval].clone();
         let Some(sample) = self.inside(interval, gap.stride(share))? else {
             // Nothing more is asked of an interval whose inside cannot be solved.
             self.gaps[interval].closed = true;
-            return Ok(self.failure != Some(PointStatus::NotComputed));
+            return Ok(());
         };
         let (left, right) = (&self.samples[interval], &self.samples[interval + 1]);
         let share = (sample.at - left.at) / (right.at - left.at);
@@ -273,7 +393,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let before = self.gap(interval, before, idle(share));
         let after = self.gap(interval + 1, after, idle(1.0 - share));
         self.gaps.splice(interval..=interval, [before, after]);
-        Ok(true)
+        Ok(())
     }
 
     /// A point inside an interval: at the share asked for, or halfway from there to an end.
@@ -282,8 +402,7 @@ impl<'a, 'b> Search<'a, 'b> {
         for share in [share, 0.5 * share, 0.5 * (1.0 + share)] {
             let solved = self.solve(left + share * (right - left), None)?;
             let sample = solved.filter(|sample| left < sample.at && sample.at < right);
-            let ended = self.failure == Some(PointStatus::NotComputed);
-            if sample.is_some() || ended || self.failures > MOST_FAILURES {
+            if sample.is_some() || self.is_interrupted() || self.failures > MOST_FAILURES {
                 return Ok(sample);
             }
         }
@@ -302,7 +421,7 @@ impl<'a, 'b> Search<'a, 'b> {
             .collect();
         for start in start.map(Some).into_iter().chain([None]).chain(neighbours) {
             let sample = self.attempt(omega, start.as_ref())?;
-            if sample.is_some() || self.failure == Some(PointStatus::NotComputed) {
+            if sample.is_some() || self.is_interrupted() {
                 return Ok(sample);
             }
             if self.failures > MOST_FAILURES {
@@ -339,15 +458,17 @@ impl<'a, 'b> Search<'a, 'b> {
         Ok(Some(Sample { at, knots, unknowns: unknowns.clone(), rate }))
     }
 
-    /// A start from a similar response: its solution, moved by as much as the last sample differs
-    /// from it.
+    /// A start from a similar response: its solution, moved by as much as the nearest sample
+    /// differs from it.
     fn beside(&self, seeds: &[Sample], omega: f64) -> Option<Unknowns> {
         let mut start = predicted(seeds, omega)?;
-        if let Some(last) = self.samples.last() {
-            let similar = predicted(seeds, last.at)?.recast(last.unknowns.harmonics());
-            let harmonics = last.unknowns.harmonics().clone();
+        let distance = |sample: &Sample| (sample.at - omega).abs();
+        let nearest = self.samples.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        if let Some(near) = nearest {
+            let similar = predicted(seeds, near.at)?.recast(near.unknowns.harmonics());
+            let harmonics = near.unknowns.harmonics().clone();
             let values = start.recast(&harmonics);
-            let moves = last.unknowns.values().iter().zip(&similar);
+            let moves = near.unknowns.values().iter().zip(&similar);
             let values = values.iter().zip(moves).map(|(x, (new, old))| x + (new - old));
             start = Unknowns::new(harmonics, values.collect());
         }
@@ -355,34 +476,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 }
 
-/// Even frequencies over the range, and the maxima of a similar response.
-pub(super) fn first_look((low, high): (f64, f64), seeds: &[Sample]) -> Vec<f64> {
-    let spacing = (high - low) / (LOOKS - 1) as f64;
-    let mut omega: Vec<f64> = (0..LOOKS - 1).map(|i| low + i as f64 * spacing).collect();
-    omega.push(high);
-    omega.extend(rivals(seeds));
-    sorted(omega, (low, high), 0.02 * spacing)
-}
-
-/// Frequencies at which a curve of a similar response has a maximum near its highest.
-pub(super) fn rivals(seeds: &[Sample]) -> Vec<f64> {
-    let mut omega = Vec::new();
-    for curve in 0..seeds.first().map_or(0, |seed| seed.knots.len()) {
-        let highest = seeds.iter().map(|seed| seed.knots[curve].height).fold(0.0, f64::max);
-        for three in seeds.windows(3) {
-            let [a, b, c] = [&three[0], &three[1], &three[2]].map(|seed| seed.knots[curve]);
-            if b.height >= a.height && b.height > c.height && b.height >= RIVAL * highest {
-                omega.push(b.at);
-            }
-        }
-    }
-    omega
-}
-
-/// Frequencies inside a range in ascending order, at least `distance` apart; both ends are kept.
-pub(super) fn sorted(mut omega: Vec<f64>, (low, high): (f64, f64), distance: f64) -> Vec<f64> {
-    omega.retain(|w| (low..=high).contains(w));
-    omega.sort_by(f64::total_cmp);
-    omega.dedup_by(|a, b| (*a - *b).abs() < distance);
-    omega
+/// Whether an interval is too short to be split.
+fn is_shortest(ends: &[Sample]) -> bool {
+    ends[1].at - ends[0].at <= SHORTEST * ends[1].at
 }

@@ -1,30 +1,27 @@
 //! The highest point that any DOF of a group reaches over a range of frequencies: the most loaded
 //! blade of a disk, and where.
 
+use super::first_look::FirstLook;
 use super::samples::Sample;
-use super::search::{rivals, sorted, Aim, Found, Search};
+use super::search::{Aim, Found, Search};
 use crate::balance::{
     Evaluation, ForcedBalance, HarmonicChoice, Memory, PointStatus, Progress, Resolution, Settings,
 };
 use crate::fourier::Measure;
 use crate::model::Model;
-use crate::structure::Compliance;
 use crate::timing::Profile;
 use crate::Error;
 use std::time::Instant;
 
-/// Gain in height, relative, that is not worth another point.
-const GAIN: f64 = 1e-8;
+/// Gain in height, relative, that is not worth another point: the frequency errs by the root of it,
+/// in bandwidths. Of a single peak, whose frequency and slopes are asked for, …
+const SINGLE: f64 = 1e-13;
+/// … of peaks along a parameter, …
+pub(super) const OF_CURVE: f64 = 1e-11;
+/// … and of many disks, of which the heights count.
+pub(super) const OF_STUDY: f64 = 1e-8;
 /// Points after which a search ends in any case.
 const MOST_POINTS: usize = 1000;
-/// Fewest intervals of the first look.
-const INTERVALS: usize = 8;
-/// Intervals of an even first look above which it looks at natural frequencies instead, …
-const EVEN: usize = 24;
-/// … and shortest even interval, in bandwidths of the least damped mode.
-const BANDWIDTHS: f64 = 2.0;
-/// Natural frequencies closer than this share of a bandwidth are one resonance.
-const MERGED: f64 = 0.5;
 
 /// Which highest points are sought.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +37,7 @@ pub struct Quest {
 /// The highest point of a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summit {
-    /// Its frequency [rad/s].
+    /// Its frequency; of a missing summit, where nothing bounds the response, if that is why [rad/s].
     pub omega: f64,
     /// Its amplitude [m].
     pub amplitude: f64,
@@ -109,104 +106,163 @@ pub fn summits(
     order: Option<usize>,
     progress: &Progress<'_>,
 ) -> Result<Summits, Error> {
+    climbed(model, settings, quest, SINGLE, order, progress)
+}
+
+/// [`summits`] up to a gain that is not worth another point.
+pub(super) fn climbed(
+    model: &Model,
+    settings: Settings,
+    quest: &Quest,
+    gain: f64,
+    order: Option<usize>,
+    progress: &Progress<'_>,
+) -> Result<Summits, Error> {
     let start = Instant::now();
-    let (low, high) = quest.span;
-    if !(low > 0.0 && low < high && high < 1e100) {
-        return Err(Error::value("omega range: end", high, "must lie above its start"));
-    }
-    if quest.groups.is_empty() || quest.groups.iter().any(Vec::is_empty) {
-        return Err(Error::shape("dofs", "at least one in every group", "none"));
-    }
-    let all = quest.groups.concat();
-    let memory = ForcedBalance::new(model, settings, &all)?.into_memory();
-    let mut climb = Climb { model, settings, quest, progress, memory, points: 0 };
-    let summits = climb.run(order)?;
+    let mut climb = Climb::new(model, settings, quest, gain, progress)?;
+    let reached = climb.run(model, order, None)?;
     let profile = Profile { total: start.elapsed(), ..climb.memory.profile };
+    let summits = reached.summits.into_iter().map(|(summit, _)| summit).collect();
     Ok(Summits { summits, points: climb.points, profile })
 }
 
-struct Climb<'a> {
-    model: &'a Model,
-    settings: Settings,
-    quest: &'a Quest,
-    progress: &'a Progress<'a>,
-    memory: Memory,
-    points: usize,
+/// Searches for highest points, each from the samples of the last.
+pub(super) struct Climb<'a> {
+    pub(super) settings: Settings,
+    pub(super) quest: &'a Quest,
+    pub(super) progress: &'a Progress<'a>,
+    /// Share of the work that is done, for the progress.
+    pub(super) share: f64,
+    /// Gain in height, relative, that is not worth another point.
+    pub(super) gain: f64,
+    pub(super) memory: Memory,
+    /// Samples of the last search.
+    pub(super) seeds: Vec<Sample>,
+    pub(super) points: usize,
 }
 
-impl Climb<'_> {
-    fn run(&mut self, order: Option<usize>) -> Result<Vec<Summit>, Error> {
-        let least = match self.settings.harmonics {
+/// What a climb has reached.
+pub(super) struct Reached {
+    /// The summits, each with the position of its sample.
+    pub(super) summits: Vec<(Summit, usize)>,
+    /// With what they were found.
+    pub(super) resolution: Resolution,
+    /// What they ask for by themselves.
+    pub(super) wanted: Resolution,
+}
+
+impl<'a> Climb<'a> {
+    /// A climb of models like this one.
+    ///
+    /// # Errors
+    /// A range that is not ordered, no DOF in a group, or what no model could be solved with.
+    pub(super) fn new(
+        model: &Model,
+        settings: Settings,
+        quest: &'a Quest,
+        gain: f64,
+        progress: &'a Progress<'a>,
+    ) -> Result<Self, Error> {
+        let (low, high) = quest.span;
+        if !(low > 0.0 && low < high && high < 1e100) {
+            return Err(Error::value("omega range: end", high, "must lie above its start"));
+        }
+        if quest.groups.is_empty() || quest.groups.iter().any(Vec::is_empty) {
+            return Err(Error::shape("dofs", "at least one in every group", "none"));
+        }
+        let all = quest.groups.concat();
+        let memory = ForcedBalance::new(model, settings, &all)?.into_memory();
+        let (share, seeds, points) = (0.0, Vec::new(), 0);
+        Ok(Self { settings, quest, progress, share, gain, memory, seeds, points })
+    }
+
+    /// Finds the summits of a model. Automatic harmonics start from what is known to resolve a
+    /// similar one, from `order`, or from what the middle of the range asks for.
+    pub(super) fn run(
+        &mut self,
+        model: &Model,
+        order: Option<usize>,
+        known: Option<Resolution>,
+    ) -> Result<Reached, Error> {
+        let quest = self.quest;
+        let all = quest.groups.concat();
+        let harmonics = match self.settings.harmonics {
             HarmonicChoice::Fixed(harmonics) => harmonics,
             HarmonicChoice::Auto => order.unwrap_or(1).max(1),
         };
-        let samples = self.settings.fixed_samples();
-        let mut resolution = Resolution { harmonics: least, samples };
-        let known = order.is_some() && self.settings.evaluation == Evaluation::Direct;
-        if self.settings.is_automatic() && !known {
-            let middle = 0.5 * (self.quest.span.0 + self.quest.span.1);
-            resolution = resolution.or_finer(self.judge(self.quest.groups[0][0], middle, None)?.1);
+        let least = Resolution { harmonics, samples: self.settings.fixed_samples() };
+        let mut resolution = known.unwrap_or(least);
+        let told = order.is_some() && self.settings.evaluation == Evaluation::Direct;
+        if self.settings.is_automatic() && known.is_none() && !told {
+            let middle = 0.5 * (quest.span.0 + quest.span.1);
+            resolution = least.or_finer(self.judge(model, all[0], middle, None)?.1);
         }
-        let all = self.quest.groups.concat();
-        let mut seeds: Vec<Sample> = Vec::new();
         loop {
-            let Some(found) = self.search(resolution, &seeds)? else {
-                let ended = !(self.progress)(0.0);
+            let Some(found) = self.search(model, resolution)? else {
+                let ended = !(self.progress)(self.share);
                 let status = if ended { PointStatus::NotComputed } else { PointStatus::Stalled };
-                return Ok(vec![Summit::missing(status); self.quest.groups.len()]);
+                let summits = vec![(Summit::missing(status), 0); quest.groups.len()];
+                return Ok(Reached { summits, resolution, wanted: resolution });
             };
             let mut summits = Vec::with_capacity(found.tops.len());
-            let mut wanted = resolution;
+            let mut wanted = least;
             let mut first = 0;
-            for (top, group) in found.tops.iter().zip(&self.quest.groups) {
-                let best = &found.samples[top.sample];
-                let (mut status, kept, error_estimate) =
-                    self.judge(all[top.curve], best.at, Some(best))?;
-                if status.is_solved() {
-                    wanted = wanted.or_finer(kept);
-                }
-                status = top.failure.unwrap_or(status);
-                summits.push(if status.is_solved() {
-                    Summit {
-                        omega: best.at,
-                        amplitude: best.knots[top.curve].height,
-                        member: top.curve - first,
-                        status,
-                        harmonics: resolution.harmonics,
-                        error_estimate,
-                        at_edge: top.sample == 0 || top.sample + 1 == found.samples.len(),
-                    }
-                } else {
+            for (top, group) in found.tops.iter().zip(&quest.groups) {
+                summits.push(match top {
                     // A lower maximum is no summit.
-                    Summit::missing(status)
+                    Err(doubt) => (Summit { omega: doubt.at, ..Summit::missing(doubt.status) }, 0),
+                    Ok(top) => {
+                        let best = &found.samples[top.sample];
+                        let (status, kept, error_estimate) =
+                            self.judge(model, all[top.curve], best.at, Some(best))?;
+                        let summit = if status.is_solved() {
+                            wanted = wanted.or_finer(kept);
+                            Summit {
+                                omega: best.at,
+                                amplitude: best.knots[top.curve].height,
+                                member: top.curve - first,
+                                status,
+                                harmonics: resolution.harmonics,
+                                error_estimate,
+                                at_edge: top.sample == 0 || top.sample + 1 == found.samples.len(),
+                            }
+                        } else {
+                            Summit::missing(status)
+                        };
+                        (summit, top.sample)
+                    }
                 });
                 first += group.len();
             }
-            if wanted == resolution || summits.iter().any(|s| s.status == PointStatus::NotComputed)
-            {
-                return Ok(summits);
+            self.seeds = found.samples;
+            let ended = summits.iter().any(|(one, _)| one.status == PointStatus::NotComputed);
+            let finer = resolution.or_finer(wanted);
+            if finer == resolution || ended {
+                return Ok(Reached { summits, resolution, wanted });
             }
             // What a summit asks for may move it, and change which is highest.
-            (resolution, seeds) = (wanted, found.samples);
+            resolution = finer;
         }
     }
 
-    fn search(&mut self, resolution: Resolution, seeds: &[Sample]) -> Result<Option<Found>, Error> {
+    fn search(&mut self, model: &Model, resolution: Resolution) -> Result<Option<Found>, Error> {
         let settings = self.settings.at(resolution);
         // Nothing is observed: a point of the search needs no error estimate.
-        let mut balance = ForcedBalance::new(self.model, settings, &[])?
+        let mut balance = ForcedBalance::new(model, settings, &[])?
             .watched(self.progress)
             .remembering(std::mem::take(&mut self.memory));
+        balance.report(self.share);
         let aim = Aim {
             groups: self.quest.groups.clone(),
             measure: self.quest.measure,
             span: self.quest.span,
-            gain: GAIN,
+            gain: self.gain,
             most_points: MOST_POINTS,
         };
+        let table = balance.table(resolution.harmonics);
+        let look = FirstLook::new(model, &aim, table.harmonics().orders(), &self.seeds)?;
         let search = Search::new(settings.residual, &aim, &mut balance);
-        let looks = looks(self.model.compliance(), self.quest.span, seeds);
-        let found = search.run(&looks, seeds)?;
+        let found = search.run(&look, &self.seeds)?;
         self.points += found.as_ref().map_or(0, |found| found.samples.len());
         self.memory = balance.into_memory();
         Ok(found)
@@ -216,45 +272,20 @@ impl Climb<'_> {
     /// better one could change.
     fn judge(
         &mut self,
+        model: &Model,
         dof: usize,
         omega: f64,
         start: Option<&Sample>,
     ) -> Result<(PointStatus, Resolution, f64), Error> {
         let observe = [dof];
-        let mut balance = ForcedBalance::new(self.model, self.settings, &observe)?
+        let mut balance = ForcedBalance::new(model, self.settings, &observe)?
             .watched(self.progress)
             .remembering(std::mem::take(&mut self.memory));
+        balance.report(self.share);
         let point = balance.solve(omega, start.map(|sample| &sample.unknowns));
         self.memory = balance.into_memory();
         self.points += 1;
         let point = point?;
         Ok((point.status, point.resolution(), point.error_estimate[0]))
     }
-}
-
-/// Frequencies of a first look that no resonance slips through: closer than a few bandwidths, or,
-/// where damping is too light for that, at every natural frequency, stuck and free. A resonance
-/// between the two is as broad as its distance from them, for what bends it is friction.
-fn looks(compliance: &dyn Compliance, (low, high): (f64, f64), seeds: &[Sample]) -> Vec<f64> {
-    let mut forced = compliance.forced_harmonics();
-    forced.retain(|&k| k > 0);
-    let finest = forced.last().copied().unwrap_or(1) as f64;
-    let bandwidth = (compliance.narrowest_bandwidth() / finest).max(1e-9 * high);
-    let needed = ((high - low) / (BANDWIDTHS * bandwidth)).ceil();
-    let intervals = needed.clamp(INTERVALS as f64, EVEN as f64) as usize;
-    let spacing = (high - low) / intervals as f64;
-    let mut omega: Vec<f64> = (0..=intervals).map(|i| low + i as f64 * spacing).collect();
-    let mut distance = 0.02 * spacing;
-    if needed > EVEN as f64 {
-        let natural = compliance.stuck_frequencies().iter().chain(compliance.free_frequencies());
-        omega.extend(natural.flat_map(|w| forced.iter().map(move |&k| w / k as f64)));
-        distance = distance.min(MERGED * bandwidth);
-    }
-    omega.extend(rivals(seeds));
-    // The ends stand for what lies too close to them.
-    omega.retain(|w| (low + distance..=high - distance).contains(w));
-    let mut looks = sorted(omega, (low, high), distance);
-    looks.insert(0, low);
-    looks.push(high);
-    looks
 }

@@ -1,10 +1,12 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
 mod gathered;
+mod resonances;
 mod self_excited;
 mod slipping;
 mod variation;
 
+pub use resonances::Resonance;
 pub use self_excited::{NegativeDamping, SelfExcited};
 pub use variation::{Change, Common, Variation};
 
@@ -16,6 +18,7 @@ use crate::structure::{
 use crate::Error;
 use faer::Mat;
 use gathered::Gathered;
+use resonances::{slip_kinds, States};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -48,6 +51,7 @@ pub struct Model {
     compliance: Arc<dyn Compliance>,
     modal_base: &'static str,
     body: Body,
+    states: Arc<States>,
 }
 
 /// How the structure of a model is given.
@@ -168,6 +172,7 @@ impl Model {
             points,
             compliance: Arc::clone(&ring) as Arc<dyn Compliance>,
             modal_base: "sectors",
+            states: Arc::new(States::of(&Body::Ring(Arc::clone(&ring)), 0)),
             body: Body::Ring(ring),
         })
     }
@@ -181,7 +186,8 @@ impl Model {
     ) -> Result<Self, Error> {
         let (compliance, modal_base) = body.compliance(&structure, &ports)?;
         let (structure, ports) = (Arc::new(structure), Arc::new(ports));
-        Ok(Self { structure, ports, laws, points, compliance, modal_base, body })
+        let states = Arc::new(States::of(&body, structure.dofs()));
+        Ok(Self { structure, ports, laws, points, compliance, modal_base, body, states })
     }
 
     /// The same problem with every law evaluated by marching through `samples` instants per period
@@ -221,11 +227,16 @@ impl Model {
         let (structure, points) = (Arc::clone(&self.structure), self.points.clone());
         let (mut ports, mut compliance) = (Arc::clone(&self.ports), Arc::clone(&self.compliance));
         let (mut modal_base, body) = (self.modal_base, self.body.clone());
-        if stiffness != ports.stiffness {
+        let mut states = Arc::clone(&self.states);
+        let same = stiffness == ports.stiffness;
+        if !same {
             ports = Arc::new(Ports { stiffness, ..Ports::clone(&ports) });
             (compliance, modal_base) = body.compliance(&structure, &ports)?;
         }
-        Ok(Self { structure, ports, laws, points, compliance, modal_base, body })
+        if !same || slip_kinds(&laws) != slip_kinds(&self.laws) {
+            states = Arc::new(States::of(&body, structure.dofs()));
+        }
+        Ok(Self { structure, ports, laws, points, compliance, modal_base, body, states })
     }
 
     /// Whether this is one sector of a disk in a travelling wave.

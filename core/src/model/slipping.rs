@@ -56,7 +56,15 @@ impl Model {
                 })?;
             slips[index] = true;
         }
-        let (slip, stick): (Vec<usize>, Vec<usize>) = (0..total).partition(|&i| slips[i]);
+        self.condensed_stiffness(&slips)
+    }
+
+    /// The points that stick where those of `slips` slip, and their stiffness.
+    pub(super) fn condensed_stiffness(
+        &self,
+        slips: &[bool],
+    ) -> Result<(Vec<usize>, Mat<f64>), Error> {
+        let (slip, stick): (Vec<usize>, Vec<usize>) = (0..slips.len()).partition(|&i| slips[i]);
         let stiffness = condensed(&self.ports.stiffness, &stick, &slip)?;
         Ok((stick, stiffness))
     }

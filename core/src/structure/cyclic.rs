@@ -101,13 +101,15 @@ impl CyclicStructure {
     }
 
     /// Mass, damping and stiffness of a wave of a nodal diameter.
-    pub(super) fn at_diameter(&self, diameter: usize) -> [Mat<c64>; 3] {
+    #[must_use]
+    pub fn at_diameter(&self, diameter: usize) -> [Mat<c64>; 3] {
         let delta = self.phase(diameter);
         [&self.mass, &self.damping, &self.stiffness].map(|matrix| matrix.wave(delta))
     }
 
     /// Rows of B in a wave of a nodal diameter.
-    pub(super) fn rows_at(
+    #[must_use]
+    pub fn rows_at(
         &self,
         diameter: usize,
         own: MatRef<'_, f64>,

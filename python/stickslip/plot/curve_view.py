@@ -150,11 +150,11 @@ class CurveView:
         )
 
     def mark_peak(self, result: ForcedResponse, colour: Colour, *, named: bool) -> None:
-        """Mark the refined peak, unless the true one may lie outside or in a gap."""
+        """Mark the refined peak, unless there is none or it may lie outside or in a gap."""
         if not result.arrays.solved.any():
             return
         peak = result.peak(self.dof, self.measure)
-        if peak.at_edge or peak.beside_gap:
+        if peak.at_edge or peak.beside_gap or not np.isfinite(peak.amplitude):
             return
         x, y = self.omega.factor * peak.omega, self._factor(result.model) * peak.amplitude
         self.ax.plot(

@@ -283,6 +283,9 @@ class ExactResponse(ForcedResponse):
             self._peaks[key] = highest(self, dof, measure, of_orbits)
         return self._peaks[key]
 
+    def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
+        return [self.peak(dof, measure) for dof in dofs]
+
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
         tops = np.nanmax([self.amplitude(dof, measure) for dof in dofs], axis=1)
         rivals = np.flatnonzero(tops >= RIVAL * tops.max())

@@ -14,7 +14,7 @@ from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
 from stickslip.results.blades import BladeMotion
 from stickslip.results.energy import Energy, energy_of
-from stickslip.results.peaks import Peak, Summary, highest, highest_of, refined, rows
+from stickslip.results.peaks import Peak, Summary, rows, summits
 from stickslip.results.sensitivities import Sensitivities
 
 if TYPE_CHECKING:
@@ -172,8 +172,9 @@ class ForcedResponse(BladeMotion, Sensitivities):
     def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
         """Return the highest point of the response curve, between the computed points.
 
-        Every local maximum of the computed points within 10 % of the largest is refined between
-        its neighbours, solving the balance equations anew.
+        The balance equations are solved anew over the range of the computed points: at every
+        resonance that may be the highest, in whatever state of the contacts, and wherever the curve
+        between two points may be higher.
 
         Parameters
         ----------
@@ -185,7 +186,8 @@ class ForcedResponse(BladeMotion, Sensitivities):
         Returns
         -------
         Peak
-            `omega`, `amplitude` (not below any computed point), `at_edge` and `beside_gap`.
+            `omega`, `amplitude` (not below any computed point, infinite where neither damping nor
+            friction bounds it), `at_edge` and `beside_gap`.
 
         Raises
         ------
@@ -196,15 +198,21 @@ class ForcedResponse(BladeMotion, Sensitivities):
         Warns
         -----
         UserWarning
-            If a point beside the maximum is not solved.
+            If a point beside the maximum is not solved, or nothing bounds the response.
         """
-        key = key_of(dof, measure)
-        if key not in self._peaks:
-            self._peaks[key] = highest(self, dof, measure, refined)
-        return self._peaks[key]
+        key_of(dof, measure)
+        return self._peaks_of([dof], measure)[0]
+
+    def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
+        """Return the peaks of several degrees of freedom, found together."""
+        groups = [[dof] for dof in dofs if (dof, measure) not in self._peaks]
+        found = summits(self, groups, measure) if groups else []
+        for (dof,), (_, peak) in zip(groups, found, strict=True):
+            self._peaks[dof, measure] = peak
+        return [self._peaks[dof, measure] for dof in dofs]
 
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
-        return highest_of(self, dofs, measure)
+        return summits(self, [dofs], measure)[0]
 
     def error_estimate(self, dof: str) -> Float:
         """Return what the discarded harmonics, and more samples, could still change.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
@@ -11,14 +12,19 @@ import numpy as np
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Float, Int, Measure
+from stickslip.results.status import Status
 
 if TYPE_CHECKING:
+    from stickslip import _core
     from stickslip.results import ForcedResponse
 
-__all__ = ["Peak", "Summary", "highest", "highest_of", "of_orbits", "refined", "rows"]
+__all__ = ["Peak", "Summary", "highest", "of_orbits", "rows", "summits"]
 
 RIVAL = 0.9
 """Local maxima from this share of the largest may be the true peak once they are refined."""
+
+SAME = 1e-10
+"""Share by which a peak has to exceed the computed points to count as higher."""
 
 Bracket: TypeAlias = tuple[float, float, float]
 """Lowest and highest frequency, and a guess between them [rad/s]."""
@@ -32,7 +38,7 @@ class Peak(NamedTuple):
     omega: float
     """Angular frequency [rad/s]."""
     amplitude: float
-    """Amplitude [m]."""
+    """Amplitude [m]; infinite where neither damping nor friction bounds the response."""
     at_edge: bool
     """Whether it lies at an end of the computed frequencies: the true peak may be outside."""
     beside_gap: bool = False
@@ -83,11 +89,7 @@ def highest(result: ForcedResponse, dof: str, measure: Measure, refine: Refine) 
     ModelError
         If no point is solved.
     """
-    omega, amplitude, gap = _curve(result.omega, result.amplitude(dof, measure))
-    if not omega.size:
-        raise ModelError(
-            f"peak of {dof!r}: none of the {result.omega.size} points is solved; see status"
-        )
+    omega, amplitude, gap = _curve(result, dof, measure)
     best = int(amplitude.argmax())
     beside_gap = bool(gap[best])
     peak = (float(omega[best]), float(amplitude[best]))
@@ -97,38 +99,27 @@ def highest(result: ForcedResponse, dof: str, measure: Measure, refine: Refine) 
         if low < high and amplitude[top] > 0.0:
             found = refine(result, dof, measure, (float(low), float(high), float(omega[top])))
             peak = max(peak, found, key=lambda point: point[1])
-    # The maximisation resolves frequencies to 1e-8.
-    at_edge = bool(np.isclose(peak[0], omega[[0, -1]], rtol=1e-7, atol=0.0).any())
-    if beside_gap:
-        unsolved = int((~result.arrays.solved).sum())
-        warnings.warn(
-            f"peak of {dof!r}: {unsolved} of {result.omega.size} points are not solved, some of "
-            "them beside the maximum, which may be higher there; see status for the remedy",
-            stacklevel=3,
-        )
-    return Peak(*peak, at_edge, beside_gap)
+    return _told(result, dof, omega, peak, beside_gap)
 
 
-def highest_of(result: ForcedResponse, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
-    """Return which of some degrees of freedom has the highest peak, and the peak.
-
-    All of them are followed together, by harmonic balance over the range of the computed points.
+def summits(
+    result: ForcedResponse, groups: Sequence[Sequence[str]], measure: Measure
+) -> list[tuple[int, Peak]]:
+    """Return the highest point of each group of degrees of freedom, by harmonic balance.
 
     Parameters
     ----------
     result : ForcedResponse
-        The curves.
-    dofs : sequence of str
-        Observed degrees of freedom.
+        The curves; the range of their points is searched.
+    groups : sequence of sequences of str
+        Observed degrees of freedom, in groups of which the highest counts.
     measure : {"half_range", "max", "fundamental"}
         Measure of the amplitude.
 
     Returns
     -------
-    index : int
-        Position among `dofs`.
-    peak : Peak
-        Not below any computed point.
+    list of (int, Peak)
+        The position among the group, and the peak: not below any computed point.
 
     Raises
     ------
@@ -137,17 +128,14 @@ def highest_of(result: ForcedResponse, dofs: Sequence[str], measure: Measure) ->
     """
     from stickslip import _core
 
-    heights = np.stack([result.amplitude(dof, measure) for dof in dofs])
-    known = np.isfinite(heights).all(axis=0)
-    index = int(heights[:, known].max(axis=1).argmax()) if known.any() else 0
-    low, high = (result.omega[known].min(), result.omega[known].max()) if known.any() else (0, 0)
-    found: tuple[float, float] | None = None
-    if low < high:
+    rows: list[_core.Summit] = []
+    low, high = float(result.omega.min()), float(result.omega.max())
+    if low < high and result.arrays.solved.any():
         settings = result.settings
         quest: _core.Quest = {
-            "groups": [[result.model.structure.index(dof) for dof in dofs]],
+            "groups": [[result.model.structure.index(dof) for dof in dofs] for dofs in groups],
             "measure": measure,
-            "omega": (float(low), float(high)),
+            "omega": (low, high),
             "harmonics": settings.fixed_harmonics,
             "tolerance": settings.tolerance,
             "residual": settings.residual,
@@ -155,21 +143,69 @@ def highest_of(result: ForcedResponse, dofs: Sequence[str], measure: Measure) ->
             "max_iterations": settings.max_iterations,
         }
         try:
-            ((omega, amplitude, member, *_),) = _core.summits(
+            rows = _core.summits(
                 result.model.problem, quest, settings.march, settings.max_samples
             )
         except ValueError as error:
-            raise ModelError(f"peak of {dofs[index]!r}: {error}") from error
-        # A part that could not be solved leaves no peak: then that of the computed points counts.
-        if amplitude >= heights[:, known].max():
-            index, found = member, (omega, amplitude)
+            raise ModelError(f"peak of {groups[0][0]!r}: {error}") from error
+    return [
+        _summit(result, dofs, measure, rows[position] if rows else None)
+        for position, dofs in enumerate(groups)
+    ]
 
-    def refine(
-        result: ForcedResponse, dof: str, measure: Measure, bracket: Bracket
-    ) -> tuple[float, float]:
-        return found or refined(result, dof, measure, bracket)
 
-    return index, highest(result, dofs[index], measure, refine)
+def _summit(
+    result: ForcedResponse, dofs: Sequence[str], measure: Measure, row: _core.Summit | None
+) -> tuple[int, Peak]:
+    """Return the higher of what was computed and what was found between."""
+    curves = [_curve(result, dof, measure) for dof in dofs]
+    index = int(np.argmax([amplitude.max() for _, amplitude, _ in curves]))
+    omega, amplitude, gap = curves[index]
+    best = int(amplitude.argmax())
+    peak = (float(omega[best]), float(amplitude[best]))
+    beside_gap = bool(gap[_rivals(amplitude)].any())
+    if row is not None:
+        found, status = row[:2], Status.from_code(row[3])
+        if status == Status.SINGULAR and np.isfinite(found[0]):
+            return index, _unbounded(dofs[index], found[0])
+        beside_gap = beside_gap or not status.solved
+        if found[1] > peak[1] * (1.0 + SAME):
+            index, peak = row[2], found
+    return index, _told(result, dofs[index], omega, peak, beside_gap)
+
+
+def _told(
+    result: ForcedResponse, dof: str, omega: Float, peak: tuple[float, float], beside_gap: bool
+) -> Peak:
+    """Return a peak, and warn of what it may have missed."""
+    # The maximisation resolves frequencies to 1e-8.
+    at_edge = bool(np.isclose(peak[0], omega[[0, -1]], rtol=1e-7, atol=0.0).any())
+    if beside_gap:
+        unsolved = int((~result.arrays.solved).sum())
+        warnings.warn(
+            f"peak of {dof!r}: {unsolved} of {result.omega.size} points are not solved, some of "
+            "them beside the maximum, which may be higher there; see status for the remedy",
+            stacklevel=_outside(),
+        )
+    return Peak(*peak, at_edge, beside_gap)
+
+
+def _unbounded(dof: str, omega: float) -> Peak:
+    """Return the peak of a resonance that nothing bounds, and warn of it."""
+    warnings.warn(
+        f"peak of {dof!r}: neither damping nor friction bounds the resonance at {omega:.6g} rad/s; "
+        "add damping, or more friction",
+        stacklevel=_outside(),
+    )
+    return Peak(omega, np.inf, at_edge=False)
+
+
+def _outside() -> int:
+    """Return how far up the caller of this package is, for a warning of the function that asks."""
+    frame, level = sys._getframe(1), 1
+    while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == "stickslip":
+        frame, level = frame.f_back, level + 1
+    return level
 
 
 def rows(result: ForcedResponse, dofs: Iterable[str] | str) -> list[Summary]:
@@ -197,11 +233,13 @@ def rows(result: ForcedResponse, dofs: Iterable[str] | str) -> list[Summary]:
     names = (dofs,) if isinstance(dofs, str) else tuple(dofs)
     for dof in names:
         result.amplitude(dof)  # refuses what is unknown
-    return [_row(result, dof) for dof in names] if result.arrays.solved.any() else []
+    if not result.arrays.solved.any():
+        return []
+    peaks = result._peaks_of(names, "half_range")
+    return [_row(result, dof, peak) for dof, peak in zip(names, peaks, strict=True)]
 
 
-def _row(result: ForcedResponse, dof: str) -> Summary:
-    peak = result.peak(dof)
+def _row(result: ForcedResponse, dof: str, peak: Peak) -> Summary:
     solved = np.flatnonzero(result.arrays.solved)
     near = int(solved[np.abs(result.omega[solved] - peak.omega).argmin()])
     return Summary(
@@ -215,11 +253,18 @@ def _row(result: ForcedResponse, dof: str) -> Summary:
     )
 
 
-def _curve(omega: Float, amplitude: Float) -> tuple[Float, Float, Bool]:
+def _curve(
+    result: ForcedResponse, dof: str, measure: Measure
+) -> tuple[Float, Float, Bool]:
     """Sort the solved points by frequency, and tell which of them have an unsolved neighbour.
 
     Of equal frequencies the larger amplitude is kept.
     """
+    omega, amplitude = result.omega, result.amplitude(dof, measure)
+    if not np.isfinite(amplitude).any():
+        raise ModelError(
+            f"peak of {dof!r}: none of the {omega.size} points is solved; see status"
+        )
     order = np.lexsort((-amplitude, omega))
     omega, first = np.unique(omega[order], return_index=True)
     amplitude = amplitude[order][first]
@@ -235,42 +280,6 @@ def _rivals(amplitude: Float) -> Int:
     after = np.concatenate((amplitude[1:], [-np.inf]))
     top = (amplitude > before) & (amplitude >= after) & (amplitude >= RIVAL * amplitude.max())
     return np.flatnonzero(top)
-
-
-def refined(
-    result: ForcedResponse, dof: str, measure: Measure, bracket: Bracket
-) -> tuple[float, float]:
-    """Return frequency and amplitude of the maximum inside a bracket, by harmonic balance.
-
-    Raises
-    ------
-    ModelError
-        If the core refuses.
-    """
-    from stickslip import _core
-
-    settings = result.settings
-    low, high, guess = bracket
-    try:
-        return _core.peak(
-            result.model.problem,
-            low,
-            high,
-            guess,
-            result.model.structure.index(dof),
-            measure,
-            settings.fixed_harmonics,
-            settings.tolerance,
-            settings.residual,
-            settings.method,
-            settings.jacobian,
-            settings.march,
-            settings.max_harmonics,
-            settings.max_samples,
-            settings.max_iterations,
-        )
-    except ValueError as error:
-        raise ModelError(f"peak of {dof!r}: {error}") from error
 
 
 def of_orbits(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -63,18 +63,21 @@ def peaks(
         table.add_column(heading, justify="right", overflow="fold")
     shown = list(dofs)
     length = quantity(f"1 {length_unit}", "m", "unit of length")
-    at_edge = beside_gap = False
+    at_edge = beside_gap = unbounded = False
     for name, result in results:
         for row in result.summary([dof for dof in shown if dof in result.dofs]):
             cells = (*_peak(result, row, length), _converged(result))
             table.add_row(*([name] if label else []), *cells)
             at_edge = at_edge or row.at_edge
             beside_gap = beside_gap or row.beside_gap
+            unbounded = unbounded or row.amplitude == inf
     notes = []
     if at_edge:
         notes.append("* at an end of the computed frequencies: the true peak may lie outside")
     if beside_gap:
         notes.append("? beside points that are not solved: the true peak may be there, and higher")
+    if unbounded:
+        notes.append("inf: neither damping nor friction bounds the resonance there")
     table.caption = "\n".join(notes) or None
     return [table]
 

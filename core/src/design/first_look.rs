@@ -1,0 +1,106 @@
+//! Where a search for the highest point looks first.
+
+use super::samples::Sample;
+use super::search::Aim;
+use crate::model::{Model, Resonance};
+use crate::Error;
+
+/// Fewest intervals of an even look at the range, and most where only stuck and free frequencies are
+/// known.
+const INTERVALS: [usize; 2] = [8, 24];
+/// Length of an even interval that no resonance slips through, in bandwidths of the narrowest.
+const BANDWIDTHS: f64 = 2.0;
+/// Maxima from this share of the highest are looked at again in the next response.
+const RIVAL: f64 = 0.7;
+
+/// A resonance inside the range.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    /// Where it is met [rad/s].
+    pub(super) at: f64,
+    /// Its half-power bandwidth [rad/s].
+    pub(super) bandwidth: f64,
+    /// How high it may be, group by group.
+    pub(super) reach: Vec<f64>,
+}
+
+/// The first look at a range.
+#[derive(Debug, Clone)]
+pub(super) struct FirstLook {
+    /// Frequencies from end to end: even ones, and those of maxima of a similar response.
+    pub(super) omega: Vec<f64>,
+    /// Resonances, to be looked at unless they cannot be the highest.
+    pub(super) candidates: Vec<Candidate>,
+    /// A resonance that a group shows and friction does not bound [rad/s].
+    pub(super) unbounded: Vec<Option<f64>>,
+}
+
+impl FirstLook {
+    /// At a model whose response has the `harmonics`, after a similar response.
+    ///
+    /// # Errors
+    /// An eigenvalue iteration that fails.
+    pub(super) fn new(
+        model: &Model,
+        aim: &Aim,
+        harmonics: impl Iterator<Item = usize>,
+        seeds: &[Sample],
+    ) -> Result<Self, Error> {
+        let (low, high) = aim.span;
+        let resonances = model.resonances(aim.span, harmonics)?;
+        let reach = |one: &Resonance, group: &[usize]| {
+            let highest = |reach: &Vec<f64>| group.iter().map(|&i| reach[i]).fold(0.0, f64::max);
+            one.reach.as_ref().map_or(f64::INFINITY, highest)
+        };
+        let unbounded = aim
+            .groups
+            .iter()
+            .map(|group| resonances.iter().find(|one| one.unbounded && reach(one, group) > 0.0))
+            .map(|one| one.map(|one| one.omega))
+            .collect();
+        let narrowest = resonances.iter().filter(|one| one.forced).map(|one| one.bandwidth);
+        let narrowest = narrowest.fold(high - low, f64::min).max(1e-9 * high);
+        let needed = ((high - low) / (BANDWIDTHS * narrowest)).ceil();
+        let [least, most] = INTERVALS;
+        let resolved = needed <= most as f64;
+        let intervals = match (resolved, model.knows_its_states()) {
+            (true, _) => least.max(needed as usize),
+            (false, true) => least,
+            (false, false) => most,
+        };
+        let spacing = (high - low) / intervals as f64;
+        let mut omega: Vec<f64> = (1..intervals).map(|i| low + i as f64 * spacing).collect();
+        omega.extend(rivals(seeds));
+        // The ends stand for what lies too close to them.
+        let distance = 0.02 * spacing;
+        omega.retain(|w| (low + distance..=high - distance).contains(w));
+        omega.sort_by(f64::total_cmp);
+        omega.dedup_by(|a, b| (*a - *b).abs() < distance);
+        omega.insert(0, low);
+        omega.push(high);
+        let candidates = resonances
+            .iter()
+            .map(|one| Candidate {
+                at: one.omega,
+                bandwidth: one.bandwidth,
+                reach: aim.groups.iter().map(|group| reach(one, group)).collect(),
+            })
+            .collect();
+        Ok(Self { omega, candidates, unbounded })
+    }
+}
+
+/// Frequencies at which a curve of a similar response has a maximum near its highest.
+fn rivals(seeds: &[Sample]) -> Vec<f64> {
+    let mut omega = Vec::new();
+    for curve in 0..seeds.first().map_or(0, |seed| seed.knots.len()) {
+        let highest = seeds.iter().map(|seed| seed.knots[curve].height).fold(0.0, f64::max);
+        for three in seeds.windows(3) {
+            let [a, b, c] = [&three[0], &three[1], &three[2]].map(|seed| seed.knots[curve]);
+            if b.height >= a.height && b.height > c.height && b.height >= RIVAL * highest {
+                omega.push(b.at);
+            }
+        }
+    }
+    omega
+}

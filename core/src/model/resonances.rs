@@ -1,0 +1,236 @@
+//! Where a model can resonate: the poles of every state of its contacts.
+//!
+//! A contact that sticks is a spring, one that slips a bounded force. Between the two friction damps
+//! a motion as much as it shifts its frequency, so that whatever is narrow lies near a pole of a
+//! state in which every point does one or the other.
+
+use super::{Body, Model};
+use crate::contact::FrictionLaw;
+use crate::structure::Poles;
+use crate::Error;
+use faer::{c64, Mat};
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// States of the contacts, at most: all of a few points; of more the stuck and the slipping one, and
+/// those in which one point differs from all others.
+const MOST_STATES: usize = 16;
+/// DOFs above which only stuck and free natural frequencies are known.
+const MOST_DOFS: usize = 400;
+/// Decay, over the highest natural frequency, that is rounding of none.
+const UNDAMPED: f64 = 1e-14;
+/// Share of a product of shapes that is rounding of none.
+const NOISE: f64 = 1e-9;
+
+/// A resonance in one state of the contacts.
+#[derive(Debug, Clone)]
+pub struct Resonance {
+    /// Frequency of the excitation that meets it [rad/s].
+    pub omega: f64,
+    /// Half-power bandwidth of the excitation [rad/s].
+    pub bandwidth: f64,
+    /// Displacement of every DOF that the load, helped by all slipping contacts, can cause; infinite
+    /// where that is not known.
+    pub reach: Option<Vec<f64>>,
+    /// Whether the load is stronger than friction at all points that can slip, and nothing damps.
+    pub unbounded: bool,
+    /// Whether the load itself excites that harmonic.
+    pub forced: bool,
+}
+
+/// Poles of a state, by what load and slip forces do to them and what the DOFs show of them.
+#[derive(Debug)]
+struct State {
+    poles: Poles,
+    /// Effect of a unit force at every contact point on every pole; none of points that stick.
+    contacts: Vec<Vec<f64>>,
+    /// Whether all points that can slip do.
+    slips: bool,
+}
+
+/// The states of a model per nodal diameter, found when they are first needed.
+#[derive(Debug)]
+pub(super) struct States {
+    diameters: Vec<OnceLock<Result<Vec<State>, Error>>>,
+}
+
+impl States {
+    pub(super) fn of(body: &Body, dofs: usize) -> Self {
+        let count = match body {
+            Body::Wave { cyclic, .. } => cyclic.sectors,
+            Body::Whole if dofs <= MOST_DOFS => 1,
+            Body::Whole | Body::Ring(_) => 0,
+        };
+        Self { diameters: (0..count).map(|_| OnceLock::new()).collect() }
+    }
+}
+
+impl Model {
+    /// Whether the resonances of all states of the contacts are known, or those of the stuck and of
+    /// the free structure alone.
+    #[must_use]
+    pub fn knows_its_states(&self) -> bool {
+        !self.states.diameters.is_empty()
+    }
+
+    /// Resonances that an excitation inside `[low, high]` [rad/s] meets with one of `harmonics`.
+    ///
+    /// # Errors
+    /// An eigenvalue iteration that fails.
+    pub fn resonances(
+        &self,
+        (low, high): (f64, f64),
+        harmonics: impl Iterator<Item = usize>,
+    ) -> Result<Vec<Resonance>, Error> {
+        let forced = self.compliance.forced_harmonics();
+        let lowest = forced.iter().copied().find(|&k| k > 0).unwrap_or(1);
+        let limits: Vec<f64> = self.laws.iter().flat_map(|law| law.limits()).collect();
+        let inside = |omega: f64| (low..=high).contains(&omega);
+        let mut found = Vec::new();
+        for harmonic in harmonics.filter(|&k| k > 0) {
+            let (order, is_forced) = (harmonic as f64, forced.contains(&harmonic));
+            let Some(states) = self.states_at(harmonic)? else {
+                let stuck = self.compliance.stuck_frequencies().iter();
+                let natural = stuck.chain(self.compliance.free_frequencies());
+                let bandwidth = self.compliance.narrowest_bandwidth() / order;
+                let at = natural.map(|w| w / order).filter(|&w| is_forced && inside(w));
+                found.extend(at.map(|omega| Resonance {
+                    omega,
+                    bandwidth,
+                    reach: None,
+                    unbounded: false,
+                    forced: is_forced,
+                }));
+                continue;
+            };
+            let load = self.load(harmonic);
+            let size = load.iter().map(|p| p.norm_sqr()).sum::<f64>().sqrt();
+            // A slipping contact bears a square wave at most.
+            let share = 4.0 / PI * (lowest as f64 / order).min(1.0);
+            for state in states {
+                let poles = &state.poles;
+                let highest = poles.values.iter().map(|s| s.norm()).fold(0.0, f64::max);
+                for (j, pole) in poles.values.iter().enumerate() {
+                    let omega = pole.im / order;
+                    if !inside(omega) {
+                        continue;
+                    }
+                    let left = poles.left.row(j);
+                    let driven = (0..load.len()).map(|i| left[i] * load[i]).sum::<c64>().norm();
+                    let driven = if driven > NOISE * left.norm_l2() * size { driven } else { 0.0 };
+                    let friction: f64 = state.contacts[j]
+                        .iter()
+                        .zip(&limits)
+                        .filter(|(effect, _)| **effect > 0.0)
+                        .map(|(effect, limit)| share * effect * limit)
+                        .sum();
+                    let decay = pole.re.abs();
+                    let damped = decay > UNDAMPED * highest;
+                    let right = poles.right.col(j);
+                    let (height, shown) = ((driven + friction) / decay, NOISE * right.norm_l2());
+                    let seen = |i: usize| match right[i].norm() {
+                        seen if seen > shown && driven + friction > 0.0 => seen * height,
+                        _ => 0.0,
+                    };
+                    found.push(Resonance {
+                        omega,
+                        bandwidth: 2.0 * decay / order,
+                        reach: Some((0..right.nrows()).map(seen).collect()),
+                        unbounded: !damped && state.slips && driven > friction,
+                        forced: is_forced,
+                    });
+                }
+            }
+        }
+        found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        Ok(found)
+    }
+
+    /// The load of a harmonic on every DOF.
+    fn load(&self, harmonic: usize) -> Vec<c64> {
+        let loads = self.ports.loads.iter().filter(|load| load.harmonic == harmonic);
+        let mut sum = vec![c64::new(0.0, 0.0); self.structure.dofs()];
+        for load in loads {
+            sum.iter_mut().zip(&load.amplitude).for_each(|(sum, p)| *sum += p);
+        }
+        sum
+    }
+
+    /// The states that a harmonic sees, if they are known.
+    fn states_at(&self, harmonic: usize) -> Result<Option<&[State]>, Error> {
+        let diameter = match &self.body {
+            Body::Wave { cyclic, .. } => cyclic.diameter(harmonic),
+            Body::Whole | Body::Ring(_) => 0,
+        };
+        let Some(states) = self.states.diameters.get(diameter) else { return Ok(None) };
+        match states.get_or_init(|| self.find_states(diameter)) {
+            Ok(states) => Ok(Some(states)),
+            Err(error) => Err(error.clone()),
+        }
+    }
+
+    fn find_states(&self, diameter: usize) -> Result<Vec<State>, Error> {
+        let limits: Vec<f64> = self.laws.iter().flat_map(|law| law.limits()).collect();
+        slip_sets(&limits).iter().map(|slips| self.state(diameter, slips)).collect()
+    }
+
+    fn state(&self, diameter: usize, slips: &[bool]) -> Result<State, Error> {
+        let (stick, stiffness) = self.condensed_stiffness(slips)?;
+        let structure = &self.structure;
+        let (poles, rows) = if let Body::Wave { cyclic, next } = &self.body {
+            let rows = cyclic.rows_at(diameter, self.ports.rows.as_ref(), Mat::as_ref(next));
+            let kept = Mat::from_fn(stick.len(), rows.ncols(), |i, j| rows[(stick[i], j)]);
+            let stiffness =
+                Mat::from_fn(stick.len(), stick.len(), |i, j| c64::new(stiffness[(i, j)], 0.0));
+            let [mass, damping, free] = cyclic.at_diameter(diameter);
+            let restrained = free + kept.adjoint() * (stiffness * &kept);
+            let matrices = [mass.as_ref(), damping.as_ref(), restrained.as_ref()];
+            (Poles::hermitian(matrices)?, rows)
+        } else {
+            let all = &self.ports.rows;
+            let kept = Mat::from_fn(stick.len(), all.ncols(), |i, j| all[(stick[i], j)]);
+            let restrained = structure.restrained_stiffness(kept.as_ref(), stiffness.as_ref());
+            let matrices = [structure.mass(), structure.damping(), restrained.as_ref()];
+            let rows = Mat::from_fn(all.nrows(), all.ncols(), |i, j| c64::new(all[(i, j)], 0.0));
+            (Poles::real(matrices)?, rows)
+        };
+        let effects = &poles.left * rows.adjoint();
+        let effect = |j: usize, i: usize| {
+            let noise = NOISE * poles.left.row(j).norm_l2() * rows.row(i).norm_l2();
+            Some(effects[(j, i)].norm()).filter(|size| slips[i] && *size > noise).unwrap_or(0.0)
+        };
+        let contacts = (0..poles.values.len())
+            .map(|j| (0..rows.nrows()).map(|i| effect(j, i)).collect())
+            .collect();
+        let limits = self.laws.iter().flat_map(|law| law.limits());
+        let all = limits.zip(slips).all(|(limit, slips)| *slips || limit.is_infinite());
+        Ok(State { poles, contacts, slips: all })
+    }
+}
+
+/// Which points always slip, and which never do: what the states of a model depend on.
+pub(super) fn slip_kinds(laws: &[Box<dyn FrictionLaw>]) -> Vec<(bool, bool)> {
+    let limits = laws.iter().flat_map(|law| law.limits());
+    limits.map(|limit| (limit == 0.0, limit.is_infinite())).collect()
+}
+
+/// The points that slip in each state that matters: those without friction always do, those without
+/// a limit never.
+fn slip_sets(limits: &[f64]) -> Vec<Vec<bool>> {
+    let either: Vec<usize> =
+        (0..limits.len()).filter(|&i| limits[i] > 0.0 && limits[i].is_finite()).collect();
+    let state = |slips: &dyn Fn(usize) -> bool| -> Vec<bool> {
+        let mut state: Vec<bool> = limits.iter().map(|limit| *limit == 0.0).collect();
+        either.iter().enumerate().for_each(|(position, &i)| state[i] = slips(position));
+        state
+    };
+    let count = either.len();
+    if count < usize::BITS as usize && 1 << count <= MOST_STATES {
+        return (0..1 << count).map(|mask: usize| state(&|i| mask >> i & 1 == 1)).collect();
+    }
+    let mut sets = vec![state(&|_| false), state(&|_| true)];
+    if 2 * (count + 1) <= 2 * MOST_STATES {
+        sets.extend((0..count).flat_map(|one| [state(&|i| i == one), state(&|i| i != one)]));
+    }
+    sets
+}
