@@ -30,10 +30,11 @@ const SHARE: f64 = 0.5;
 const PAST_LAST_MODE: f64 = 1.2;
 /// … as far as this order, and as it costs no more than the solution did.
 const HIGHEST: usize = 512;
-/// Share of the right side that the steps leave: an estimate has no more digits.
-const LEFT: f64 = 0.1;
-/// Products per step.
-pub(super) const PRODUCTS: usize = 24;
+/// Share of the right side that the first step leaves, and the second, of which only the size
+/// counts.
+const LEFT: [f64; 2] = [0.02, 0.2];
+/// Most products per step; a tenth of them is usual.
+const PRODUCTS: usize = 60;
 /// A contact without slip load whose displacement moves by more than this share may begin to slip.
 const MOVED: f64 = 1e-3;
 
@@ -83,7 +84,7 @@ pub(super) fn errors(
     let kept = solution.harmonics.slots();
     load.chunks_exact_mut(harmonics.slots()).for_each(|series| series[..kept].fill(0.0));
     let mut expected = extended.slip_load();
-    let Some(step) = newton_step(&extended, solved, &defect) else { return Ok(infinite) };
+    let Some(step) = newton_step(&extended, solved, &defect, LEFT[0]) else { return Ok(infinite) };
     extended.add_tangent_product(&step, &mut load);
     extended.add_tangent_product(&step, &mut expected);
     let mut add = |extended: &Condensed<'_>, step: &[f64], load: &[f64]| {
@@ -97,7 +98,7 @@ pub(super) fn errors(
     extended.value(&corrected, &mut defect);
     let mut load = extended.slip_load();
     load.iter_mut().zip(&expected).for_each(|(q, expected)| *q -= expected);
-    let Some(step) = newton_step(&extended, solved, &defect) else { return Ok(infinite) };
+    let Some(step) = newton_step(&extended, solved, &defect, LEFT[1]) else { return Ok(infinite) };
     extended.add_tangent_product(&step, &mut load);
     add(&extended, &step, &load)?;
     Ok(errors)
@@ -109,6 +110,7 @@ fn newton_step(
     extended: &Condensed<'_>,
     solved: &mut Condensed<'_>,
     defect: &[f64],
+    left: f64,
 ) -> Option<Vec<f64>> {
     let all = extended.harmonics();
     let slots = all.slots();
@@ -140,7 +142,7 @@ fn newton_step(
         out.iter_mut().zip(x).for_each(|(out, x)| *out = x - *out);
         precondition(out);
     };
-    let step = gmres(product, &rhs, &weights, LEFT, PRODUCTS);
+    let step = gmres(product, &rhs, &weights, left, PRODUCTS);
     (regular && norm(&step).is_finite()).then_some(step)
 }
 

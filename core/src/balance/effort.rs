@@ -1,18 +1,17 @@
 //! The work of a solution, and whether an error estimate of some order stays below it: counted in
 //! multiplications, so that it is the same on every machine.
 
-use super::accuracy::PRODUCTS;
 use super::condensed::Condensed;
 use crate::fourier::Harmonics;
 
 /// Work of the smallest point: what surrounds the arithmetic.
-const LEAST: f64 = 3e4;
+const LEAST: f64 = 1e4;
 /// Samples per order of a search for turning points, over a whole period.
 const SAMPLES: f64 = 16.0;
 /// Multiplications of a complex product.
 const COMPLEX: f64 = 4.0;
 /// Products that a step usually takes.
-const USUAL_PRODUCTS: f64 = PRODUCTS as f64 / 4.0;
+const USUAL_PRODUCTS: f64 = 6.0;
 
 /// Sizes of the equations of a point, and what their solution cost.
 #[derive(Debug, Clone)]
