@@ -35,6 +35,8 @@ const HIGHEST: usize = 512;
 const LEFT: [f64; 2] = [0.02, 0.2];
 /// Most products per step; a tenth of them is usual.
 const PRODUCTS: usize = 60;
+/// So few unknowns are eliminated faster than multiplied.
+const FACTORED: usize = 48;
 /// A contact without slip load whose displacement moves by more than this share may begin to slip.
 const MOVED: f64 = 1e-3;
 
@@ -84,7 +86,7 @@ pub(super) fn errors(
     let kept = solution.harmonics.slots();
     load.chunks_exact_mut(harmonics.slots()).for_each(|series| series[..kept].fill(0.0));
     let mut expected = extended.slip_load();
-    let Some(step) = newton_step(&extended, solved, &defect, LEFT[0]) else { return Ok(infinite) };
+    let Some(step) = newton_step(&mut extended, solved, &defect, LEFT[0]) else { return Ok(infinite) };
     extended.add_tangent_product(&step, &mut load);
     extended.add_tangent_product(&step, &mut expected);
     let mut add = |extended: &Condensed<'_>, step: &[f64], load: &[f64]| {
@@ -98,7 +100,7 @@ pub(super) fn errors(
     extended.value(&corrected, &mut defect);
     let mut load = extended.slip_load();
     load.iter_mut().zip(&expected).for_each(|(q, expected)| *q -= expected);
-    let Some(step) = newton_step(&extended, solved, &defect, LEFT[1]) else { return Ok(infinite) };
+    let Some(step) = newton_step(&mut extended, solved, &defect, LEFT[1]) else { return Ok(infinite) };
     extended.add_tangent_product(&step, &mut load);
     add(&extended, &step, &load)?;
     Ok(errors)
@@ -107,13 +109,19 @@ pub(super) fn errors(
 /// About `−J⁻¹ defect` of the extended balance with the tangents it has; the factors of the solved
 /// equations make the kept harmonics, the first of each series, exact.
 fn newton_step(
-    extended: &Condensed<'_>,
+    extended: &mut Condensed<'_>,
     solved: &mut Condensed<'_>,
     defect: &[f64],
     left: f64,
 ) -> Option<Vec<f64>> {
-    let all = extended.harmonics();
-    let slots = all.slots();
+    let slots = extended.harmonics().slots();
+    let active = extended.loads.iter().zip(extended.model.points()).filter(|(l, _)| l.active);
+    if active.map(|(_, points)| points.len() * slots).sum::<usize>() <= FACTORED {
+        let mut step = vec![0.0; defect.len()];
+        let regular = extended.solve(defect, &mut step);
+        step.iter_mut().for_each(|s| *s = -*s);
+        return regular.then_some(step);
+    }
     let stiffness = extended.model.contact_stiffness();
     // Forces count, and not displacements: a stiff contact moves little.
     let weights: Vec<f64> =
