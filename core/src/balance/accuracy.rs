@@ -35,8 +35,6 @@ const HIGHEST: usize = 512;
 const LEFT: [f64; 2] = [0.02, 0.2];
 /// Most products per step; a tenth of them is usual.
 const PRODUCTS: usize = 60;
-/// So few unknowns are eliminated faster than multiplied.
-const FACTORED: usize = 48;
 /// A contact without slip load whose displacement moves by more than this share may begin to slip.
 const MOVED: f64 = 1e-3;
 
@@ -50,11 +48,11 @@ pub(super) fn extended_order(
     let last_mode = model.compliance().highest_frequency();
     let reach = (PAST_LAST_MODE * last_mode / omega).min(HIGHEST as f64) as usize;
     let beyond = kept.highest() + (SHARE * kept.highest() as f64) as usize;
+    let least = kept.highest() + MARGIN;
     // Steps of four keep the number of sample tables small along a curve.
-    let least = (kept.highest() + MARGIN).next_multiple_of(4);
-    let mut order = reach.max(beyond).next_multiple_of(4).max(least);
+    let mut order = reach.max(beyond).max(least).next_multiple_of(4);
     while order > least && !effort.covers(order) {
-        order -= 4;
+        order = (order - 4).max(least);
     }
     order
 }
@@ -115,8 +113,7 @@ fn newton_step(
     left: f64,
 ) -> Option<Vec<f64>> {
     let slots = extended.harmonics().slots();
-    let active = extended.loads.iter().zip(extended.model.points()).filter(|(l, _)| l.active);
-    if active.map(|(_, points)| points.len() * slots).sum::<usize>() <= FACTORED {
+    if Effort::of(solved, 0).eliminates(extended.harmonics()) {
         let mut step = vec![0.0; defect.len()];
         let regular = extended.solve(defect, &mut step);
         step.iter_mut().for_each(|s| *s = -*s);
