@@ -30,8 +30,8 @@ def main(coarse: bool = False) -> dict[str, object]:
     curve = ss.forced_response(model, omega=(0.98 * low, 1.02 * high), harmonics=35)
     peak = curve.peak("tip")
     (point,) = ss.forced_response(
-        model, omega=[peak.omega], harmonics=35
-    ).arrays.displacement  # (H+1, n)
+        model, omega=[peak.omega], harmonics=35, observe=structure.dofs
+    ).arrays.displacement  # (H+1, n), the modal coordinates too
     motion = np.array([fe.everywhere(moved) for moved in fe.reduction.recover(point)])
     amplitude, stress_range = motion_fields(fe.solid, motion)
     node = int(stress_range.argmax())

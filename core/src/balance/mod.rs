@@ -6,6 +6,7 @@ mod adaptive;
 mod condensed;
 mod cycle_point;
 mod cycle_start;
+mod effort;
 mod evaluation;
 mod forced;
 mod jacobian;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from typing import Literal, TypeAlias
 
@@ -19,6 +20,7 @@ __all__ = [
     "Span",
     "grid_of",
     "observed_dofs",
+    "physical_dofs",
     "prepare",
     "refusal",
     "require_forced",
@@ -33,6 +35,8 @@ __all__ = [
 
 RESIDUALS = ("centred", "from_rest")
 """Named assumptions on the mean force of a contact that never slips."""
+
+_MODAL = re.compile(r"(.*\.)?mode-\d+")
 
 Residual: TypeAlias = Literal["centred", "from_rest"] | float
 Span: TypeAlias = tuple[float, float]
@@ -137,11 +141,24 @@ def residual_of(residual: object) -> Residual:
     return real_number(residual, "residual")
 
 
+def physical_dofs(model: Model) -> tuple[str, ...]:
+    """Return the degrees of freedom that are no modal coordinates; all if there are no others.
+
+    Modal coordinates are known by the names that `craig_bampton` gives them, "mode-1", ..., also
+    behind the name of a part or a sector.
+    """
+    dofs = model.structure.dofs
+    return tuple(dof for dof in dofs if not _MODAL.fullmatch(dof)) or dofs
+
+
 def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:
-    """Return the degrees of freedom to observe, each known and named once."""
+    """Return the degrees of freedom to observe, each known and named once.
+
+    By default those with a meaning of their own: all but the modal coordinates of a reduction.
+    """
     known = model.structure.dofs
     if observe is None:
-        return known
+        return physical_dofs(model)
     if not isinstance(observe, Iterable):
         raise ModelError(f"observe: {brief(observe)} is not a list of names; write [{known[0]!r}]")
     names = (observe,) if isinstance(observe, str) else tuple(observe)

@@ -117,7 +117,8 @@ def classify(
     tolerance : float, optional
         Closing error of a settled motion, relative to its size in the norm of energy.
     observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all.
+        Degrees of freedom whose motion is kept. Default: all but modal coordinates
+        ("mode-1", ...).
     progress : callable, optional
         Called about ten times per second with the fraction of the work that is done.
 

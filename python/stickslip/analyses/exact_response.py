@@ -116,7 +116,8 @@ def exact_response(
         Force [N] that a contact holds at mid-range of its displacement if it never slips; the
         steady state alone does not determine it. See `ForcedResponse.residual_bounds`.
     observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all.
+        Degrees of freedom whose motion is kept. Default: all but modal coordinates
+        ("mode-1", ...).
     progress : callable, optional
         Called about ten times per second with the fraction of the work that is done.
     max_iterations : int, optional

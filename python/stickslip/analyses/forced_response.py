@@ -195,7 +195,8 @@ def forced_response(
         Samples per period of the marched evaluation, even and at least 4 (H + 1), or "auto": per
         point the power of two whose sampling error stays below a quarter of `tolerance`.
     observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all.
+        Degrees of freedom whose motion is kept. Default: all but modal coordinates
+        ("mode-1", ...).
     progress : callable, optional
         Called about ten times per second with the fraction of the work that is done.
     max_harmonics : int, optional

@@ -66,7 +66,8 @@ def single_harmonic(
         Estimate the error of leaving the higher harmonics out, which takes most of the time.
         Without it `ForcedResponse.error_estimate` is not-a-number.
     observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all.
+        Degrees of freedom whose motion is kept. Default: all but modal coordinates
+        ("mode-1", ...).
     progress : callable, optional
         Called about ten times per second with the fraction of the work that is done.
     max_iterations : int, optional

@@ -133,7 +133,8 @@ def transient(
     samples : int, optional
         Instants per period in the time histories, evenly spaced.
     observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all.
+        Degrees of freedom whose motion is kept. Default: all but modal coordinates
+        ("mode-1", ...).
     keep : int, optional
         How many of the last periods the time histories and events hold; Poincare samples,
         amplitudes and changes are kept of all. Default: all.

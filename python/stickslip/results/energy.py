@@ -63,8 +63,8 @@ def energy_of(result: ForcedResponse) -> Energy:
     missing = [dof for dof in structure.dofs if dof not in result.dofs]
     if missing:
         raise ModelError(
-            f"energy: dof {missing[0]!r} was not observed, and all dofs take part; leave observe "
-            "out and run again"
+            f"energy: dof {missing[0]!r} was not observed, and all dofs take part; run again with "
+            "observe=model.structure.dofs"
         )
     series = arrays.displacement[:, :, [result.dofs.index(dof) for dof in structure.dofs]]
     order = np.arange(series.shape[1])

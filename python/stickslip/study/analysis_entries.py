@@ -111,7 +111,9 @@ class AnalysisEntries(Table):
     """The keys of every analysis."""
 
     observe: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
-        default=None, description="DOFs to keep in the results; left out: all.", examples=[["tip"]]
+        default=None,
+        description="DOFs to keep in the results; left out: all but modal coordinates.",
+        examples=[["tip"]],
     )
     levels: Annotated[tuple[Factor, ...], Strict(False), Field(min_length=1)] | None = Field(
         default=None,

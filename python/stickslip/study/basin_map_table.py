@@ -71,7 +71,9 @@ class BasinMapTable(Table):
         default=TOLERANCE, description="Relative closing error of a settled motion."
     )
     observe: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
-        default=None, description="DOFs to keep in the results; left out: all.", examples=[["tip"]]
+        default=None,
+        description="DOFs to keep in the results; left out: all but modal coordinates.",
+        examples=[["tip"]],
     )
     threads: Count | None = Field(
         default=None, description="Number of processors to use; left out: all."

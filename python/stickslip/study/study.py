@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pydantic import ValidationError
 
+from stickslip.analyses.arguments import physical_dofs
 from stickslip.checks import brief, file_path, is_file, is_reserved, vanished
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.arguments import NEXT
@@ -170,7 +171,7 @@ class Study:
         if self.tables.output.dofs is not None:
             return self.tables.output.dofs
         observed = self.tables.analysis.observe
-        return notable_dofs(self.model, observed or self.model.structure.dofs)
+        return notable_dofs(self.model, observed or physical_dofs(self.model))
 
     def models(self) -> tuple[Model, ...]:
         """Return the models, one per level."""
@@ -394,7 +395,7 @@ def _check_name(name: str) -> None:
 
 
 def _check_dofs(tables: StudyTables, model: Model) -> None:
-    observed = tables.analysis.observe or model.structure.dofs
+    observed = tables.analysis.observe or physical_dofs(model)
     for key, names in tables.analysis.named_dofs.items():
         _check_names(f"analysis: {key}", names, model)
     _check_names("output: dofs", tables.output.dofs or (), model)
