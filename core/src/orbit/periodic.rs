@@ -33,10 +33,10 @@ pub struct Orbit {
     pub range: Vec<[f64; 2]>,
     /// State at the start of the period: displacements and velocities of all DOFs, contact forces.
     pub state: Vec<f64>,
-    /// Floquet multipliers over the full period, exact ones of contacts that never slip first,
-    /// then by falling modulus.
+    /// Floquet multipliers over the full period, the neutral ones first, then by falling modulus.
     pub multipliers: Vec<c64>,
-    /// Number of contacts that never slip: each keeps its mean force, a multiplier of exactly 1.
+    /// Number of neutral multipliers, of exactly 1: a contact that never slips keeps its mean force,
+    /// and a structure that nothing holds stays or drifts where it is pushed.
     pub neutral: usize,
     /// Work of the external forces per period [J].
     pub work: f64,

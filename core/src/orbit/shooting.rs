@@ -138,8 +138,8 @@ impl<'a> Shooting<'a> {
         derivative
     }
 
-    /// Floquet multipliers over the full period by falling modulus, the exact ones of contacts
-    /// that never slip first, and the number of these.
+    /// Floquet multipliers over the full period by falling modulus, the neutral ones first, and the
+    /// number of these.
     pub(super) fn multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
         let (mut multipliers, neutral) = self.span_multipliers()?;
         if self.half_wave {
@@ -152,21 +152,18 @@ impl<'a> Shooting<'a> {
         Some((ones.chain(multipliers).chain(none).collect(), neutral))
     }
 
-    /// Multipliers over the span, mirrored under half-wave symmetry, without those of contacts
-    /// that never slip; and the number of these.
+    /// Multipliers over the span, mirrored under half-wave symmetry, without the neutral ones; and
+    /// the number of these.
     fn span_multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
         let matrix = self.derivative();
-        let (rest, conserved) = self.without_conserved(&matrix, &self.slipped);
-        Some((rest.eigenvalues().ok()?, conserved))
+        let (rest, neutral) = self.without_neutral(&matrix, &self.slipped);
+        Some((rest.eigenvalues().ok()?, neutral))
     }
 
-    /// A transition matrix in coordinates that hold the forms which are conserved while the points
-    /// `slipped` alone slip, without these; and their number.
-    pub(super) fn without_conserved(
-        &self,
-        matrix: &Mat<f64>,
-        slipped: &[bool],
-    ) -> (Mat<f64>, usize) {
+    /// A transition matrix without what is neutral while the points `slipped` alone slip, and the
+    /// number of the multipliers that are 1 for it: a contact that never slips keeps its slip, and
+    /// nothing answers to some rigid-body motions.
+    pub(super) fn without_neutral(&self, matrix: &Mat<f64>, slipped: &[bool]) -> (Mat<f64>, usize) {
         let conserved = self.coordinates.conserved(slipped);
         let size = matrix.nrows();
         let mut change = Mat::<f64>::identity(size, size);
@@ -180,7 +177,16 @@ impl<'a> Shooting<'a> {
         let kept: Vec<usize> =
             (0..size).filter(|i| conserved.iter().all(|(target, _)| target != i)).collect();
         let rest = Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[j], kept[i])]);
-        (rest, conserved.len())
+        let rigid = self.coordinates.rigid(slipped);
+        if rigid.is_empty() {
+            return (rest, conserved.len());
+        }
+        // Eigenvectors of the matrix and of its transpose, orthogonal to each other: what is left
+        // across all of them has the other multipliers.
+        let along = Mat::from_fn(kept.len(), rigid.len(), |i, j| rigid[j][kept[i]]);
+        let basis = along.qr().compute_Q();
+        let across = basis.get(.., rigid.len()..);
+        (across.transpose() * &rest * across, conserved.len() + rigid.len())
     }
 }
 

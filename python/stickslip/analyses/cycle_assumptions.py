@@ -40,6 +40,8 @@ def cycle_assumptions(
         texts.append("The forces of the model are left out.")
     if model.travels:
         texts.append("Stability is not decided: one sector of a wave has no motion of its own.")
+    elif not settings.stability:
+        texts.append("Stability is not decided: it was left out.")
     side = ("sticking", "slipping")
     for name, (end, value) in zip(side, solution.ends, strict=True):
         if end == "returned":
@@ -76,7 +78,7 @@ def cycle_assumptions(
                 "multipliers are those of the exact flow along the harmonic balance."
             )
         if unknown:
-            texts.append(f"{unknown} points have no multipliers, and count as not stable.")
+            texts.append(f"{unknown} points have no multipliers: their stability is not decided.")
     if settings.method == "newton":
         size = np.abs(arrays.displacement).max(axis=1)
         share = arrays.error_estimate / np.maximum(size, 0.02 * size.max(axis=1, keepdims=True))

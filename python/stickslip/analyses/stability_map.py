@@ -16,6 +16,7 @@ from stickslip.analyses.variation import Common, Contacts, Parameter, Variation,
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
+from stickslip.results.stability import stability_of
 from stickslip.results.stability_map import MapArrays, MapSettings, StabilityMap
 
 __all__ = ["stability_map"]
@@ -39,7 +40,7 @@ def stability_map(
     For every value the whole branch of the mode is followed. `limit` is the ratio at which it
     turns for good: beyond it friction cannot dissipate what flutter feeds. `stable_limit` is the
     largest ratio up to which its sticking side is stable without a gap, which is where vibration
-    begins to leave this mode.
+    begins to leave this mode; not-a-number where a cycle below it is not decided.
 
     Parameters
     ----------
@@ -148,15 +149,21 @@ def _share(progress: Progress, place: int, total: int) -> Progress:
 
 
 def _stable_limit(arrays: CycleArrays) -> float:
-    """Return the ratio at which the sticking side first loses stability; 0 if it never has it."""
-    sticking = ~arrays.slipping & arrays.known
-    if not sticking.any():
+    """Return the ratio at which the sticking side first loses stability; 0 if it never has it.
+
+    Not-a-number if a cycle below it is not decided.
+    """
+    sticking = np.flatnonzero(~arrays.slipping)
+    if not sticking.size:
         return float("nan")
-    first = int(np.flatnonzero(sticking)[0])
-    size = np.abs(arrays.multipliers[first, arrays.neutral[first] :])
-    if (size >= 1.0).any():
-        return 0.0
-    for (value, _), unstable in zip(arrays.change, arrays.change_unstable, strict=True):
+    limit, last = float(arrays.ratio[sticking].max()), int(sticking[-1])
+    for (value, _), after, unstable in zip(
+        arrays.change, arrays.change_after, arrays.change_unstable, strict=True
+    ):
         if unstable[1] > 0:
-            return float(value)
-    return float(arrays.ratio[sticking].max())
+            limit, last = float(value), int(after)
+            break
+    states = stability_of(arrays.multipliers, arrays.neutral, arrays.known)
+    if states[sticking[0]] == "unstable":
+        return 0.0
+    return limit if (states[sticking[sticking <= last]] == "stable").all() else float("nan")

@@ -30,9 +30,10 @@ def tables(
     for name, result in results:
         variation = result.settings.variation
         for row in zip(result.values, result.limit, result.omega, result.stable_limit, strict=True):
-            numbers = (f"{number:.6g}" for number in row)
+            *numbers, stable = (f"{number:.6g}" for number in row)
             varied = f"{variation.parameter} [{variation.unit}]"
-            table.add_row(*([name] if label else []), varied, *numbers)
+            stable = "not decided" if stable == "nan" else stable
+            table.add_row(*([name] if label else []), varied, *numbers, stable)
     return [table]
 
 
@@ -54,9 +55,9 @@ def failures(name: str, result: StabilityMap) -> list[str]:
 
 
 def cautions(name: str, result: StabilityMap) -> list[str]:
-    """Return what puts the numbers in doubt: values whose stability is not known."""
+    """Return what puts the numbers in doubt: values whose stability is not decided."""
     unknown = int((np.isfinite(result.limit) & ~np.isfinite(result.stable_limit)).sum())
-    return [f"{name}: the stability of {unknown} values is not known"] if unknown else []
+    return [f"{name}: the stability of {unknown} values is not decided"] if unknown else []
 
 
 def panels(
