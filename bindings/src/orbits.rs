@@ -11,7 +11,7 @@ use stickslip_core::balance::Point;
 use stickslip_core::contact::PointState;
 use stickslip_core::fourier::Measure;
 use stickslip_core::motion::{transient, Event, Scheme, TransientSettings};
-use stickslip_core::orbit::{orbit_peak, orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits};
+use stickslip_core::orbit::{orbit_peak, orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits, Rotation};
 
 /// Times, contact points and kinds of events.
 pub type EventColumns<'py> =
@@ -211,6 +211,7 @@ impl Orbits {
 
 /// Exact periodic orbits over a grid of frequencies.
 #[pyfunction]
+#[pyo3(signature = (problem, omega, observe, harmonics, residual, max_iterations, progress, rotation=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn exact_response(
     py: Python<'_>,
@@ -221,13 +222,22 @@ pub fn exact_response(
     residual: ResidualArgument,
     max_iterations: usize,
     progress: Option<Py<PyAny>>,
+    rotation: Option<(usize, usize, f64, f64, usize)>,
 ) -> PyResult<Orbits> {
     let settings = OrbitSettings { harmonics, residual: residual.parse()?, max_iterations };
+    let rotation = rotation.map(|(sectors, shift, wrap, sign, parts)| Rotation {
+        sectors,
+        shift,
+        wrap,
+        sign,
+        parts,
+    });
     let observe = indices(&observe)?;
     let grid = omega.as_array().to_vec();
     let model = &problem.model;
     let (inner, watch) = Watch::during(py, progress.as_ref(), |look| {
         PeriodicOrbits::new(model, settings, &observe)
+            .and_then(|orbits| orbits.rotating(rotation))
             .and_then(|orbits| orbit_sweep(orbits.watched(look), &grid))
     });
     watch.raise_unless_interrupt(py)?;

@@ -119,7 +119,8 @@ impl<'a> Transition<'a> {
         self.system
     }
 
-    pub(super) fn weight(&self) -> &[f64] {
+    /// Factors on the modal displacements [rad/s].
+    pub(crate) fn weight(&self) -> &[f64] {
         &self.weight
     }
 

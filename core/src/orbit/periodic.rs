@@ -2,6 +2,7 @@
 
 use super::quadrature::Quadrature;
 use super::residual::shifted;
+use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::start::start_of;
@@ -55,6 +56,7 @@ pub struct PeriodicOrbits<'a> {
     observe: &'a [usize],
     everywhere: Vec<usize>,
     half_wave: bool,
+    rotation: Option<Rotation>,
     quadrature: Quadrature,
     progress: &'a Progress<'a>,
     share: f64,
@@ -85,11 +87,25 @@ impl<'a> PeriodicOrbits<'a> {
             settings,
             observe,
             half_wave: model.is_symmetric() && settings.residual.is_symmetric(),
+            rotation: None,
             quadrature: Quadrature::default(),
             progress: &|_| true,
             share: 0.0,
             profile: Profile::default(),
         })
+    }
+
+    /// Seeks orbits of a symmetry in space and time; their multipliers stay unknown, as what breaks
+    /// the symmetry is not followed.
+    ///
+    /// # Errors
+    /// The model has no such symmetry.
+    pub fn rotating(mut self, rotation: Option<Rotation>) -> Result<Self, Error> {
+        if let Some(rotation) = &rotation {
+            rotation.check(&self.system)?;
+        }
+        self.rotation = rotation;
+        Ok(self)
     }
 
     /// Has `progress` called during the analysis.
@@ -143,6 +159,9 @@ impl<'a> PeriodicOrbits<'a> {
         let system = Arc::clone(&self.system);
         let mut shooting =
             Shooting::new(self.model, &system, omega, self.half_wave, Some(&interrupted));
+        if let Some(rotation) = self.rotation {
+            shooting.rotate(rotation, &system);
+        }
         let solved = self.shoot(&mut shooting, omega, neighbour);
         self.profile.evaluations += shooting.flow.steps;
         let Some((mut y, iterations)) = solved else {
@@ -162,15 +181,20 @@ impl<'a> PeriodicOrbits<'a> {
         if !shooting.solve(&residual, &mut left) {
             return Ok(self.empty(omega, PointStatus::Singular));
         }
-        let (multipliers, neutral) = shooting
-            .multipliers()
-            .ok_or_else(|| Error::Eigenvalues("transition matrix of the orbit".to_owned()))?;
+        let known = match self.rotation {
+            Some(_) => None,
+            None => Some(shooting.multipliers().ok_or_else(|| {
+                Error::Eigenvalues("transition matrix of the orbit".to_owned())
+            })?),
+        };
         self.profile.factorisations += shooting.matrices;
         let mut orbit = self.survey(&mut shooting, &system, omega, &mut y);
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
         orbit.response.error_estimate = self.left_error(&shooting, &system, &left);
-        (orbit.multipliers, orbit.neutral) = (multipliers, neutral);
+        if let Some((multipliers, neutral)) = known {
+            (orbit.multipliers, orbit.neutral) = (multipliers, neutral);
+        }
         Ok(orbit)
     }
 
@@ -255,6 +279,7 @@ impl<'a> PeriodicOrbits<'a> {
     ) -> Orbit {
         let start = std::time::Instant::now();
         let highest = self.settings.harmonics;
+        let span = std::f64::consts::TAU / omega * if self.half_wave { 0.5 } else { 1.0 };
         let (mut state, _) = shooting.coordinates.state(y);
         let mut orbit = self.empty(omega, PointStatus::Converged);
         for pass in 0..2 {
@@ -270,7 +295,7 @@ impl<'a> PeriodicOrbits<'a> {
             );
             let first = state.clone();
             // The orbit has closed with this flow, so that it runs to the end.
-            let _ = shooting.flow.run(&mut state, shooting.span(), &mut |passage| {
+            let _ = shooting.flow.run(&mut state, span, &mut |passage| {
                 survey.include(&passage);
             });
             survey.finish();

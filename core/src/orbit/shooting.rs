@@ -1,6 +1,7 @@
 //! Shooting: the start state that the flow brings back after a period, or to its mirror image
 //! after half a period.
 
+use super::rotation::Rotation;
 use crate::model::Model;
 use crate::motion::{Flow, Leg, ModalSystem, State, Transition};
 use crate::solve::System;
@@ -20,6 +21,8 @@ pub(super) struct Shooting<'a> {
     /// Contact points beyond the number of strains.
     idle: usize,
     half_wave: bool,
+    /// Symmetry of a travelling wave, and what it does to the coordinates.
+    rotation: Option<(Rotation, Mat<f64>)>,
     period: f64,
     span: f64,
     interrupted: Option<&'a dyn Fn() -> bool>,
@@ -63,6 +66,7 @@ impl<'a> Shooting<'a> {
             limits: system.limits(),
             idle: system.points() - system.strains(),
             half_wave,
+            rotation: None,
             period,
             span: if half_wave { 0.5 * period } else { period },
             interrupted,
@@ -75,9 +79,10 @@ impl<'a> Shooting<'a> {
         }
     }
 
-    /// Time that the flow covers, a period or half of it [s].
-    pub(super) fn span(&self) -> f64 {
-        self.span
+    /// Confines the flow to the part of a period after which sectors have changed their roles.
+    pub(super) fn rotate(&mut self, rotation: Rotation, system: &ModalSystem) {
+        self.span = self.period / rotation.parts as f64;
+        self.rotation = Some((rotation, rotation.matrix(&self.coordinates, system)));
     }
 
     /// Confines the flow to one of `count` equal segments of half a period; the image of the last
@@ -103,10 +108,16 @@ impl<'a> Shooting<'a> {
         self.slipped = (0..self.limits.len())
             .map(|i| !self.free[i] || self.legs.iter().any(|leg| leg.slips(i)))
             .collect();
+        if let Some((rotation, _)) = &self.rotation {
+            rotation.spread(&mut self.slipped);
+        }
         run.ok()?;
         let mut y = self.coordinates.coordinates(&state);
         self.end = Some(state);
-        if self.half_wave {
+        if let Some((_, matrix)) = &self.rotation {
+            let turned = matrix * Mat::from_fn(y.len(), 1, |i, _| y[i]);
+            y.iter_mut().enumerate().for_each(|(i, y)| *y = turned[(i, 0)]);
+        } else if self.half_wave {
             y.iter_mut().for_each(|y| *y = -*y);
         }
         Some(y)
@@ -133,7 +144,11 @@ impl<'a> Shooting<'a> {
         }
         self.matrices += 1;
         let along = self.coordinates.along(&self.legs, &self.free);
-        let derivative = if self.half_wave { faer::Scale(-1.0) * along } else { along };
+        let derivative = match &self.rotation {
+            Some((_, matrix)) => matrix * along,
+            None if self.half_wave => faer::Scale(-1.0) * along,
+            None => along,
+        };
         self.derivative = Some(derivative.clone());
         derivative
     }
