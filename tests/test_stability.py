@@ -113,8 +113,9 @@ def test_files_of_the_first_version_load(undecided, tmp_path):
     assert again.stable.tolist() == [None] * undecided.omega.size
 
 
-def floating(contacts, damping, forces=(ss.Force("b", 20.0),)):
-    return ss.Model(ss.Structure(np.eye(2), K, damping, ["a", "b"]), contacts, forces)
+def floating(contacts, damping):
+    structure = ss.Structure(np.eye(2), K, damping, ["a", "b"])
+    return ss.Model(structure, contacts, [ss.Force("b", 20.0)])
 
 
 GROUND = ss.Jenkins("a", stiffness=1e3, slip_force=1.0)

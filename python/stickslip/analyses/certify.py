@@ -115,9 +115,7 @@ def _interrupted(
     )
 
 
-def _comparison(
-    result: ForcedResponse, exact: Orbits, indices: Int
-) -> Callable[[int], Float]:
+def _comparison(result: ForcedResponse, exact: Orbits, indices: Int) -> Callable[[int], Float]:
     """Return what gives the largest differences between curve and orbit over a period, (d,)."""
     series = np.stack([result.coefficients(dof) for dof in exact.dofs], axis=2)
     # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
@@ -132,9 +130,7 @@ def _comparison(
     return compare
 
 
-def _certificate(
-    result: ForcedResponse, exact: Orbits, indices: Int, apart: Float
-) -> Certificate:
+def _certificate(result: ForcedResponse, exact: Orbits, indices: Int, apart: Float) -> Certificate:
     low, high = exact.arrays.range[..., 0], exact.arrays.range[..., 1]
     amplitude = 0.5 * (high - low)
     curve = np.stack([result.amplitude(dof)[indices] for dof in exact.dofs], axis=1)
@@ -193,7 +189,10 @@ def _indices(result: ForcedResponse, points: int | str | Sequence[int], seed: in
     given = members(points, "points", "points=[...]")
     if not given:
         raise ModelError("points: empty; give at least one position")
-    chosen = np.unique([result.position(index) for index in given])
+    try:
+        chosen = np.unique([result.position(index) for index in given])
+    except ModelError as error:
+        raise ModelError(f"points: {error}") from None
     unsolved = np.setdiff1d(chosen, solved)
     if unsolved.size:
         status = result.status[unsolved[0]]

@@ -1,8 +1,8 @@
 """The sectors that a travelling wave tells apart: what its exact orbits are sought with.
 
-Friction moves on from sector to sector, so that a wave has no motion of its own in one of them. With
-``X_j`` for sector j of n, engine order E and the period T, ``X_j(t) = X_0(t + j E T/n)``: after T/n
-every sector is where another one began, and a n-th of a period decides the orbit. Sectors that
+A sector of a wave feels its neighbours, and has no motion of its own in time. With ``X_j`` for
+sector j of n, engine order E and the period T, ``X_j(t) = X_0(t + j E T/n)``: after T/n every
+sector is where another one began, so that the n-th part of a period decides the orbit. Sectors that
 move alike are one, and with ``x(t + T/2) = -x(t)`` so are opposite ones.
 """
 
