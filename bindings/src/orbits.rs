@@ -11,7 +11,9 @@ use stickslip_core::balance::Point;
 use stickslip_core::contact::PointState;
 use stickslip_core::fourier::Measure;
 use stickslip_core::motion::{transient, Event, Scheme, TransientSettings};
-use stickslip_core::orbit::{orbit_peak, orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits, Rotation};
+use stickslip_core::orbit::{
+    orbit_peak, orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits, Rotation,
+};
 
 /// Times, contact points and kinds of events.
 pub type EventColumns<'py> =

@@ -181,12 +181,13 @@ impl<'a> PeriodicOrbits<'a> {
         if !shooting.solve(&residual, &mut left) {
             return Ok(self.empty(omega, PointStatus::Singular));
         }
-        let known = match self.rotation {
-            Some(_) => None,
-            None => Some(shooting.multipliers().ok_or_else(|| {
-                Error::Eigenvalues("transition matrix of the orbit".to_owned())
-            })?),
-        };
+        let known =
+            match self.rotation {
+                Some(_) => None,
+                None => Some(shooting.multipliers().ok_or_else(|| {
+                    Error::Eigenvalues("transition matrix of the orbit".to_owned())
+                })?),
+            };
         self.profile.factorisations += shooting.matrices;
         let mut orbit = self.survey(&mut shooting, &system, omega, &mut y);
         orbit.response.residual = closing;
