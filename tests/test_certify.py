@@ -8,6 +8,7 @@ import pytest
 
 import stickslip as ss
 from stickslip import _core
+from stickslip.analyses.reference_orbits import Orbits
 from stickslip.reference import snecma_beam
 from stickslip.results.certificate import Certificate
 
@@ -159,14 +160,14 @@ def test_an_interrupted_certification_keeps_what_was_compared():
 
 
 def test_an_interruption_while_orbits_are_followed_keeps_them_all(coarse, monkeypatch):
-    whole = ss.ExactResponse.waveforms
+    whole = Orbits.waveforms
 
     def stop(self, index, samples):
         if index == 20:
             raise KeyboardInterrupt
         return whole(self, index, samples)
 
-    monkeypatch.setattr(ss.ExactResponse, "waveforms", stop)
+    monkeypatch.setattr(Orbits, "waveforms", stop)
     message = "interrupted after 51 of 51 points, 20 of them over the whole period"
     with pytest.raises(ss.Interrupted, match=message) as it:
         ss.certify(coarse, "all")
@@ -241,3 +242,91 @@ def test_only_a_balance_is_certified(coarse):
         ss.certify("x")
     with pytest.raises(ss.ModelError, match="result: is exact already"):
         ss.certify(ss.exact_response(coarse.model, [170.0]))
+
+
+# ------------------------------------------------------------------------------- tuned disks
+
+
+def tuned(sectors, order, contacts, forces):
+    """A ring whose blades have two DOFs, tied by springs and by blocks of a cyclic matrix."""
+    blade = ss.Structure(
+        [[1.0, 0.1], [0.1, 0.8]],
+        [[4e4, -1e4], [-1e4, 3e4]],
+        ss.Rayleigh(mass=0.2, stiffness=2e-6),
+        ["root", "tip"],
+    )
+    return ss.BladedDisk(
+        blade,
+        sectors,
+        [ss.Coupling("tip", "root", stiffness=3e3, damping=0.02)],
+        contacts,
+        forces,
+        engine_order=order,
+        interface=ss.Interface([[500.0, 200.0], [-300.0, 100.0]], mass=[[0.01, 0.0], [0.02, 0.0]]),
+    )
+
+
+GROUND = ss.Jenkins("tip", stiffness=1e4, slip_force=2.0)
+SHROUD = ss.Jenkins("tip", "next.root", stiffness=2e4, slip_force=5.0)
+RUBBER = ss.StructuralDamper(
+    ["tip", "next.tip"], stiffness=[[2e4, -1e4], [-1e4, 1.5e4]], slip_forces=[4.0, 8.0]
+)
+PUSH = ss.Force("root", 30.0, phase=0.3)
+
+
+@pytest.mark.parametrize(
+    ("sectors", "order", "contacts", "forces"),
+    [
+        (8, 3, [GROUND, SHROUD], [PUSH]),  # opposite sectors move oppositely
+        (7, 2, [SHROUD], [PUSH, ss.Force("tip", 10.0, harmonic=3)]),  # an odd number of sectors
+        (9, 6, [RUBBER], [PUSH]),  # sectors that move alike
+        (6, 3, [SHROUD], [PUSH]),  # one sector, against itself mirrored
+        (5, 0, [GROUND], [PUSH]),  # all alike
+        (6, 1, [GROUND, SHROUD], [PUSH, ss.Force("tip", 15.0, harmonic=2)]),  # even harmonics
+        (5, 2, [GROUND, SHROUD], [PUSH, ss.Force("tip", 4.0, harmonic=0)]),  # a static load
+    ],
+)
+def test_the_wave_of_a_disk_is_the_orbit_of_all_sectors(sectors, order, contacts, forces):
+    disk = tuned(sectors, order, contacts, forces)
+    omega = np.array([0.85, 1.0]) * ss.natural_frequencies(disk)[0]
+    wave = ss.certify(ss.forced_response(disk, omega, 9), "all").certificate
+    whole = ss.exact_response(disk.mistuned(0), omega)
+    assert set(wave.code) == {0}
+    assert whole.slip_fraction("0." + disk.contacts[-1].name).max() > 0.01
+    for column, dof in enumerate(wave.dofs):
+        np.testing.assert_allclose(
+            wave.amplitude[:, column], whole.amplitude(f"0.{dof}"), rtol=1e-9
+        )
+    assert np.abs(wave.relative).max() > 1e-5
+
+
+def test_waveforms_of_a_wave_are_compared():
+    disk = tuned(6, 1, [GROUND, SHROUD], [PUSH])
+    omega = ss.natural_frequencies(disk)[:1]
+    coarse = ss.forced_response(disk, omega, 5)
+    whole = ss.exact_response(disk.mistuned(0), omega)
+    apart = np.abs(coarse.waveform("tip", 0, 1024) - whole.waveform("0.tip", 0, 1024)).max()
+    certificate = ss.certify(coarse, "all", dofs="tip").certificate
+    assert certificate.waveform_error[0, 0] == pytest.approx(apart, rel=1e-6)
+
+
+def test_sectors_that_nothing_ties_cost_one():
+    blade = snecma_beam(31.475)
+    disk = ss.BladedDisk(
+        blade.structure, 36, contacts=blade.contacts, forces=blade.forces, engine_order=5
+    )
+    wave = ss.certify(ss.forced_response(disk, [168.0], 15), "all").certificate
+    alone = ss.certify(ss.forced_response(blade, [168.0], 15), "all").certificate
+    np.testing.assert_allclose(wave.error, alone.error, rtol=1e-6)
+
+
+def test_a_disk_is_certified_in_part_after_an_interruption():
+    disk = tuned(6, 1, [GROUND], [PUSH])
+    curve = ss.forced_response(disk, np.linspace(150.0, 200.0, 400), 5)
+
+    def stop(_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(ss.Interrupted, match=r"interrupted after \d+ of 400 points") as it:
+        ss.certify(curve, "all", progress=stop)
+    assert 0 < it.value.result.certificate.indices.size < 400

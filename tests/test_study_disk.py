@@ -92,7 +92,7 @@ def test_engine_orders_of_harmonics():
         ),
         (
             TUNED.replace('dof = "root"', 'dofs = ["root", "next.tpi"]'),
-            "contact 1: unknown dof 'tpi'; did you mean 'tip'",
+            "contact 1: unknown dof 'next.tpi'; did you mean 'next.tip'",
         ),
         (TUNED.replace('"20 N/m"', '"20 N"'), "coupling 1: stiffness"),
         (TUNED.replace('"20 N/m"', "-3"), "coupling 1: stiffness = -3 must not be negative"),

@@ -13,7 +13,9 @@ use stickslip_core::balance::{Kept, Point, PointStatus};
 use stickslip_core::contact::PointState;
 use stickslip_core::fourier::Measure;
 use stickslip_core::motion::{transient, Event, Scheme, TransientSettings};
-use stickslip_core::orbit::{orbit_peak, orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits};
+use stickslip_core::orbit::{
+    orbit_peak, orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits, Rotation,
+};
 use stickslip_core::timing::Profile;
 
 /// Times, contact points and kinds of events.
@@ -221,6 +223,7 @@ impl Orbits {
 
 /// Exact periodic orbits over a grid of frequencies.
 #[pyfunction]
+#[pyo3(signature = (problem, omega, observe, harmonics, residual, max_iterations, progress, rotation=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn exact_response(
     py: Python<'_>,
@@ -231,8 +234,16 @@ pub fn exact_response(
     residual: ResidualArgument,
     max_iterations: usize,
     progress: Option<Py<PyAny>>,
+    rotation: Option<(usize, usize, f64, f64, usize)>,
 ) -> PyResult<Orbits> {
     let settings = OrbitSettings { harmonics, residual: residual.parse()?, max_iterations };
+    let rotation = rotation.map(|(sectors, shift, wrap, sign, parts)| Rotation {
+        sectors,
+        shift,
+        wrap,
+        sign,
+        parts,
+    });
     let observe = indices(&observe)?;
     let grid = omega.as_array().to_vec();
     let observed = observe.len();
@@ -240,6 +251,7 @@ pub fn exact_response(
     let (model, own_kept) = (Arc::clone(&problem.model), Arc::clone(&kept));
     let (inner, raised) = watched(py, progress.as_ref(), move |look| {
         PeriodicOrbits::new(&model, settings, &observe)
+            .and_then(|orbits| orbits.rotating(rotation))
             .and_then(|orbits| orbit_sweep(orbits.watched(look).keeping(&own_kept), &grid))
     })?;
     raised.raise_unless_interrupt(py)?;

@@ -60,7 +60,7 @@ pub enum Error {
         natural: f64,
     },
     /// Time-domain analysis of one sector.
-    #[error("one sector of a travelling wave has no motion of its own in time; give the whole disk, disk.mistuned(0)")]
+    #[error("one sector of a travelling wave has no motion of its own in time; give all sectors")]
     TravellingWave,
     /// A motion that the exact flow would follow in far too many steps.
     #[error(

@@ -203,7 +203,8 @@ def __getattr__(name: str) -> object:
         return import_module(f"{__name__}.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    checked = import_module(f"{__name__}.calls").checked
+    value = checked(getattr(import_module(f"{__name__}.{_HOMES[name]}"), name))
     globals()[name] = value
     return value
 

@@ -219,6 +219,7 @@ def exact_response(
     residual: Residual,
     max_iterations: int,
     progress: Callable[[float], None] | None,
+    rotation: tuple[int, int, float, float, int] | None = None,
 ) -> Orbits: ...
 def exact_peak(
     problem: Problem,

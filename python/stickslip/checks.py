@@ -48,7 +48,8 @@ MAX_COUNT = 2**31 - 1
 """Largest number that counts something."""
 
 Matrix: TypeAlias = NDArray[np.float64]
-_SHOWN = 6
+_SHOWN = 16
+_FEW = 3
 _LONGEST = 60
 # A sign, zeros and a point before a digit that is none: the mantissa of a number that is not 0.
 _NOT_ZERO = re.compile(r"\s*[+-]?[0._]*[1-9]")
@@ -102,12 +103,41 @@ def unknown(kind: str, name: object, known: Iterable[str]) -> str:
         For example ``unknown dof 'tpi'; did you mean 'tip'?``.
     """
     names = list(known)
-    near = difflib.get_close_matches(name, names, n=1) if isinstance(name, str) else []
+    near = _near(name, names) if isinstance(name, str) else []
     if near:
-        return f"unknown {kind} {brief(name)}; did you mean {brief(near[0])}?"
+        return f"unknown {kind} {brief(name)}; did you mean {' or '.join(map(brief, near))}?"
     if not names:
         return f"unknown {kind} {brief(name)}; there is none"
     return f"unknown {kind} {brief(name)}; known: {listed(names)}"
+
+
+def _near(name: str, names: Sequence[str]) -> list[str]:
+    """Return the names that may have been meant.
+
+    Names such as "left.tip" and "next.ps.z" say in their first parts to which body they belong: a
+    misspelt one is never taken for that of another body.
+    """
+    *body, last = name.split(".")
+    same = [one for one in names if _same_body(body, one.split(".")[:-1])]
+    # "exact-response" is rather "exact" than "forced-response".
+    parts = [one for one in same if f"{name}-".startswith(f"{one}-")]
+    near = parts or difflib.get_close_matches(name, same, n=1)
+    if near or body:
+        return near
+    ends = [one for one in names if one.endswith(f".{last}")]
+    return ends if len(ends) <= _FEW else []
+
+
+def _same_body(given: Sequence[str], known: Sequence[str]) -> bool:
+    """Return whether parts are the same but for a slip of the pen, which changes no number."""
+    return len(given) == len(known) and all(
+        _digits(one) == _digits(other) and difflib.get_close_matches(one, [other])
+        for one, other in zip(given, known, strict=True)
+    )
+
+
+def _digits(text: str) -> str:
+    return "".join(filter(str.isdigit, text))
 
 
 def listed(names: Sequence[str]) -> str:

@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
-__all__ = ["Interrupted", "ModelError"]
+__all__ = ["CallError", "Interrupted", "ModelError"]
 
 
 class ModelError(ValueError):
-    """Input that cannot be used; one line names the entry, its value and the remedy."""
+    """Input that cannot be used; one line names the entry, its value and the remedy.
+
+    Parameters
+    ----------
+    message : str
+        The line.
+    study : str, optional
+        The line for authors of study files, where the remedy is another one. Default: the same.
+    """
+
+    def __init__(self, message: str = "", *, study: str | None = None) -> None:
+        super().__init__(message)
+        self.study = message if study is None else study
+
+
+class CallError(ModelError, TypeError):
+    """Arguments that do not fit a signature: a misspelt keyword, or one that is missing."""
 
 
 class Interrupted(KeyboardInterrupt):

@@ -82,7 +82,7 @@ def stable_share(cycles: ss.LimitCycles, side: str) -> float:
     There a multiplier is 1, and rounding decides on which side of the unit circle it is found.
     """
     counted = (cycles.branch == side) & (cycles.values < (1.0 - 1e-6) * turn(cycles).value)
-    return 100.0 * float(cycles.stable[counted].mean())
+    return 100.0 * float((cycles.stability[counted] == "stable").mean())
 
 
 def smooth(model: ss.Model, negative: Float, *, harmonics: int, mode: int = 0) -> ss.LimitCycles:

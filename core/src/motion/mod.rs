@@ -10,6 +10,7 @@ mod phase;
 mod polynomial;
 mod power_series;
 mod returns;
+mod rigid;
 mod runge_kutta;
 mod state;
 mod transient;

@@ -115,6 +115,15 @@ impl<'a> Transition<'a> {
         Self { system, weight }
     }
 
+    pub(super) fn system(&self) -> &ModalSystem {
+        self.system
+    }
+
+    /// Factors on the modal displacements [rad/s].
+    pub(crate) fn weight(&self) -> &[f64] {
+        &self.weight
+    }
+
     /// Number of coordinates, 2N + strains.
     pub(crate) fn size(&self) -> usize {
         2 * self.weight.len() + self.system.strains()

@@ -231,8 +231,8 @@ impl<'a> OrbitCurve<'a> {
         })
     }
 
-    /// Multipliers over half a period, mirrored, without the one of the phase and those of contacts
-    /// that never slip, by falling modulus; and the number of these contacts.
+    /// Multipliers over half a period, mirrored, without the one of the phase and the neutral ones,
+    /// by falling modulus; and the number of the neutral ones.
     #[must_use]
     pub fn multipliers(&self, z: &[f64]) -> Option<(Vec<c64>, usize)> {
         let (mut multipliers, neutral) = self.with_shooting(z, |member, shooting, y| {
@@ -243,7 +243,7 @@ impl<'a> OrbitCurve<'a> {
             }
             let mut neutral = 0;
             let reduced = segments.iter().map(|one| {
-                let (rest, count) = shooting.without_conserved(&one.derivative, &slipped);
+                let (rest, count) = shooting.without_neutral(&one.derivative, &slipped);
                 neutral = count;
                 rest
             });

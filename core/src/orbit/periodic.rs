@@ -2,6 +2,7 @@
 
 use super::quadrature::Quadrature;
 use super::residual::shifted;
+use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::start::start_of;
@@ -37,10 +38,10 @@ pub struct Orbit {
     pub range: Vec<[f64; 2]>,
     /// State at the start of the period: displacements and velocities of all DOFs, contact forces.
     pub state: Vec<f64>,
-    /// Floquet multipliers over the full period, exact ones of contacts that never slip first,
-    /// then by falling modulus.
+    /// Floquet multipliers over the full period, the neutral ones first, then by falling modulus.
     pub multipliers: Vec<c64>,
-    /// Number of contacts that never slip: each keeps its mean force, a multiplier of exactly 1.
+    /// Number of neutral multipliers, of exactly 1: a contact that never slips keeps its mean force,
+    /// and a structure that nothing holds stays or drifts where it is pushed.
     pub neutral: usize,
     /// Work of the external forces per period [J].
     pub work: f64,
@@ -59,6 +60,7 @@ pub struct PeriodicOrbits<'a> {
     observe: &'a [usize],
     everywhere: Vec<usize>,
     half_wave: bool,
+    rotation: Option<Rotation>,
     quadrature: Quadrature,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
@@ -90,12 +92,26 @@ impl<'a> PeriodicOrbits<'a> {
             settings,
             observe,
             half_wave: model.is_symmetric() && settings.residual.is_symmetric(),
+            rotation: None,
             quadrature: Quadrature::default(),
             progress: &|_| true,
             kept: None,
             share: 0.0,
             profile: Profile::default(),
         })
+    }
+
+    /// Seeks orbits of a symmetry in space and time; their multipliers stay unknown, as what breaks
+    /// the symmetry is not followed.
+    ///
+    /// # Errors
+    /// The model has no such symmetry.
+    pub fn rotating(mut self, rotation: Option<Rotation>) -> Result<Self, Error> {
+        if let Some(rotation) = &rotation {
+            rotation.check(&self.system)?;
+        }
+        self.rotation = rotation;
+        Ok(self)
     }
 
     /// Has `progress` called during the analysis.
@@ -157,6 +173,9 @@ impl<'a> PeriodicOrbits<'a> {
         let system = Arc::clone(&self.system);
         let mut shooting =
             Shooting::new(self.model, &system, omega, self.half_wave, Some(&interrupted));
+        if let Some(rotation) = self.rotation {
+            shooting.rotate(rotation, &system);
+        }
         let solved = self.shoot(&mut shooting, omega, neighbour);
         self.profile.evaluations += shooting.flow.steps;
         let Some((mut y, iterations)) = solved else {
@@ -178,15 +197,21 @@ impl<'a> PeriodicOrbits<'a> {
         if !shooting.solve(&residual, &mut left) {
             return Ok(self.empty(omega, PointStatus::Singular));
         }
-        let (multipliers, neutral) = shooting
-            .multipliers()
-            .ok_or_else(|| Error::Eigenvalues("transition matrix of the orbit".to_owned()))?;
+        let known =
+            match self.rotation {
+                Some(_) => None,
+                None => Some(shooting.multipliers().ok_or_else(|| {
+                    Error::Eigenvalues("transition matrix of the orbit".to_owned())
+                })?),
+            };
         self.profile.factorisations += shooting.matrices;
         let mut orbit = self.survey(&mut shooting, &system, omega, &mut y);
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
         orbit.response.error_estimate = self.left_error(&shooting, &system, &left);
-        (orbit.multipliers, orbit.neutral) = (multipliers, neutral);
+        if let Some((multipliers, neutral)) = known {
+            (orbit.multipliers, orbit.neutral) = (multipliers, neutral);
+        }
         Ok(orbit)
     }
 
@@ -274,6 +299,7 @@ impl<'a> PeriodicOrbits<'a> {
     ) -> Orbit {
         let start = std::time::Instant::now();
         let highest = self.settings.harmonics;
+        let span = std::f64::consts::TAU / omega * if self.half_wave { 0.5 } else { 1.0 };
         let (mut state, _) = shooting.coordinates.state(y);
         let mut orbit = self.empty(omega, PointStatus::Converged);
         for pass in 0..2 {
@@ -289,7 +315,7 @@ impl<'a> PeriodicOrbits<'a> {
             );
             let first = state.clone();
             // The orbit has closed with this flow, so that it runs to the end.
-            let _ = shooting.flow.run(&mut state, shooting.span(), &mut |passage| {
+            let _ = shooting.flow.run(&mut state, span, &mut |passage| {
                 survey.include(&passage);
             });
             survey.finish();

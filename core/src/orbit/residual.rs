@@ -10,9 +10,6 @@ use crate::motion::{ModalSystem, State};
 use faer::linalg::solvers::Solve as _;
 use faer::Mat;
 
-/// Static stiffness relative to the largest below which rigid-body motion cannot carry a force.
-const RIGID_BODY: f64 = 1e-13;
-
 /// A constant force that an orbit leaves open: of a spring, or of a strain of a coupled law.
 struct Open {
     /// Points that it acts on, each with its share.
@@ -38,8 +35,8 @@ pub(super) fn shifted(
     state: &State,
 ) -> Option<State> {
     let stiffness = system.omega_squared();
-    let largest = stiffness.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
-    if stiffness.iter().any(|w| w.abs() <= RIGID_BODY * largest) {
+    if !system.rigid_modes().is_empty() {
+        // Rigid-body motion cannot carry a force.
         return None;
     }
     let open = open_forces(system, neutral, middle, half_range, state);

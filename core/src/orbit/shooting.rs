@@ -1,6 +1,7 @@
 //! Shooting: the start state that the flow brings back after a period, or to its mirror image
 //! after half a period.
 
+use super::rotation::Rotation;
 use crate::model::Model;
 use crate::motion::{Flow, Leg, ModalSystem, State, Transition};
 use crate::solve::System;
@@ -24,6 +25,8 @@ pub(super) struct Shooting<'a> {
     /// Contact points beyond the number of strains.
     idle: usize,
     half_wave: bool,
+    /// Symmetry of a travelling wave, and what it does to the coordinates.
+    rotation: Option<(Rotation, Mat<f64>)>,
     period: f64,
     span: f64,
     interrupted: Option<&'a dyn Fn() -> bool>,
@@ -72,6 +75,7 @@ impl<'a> Shooting<'a> {
             limits: system.limits(),
             idle: system.points() - system.strains(),
             half_wave,
+            rotation: None,
             period,
             span: if half_wave { 0.5 * period } else { period },
             interrupted,
@@ -84,9 +88,10 @@ impl<'a> Shooting<'a> {
         }
     }
 
-    /// Time that the flow covers, a period or half of it [s].
-    pub(super) fn span(&self) -> f64 {
-        self.span
+    /// Confines the flow to the part of a period after which sectors have changed their roles.
+    pub(super) fn rotate(&mut self, rotation: Rotation, system: &ModalSystem) {
+        self.span = self.period / rotation.parts as f64;
+        self.rotation = Some((rotation, rotation.matrix(&self.coordinates, system)));
     }
 
     /// Confines the flow to one of `count` equal segments of half a period; the image of the last
@@ -112,10 +117,16 @@ impl<'a> Shooting<'a> {
         self.slipped = (0..self.limits.len())
             .map(|i| !self.free[i] || self.legs.iter().any(|leg| leg.slips(i)))
             .collect();
+        if let Some((rotation, _)) = &self.rotation {
+            rotation.spread(&mut self.slipped);
+        }
         run.ok()?;
         let mut y = self.coordinates.coordinates(&state);
         self.end = Some(state);
-        if self.half_wave {
+        if let Some((_, matrix)) = &self.rotation {
+            let turned = matrix * Mat::from_fn(y.len(), 1, |i, _| y[i]);
+            y.iter_mut().enumerate().for_each(|(i, y)| *y = turned[(i, 0)]);
+        } else if self.half_wave {
             y.iter_mut().for_each(|y| *y = -*y);
         }
         Some(y)
@@ -142,13 +153,17 @@ impl<'a> Shooting<'a> {
         }
         self.matrices += 1;
         let along = self.coordinates.along(&self.legs, &self.free);
-        let derivative = if self.half_wave { faer::Scale(-1.0) * along } else { along };
+        let derivative = match &self.rotation {
+            Some((_, matrix)) => matrix * along,
+            None if self.half_wave => faer::Scale(-1.0) * along,
+            None => along,
+        };
         self.derivative = Some(derivative.clone());
         derivative
     }
 
-    /// Floquet multipliers over the full period by falling modulus, the exact ones of contacts
-    /// that never slip first, and the number of these.
+    /// Floquet multipliers over the full period by falling modulus, the neutral ones first, and the
+    /// number of these.
     pub(super) fn multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
         let (mut multipliers, neutral) = self.span_multipliers()?;
         if self.half_wave {
@@ -161,21 +176,18 @@ impl<'a> Shooting<'a> {
         Some((ones.chain(multipliers).chain(none).collect(), neutral))
     }
 
-    /// Multipliers over the span, mirrored under half-wave symmetry, without those of contacts
-    /// that never slip; and the number of these.
+    /// Multipliers over the span, mirrored under half-wave symmetry, without the neutral ones; and
+    /// the number of these.
     fn span_multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
         let matrix = self.derivative();
-        let (rest, conserved) = self.without_conserved(&matrix, &self.slipped);
-        Some((rest.eigenvalues().ok()?, conserved))
+        let (rest, neutral) = self.without_neutral(&matrix, &self.slipped);
+        Some((rest.eigenvalues().ok()?, neutral))
     }
 
-    /// A transition matrix in coordinates that hold the forms which are conserved while the points
-    /// `slipped` alone slip, without these; and their number.
-    pub(super) fn without_conserved(
-        &self,
-        matrix: &Mat<f64>,
-        slipped: &[bool],
-    ) -> (Mat<f64>, usize) {
+    /// A transition matrix without what is neutral while the points `slipped` alone slip, and the
+    /// number of the multipliers that are 1 for it: a contact that never slips keeps its slip, and
+    /// nothing answers to some rigid-body motions.
+    pub(super) fn without_neutral(&self, matrix: &Mat<f64>, slipped: &[bool]) -> (Mat<f64>, usize) {
         let conserved = self.coordinates.conserved(slipped);
         let size = matrix.nrows();
         let mut change = Mat::<f64>::identity(size, size);
@@ -189,7 +201,16 @@ impl<'a> Shooting<'a> {
         let kept: Vec<usize> =
             (0..size).filter(|i| conserved.iter().all(|(target, _)| target != i)).collect();
         let rest = Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[j], kept[i])]);
-        (rest, conserved.len())
+        let rigid = self.coordinates.rigid(slipped);
+        if rigid.is_empty() {
+            return (rest, conserved.len());
+        }
+        // Eigenvectors of the matrix and of its transpose, orthogonal to each other: what is left
+        // across all of them has the other multipliers.
+        let along = Mat::from_fn(kept.len(), rigid.len(), |i, j| rigid[j][kept[i]]);
+        let basis = along.qr().compute_Q();
+        let across = basis.get(.., rigid.len()..);
+        (across.transpose() * &rest * across, conserved.len() + rigid.len())
     }
 }
 

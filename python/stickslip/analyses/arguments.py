@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import brief, real_number, text, unknown
+from stickslip.disk.arguments import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
 
@@ -72,9 +73,10 @@ def refusal(error: ValueError, model: Model) -> ModelError:
 def require_time(model: Model) -> None:
     """Refuse one sector of a travelling wave, which has no motion of its own in time."""
     if model.travels:
+        reason = "one sector of a travelling wave, which has no motion of its own in time"
         raise ModelError(
-            "model: a tuned BladedDisk is one sector of a travelling wave, which has no motion of "
-            "its own in time; give all sectors, disk.mistuned(0)"
+            f"model: a tuned BladedDisk is {reason}; give all sectors, disk.mistuned(0)",
+            study=f"disk: a tuned disk is {reason}; compute all sectors, {ALL_SECTORS}",
         )
 
 

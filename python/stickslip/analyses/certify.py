@@ -9,8 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from stickslip.analyses.arguments import Progress, require_progress
-from stickslip.analyses.exact_response import exact_response
+from stickslip.analyses.arguments import Progress, prepare, require_progress
+from stickslip.analyses.reference_orbits import Orbits, orbits_of
 from stickslip.checks import brief, members, whole_number
 from stickslip.errors import Interrupted, ModelError
 from stickslip.interruption import Interruption
@@ -44,7 +44,9 @@ def certify(
     """Compare a harmonic balance with exact orbits at some of its points.
 
     The error estimate of a result is an estimate; this is the error itself. A point costs its
-    orbit, and as much again to follow it through the period.
+    orbit, and as much again to follow it through the period. The orbit of a travelling wave is that
+    of all sectors that move differently, sought on the part of a period after which they have
+    changed their roles: see `stickslip.disk.wave_ring`.
 
     Parameters
     ----------
@@ -78,20 +80,14 @@ def certify(
     require_progress(progress)
     compared = _dofs(result, dofs)
     indices = _indices(result, points, seed)
+    prepare(result.model)
     with Interruption(progress) as watch:
-        try:
-            exact = exact_response(
-                result.model,
-                result.omega[indices],
-                harmonics=1,
-                residual=result.settings.residual,
-                observe=compared,
-                progress=lambda share: watch(_ORBITS * share),
-            )
-        except Interrupted as stop:
-            found: ExactResponse = stop.result  # type: ignore[assignment]
-            raise _interrupted(result, found, indices, _unknown(found), 0) from None
+        exact = orbits_of(
+            result, result.omega[indices], compared, lambda share: watch(_ORBITS * share)
+        )
         apart = _unknown(exact)
+        if exact.interrupted:
+            raise _interrupted(result, exact, indices, apart, 0)
         reported, place = monotonic(), 0
         try:
             with watch.at_once():
@@ -107,25 +103,23 @@ def certify(
         return watch.completed(certified, "certification")
 
 
-def _unknown(exact: ExactResponse) -> Float:
-    return np.full((exact.omega.size, len(exact.dofs)), np.nan)
+def _unknown(exact: Orbits) -> Float:
+    return np.full((exact.arrays.omega.size, len(exact.dofs)), np.nan)
 
 
 def _interrupted(
-    result: ForcedResponse, exact: ExactResponse, indices: Int, apart: Float, followed: int
+    result: ForcedResponse, exact: Orbits, indices: Int, apart: Float, followed: int
 ) -> Interrupted:
     """Return the exception that holds the orbits so far, whose waveforms may be missing."""
-    certificate = _certificate(result, exact, indices[: exact.omega.size], apart)
+    certificate = _certificate(result, exact, indices[: exact.arrays.omega.size], apart)
     return Interrupted(
-        f"certification interrupted after {exact.omega.size} of {indices.size} points, "
+        f"certification interrupted after {exact.arrays.omega.size} of {indices.size} points, "
         f"{followed} of them over the whole period, which the result of this exception holds",
         replace(result, certificate=certificate),
     )
 
 
-def _comparison(
-    result: ForcedResponse, exact: ExactResponse, indices: Int
-) -> Callable[[int], Float]:
+def _comparison(result: ForcedResponse, exact: Orbits, indices: Int) -> Callable[[int], Float]:
     """Return what gives the largest differences between curve and orbit over a period, (d,)."""
     series = np.stack([result.coefficients(dof) for dof in exact.dofs], axis=2)
     # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
@@ -140,14 +134,13 @@ def _comparison(
     return compare
 
 
-def _certificate(
-    result: ForcedResponse, exact: ExactResponse, indices: Int, apart: Float
-) -> Certificate:
-    amplitude = np.stack([exact.amplitude(dof) for dof in exact.dofs], axis=1)
+def _certificate(result: ForcedResponse, exact: Orbits, indices: Int, apart: Float) -> Certificate:
+    low, high = exact.arrays.range[..., 0], exact.arrays.range[..., 1]
+    amplitude = 0.5 * (high - low)
     curve = np.stack([result.amplitude(dof)[indices] for dof in exact.dofs], axis=1)
     estimate = np.stack([result.error_estimate(dof)[indices] for dof in exact.dofs], axis=1)
     error = curve - amplitude
-    largest = np.stack([exact.amplitude(dof, "max") for dof in exact.dofs], axis=1)
+    largest = np.maximum(np.abs(low), np.abs(high))
     # Beside a large mean, or a large motion elsewhere, less than this is rounding, not an error.
     error[np.abs(error) <= _NO_ERROR * largest.max(axis=1, keepdims=True)] = 0.0
     automatic = result.settings.harmonics == "auto"
@@ -155,7 +148,7 @@ def _certificate(
         dofs=exact.dofs,
         tolerance=result.settings.tolerance if automatic else None,
         indices=indices,
-        omega=exact.omega,
+        omega=exact.arrays.omega,
         code=exact.arrays.status,
         amplitude=amplitude,
         error=error,
@@ -200,7 +193,10 @@ def _indices(result: ForcedResponse, points: int | str | Sequence[int], seed: in
     given = members(points, "points", "points=[...]")
     if not given:
         raise ModelError("points: empty; give at least one position")
-    chosen = np.unique([result.position(index) for index in given])
+    try:
+        chosen = np.unique([result.position(index) for index in given])
+    except ModelError as error:
+        raise ModelError(f"points: {error}") from None
     unsolved = np.setdiff1d(chosen, solved)
     if unsolved.size:
         status = result.status[unsolved[0]]

@@ -47,6 +47,8 @@ def cycle_assumptions(
                 "Stability is not decided: one sector of a wave has no motion of its own.",
             )
         )
+    elif not settings.stability:
+        told.append(diagnostic("stability-undecided", "Stability is not decided: it was left out."))
     side = ("sticking", "slipping")
     for name, (end, value) in zip(side, solution.ends, strict=True):
         if end == "returned":
@@ -119,7 +121,7 @@ def cycle_assumptions(
             told.append(
                 diagnostic(
                     "stability-undecided",
-                    f"{unknown} points have no multipliers, and count as not stable.",
+                    f"{unknown} points have no multipliers: their stability is not decided.",
                     points=unknown,
                 )
             )

@@ -72,9 +72,9 @@ def coupled_disks(disk: BladedDisk, stiffness: ArrayLike | None) -> list[tuple[f
     if stiffness is None:
         return [(own.pop() if len(own) == 1 else math.nan, disk)]
     if not disk.couplings:
+        reason = "coupling_stiffness: the disk has no couplings that could take it; give it"
         raise ModelError(
-            "coupling_stiffness: the disk has no couplings that could take it; give it "
-            "couplings=[ss.Coupling(...)]"
+            f"{reason} couplings=[ss.Coupling(...)]", study=f"{reason} a table [[coupling]]"
         )
     values = numbers_of(stiffness, "coupling_stiffness", "stiffnesses in N/m").tolist()
     return [

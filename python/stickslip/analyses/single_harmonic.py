@@ -95,9 +95,13 @@ def single_harmonic(
     require_model(model)
     grid = grid_of(omega)
     if isinstance(grid, tuple):
-        raise ModelError(
+        reason = (
             f"omega: {brief(omega)} is a range, which a single harmonic cannot choose steps in; "
-            "give a grid, as np.linspace(start, end, 400)"
+            "give a grid, as"
+        )
+        raise ModelError(
+            f"{reason} np.linspace(start, end, 400)",
+            study=f"{reason} {{from = ..., to = ..., points = 400}}",
         )
     if not isinstance(estimate, bool):
         raise ModelError(f"estimate: {brief(estimate)} is neither True nor False")
@@ -106,9 +110,12 @@ def single_harmonic(
     require_progress(progress)
     for position, force in enumerate(model.forces, start=1):
         if force.harmonic != 1 and force.amplitude:
-            raise ModelError(
+            reason = (
                 f"force {position} at {force.dof!r}: harmonic {force.harmonic}; a single harmonic "
-                "takes forces of harmonic 1 alone, use forced_response"
+                "takes forces of harmonic 1 alone"
+            )
+            raise ModelError(
+                f"{reason}, use forced_response", study=f'{reason}, use kind = "forced-response"'
             )
     require_memory(grid.size, 1, len(dofs), sum(contact.points for contact in model.contacts))
     prepare(model)

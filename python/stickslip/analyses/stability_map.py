@@ -19,6 +19,7 @@ from stickslip.model import Model
 from stickslip.model.destabilised import is_proportional
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
+from stickslip.results.stability import stability_of
 from stickslip.results.stability_map import MapArrays, MapSettings, StabilityMap
 
 __all__ = ["stability_map"]
@@ -42,7 +43,7 @@ def stability_map(
     For every value the whole branch of the mode is followed. `limit` is the ratio at which it
     turns for good: beyond it friction cannot dissipate what flutter feeds. `stable_limit` is the
     largest ratio up to which its sticking side is stable without a gap, which is where vibration
-    begins to leave this mode.
+    begins to leave this mode; not-a-number where a cycle below it is not decided.
 
     Parameters
     ----------
@@ -129,7 +130,7 @@ def stability_map(
         limit, omega, stable = np.array(rows, dtype=np.float64).reshape(-1, 3).T
         unknown = int((np.isfinite(limit) & ~np.isfinite(stable)).sum())
         if unknown:
-            text = f"The stability of {unknown} values is not known."
+            text = f"The stability of {unknown} values is not decided."
             told.append(diagnostic("stability-unknown", text, count=unknown))
         result = StabilityMap(
             model=model,
@@ -160,15 +161,21 @@ def _share(watch: Interruption, place: int, total: int) -> Progress:
 
 
 def _stable_limit(arrays: CycleArrays) -> float:
-    """Return the ratio at which the sticking side first loses stability; 0 if it never has it."""
-    sticking = ~arrays.slipping & arrays.known
-    if not sticking.any():
+    """Return the ratio at which the sticking side first loses stability; 0 if it never has it.
+
+    Not-a-number if a cycle below it is not decided.
+    """
+    sticking = np.flatnonzero(~arrays.slipping)
+    if not sticking.size:
         return float("nan")
-    first = int(np.flatnonzero(sticking)[0])
-    size = np.abs(arrays.multipliers[first, arrays.neutral[first] :])
-    if (size >= 1.0).any():
-        return 0.0
-    for (value, _), unstable in zip(arrays.change, arrays.change_unstable, strict=True):
+    limit, last = float(arrays.ratio[sticking].max()), int(sticking[-1])
+    for (value, _), after, unstable in zip(
+        arrays.change, arrays.change_after, arrays.change_unstable, strict=True
+    ):
         if unstable[1] > 0:
-            return float(value)
-    return float(arrays.ratio[sticking].max())
+            limit, last = float(value), int(after)
+            break
+    states = stability_of(arrays.multipliers, arrays.neutral, arrays.known)
+    if states[sticking[0]] == "unstable":
+        return 0.0
+    return limit if (states[sticking[sticking <= last]] == "stable").all() else float("nan")

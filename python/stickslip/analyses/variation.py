@@ -314,9 +314,12 @@ def resonance_range(model: Model, variation: Variation, mode: int, values: Float
     low = max((1.0 - MARGIN) * min(free, stuck), MARGIN * stuck) / harmonic
     high = (1.0 + MARGIN) * max(free, stuck) / harmonic
     if not 0.0 < low < high:
-        raise ModelError(
+        reason = (
             f"omega: mode {position} is a motion without stiffness even with all contacts stuck; "
-            "give omega=(from, to)"
+            "give"
+        )
+        raise ModelError(
+            f"{reason} omega=(from, to)", study=f"{reason} omega = {{from = ..., to = ...}}"
         )
     return low, high
 

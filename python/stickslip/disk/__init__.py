@@ -1,5 +1,6 @@
 """Bladed disks: equal sectors in a travelling wave, and rings of sectors that differ."""
 
+from stickslip.calls import checked_names
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.boundary import cyclic_sector
 from stickslip.disk.coupling import Coupling, Interface
@@ -23,3 +24,5 @@ __all__ = [
     "cyclic_sector",
     "mistuning_pattern",
 ]
+
+checked_names(globals(), __all__)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NoReturn
 
 from stickslip.checks import brief, unknown, whole_number
@@ -10,10 +10,24 @@ from stickslip.disk.coupling import Coupling, Interface
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
 
-__all__ = ["NEXT", "orders_of", "require_couplings", "require_interface"]
+__all__ = [
+    "ALL_SECTORS",
+    "NEXT",
+    "PREVIOUS",
+    "orders_of",
+    "require_couplings",
+    "require_interface",
+    "stranger",
+]
+
+ALL_SECTORS = "mistuning = {deviation = 0.0} in [disk]"
+"""How study files ask for all sectors of a tuned disk."""
 
 NEXT = "next."
 """Prefix of the degrees of freedom of the next sector, in contacts between two sectors."""
+
+PREVIOUS = "prev."
+"""What may be written by mistake for those of the sector before, which no name reaches."""
 
 
 def orders_of(orders: Mapping[int, int] | None) -> dict[int, int]:
@@ -41,13 +55,44 @@ def require_couplings(couplings: tuple[Coupling, ...], structure: Structure) -> 
 
 
 def _refuse_coupling(number: int, dof: str, structure: Structure) -> NoReturn:
-    bare = dof.removeprefix(NEXT)
+    bare = dof.removeprefix(NEXT).removeprefix(PREVIOUS)
     if bare in structure.dofs:
         raise ModelError(
             f"coupling {number}: {brief(dof)}: its second end is in the next sector anyway; write "
             f"{brief(bare)}"
         )
     raise ModelError(f"coupling {number}: {unknown('dof', dof, structure.dofs)}")
+
+
+def stranger(dof: str, dofs: Iterable[str | None], own: Sequence[str]) -> str:
+    """Word a degree of freedom of a contact that neither the sector nor the next one has.
+
+    Parameters
+    ----------
+    dof : str
+        The one that is unknown.
+    dofs : iterable of str or None
+        All of the contact.
+    own : sequence of str
+        Those of the sector.
+
+    Returns
+    -------
+    str
+        For the sector before: the contact as that sector sees it.
+    """
+    bare = dof.removeprefix(PREVIOUS)
+    if bare == dof or bare not in own:
+        return unknown("dof", dof, [*own, *(NEXT + one for one in own)])
+    seen = [
+        one.removeprefix(PREVIOUS) if one.startswith(PREVIOUS) else NEXT + one
+        for one in dofs
+        if one is not None
+    ]
+    return (
+        f"unknown dof {brief(dof)}: contacts lead from a sector to the next one; write this one as "
+        f"it stands in the sector before, with the dofs {', '.join(map(brief, seen))}"
+    )
 
 
 def require_interface(interface: Interface | None, structure: Structure) -> None:

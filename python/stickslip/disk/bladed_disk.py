@@ -13,7 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import Matrix, brief, unknown, whole_number
-from stickslip.disk.arguments import NEXT, orders_of, require_couplings, require_interface
+from stickslip.disk.arguments import (
+    ALL_SECTORS,
+    NEXT,
+    orders_of,
+    require_couplings,
+    require_interface,
+    stranger,
+)
 from stickslip.disk.coupling import Coupling, Interface
 from stickslip.disk.cyclic import CyclicMatrices
 from stickslip.errors import ModelError
@@ -156,7 +163,7 @@ class BladedDisk(Model):
             entry = f"contact {number} ({brief(contact.name)})"
             for dof in contact.dofs:
                 if dof is not None and dof not in known:
-                    raise ModelError(f"{entry}: {unknown('dof', dof, known)}")
+                    raise ModelError(f"{entry}: {stranger(dof, contact.dofs, own)}")
             if not any(dof in own for dof in contact.dofs):
                 names = [dof.removeprefix(NEXT) for dof in contact.dofs if dof is not None]
                 raise ModelError(
@@ -164,7 +171,13 @@ class BladedDisk(Model):
                     f"{', '.join(map(brief, names))}"
                 )
         for number, force in enumerate(self.forces, 1):
+            bare = force.dof.removeprefix(NEXT)
             if force.dof not in own:
+                if bare in own:
+                    raise ModelError(
+                        f"force {number}: {brief(force.dof)}: forces are those on sector 0, from "
+                        f"which those on the others follow; write {brief(bare)}"
+                    )
                 raise ModelError(f"force {number}: {unknown('dof', force.dof, own)}")
 
     @cached_property
@@ -367,12 +380,12 @@ class BladedDisk(Model):
         for number, force in enumerate(self.forces, 1):
             k, order = force.harmonic, self.order_of(force.harmonic)
             if (order - k * self.engine_order) % self.sectors:
-                raise ModelError(
+                reason = (
                     f"force {number} at {brief(force.dof)}: harmonic {k} of engine order {order} "
                     f"does not travel with {k} x {self.engine_order} modulo {self.sectors} "
-                    "sectors, so that the motion is no single wave; compute all sectors, "
-                    "disk.mistuned(0)"
+                    "sectors, so that the motion is no single wave; compute all sectors"
                 )
+                raise ModelError(f"{reason}, disk.mistuned(0)", study=f"{reason}, {ALL_SECTORS}")
 
 
 def _rebuilt(

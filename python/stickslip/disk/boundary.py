@@ -52,9 +52,8 @@ def cyclic_sector(structure: Structure, boundary: Mapping[str, str]) -> tuple[St
         blocks[name] = own.T @ matrix @ own + following.T @ matrix @ following
     # The blocks of a skew part change sign across the cut, which one block per cut cannot say.
     if np.abs(structure.damping - structure.damping.T).max() > 0.0:
-        raise ModelError(
-            "structure: its damping is not symmetric; give the blocks yourself, ss.Interface(...)"
-        )
+        reason = "structure: its damping is not symmetric; give the blocks yourself,"
+        raise ModelError(f"{reason} ss.Interface(...)", study=f"{reason} interface of [disk]")
     interface = Interface(
         *(own.T @ getattr(structure, name) @ following for name in ("stiffness", "mass", "damping"))
     )

@@ -1,5 +1,6 @@
 """Finite elements: solids, and their reduction to component modes."""
 
+from stickslip.calls import checked_names
 from stickslip.fe.component_modes import craig_bampton
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.report import ReductionReport
@@ -7,3 +8,5 @@ from stickslip.fe.solid import Solid
 from stickslip.fe.stress import von_mises, von_mises_range
 
 __all__ = ["Reduction", "ReductionReport", "Solid", "craig_bampton", "von_mises", "von_mises_range"]
+
+checked_names(globals(), __all__)

@@ -1,6 +1,9 @@
 """Matrices and measured responses from files."""
 
+from stickslip.calls import checked_names
 from stickslip.io.frf import Frf, read_frf, write_frf
 from stickslip.io.matrices import read_dofs, read_matrix
 
 __all__ = ["Frf", "read_dofs", "read_frf", "read_matrix", "write_frf"]
+
+checked_names(globals(), __all__)

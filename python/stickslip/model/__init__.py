@@ -1,5 +1,6 @@
 """The problem in the user's words: structure, contacts, forces."""
 
+from stickslip.calls import checked_names
 from stickslip.model.configurations import SlipConfigurations, slip_configurations
 from stickslip.model.contact import Contact, Jenkins
 from stickslip.model.force import Force, force_from_spec
@@ -27,3 +28,5 @@ __all__ = [
     "natural_frequencies",
     "slip_configurations",
 ]
+
+checked_names(globals(), __all__)

@@ -103,10 +103,11 @@ def negative_matrix(damping: MatrixLike | DampingLaw, structure: Structure) -> M
     matrix = real_matrix(damping, "negative_damping")
     size = len(structure)
     if matrix.shape != (size, size):
-        raise ModelError(
+        reason = (
             f"negative_damping: {' x '.join(map(str, matrix.shape))}, but the structure has {size} "
-            f"dofs; give {size} x {size}, or modal_damping([...])"
+            f"dofs; give {size} x {size}, or"
         )
+        raise ModelError(f"{reason} modal_damping([...])", study=f"{reason} {{modal = [...]}}")
     if not np.isfinite(matrix).all():
         row, column = np.argwhere(~np.isfinite(matrix))[0]
         raise ModelError(

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from inspect import signature
 
 from stickslip.checks import brief, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact, Jenkins
 from stickslip.model.structural import StructuralDamper
 
-__all__ = ["LAWS", "contact_from_spec"]
+__all__ = ["LAWS", "contact_from_spec", "unknown_law"]
 
 LAWS: Mapping[str, type[Contact]] = {law.law: law for law in (Jenkins, StructuralDamper)}
 """Every law by its name."""
+
+
+def unknown_law(law: object) -> str:
+    """Word an unknown law, with all laws and where each has its slip limits."""
+    limits = " and ".join(
+        f"{key} of {brief(name)}"
+        for name, kind in LAWS.items()
+        for key in signature(kind).parameters
+        if key.startswith("slip_force")
+    )
+    return f"{unknown('law', law, LAWS)} (slip limits are {limits})"
 
 
 def contact_from_spec(spec: Mapping[str, object]) -> Contact:
@@ -39,7 +51,7 @@ def contact_from_spec(spec: Mapping[str, object]) -> Contact:
             raise ModelError(f"contact: {unknown('key', key, keys)}")
     law, dofs, parameters = (spec.get(key) for key in keys[:3])
     if not isinstance(law, str) or law not in LAWS:
-        raise ModelError(f"contact: {unknown('law', law, LAWS)}")
+        raise ModelError(f"contact: {unknown_law(law)}")
     if not isinstance(dofs, list | tuple):
         raise ModelError(f"{law} contact: dofs {brief(dofs)} is not a list of names")
     if not isinstance(parameters, Mapping):

@@ -1,5 +1,6 @@
 """Plots of results on Matplotlib axes."""
 
+from stickslip.calls import checked_names
 from stickslip.plot.basins import BasinOptions, LineOptions, basins, lines
 from stickslip.plot.blades import BladeBarOptions, BladeCurveOptions, blade_bars, blade_curves
 from stickslip.plot.charts import (
@@ -80,3 +81,5 @@ __all__ = [
     "stability_map",
     "waveform",
 ]
+
+checked_names(globals(), __all__)

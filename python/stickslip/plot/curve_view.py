@@ -12,6 +12,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.plot.arguments import labels_of
 from stickslip.plot.limits import force_level, limit_curve
+from stickslip.plot.states import LINES, name_states, pieces
 from stickslip.plot.style import FREE, GREY, LIMIT, RESPONSE, STUCK, Scale
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Measure
@@ -70,16 +71,28 @@ class CurveView:
         self.ax.set_ylabel(f"{_MEASURE[self.measure]} of {self.dof}{per_force} [{self.unit}]")
 
     def draw(self, result: ForcedResponse, colour: Colour, label: str) -> None:
-        """Draw the curve, and crosses on the axis where there is no solution."""
-        (line,) = self.ax.plot(
-            self.omega.factor * result.omega,
-            self._factor(result.model) * result.amplitude(self.dof, self.measure),
-            color=colour,
-            lw=1.6,
-            label=label,
-            marker="." if result.omega.size == 1 else "",
-        )
-        line.set_gid(RESPONSE)
+        """Draw the curve, and crosses on the axis where there is no solution.
+
+        Exact orbits that are unstable or undecided are dashed or dotted, and named in the legend.
+        """
+        omega = self.omega.factor * result.omega
+        height = self._factor(result.model) * result.amplitude(self.dof, self.measure)
+        states = np.full(omega.size, "stable")
+        if isinstance(result, ExactResponse):
+            states = np.where(result.arrays.solved, result.stability, "stable")
+        for number, (piece, state) in enumerate(pieces(states)):
+            (line,) = self.ax.plot(
+                omega[piece],
+                height[piece],
+                color=colour,
+                lw=1.6,
+                ls=LINES[state],
+                label="_" if number else label,
+                marker="." if result.omega.size == 1 else "",
+            )
+            line.set_gid(RESPONSE)
+        if not (states == "stable").all():
+            name_states(self.ax, [states])
         failed = result.omega[~result.arrays.solved]
         if failed.size:
             self.ax.plot(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.plot.arguments import labels_of
+from stickslip.plot.states import LINES, Colour, marks, name_states, pieces
 from stickslip.plot.style import (
     GREY,
     LengthUnit,
@@ -21,8 +21,9 @@ from stickslip.plot.style import (
     new_axes,
     omega_scale,
 )
-from stickslip.results.arrays import Bool, Float, Measure
+from stickslip.results.arrays import Float, Measure
 from stickslip.results.limit_cycles import LimitCycles
+from stickslip.results.stability import STATES, States
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,7 +57,10 @@ def limit_cycles(
     frequency: bool = True,
     labels: Sequence[str] | None = None,
 ) -> Axes:
-    """Draw amplitude and frequency of limit cycles, stable solid and unstable dashed.
+    """Draw amplitude and frequency of limit cycles, and say by the lines what is stable.
+
+    Stable cycles are solid, unstable ones dashed, those whose stability is not decided dotted; the
+    legend says which there are. Single cycles are full and hollow circles, and crosses.
 
     Parameters
     ----------
@@ -112,6 +116,9 @@ def limit_cycles(
     last.set_xlabel(label if unit == "1" else f"{label} [{unit}]")
     if wide:
         ax.set_xscale("log")
+    for single in (False, True):
+        of = [one.stability for one in branches if (one.settings.values is not None) == single]
+        name_states(ax, of, single=single)
     ax.set_yscale("log")
     ax.set_ylabel(f"amplitude of {dof} [{length.label}]")
     if below is not None:
@@ -124,31 +131,29 @@ def _line(
     ax: Axes,
     one: LimitCycles,
     height: Float,
-    colour: tuple[float, float, float, float],
+    colour: Colour,
     name: str,
 ) -> None:
     """Draw one branch in pieces of equal stability; single points of a list as marks."""
-    x, stable = one.values, one.stable
-    if one.settings.values is not None:
-        for mask, fill in ((stable, colour), (~stable, "white")):
-            if mask.any():
-                ax.plot(x[mask], height[mask], ls="", marker="o", ms=4, mfc=fill, mec=colour)
-        ax.plot([], [], ls="", marker="o", ms=4, color=colour, label=name)
-        return
-    x, drawn, stable = _refined(one, height)
-    for first, last, solid in _pieces(stable):
-        piece = slice(first, last + 1)
-        ax.plot(x[piece], drawn[piece], color=colour, lw=1.5, ls="-" if solid else "--")
     ax.plot([], [], color=colour, lw=1.5, label=name)
+    if one.settings.values is not None:
+        for state in STATES:
+            mask = one.stability == state
+            if mask.any():
+                ax.plot(one.values[mask], height[mask], **marks(state, colour))
+        return
+    x, drawn, states = _refined(one, height)
+    for piece, state in pieces(states):
+        ax.plot(x[piece], drawn[piece], color=colour, lw=1.5, ls=LINES[state])
     limit = one.limit
     if limit is not None:
         at = int(np.argmin(np.abs(one.values - limit.value) + np.abs(one.omega - limit.omega)))
         ax.plot(limit.value, height[at], ls="", marker="o", ms=5, mfc="white", mec=colour)
 
 
-def _refined(one: LimitCycles, height: Float) -> tuple[Float, Float, Bool]:
+def _refined(one: LimitCycles, height: Float) -> tuple[Float, Float, States]:
     """Return a branch with its changes of stability as further points, between their neighbours."""
-    x, y, stable = (list(column) for column in (one.values, height, one.stable))
+    x, y, states = (list(column) for column in (one.values, height, one.stability))
     for change in reversed(one.changes):
         at = change.after
         if at + 1 >= one.omega.size:
@@ -157,19 +162,8 @@ def _refined(one: LimitCycles, height: Float) -> tuple[Float, Float, Bool]:
         share = float(np.clip((change.omega - before) / (after - before), 0.0, 1.0))
         x.insert(at + 1, change.value)
         y.insert(at + 1, height[at] + share * (height[at + 1] - height[at]))
-        stable.insert(at + 1, stable[at])
-    return np.array(x), np.array(y), np.array(stable, dtype=np.bool_)
-
-
-def _pieces(stable: Bool) -> list[tuple[int, int, bool]]:
-    """Return first and last point of every run of equal stability, runs joined to each other."""
-    if not stable.size:
-        return []
-    breaks = [0, *(np.flatnonzero(np.diff(stable)) + 1), stable.size]
-    return [
-        (max(int(start) - 1, 0), int(end) - 1, bool(stable[start]))
-        for start, end in pairwise(breaks)
-    ]
+        states.insert(at + 1, states[at])
+    return np.array(x), np.array(y), np.array(states)
 
 
 def cycle_multipliers(result: LimitCycles, *, ax: Axes | None = None) -> Axes:

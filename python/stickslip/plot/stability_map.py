@@ -8,7 +8,8 @@ import numpy as np
 
 from stickslip.checks import brief
 from stickslip.errors import ModelError
-from stickslip.plot.style import finish, new_axes
+from stickslip.plot.states import marks
+from stickslip.plot.style import GREY, finish, new_axes
 from stickslip.results.stability_map import StabilityMap
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ _SYMBOLS = {"slip_force": "slip force $F_d$", "stiffness": "contact stiffness $k
 
 def stability_map(result: StabilityMap, *, ax: Axes | None = None) -> Axes:
     """Draw where friction bounds negative damping, and where the bounded motion is stable.
+
+    Crosses stand at values of which the stability is not decided.
 
     Parameters
     ----------
@@ -46,9 +49,14 @@ def stability_map(result: StabilityMap, *, ax: Axes | None = None) -> Axes:
         raise ModelError("result: no branch turns, so that there is nothing to draw")
     made, ax = ax is None, new_axes(ax)
     x, limit, stable = (a[known] for a in (result.values, result.limit, result.stable_limit))
-    stable = np.nan_to_num(stable)
+    # Not-a-number leaves a gap in both areas: nothing is decided there.
     ax.fill_between(x, 0.0, stable, color="#31688e", alpha=0.25, lw=0.0, label="stable limit cycle")
     ax.fill_between(x, stable, limit, color="#d8863b", alpha=0.25, lw=0.0, label="unstable one")
+    undecided = np.isnan(stable)
+    if undecided.any():
+        ax.plot(
+            x[undecided], 0.5 * limit[undecided], label="not decided", **marks("not decided", GREY)
+        )
     ax.plot(x, limit, color="0.2", lw=1.5, label="no limit cycle above")
     variation = result.settings.variation
     symbol = _SYMBOLS[variation.parameter]

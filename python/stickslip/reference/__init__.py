@@ -7,6 +7,7 @@ Laxalde, F. Thouverez, J.-J. Sinou and J.-P. Lombard, "Qualitative analysis of f
 blisks with friction ring dampers", Eur. J. Mech. A/Solids 26 (2007) 676-687.
 """
 
+from stickslip.calls import checked_names
 from stickslip.reference.beams import (
     DAMPER_SLIP_FORCE,
     DAMPER_STIFFNESS,
@@ -46,3 +47,5 @@ __all__ = [
     "snecma_structure",
     "turbine_blade",
 ]
+
+checked_names(globals(), __all__)

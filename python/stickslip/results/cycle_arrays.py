@@ -58,7 +58,7 @@ class CycleArrays:
     multipliers: Complex
     """(n, 2 N + n_p - 1) Floquet multipliers over the period, without that of the phase."""
     neutral: Int
-    """(n,) How many of them are the exact 1 of a contact that never slips."""
+    """(n,) How many of them are neutral, exactly 1."""
     closed: Bool
     """(n,) Whether they are those of an exact orbit."""
     turn: Float

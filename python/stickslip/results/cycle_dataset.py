@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip.results.cycle_arrays import CHANGE_KINDS, CycleArrays
+from stickslip.results.stability import flag_variable
 from stickslip.results.status import Status
 from stickslip.results.variables import (
     Variable,
@@ -70,9 +71,7 @@ _VARIABLES: Mapping[str, Variable] = {
     "multipliers": Variable(
         "multipliers", ("cycle", "multiplier"), "1", "Floquet multipliers over the period"
     ),
-    "neutral": Variable(
-        "neutral", ("cycle",), "1", "how many multipliers belong to contacts that never slip"
-    ),
+    "neutral": Variable("neutral", ("cycle",), "1", "how many multipliers are neutral, exactly 1"),
     "closed": Variable("closed", ("cycle",), "1", "whether multipliers are of an exact orbit"),
     "turn": Variable(
         "turn", ("turn_entry",), "1", "value and omega where the branch turns for good"
@@ -130,16 +129,12 @@ def cycle_dataset(result: LimitCycles, *, derived: bool) -> xr.Dataset:
         },
         attrs=attributes(result, settings, "Limit cycles of a structure with dry friction"),
     )
+    dataset["stable"] = flag_variable("cycle", result.stability)
     if derived:
         dataset["amplitude"] = (
             ("cycle", "dof"),
             np.stack([result.amplitude(dof) for dof in result.dofs], axis=1),
             {"units": "m", "long_name": "half peak-to-peak amplitude of the displacement"},
-        )
-        dataset["stable"] = (
-            "cycle",
-            result.stable.copy(),
-            {"units": "1", "long_name": "whether the limit cycle is stable"},
         )
     return dataset
 

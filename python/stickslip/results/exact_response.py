@@ -8,12 +8,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, Model, PointRef
 from stickslip.model.state import State
-from stickslip.results.arrays import Bool, Complex, Float, Int, Measure, constant
+from stickslip.results.arrays import Complex, Float, Int, Measure, constant
 from stickslip.results.contact_states import ContactStates, states_of
 from stickslip.results.dataset import (
     CURVE_VARIABLES,
@@ -27,6 +28,7 @@ from stickslip.results.events import Events
 from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
+from stickslip.results.stability import States, flag_variable, stability_of, truth_of
 from stickslip.results.variables import Variable, names, state_names
 
 if TYPE_CHECKING:
@@ -58,9 +60,7 @@ _VARIABLES: Mapping[str, Variable] = CURVE_VARIABLES | {
     "multipliers": Variable(
         "multipliers", ("omega", "multiplier"), "1", "Floquet multipliers over the period"
     ),
-    "neutral": Variable(
-        "neutral", ("omega",), "1", "how many multipliers belong to contacts that never slip"
-    ),
+    "neutral": Variable("neutral", ("omega",), "1", "how many multipliers are neutral, exactly 1"),
     "work": Variable("work", ("omega",), "J", "work of the external forces per period"),
     "viscous": Variable("viscous", ("omega",), "J", "energy lost to damping per period"),
     "event_offset": Variable("event_offset", ("boundary",), "1", "first event of each point"),
@@ -106,23 +106,32 @@ class ExactResponse(ForcedResponse):
 
     @property
     def neutral(self) -> Int:
-        """How many multipliers are the exact 1 of a contact that never slips, shape (n,).
+        """How many multipliers are neutral, exactly 1, shape (n,).
 
-        Such a contact keeps any small change of its mean force for ever, and the motion around it
-        is the same.
+        A contact that never slips keeps any small change of its mean force for ever, and the motion
+        around it is the same. A structure that nothing holds stays where it is pushed to, or drifts
+        on where nothing slows it: its vibration is the same too.
         """
         return self.arrays.neutral
 
     @cached_property
-    def stable(self) -> Bool:
-        """Whether all multipliers but the neutral ones lie inside the unit circle, shape (n,).
+    def stability(self) -> States:
+        """State of each orbit, "stable", "unstable" or "not decided", shape (n,).
 
-        A structure that nothing holds while its contacts slip stays where it is pushed to: that is
-        one more multiplier of 1, and not stable.
+        Stable are orbits whose multipliers but the neutral ones lie inside the unit circle. Not
+        decided are points that are not solved, and orbits whose largest multiplier is 1 to
+        rounding, as those of structures without damping whose contacts stick.
         """
-        size = np.abs(self.multipliers)
-        counted = np.arange(size.shape[1]) >= self.neutral[:, None]
-        return constant(self.arrays.solved & ~(counted & ~(size < 1.0)).any(axis=1))
+        return stability_of(self.multipliers, self.neutral, self.arrays.solved)
+
+    @cached_property
+    def stable(self) -> NDArray[np.object_]:
+        """`stability` as True, False or None (not decided) per orbit, shape (n,).
+
+        Of Python's objects: write ``exact.stable == True`` or ``exact.stability == "stable"`` to
+        choose orbits.
+        """
+        return truth_of(self.stability)
 
     @cached_property
     def energy(self) -> Energy:
@@ -307,6 +316,7 @@ class ExactResponse(ForcedResponse):
             event and boundary (of the events of two points).
         """
         dataset = curve_dataset(self, _TITLE, _VARIABLES, derived=derived)
+        dataset["stable"] = flag_variable("omega", self.stability)
         return dataset.assign_coords(
             side=names("side", ["lowest", "highest"], "end of the range"),
             state_entry=names("state_entry", state_names(self.model), "entry of the state"),

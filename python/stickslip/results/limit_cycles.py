@@ -13,10 +13,11 @@ from stickslip.checks import choice, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.model.state import State
-from stickslip.results.arrays import Bool, Complex, Float, Measure, amplitude_of, constant
+from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
 from stickslip.results.cycle_arrays import CHANGE_KINDS, CycleArrays
 from stickslip.results.cycle_dataset import cycle_dataset, cycle_parts
 from stickslip.results.result import Result
+from stickslip.results.stability import States, stability_counts, stability_of, truth_of
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class LimitCycles(Result):
         )
         return (
             f"LimitCycles({self.omega.size} cycles of mode {self.settings.mode}, "
-            f"{int(self.stable.sum())} stable, {turn})"
+            f"{stability_counts(self.stability)}, {turn})"
         )
 
     @property
@@ -114,22 +115,38 @@ class LimitCycles(Result):
     def multipliers(self) -> Complex:
         """Floquet multipliers over the full period, shape (n, 2 N + n_p - 1).
 
-        The trivial 1 of the phase is left out. First those of contacts that never slip, see
-        `neutral`, then by falling modulus. Not-a-number where they are not known.
+        The trivial 1 of the phase is left out. First the `neutral` ones, then by falling modulus.
+        Not-a-number where they are not known.
         """
         return self.arrays.multipliers
 
     @property
     def neutral(self) -> NDArray[np.int64]:
-        """How many multipliers are the exact 1 of a contact that never slips, shape (n,)."""
+        """How many multipliers are neutral, exactly 1, shape (n,).
+
+        One for every contact that never slips, which keeps its mean force, and those of a structure
+        that nothing holds, which stays or drifts where it is pushed to. They decide nothing.
+        """
         return self.arrays.neutral
 
     @cached_property
-    def stable(self) -> Bool:
-        """Whether all multipliers but the neutral ones lie inside the unit circle, shape (n,)."""
-        size = np.abs(self.multipliers)
-        counted = np.arange(size.shape[1]) >= self.neutral[:, None]
-        return constant(self.arrays.known & ~(counted & ~(size < 1.0)).any(axis=1))
+    def stability(self) -> States:
+        """State of each cycle, "stable", "unstable" or "not decided", shape (n,).
+
+        Stable are cycles whose multipliers but the neutral ones lie inside the unit circle. Not
+        decided are cycles without multipliers, as those of travelling waves and with
+        ``stability=False``, and those whose largest multiplier is 1 to rounding.
+        """
+        return stability_of(self.multipliers, self.neutral, self.arrays.known)
+
+    @cached_property
+    def stable(self) -> NDArray[np.object_]:
+        """`stability` as True, False or None (not decided) per cycle, shape (n,).
+
+        Of Python's objects: write ``lco.stable == True`` or ``lco.stability == "stable"`` to choose
+        cycles.
+        """
+        return truth_of(self.stability)
 
     @property
     def limit(self) -> Limit | None:
@@ -333,7 +350,7 @@ class LimitCycles(Result):
         return Model(structure, model.contacts, [])
 
     def position(self, index: int) -> int:
-        """Return the position of a cycle, counted from the start.
+        """Return the position of a cycle, stability_counts from the start.
 
         Raises
         ------
@@ -352,7 +369,7 @@ class LimitCycles(Result):
         Parameters
         ----------
         derived : bool, optional
-            Whether to add amplitude and stability, which follow from other variables.
+            Whether to add the amplitude, which follows from other variables.
 
         Returns
         -------

@@ -33,7 +33,7 @@ class OrbitArrays(Arrays):
     multipliers: Complex
     """(n, s) Floquet multipliers over the period: the neutral ones, then by falling modulus."""
     neutral: Int
-    """(n,) How many multipliers are the exact 1 of a contact that never slips."""
+    """(n,) How many multipliers are neutral, exactly 1."""
     work: Float
     """(n,) Work of the external forces per period [J]."""
     viscous: Float

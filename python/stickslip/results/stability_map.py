@@ -63,7 +63,8 @@ class MapArrays:
     omega: Float
     """(n,) Frequency there [rad/s]."""
     stable_limit: Float
-    """(n,) Ratio up to which the sticking side is stable; 0 if it is unstable from the start."""
+    """(n,) Ratio up to which the sticking side is stable; 0 if it is unstable from the start, and
+    not-a-number if a cycle below is not decided."""
 
     def __post_init__(self) -> None:
         for entry in fields(self):
@@ -127,7 +128,10 @@ class StabilityMap(Result):
 
     @property
     def stable_limit(self) -> Float:
-        """Ratio up to which the sticking side is stable without a gap, shape (n,)."""
+        """Ratio up to which the sticking side is stable without a gap, shape (n,).
+
+        Not-a-number where a cycle below it is not decided.
+        """
         return self.arrays.stable_limit
 
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from stickslip.checks import brief, unknown
+from stickslip.model.laws import unknown_law
 from stickslip.study.entries import HERE
 
 __all__ = ["complaint"]
@@ -81,6 +82,8 @@ def _worded(finding: ErrorDetails) -> str:
 
 
 def _choice(table: Mapping[str, object], key: str, choices: Sequence[str]) -> str:
+    if key == "law" and key in table:
+        return unknown_law(table[key])
     if key in table:
         return unknown(key, table[key], choices)
     return f"'{key}' is missing; known: {', '.join(map(repr, choices))}"

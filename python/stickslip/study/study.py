@@ -16,9 +16,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from stickslip.analyses.arguments import physical_dofs
-from stickslip.checks import brief, file_path, is_file, is_reserved, vanished
+from stickslip.checks import brief, file_path, is_file, is_reserved, unknown, vanished
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
-from stickslip.disk.arguments import NEXT
+from stickslip.disk.arguments import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure
@@ -26,7 +26,7 @@ from stickslip.study.analysis_entries import level_name
 from stickslip.study.complaint import complaint
 from stickslip.study.limit_cycles_table import with_matrices
 from stickslip.study.structure_table import MatrixFile, ModalDampingTable, RayleighDamping
-from stickslip.study.tables import StudyTables
+from stickslip.study.tables import ForceTable, StudyTables
 
 if TYPE_CHECKING:
     from stickslip.checks import MatrixLike
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from stickslip.study.disk_table import DiskTable, InterfaceTable
     from stickslip.study.structural_table import StructuralTable
     from stickslip.study.structure_table import Rows, StructureTable
-    from stickslip.study.tables import ForceTable, JenkinsTable
+    from stickslip.study.tables import JenkinsTable
 
 __all__ = ["Case", "Study", "json_schema", "notable_dofs"]
 
@@ -295,10 +295,35 @@ def _check_parts(tables: StudyTables, structure: Structure) -> None:
     ]
     for entry, part in parts:
         with _named(entry):
-            for dof in part.touched:
-                sought = dof.removeprefix(NEXT) if entry.startswith("contact") else dof
-                structure.index(sought if tables.disk is not None else dof)
+            _check_touched(part, structure.dofs, between_sectors=tables.disk is not None)
             part.build()
+
+
+def _check_touched(
+    part: ForceTable | JenkinsTable | StructuralTable,
+    own: Sequence[str],
+    *,
+    between_sectors: bool,
+) -> None:
+    """Refuse a DOF that the structure, or the next sector at a contact, does not have."""
+    contact = not isinstance(part, ForceTable)
+    for dof in part.touched:
+        bare = dof.removeprefix(NEXT)
+        if dof in own or (contact and between_sectors and bare in own):
+            continue
+        if contact and between_sectors:
+            raise ModelError(stranger(dof, part.touched, own))
+        reason = unknown("dof", dof, own)
+        if contact and dof == "ground":
+            reason += ' (a contact to the ground has dof = "..." alone)'
+        elif contact and bare in own:
+            reason += " (the next sector is that of a [disk])"
+        elif bare in own:
+            reason = (
+                f"{brief(dof)}: forces are those on sector 0, from which those on the others "
+                f"follow; write {brief(bare)}"
+            )
+        raise ModelError(reason)
 
 
 def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: Path) -> Model:
@@ -431,4 +456,4 @@ def _named(entry: str) -> Iterator[None]:
     try:
         yield
     except ModelError as error:
-        raise ModelError(f"{entry}: {error}") from None
+        raise ModelError(f"{entry}: {error.study}") from None

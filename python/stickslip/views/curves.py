@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.results.exact_response import ExactResponse
+from stickslip.results.stability import stability_counts
 from stickslip.units import quantity
 from stickslip.views.tables import Row, Table, assumed, model_rows, new_table
 
@@ -183,8 +184,7 @@ def _orbit_rows(result: ExactResponse) -> list[tuple[str, str]]:
         ("events", f"{counts.min()} to {counts.max()} per period"),
         (
             "stability",
-            f"{int(result.stable.sum())} of {int(solved.sum())} orbits stable, largest multiplier "
-            f"{size:.4g}",
+            f"{stability_counts(result.stability[solved])}, largest multiplier {size:.4g}",
         ),
     ]
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.results.stability import stability_counts, worded
 from stickslip.units import quantity
 from stickslip.views.tables import Row, Table, assumed, counted, model_rows, new_table
 
@@ -45,7 +46,7 @@ def tables(
                 f"{result.omega[index]:#.7g}",
                 *(f"{result.amplitude(dof)[index] / length:.6e}" for dof in shown),
                 f"{sizes.max():.4g}" if sizes.size else "",
-                "yes" if result.stable[index] else "no",
+                worded(str(result.stability[index])),
             )
     return [table]
 
@@ -74,7 +75,7 @@ def facts(result: LimitCycles) -> list[Row]:
         ("mode", f"{settings.mode}"),
         ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
         ("harmonics", f"{settings.harmonics}"),
-        ("stable", f"{int(result.stable.sum())} of {result.omega.size}"),
+        ("stability", stability_counts(result.stability)),
     ]
     if result.limit is not None:
         rows.append(("limit", f"{result.limit.value:.8g} at {result.limit.omega:.7g} rad/s"))

@@ -28,9 +28,10 @@ def tables(
     for name, result in results:
         variation = result.settings.variation
         for row in zip(result.values, result.limit, result.omega, result.stable_limit, strict=True):
-            numbers = (f"{number:.6g}" for number in row)
+            *numbers, stable = (f"{number:.6g}" for number in row)
             varied = f"{variation.parameter} [{variation.unit}]"
-            table.add_row(*([name] if label else []), varied, *numbers)
+            stable = "not decided" if stable == "nan" else stable
+            table.add_row(*([name] if label else []), varied, *numbers, stable)
     return [table]
 
 

@@ -1,0 +1,112 @@
+"""Calls that do not fit a signature: one line that names the keyword, instead of a TypeError."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from abc import ABCMeta
+from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
+from types import FunctionType
+from typing import Any
+
+from stickslip.checks import listed, unknown
+from stickslip.errors import CallError
+
+__all__ = ["checked", "checked_names"]
+
+_PACKAGE = __name__.partition(".")[0]
+_WRAPPED = "__stickslip_checked__"
+_done: set[type] = set()
+
+
+def checked_names(module: dict[str, Any], names: Iterable[str]) -> None:
+    """Have all public functions and classes of a module checked, in place."""
+    for name in names:
+        module[name] = checked(module[name])
+
+
+def checked(value: Any) -> Any:
+    """Return a function that words what does not fit its signature; a class is changed in place.
+
+    What it returns is checked as well, so that it holds for the methods of results. Signatures and
+    documentation stay those of the function.
+    """
+    if isinstance(value, type):
+        _check_class(value)
+        return value
+    if not isinstance(value, FunctionType) or hasattr(value, _WRAPPED):
+        return value
+    wrapper, name = _checked_function(value), value.__qualname__
+    home = sys.modules[value.__module__]
+    if getattr(home, name, None) is value:
+        # Pickling finds functions there, and must find the same.
+        setattr(home, name, wrapper)
+    return wrapper
+
+
+def _check_class(owner: type) -> None:
+    ours = owner.__module__.partition(".")[0] == _PACKAGE
+    if owner in _done or not ours or type(owner) not in (type, ABCMeta):
+        return
+    _done.add(owner)
+    for base in owner.__bases__:
+        _check_class(base)
+    for name, value in list(vars(owner).items()):
+        if name.startswith("_") and name != "__init__":
+            continue
+        if isinstance(value, FunctionType) and not hasattr(value, _WRAPPED):
+            setattr(owner, name, _checked_function(value))
+        elif isinstance(value, classmethod) and isinstance(value.__func__, FunctionType):
+            setattr(owner, name, classmethod(_checked_function(value.__func__)))
+
+
+def _checked_function(function: FunctionType) -> Callable[..., Any]:
+    @wraps(function)
+    def call(*args: Any, **keywords: Any) -> Any:
+        try:
+            result = function(*args, **keywords)
+        except TypeError as error:
+            # Only the call itself has no frame of its own: errors from inside are none of ours.
+            if error.__traceback__ is None or error.__traceback__.tb_next is not None:
+                raise
+            message = _misfit(function, args, keywords)
+            if message is None:
+                raise
+            raise CallError(message) from None
+        if type(result) not in _done:
+            _check_class(type(result))
+        return result
+
+    setattr(call, _WRAPPED, True)
+    return call
+
+
+def _misfit(
+    function: FunctionType, args: tuple[object, ...], keywords: Mapping[str, object]
+) -> str | None:
+    """Word what of a call does not fit; None if nothing is found."""
+    parameters = list(inspect.signature(function).parameters.values())
+    name = function.__name__
+    if parameters and parameters[0].name in ("self", "cls") and args:
+        kind = args[0] if isinstance(args[0], type) else type(args[0])
+        name = kind.__name__ if name == "__init__" else f"{kind.__name__}.{name}"
+        parameters, args = parameters[1:], args[1:]
+    fixed = (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
+    known = [one for one in parameters if one.kind not in fixed]
+    names = [one.name for one in known]
+    placed = [one.name for one in known if one.kind is not inspect.Parameter.KEYWORD_ONLY]
+    for keyword in keywords:
+        if keyword not in names:
+            return f"{name}: {unknown('keyword', keyword, names)}"
+        if keyword in placed[: len(args)]:
+            return f"{name}: {keyword} is given twice, by position and by name; give it once"
+    if len(args) > len(placed):
+        others = [one for one in names if one not in placed and one not in keywords]
+        remedy = f"give the others by name: {listed(others)}" if others else "leave the others out"
+        return f"{name}: {len(args)} arguments without a name, and it takes {len(placed)}; {remedy}"
+    given = {*placed[: len(args)], *keywords}
+    for one in known:
+        if one.default is inspect.Parameter.empty and one.name not in given:
+            return f"{name}: {one.name} is missing; give {one.name}=..."
+    return None

@@ -1,0 +1,46 @@
+"""How stable, unstable and undecided motions look, and their names in the legend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from stickslip.plot.style import GREY
+from stickslip.results.stability import STATES, States
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["LINES", "Colour", "marks", "name_states", "pieces"]
+
+Colour: TypeAlias = tuple[float, float, float, float] | str
+
+LINES = {"stable": "-", "unstable": "--", "not decided": ":"}
+"""Style of the line by state."""
+
+
+def marks(state: str, colour: Colour) -> dict[str, Any]:
+    """Return how single motions of a state are marked: full and hollow circles, and crosses."""
+    fill = {"stable": colour, "unstable": "white", "not decided": "none"}[state]
+    marker = "x" if state == "not decided" else "o"
+    return {"ls": "", "marker": marker, "ms": 4, "mfc": fill, "mec": colour}
+
+
+def name_states(ax: Axes, states: Iterable[States], *, single: bool = False) -> None:
+    """Name the lines, or the marks of single motions, of the states that occur."""
+    occurring = {str(state) for some in states for state in some}
+    for state in STATES:
+        if state in occurring:
+            looks = marks(state, GREY) if single else {"color": GREY, "ls": LINES[state]}
+            ax.plot([], [], label=state, **looks)
+
+
+def pieces(states: States) -> list[tuple[slice, str]]:
+    """Return the runs of equal states along a line, each joined to the one before it."""
+    if not states.size:
+        return []
+    breaks = [0, *(np.flatnonzero(states[1:] != states[:-1]) + 1).tolist(), states.size]
+    return [(slice(max(start - 1, 0), end), str(states[start])) for start, end in pairwise(breaks)]
