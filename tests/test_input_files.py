@@ -265,6 +265,14 @@ def test_a_result_that_announces_more_than_it_holds_is_refused(tmp_path):
     refused(r"'displacement_real' unpacks to 80000000000 bytes", ss.load, file)
 
 
+def test_settings_of_a_result_that_nest_without_end_are_refused(tmp_path):
+    file = tmp_path / "k.nc"
+    ss.forced_response(Study.parse(STUDY).model, [0.5], harmonics=1).save(file)
+    with h5py.File(file, "r+") as store:
+        store.attrs["settings"] = "[" * 60_000
+    refused("not a complete stickslip result", ss.load, file)
+
+
 @pytest.mark.parametrize("version", ["4", "5"])
 def test_two_matrices_of_one_name_in_matlab_files(tmp_path, version):
     content = io.BytesIO()

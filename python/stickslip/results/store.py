@@ -95,7 +95,8 @@ def load(path: str | os.PathLike[str]) -> Any:
     kind = _required_kind(dataset, source)
     try:
         return kind.from_dataset(_joined(dataset), model_of(dataset))
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+    except Exception as error:
+        # What its parts raise depends on what is damaged, RecursionError and MemoryError among it.
         raise ModelError(
             f"{source}: not a complete stickslip result ({_line(error)}); compute and save it again"
         ) from error
