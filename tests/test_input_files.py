@@ -252,6 +252,23 @@ def test_numbers_that_an_hdf5_file_announces_and_does_not_hold(tmp_path):
         refused(message, read_matrix, file, key, sparse=True)
 
 
+def test_a_damaged_packed_part_of_an_hdf5_file_is_refused(tmp_path):
+    file = tmp_path / "k.mat"
+    with h5py.File(file, "w") as store:
+        made = store.create_dataset("K", data=np.eye(9), compression="gzip", shuffle=True)
+        part = made.id.get_chunk_info(0)
+    content = file.read_bytes()
+    for at in range(part.byte_offset, part.byte_offset + part.size):
+        file.write_bytes(content[:at] + bytes([content[at] ^ 0x10]) + content[at + 1 :])
+        try:
+            found = read_matrix(file)
+        except ModelError:
+            continue
+        np.testing.assert_array_equal(found, np.eye(9))  # bits that zlib does not use
+    file.write_bytes(content)
+    np.testing.assert_array_equal(read_matrix(file), np.eye(9))
+
+
 def test_a_result_that_announces_more_than_it_holds_is_refused(tmp_path):
     file = tmp_path / "k.nc"
     ss.forced_response(Study.parse(STUDY).model, [0.5], harmonics=1).save(file)
@@ -263,6 +280,14 @@ def test_a_result_that_announces_more_than_it_holds_is_refused(tmp_path):
         del store[name]
         store.create_dataset(name, (10**5,) * 2, dtype="f8", chunks=(1000,) * 2, compression=1)
     refused(r"'displacement_real' unpacks to 80000000000 bytes", ss.load, file)
+
+
+def test_settings_of_a_result_that_nest_without_end_are_refused(tmp_path):
+    file = tmp_path / "k.nc"
+    ss.forced_response(Study.parse(STUDY).model, [0.5], harmonics=1).save(file)
+    with h5py.File(file, "r+") as store:
+        store.attrs["settings"] = "[" * 60_000
+    refused("not a complete stickslip result", ss.load, file)
 
 
 @pytest.mark.parametrize("version", ["4", "5"])

@@ -210,13 +210,11 @@ def _partial(out: Path, case: Case) -> Path:
 
 def _remove_partial(file: Path) -> None:
     """Remove what an interrupted run left, once the run is complete."""
-    import h5py
+    from stickslip import load
 
     # Another study may have this name; its results say that they are whole.
-    with suppress(OSError):
-        with h5py.File(file) as left:
-            interrupted = bool(left.attrs.get("interrupted", 0))
-        if interrupted:
+    with suppress(ModelError, OSError):
+        if file.is_file() and load(file).interrupted:
             file.unlink()
 
 

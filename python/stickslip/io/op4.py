@@ -29,7 +29,7 @@ __all__ = ["read_op4"]
 _FORMAT = re.compile(r"(?:1P,?)?(\d+)[ED](\d+)\.\d+", re.I)
 _LARGE = 65536
 """Rows from which on a sparse matrix has the addresses of large ones, whatever its sign."""
-_SYMMETRIC = 6
+_SQUARE, _SYMMETRIC = 1, 6
 _ROUNDED = 1e-6
 """Asymmetry left by single precision, as a part of the largest entry."""
 
@@ -134,9 +134,9 @@ def _matrix(header: _Header, columns: list[tuple[int, list[_Piece]]]) -> coo_arr
     )
     matrix = coo_array(joined, shape=(size, header.columns))
     matrix.eliminate_zeros()
+    if header.form in (_SQUARE, _SYMMETRIC) and size != header.columns:
+        raise ValueError(f"square or symmetric, but {size} x {header.columns}")
     if header.form == _SYMMETRIC and matrix.nnz:
-        if size != header.columns:
-            raise ValueError(f"symmetric, but {size} x {header.columns}")
         difference = abs((matrix - matrix.T).tocsr()).max()
         if not difference <= _ROUNDED * abs(matrix).max():
             raise ValueError(f"matrix {header.name!r} calls itself symmetric and is not")

@@ -350,7 +350,7 @@ class LimitCycles(Result):
         return Model(structure, model.contacts, [])
 
     def position(self, index: int) -> int:
-        """Return the position of a cycle, stability_counts from the start.
+        """Return the position of a cycle, counted from the start.
 
         Raises
         ------

@@ -114,7 +114,8 @@ def load(path: str | os.PathLike[str]) -> Any:
         require_bounds(dataset)
         return kind.from_dataset(_joined(dataset), model_of(dataset))
     except Exception as error:
-        # What a file without a seal holds may lead the code below anywhere.
+        # What a file without a seal holds may lead the code below anywhere, RecursionError and
+        # MemoryError among it.
         raise ModelError(
             f"{source}: not a complete stickslip result ({_line(error)}); compute and save it again"
         ) from error
