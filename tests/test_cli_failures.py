@@ -3,6 +3,7 @@
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import h5py
 import pytest
@@ -200,3 +201,23 @@ def test_a_reader_that_leaves_stops_nothing(folder):
     assert process.wait() == 0
     assert all(line.startswith("warning: beam-") for line in complaints.splitlines())
     assert (folder / "results" / "beam.png").exists()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+@pytest.mark.parametrize(
+    ("arguments", "streams", "code", "message"),
+    [
+        ("--version", ">/dev/full", 2, "error: standard output: No space left on device; results"),
+        ("run --help", ">/dev/full", 2, "error: standard output: No space left on device; results"),
+        ("show none.nc", "2>/dev/full", 2, ""),
+        ("show none.nc", ">&- 2>&-", 2, ""),
+        ("--version", ">&-", 0, ""),
+    ],
+)
+def test_streams_that_take_no_text_leave_the_exit_code(folder, arguments, streams, code, message):
+    command = f'"$0" -c "{COMMAND[-1]}" {arguments} {streams}'
+    shell = ["sh", "-c", command, sys.executable]
+    done = subprocess.run(shell, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (code, "")
+    assert done.stderr.startswith(message)
+    assert done.stderr.count("\n") == bool(message)

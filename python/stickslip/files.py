@@ -64,7 +64,7 @@ def write(target: Path, content: bytes | bytearray | memoryview) -> None:
         _write_anew(temporary, memoryview(content).cast("B"))
         os.replace(temporary, target)
     except OSError as error:
-        raise refusal(target, "written", error) from error
+        raise refusal(target, "cannot be written", error) from error
     finally:
         with suppress(OSError):
             os.unlink(temporary)
@@ -102,7 +102,7 @@ def make_folder(folder: Path) -> None:
     try:
         os.makedirs(folder, exist_ok=True)
     except OSError as error:
-        raise refusal(folder, "made", error) from error
+        raise refusal(folder, "cannot be made", error) from error
 
 
 def require_writable(folder: Path) -> None:
@@ -117,17 +117,17 @@ def require_writable(folder: Path) -> None:
     try:
         _write_anew(probe, memoryview(b""))
     except OSError as error:
-        raise refusal(folder, "written to", error) from error
+        raise refusal(folder, "cannot be written to", error) from error
     finally:
         with suppress(OSError):
             os.unlink(probe)
 
 
-def refusal(path: Path, done: str, error: OSError) -> ModelError:
-    """Return the error that says why a file or folder cannot be written, read or made."""
+def refusal(path: Path, fault: str, error: OSError) -> ModelError:
+    """Return the error that says why a disk refuses a file or folder."""
     cause = error.strerror or str(error) or type(error).__name__
     remedy = _REMEDIES.get(error.errno or 0, "check the disk, or choose another place")
-    return ModelError(f"{path}: cannot be {done} ({cause}); {remedy}")
+    return ModelError(f"{path}: {fault} ({cause}); {remedy}")
 
 
 def _beside(target: Path) -> Path:

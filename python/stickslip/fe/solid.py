@@ -224,7 +224,7 @@ class Solid:
                 mesh.write(made)
                 content = made.read_bytes()
         except OSError as error:
-            raise refusal(file, "written", error) from error
+            raise refusal(file, "cannot be written", error) from error
         write(file, content)
 
     def _assembled(self, whole: NDArray[np.float64]) -> csc_array:

@@ -21,8 +21,10 @@ SEAL = "seal"
 
 _MARK = bytes.fromhex("b7f3c1a9e88d9cfe94d0a6b1ff82c5e9") + b"stickslip seal 1"
 _DIGEST = 32
-_PATIENCE = 60
-"""Seconds; files of 100 MB take one or two."""
+_PATIENCE = 20.0
+"""Seconds for a file, which take the start of Python into account, also on a busy machine."""
+_PACE = 5e6
+"""Bytes for which a second more is given; ten times as many are read in it."""
 _RATIO = 1100
 """Bytes that one byte of a file can stand for: deflate reaches 1032."""
 
@@ -76,13 +78,14 @@ def require_harmless(content: bytes) -> None:
     ValueError
         With the reason.
     """
+    patience = _PATIENCE + len(content) / _PACE
     command = [sys.executable, "-P", "-c", _READ, str(_RATIO * len(content))]
     try:
         done = subprocess.run(
-            command, input=content, capture_output=True, timeout=_PATIENCE, check=False
+            command, input=content, capture_output=True, timeout=patience, check=False
         )
     except subprocess.TimeoutExpired:
-        raise ValueError(f"not read within {_PATIENCE} s") from None
+        raise ValueError(f"not read within {patience:.3g} s") from None
     if done.returncode:
         told = done.stderr.decode(errors="replace").strip().splitlines()
         raise ValueError(told[-1] if told and done.returncode > 0 else "its reader crashed")

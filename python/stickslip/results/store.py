@@ -137,7 +137,7 @@ def content_of(source: Path) -> bytes:
             raise ModelError(f"{source}: {size / 1e9:.3g} GB, more than the memory can hold")
         return source.read_bytes()
     except OSError as error:
-        raise refusal(source, "read", error) from error
+        raise refusal(source, "cannot be read", error) from error
 
 
 def _read(source: Path) -> xr.Dataset:
