@@ -56,6 +56,7 @@ STRUCTURES = {
     "chain-129": chain(129, 1e8),
     "chain-300": chain(300),
     "chain-600": chain(600, 1e7),
+    "uneven-300": chain(300, 1e7 * (1.0 + np.random.default_rng(2).random(301))),
     "joint-37": joint(37, 6),
     "joint-85": joint(85, 6),
     "dense-250": dense(250, 6),
