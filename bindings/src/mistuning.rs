@@ -1,11 +1,10 @@
 //! Mistuned disks: the highest blade of one, and of many patterns in parallel threads.
 
-use crate::arrays::{matrix, refused};
+use crate::arrays::{matrix, refused, Array1, Array2};
 use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
 use crate::response::{status_code, ResidualArgument};
 use crate::settings::{settings, March};
 use crate::watch::{Raised, Watch};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -53,7 +52,7 @@ impl TunedDisk {
     }
 
     /// The ring whose sectors' stiffnesses deviate.
-    fn mistuned(&self, py: Python<'_>, deviations: PyReadonlyArray1<'_, f64>) -> PyResult<Problem> {
+    fn mistuned(&self, py: Python<'_>, deviations: Array1<'_, f64>) -> PyResult<Problem> {
         let deviations = deviations.as_array().to_vec();
         let model = py.detach(|| self.disk.mistuned(&deviations)).map_err(refused)?;
         Ok(Problem { model: Arc::new(model) })
@@ -128,7 +127,7 @@ pub fn mistuning_study(
     py: Python<'_>,
     disks: Vec<PyRef<'_, TunedDisk>>,
     which: Vec<usize>,
-    deviations: PyReadonlyArray2<'_, f64>,
+    deviations: Array2<'_, f64>,
     quest: Quest,
     orders: Vec<usize>,
     threads: usize,
