@@ -33,6 +33,10 @@ fn along<R>(
             law.points()
         )));
     }
+    if !view.iter().all(|amplitude| amplitude.is_finite()) {
+        let text = "displacement: every amplitude must be finite";
+        return Err(PyValueError::new_err(text));
+    }
     let residual = residual.parse()?;
     let half_wave =
         residual.is_symmetric() && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));

@@ -2,6 +2,7 @@
 
 use super::modal_system::{Body, ModalSystem};
 use crate::contact::PointState;
+use crate::error::brief;
 use crate::Error;
 use faer::Mat;
 
@@ -72,7 +73,7 @@ impl State {
                 return Err(Error::value(
                     format!("state: force of contact point {}", point + 1),
                     *f,
-                    &format!("must lie within its slip limit of {limit} N"),
+                    &format!("must lie within its slip limit of {} N", brief(*limit)),
                 ));
             }
         }
@@ -87,7 +88,7 @@ impl State {
                     own[i],
                     &format!(
                         "no deformation of the contact gives these forces; the nearest that one gives is {}",
-                        carried[i]
+                        brief(carried[i])
                     ),
                 ));
             }
