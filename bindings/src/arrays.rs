@@ -1,11 +1,80 @@
 //! NumPy arrays to matrices and series, and back.
 
+use numpy::ndarray::Dimension;
 use numpy::{
-    Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+    Complex64, Element, Ix1, Ix2, Ix3, PyArray1, PyArray2, PyArray3, PyReadonlyArray,
+    PyUntypedArray, PyUntypedArrayMethods as _,
 };
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use std::ops::Deref;
 use stickslip_core::fourier::Harmonics;
+
+/// Most instants of a history, over all of its columns: more do not fit into memory.
+const MOST_VALUES: usize = 1 << 28;
+
+/// An array that Python gives, to be read; anything else is refused in one line.
+pub struct Given<'py, T: Element, D: Dimension>(PyReadonlyArray<'py, T, D>);
+
+pub type Array1<'py, T> = Given<'py, T, Ix1>;
+pub type Array2<'py, T> = Given<'py, T, Ix2>;
+pub type Array3<'py, T> = Given<'py, T, Ix3>;
+
+impl<'py, T: Element, D: Dimension> Deref for Given<'py, T, D> {
+    type Target = PyReadonlyArray<'py, T, D>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl<'a, 'py, T: Element + 'a, D: Dimension + 'a> FromPyObject<'a, 'py> for Given<'py, T, D> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(array) = given.extract() {
+            return Ok(Self(array));
+        }
+        let got = given.cast::<PyUntypedArray>().map_or_else(
+            |_| given.get_type().to_string(),
+            |array| format!("{} in {}", array.dtype(), array.ndim()),
+        );
+        let (numbers, dimensions) = (T::get_dtype(given.py()), D::NDIM.unwrap_or_default());
+        Err(PyTypeError::new_err(format!(
+            "expected an array of {numbers} in {dimensions} dimensions, got {got}"
+        )))
+    }
+}
+
+/// One of two kinds of arguments; anything else is refused in one line.
+pub fn either<'a, 'py, A, B, T>(
+    given: Borrowed<'a, 'py, PyAny>,
+    expected: &str,
+    first: impl FnOnce(A) -> T,
+    second: impl FnOnce(B) -> T,
+) -> PyResult<T>
+where
+    A: FromPyObject<'a, 'py>,
+    B: FromPyObject<'a, 'py>,
+{
+    if let Ok(value) = given.extract() {
+        return Ok(first(value));
+    }
+    if let Ok(value) = given.extract() {
+        return Ok(second(value));
+    }
+    Err(PyTypeError::new_err(format!("expected {expected}, got {}", given.get_type())))
+}
+
+/// Checks that a history of `samples` instants fits into memory.
+pub fn check_samples(samples: usize, columns: usize) -> PyResult<()> {
+    let most = MOST_VALUES / columns.max(1);
+    if (1..=most).contains(&samples) {
+        return Ok(());
+    }
+    let text = format!("samples = {samples}: must lie between 1 and {most}, which memory can hold");
+    Err(PyValueError::new_err(text))
+}
 
 /// A core error as a Python `ValueError`; one of a DOF that hardly has a mass carries its position,
 /// its rate over the frequency and the frequency, since the core knows no names.
@@ -21,13 +90,13 @@ pub fn refused(error: stickslip_core::Error) -> PyErr {
 pyo3::create_exception!(_core, TooFastError, PyValueError);
 
 /// A dense matrix from a two-dimensional array.
-pub fn matrix(array: &PyReadonlyArray2<'_, f64>) -> faer::Mat<f64> {
+pub fn matrix(array: &Array2<'_, f64>) -> faer::Mat<f64> {
     let view = array.as_array();
     faer::Mat::from_fn(view.nrows(), view.ncols(), |i, j| view[[i, j]])
 }
 
 /// Dense matrices from the first dimension of a three-dimensional array.
-pub fn matrices(array: &PyReadonlyArray3<'_, f64>) -> Vec<faer::Mat<f64>> {
+pub fn matrices(array: &Array3<'_, f64>) -> Vec<faer::Mat<f64>> {
     let view = array.as_array();
     view.outer_iter()
         .map(|one| faer::Mat::from_fn(one.nrows(), one.ncols(), |i, j| one[[i, j]]))
@@ -93,7 +162,7 @@ pub fn padded<'py, 'a>(
 }
 
 /// Indices of DOFs.
-pub fn indices(observe: &PyReadonlyArray1<'_, i64>) -> PyResult<Vec<usize>> {
+pub fn indices(observe: &Array1<'_, i64>) -> PyResult<Vec<usize>> {
     let dofs = observe.as_array();
     dofs.iter()
         .map(|&dof| usize::try_from(dof))

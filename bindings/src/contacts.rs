@@ -1,9 +1,9 @@
 //! What a friction law does along a given motion.
 
-use crate::arrays::{is_half_wave, refused, series, table, vector};
+use crate::arrays::{check_samples, is_half_wave, refused, series, table, vector, Array2};
 use crate::problem::Problem;
 use crate::settings::{evaluated, ResidualArgument};
-use numpy::{Complex64, PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{Complex64, PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stickslip_core::contact::{FrictionLaw, Motion};
@@ -13,7 +13,7 @@ use stickslip_core::fourier::{Harmonics, SampleTable};
 fn along<R>(
     problem: &Problem,
     contact: usize,
-    displacement: &PyReadonlyArray2<'_, Complex64>,
+    displacement: &Array2<'_, Complex64>,
     residual: &ResidualArgument,
     march: Option<usize>,
     work: impl FnOnce(&dyn FrictionLaw, Motion<'_>) -> R,
@@ -33,6 +33,10 @@ fn along<R>(
             law.points()
         )));
     }
+    if !view.iter().all(|amplitude| amplitude.is_finite()) {
+        let text = "displacement: every amplitude must be finite";
+        return Err(PyValueError::new_err(text));
+    }
     let residual = residual.parse()?;
     let half_wave =
         residual.is_symmetric() && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
@@ -49,12 +53,13 @@ pub fn contact_force<'py>(
     py: Python<'py>,
     problem: &Problem,
     contact: usize,
-    displacement: PyReadonlyArray2<'py, Complex64>,
+    displacement: Array2<'py, Complex64>,
     residual: ResidualArgument,
     march: Option<usize>,
     samples: usize,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let points = displacement.as_array().nrows();
+    check_samples(samples, points)?;
     let force = along(problem, contact, &displacement, &residual, march, |law, motion| {
         law.force_history(motion, samples)
     })?;
@@ -69,7 +74,7 @@ pub fn contact_phases<'py>(
     py: Python<'py>,
     problem: &Problem,
     contact: usize,
-    displacement: PyReadonlyArray2<'py, Complex64>,
+    displacement: Array2<'py, Complex64>,
     residual: ResidualArgument,
     march: Option<usize>,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {

@@ -1,14 +1,12 @@
 //! Damper design: peaks along a parameter, the least of them, and sensitivities.
 
-use crate::arrays::{refused, series, table, vector};
+use crate::arrays::{refused, series, table, vector, Array1, Array3};
 use crate::problem::Problem;
 use crate::response::{status_code, ResidualArgument};
 use crate::settings::{evaluated, settings};
 use crate::variation::Varied;
 use crate::watch;
-use numpy::{
-    Complex64, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods as _,
-};
+use numpy::{Complex64, PyArray1, PyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -156,7 +154,7 @@ pub fn damper_curve(
     py: Python<'_>,
     problem: &Problem,
     design: Design,
-    values: PyReadonlyArray1<'_, f64>,
+    values: Array1<'_, f64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Peaks> {
     let (variation, target, settings) = design.parse()?;
@@ -223,15 +221,15 @@ impl CauseArgument {
 pub fn sensitivity<'py>(
     py: Python<'py>,
     problem: &Problem,
-    omega: PyReadonlyArray1<'py, f64>,
-    harmonics: PyReadonlyArray1<'py, i64>,
-    contact_displacement: PyReadonlyArray3<'py, Complex64>,
+    omega: Array1<'py, f64>,
+    harmonics: Array1<'py, i64>,
+    contact_displacement: Array3<'py, Complex64>,
     half_wave: bool,
     residual: ResidualArgument,
     dof: usize,
     measure: &str,
     causes: Vec<CauseArgument>,
-    samples: PyReadonlyArray1<'py, i64>,
+    samples: Array1<'py, i64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let model: &Model = &problem.model;
     let measure: Measure = measure.parse().map_err(refused)?;

@@ -1,9 +1,9 @@
 //! What becomes of free motions: start states in, one row per start out.
 
-use crate::arrays::{refused, table, vector};
+use crate::arrays::{refused, table, vector, Array2};
 use crate::problem::Problem;
 use crate::watch::{given_up, watched};
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use stickslip_core::motion::{self, Fate, FateSettings, Reason};
@@ -101,7 +101,7 @@ impl Fates {
 pub fn fates(
     py: Python<'_>,
     problem: &Problem,
-    starts: PyReadonlyArray2<'_, f64>,
+    starts: Array2<'_, f64>,
     periods: usize,
     tolerance: f64,
     threads: usize,

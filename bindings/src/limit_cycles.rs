@@ -1,11 +1,11 @@
 //! Limit cycles: negative damping and settings in, cycles along a branch out.
 
-use crate::arrays::{matrix, padded, refused, table, vector};
+use crate::arrays::{either, matrix, padded, refused, table, vector, Array2, Array3};
 use crate::problem::Problem;
 use crate::response::{counters, status_code, timings};
 use crate::variation::Varied;
 use crate::watch::{given_up, watched};
-use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -238,10 +238,18 @@ impl LimitCycles {
 }
 
 /// Negative damping: one matrix, or complex ones by nodal diameter of a travelling wave.
-#[derive(FromPyObject)]
 pub enum Negative<'py> {
-    Whole(PyReadonlyArray2<'py, f64>),
-    Wave(PyReadonlyArray3<'py, Complex64>),
+    Whole(Array2<'py, f64>),
+    Wave(Array3<'py, Complex64>),
+}
+
+impl<'a, 'py: 'a> FromPyObject<'a, 'py> for Negative<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let expected = "an array of float64 in 2 dimensions, or of complex128 in 3";
+        either(given, expected, Self::Whole, Self::Wave)
+    }
 }
 
 impl Negative<'_> {

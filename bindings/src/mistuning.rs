@@ -1,11 +1,10 @@
 //! Mistuned disks: the highest blade of one, and of many patterns in parallel threads.
 
-use crate::arrays::{matrix, refused};
+use crate::arrays::{matrix, refused, Array1, Array2};
 use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
 use crate::response::{status_code, ResidualArgument};
 use crate::settings::{settings, March};
 use crate::watch::{watched_parts, whole};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use stickslip_core::balance::{Method, Settings};
@@ -54,7 +53,7 @@ impl TunedDisk {
     }
 
     /// The ring whose sectors' stiffnesses deviate.
-    fn mistuned(&self, py: Python<'_>, deviations: PyReadonlyArray1<'_, f64>) -> PyResult<Problem> {
+    fn mistuned(&self, py: Python<'_>, deviations: Array1<'_, f64>) -> PyResult<Problem> {
         let deviations = deviations.as_array().to_vec();
         let disk = Arc::clone(&self.disk);
         let model = whole(py, move |_| disk.mistuned(&deviations))?.map_err(refused)?;
@@ -127,7 +126,7 @@ pub fn mistuning_study(
     py: Python<'_>,
     disks: Vec<PyRef<'_, TunedDisk>>,
     which: Vec<usize>,
-    deviations: PyReadonlyArray2<'_, f64>,
+    deviations: Array2<'_, f64>,
     quest: Quest,
     orders: Vec<usize>,
     threads: usize,

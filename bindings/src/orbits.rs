@@ -1,10 +1,10 @@
 //! Exact periodic orbits: settings in, orbits out.
 
-use crate::arrays::{indices, padded, refused, table, vector};
+use crate::arrays::{check_samples, indices, padded, refused, table, vector, Array1};
 use crate::problem::Problem;
 use crate::response::{counters, timings, ResidualArgument};
 use crate::watch::{given_up, watched, whole};
-use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1};
+use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::mem::take;
@@ -228,8 +228,8 @@ impl Orbits {
 pub fn exact_response(
     py: Python<'_>,
     problem: &Problem,
-    omega: PyReadonlyArray1<'_, f64>,
-    observe: PyReadonlyArray1<'_, i64>,
+    omega: Array1<'_, f64>,
+    observe: Array1<'_, i64>,
     harmonics: usize,
     residual: ResidualArgument,
     max_iterations: usize,
@@ -308,11 +308,12 @@ pub fn orbit_history<'py>(
     py: Python<'py>,
     problem: &Problem,
     omega: f64,
-    state: PyReadonlyArray1<'_, f64>,
-    observe: PyReadonlyArray1<'_, i64>,
+    state: Array1<'_, f64>,
+    observe: Array1<'_, i64>,
     samples: usize,
 ) -> PyResult<OrbitHistory<'py>> {
     let observe = indices(&observe)?;
+    check_samples(samples, 2 * (observe.len() + problem.model.compliance().contacts()))?;
     let state = state.as_array().to_vec();
     let settings = TransientSettings {
         omega,

@@ -1,8 +1,8 @@
 //! The problem: structure, contacts and loads in numbers.
 
-use crate::arrays::{matrices, matrix, refused, vector};
+use crate::arrays::{matrices, matrix, refused, vector, Array1, Array2, Array3};
 use crate::watch::whole;
-use numpy::{Complex64, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{Complex64, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -12,11 +12,11 @@ use stickslip_core::structure::{
     CyclicMatrix, CyclicStructure, HarmonicLoad, RingCoupling, Structure,
 };
 
-pub type Matrix<'py> = PyReadonlyArray2<'py, f64>;
+pub type Matrix<'py> = Array2<'py, f64>;
 type ContactSpec<'py> = (String, Matrix<'py>, Bound<'py, PyDict>);
 pub type SectorContactSpec<'py> = (String, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
-type SectorMatrices<'py> = PyReadonlyArray3<'py, f64>;
-pub type Forces<'py> = Vec<(usize, PyReadonlyArray1<'py, Complex64>)>;
+type SectorMatrices<'py> = Array3<'py, f64>;
+pub type Forces<'py> = Vec<(usize, Array1<'py, Complex64>)>;
 
 /// A structure with its contacts and loads, decomposed once.
 #[pyclass(frozen, module = "stickslip._core")]
@@ -33,9 +33,9 @@ impl Problem {
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
-        mass: PyReadonlyArray2<'_, f64>,
-        damping: PyReadonlyArray2<'_, f64>,
-        stiffness: PyReadonlyArray2<'_, f64>,
+        mass: Array2<'_, f64>,
+        damping: Array2<'_, f64>,
+        stiffness: Array2<'_, f64>,
         contacts: Vec<ContactSpec<'_>>,
         forces: Forces<'_>,
         proportional: bool,
@@ -190,7 +190,7 @@ pub fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<Sec
 }
 
 pub fn harmonic_loads(forces: Forces<'_>) -> Vec<HarmonicLoad> {
-    let load = |(harmonic, amplitude): (usize, PyReadonlyArray1<'_, Complex64>)| HarmonicLoad {
+    let load = |(harmonic, amplitude): (usize, Array1<'_, Complex64>)| HarmonicLoad {
         harmonic,
         amplitude: amplitude.as_array().iter().copied().collect(),
     };

@@ -1,11 +1,13 @@
 //! Forced response: settings in, curves out, progress and Ctrl-C in between.
 
-use crate::arrays::{indices, is_half_wave, padded, refused, series, table, vector};
+use crate::arrays::{
+    either, indices, is_half_wave, padded, refused, series, table, vector, Array1, Array2,
+};
 use crate::problem::Problem;
 pub use crate::settings::ResidualArgument;
 use crate::settings::{parse_method, settings, March};
 use crate::watch::{given_up, watched, whole};
-use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,10 +24,18 @@ use stickslip_core::timing::Profile;
 use stickslip_core::Model;
 
 /// Frequencies: a grid, or a range whose steps the core chooses.
-#[derive(FromPyObject)]
 pub enum Frequencies<'py> {
     Range((f64, f64)),
-    Grid(PyReadonlyArray1<'py, f64>),
+    Grid(Array1<'py, f64>),
+}
+
+impl<'a, 'py: 'a> FromPyObject<'a, 'py> for Frequencies<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let expected = "(from, to) or an array of float64 in 1 dimensions";
+        either(given, expected, Self::Range, Self::Grid)
+    }
 }
 
 /// Runs a sweep without the GIL. Ctrl-C keeps what was solved; anything else that a progress
@@ -241,7 +251,7 @@ pub fn forced_response(
     py: Python<'_>,
     problem: &Problem,
     omega: Frequencies<'_>,
-    observe: PyReadonlyArray1<'_, i64>,
+    observe: Array1<'_, i64>,
     harmonics: Option<usize>,
     tolerance: f64,
     residual: ResidualArgument,
@@ -317,7 +327,7 @@ pub fn peak(
 #[pyfunction]
 pub fn amplitude<'py>(
     py: Python<'py>,
-    coefficients: PyReadonlyArray2<'py, Complex64>,
+    coefficients: Array2<'py, Complex64>,
     measure: &str,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let measure: Measure = measure.parse().map_err(refused)?;

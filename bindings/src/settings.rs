@@ -1,5 +1,6 @@
 //! What Python gives as settings, as the core has them.
 
+use crate::arrays::either;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -9,10 +10,17 @@ use stickslip_core::model::Model;
 use stickslip_core::solve::{FirstJacobian, NewtonSettings};
 
 /// The assumed mean force of contacts that never slip: a name or a force in N.
-#[derive(FromPyObject)]
 pub enum ResidualArgument {
     Force(f64),
     Name(String),
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for ResidualArgument {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        either(given, "a force in N or a name", Self::Force, Self::Name)
+    }
 }
 
 impl ResidualArgument {
@@ -49,10 +57,17 @@ pub fn settings(
 }
 
 /// Samples per period of a march: a number or "auto".
-#[derive(FromPyObject)]
 pub enum March {
     Samples(usize),
     Name(String),
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for March {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        either(given, "a number of samples or \"auto\"", Self::Samples, Self::Name)
+    }
 }
 
 impl March {

@@ -1,9 +1,8 @@
 //! The single-harmonic response: a grid in, curves out.
 
-use crate::arrays::indices;
+use crate::arrays::{indices, Array1};
 use crate::problem::Problem;
 use crate::response::{swept, Solution};
-use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use stickslip_core::balance::{self, ForcedBalance, HarmonicChoice, Settings};
 use stickslip_core::solve::NewtonSettings;
@@ -13,8 +12,8 @@ use stickslip_core::solve::NewtonSettings;
 pub fn single_harmonic(
     py: Python<'_>,
     problem: &Problem,
-    omega: PyReadonlyArray1<'_, f64>,
-    observe: PyReadonlyArray1<'_, i64>,
+    omega: Array1<'_, f64>,
+    observe: Array1<'_, i64>,
     estimate: bool,
     max_iterations: usize,
     progress: Option<Py<PyAny>>,

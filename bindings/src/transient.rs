@@ -1,10 +1,10 @@
 //! Time integration: settings and a start state in, histories out.
 
-use crate::arrays::{indices, refused, table, vector};
+use crate::arrays::{indices, refused, table, vector, Array1};
 use crate::orbits::{event_columns, EventColumns};
 use crate::problem::Problem;
 use crate::watch::{given_up, watched};
-use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -128,8 +128,8 @@ pub fn transient(
     periods: usize,
     tolerance: Option<f64>,
     steps: usize,
-    start: Option<PyReadonlyArray1<'_, f64>>,
-    observe: PyReadonlyArray1<'_, i64>,
+    start: Option<Array1<'_, f64>>,
+    observe: Array1<'_, i64>,
     samples: usize,
     keep: Option<usize>,
     progress: Option<Py<PyAny>>,

@@ -14,7 +14,7 @@ pub enum Error {
         got: String,
     },
     /// A number is NaN, infinite or outside its range.
-    #[error("{entry} = {value}: {remedy}")]
+    #[error("{entry} = {}: {remedy}", brief(*value))]
     Value {
         /// The offending entry.
         entry: String,
@@ -94,6 +94,15 @@ pub enum Error {
         /// The registered names.
         known: String,
     },
+}
+
+/// A number in few digits: very large and very small ones with an exponent.
+pub(crate) fn brief(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || !value.is_finite() || (1e-5..1e15).contains(&size) {
+        return value.to_string();
+    }
+    format!("{value:e}")
 }
 
 impl Error {

@@ -19,6 +19,8 @@ use std::f64::consts::TAU;
 
 /// Fewest samples: below it there is no loop to speak of.
 const FEWEST: usize = 8;
+/// Most samples: as many as memory holds with ease.
+const MOST: usize = 1 << 20;
 /// Rounds after which a march is taken as it is. An elastoplastic contact forgets its start with
 /// the first slip in either direction; several coupled points take some rounds more.
 const MOST_ROUNDS: usize = 200;
@@ -55,8 +57,8 @@ impl Marched {
     /// # Errors
     /// An odd or too small number of samples.
     pub fn new(law: Box<dyn FrictionLaw>, samples: usize) -> Result<Self, Error> {
-        if samples < FEWEST || samples % 2 == 1 {
-            let remedy = format!("must be an even number from {FEWEST}");
+        if !(FEWEST..=MOST).contains(&samples) || samples % 2 == 1 {
+            let remedy = format!("must be an even number from {FEWEST} to {MOST}");
             return Err(Error::value("samples", samples as f64, &remedy));
         }
         Ok(Self { law, samples })

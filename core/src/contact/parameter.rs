@@ -14,9 +14,12 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// Name of a slip limit.
+    pub const SLIP_FORCE: &'static str = "slip_force";
+
     /// Slip limit of a point [N].
     pub(super) fn slip_force(point: usize, value: f64) -> Self {
-        Self { name: "slip_force", point: Some(point), value, factor: false }
+        Self { name: Self::SLIP_FORCE, point: Some(point), value, factor: false }
     }
 
     /// Stiffness of the whole contact [N/m].

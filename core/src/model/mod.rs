@@ -10,7 +10,7 @@ pub use resonances::Resonance;
 pub use self_excited::{NegativeDamping, SelfExcited};
 pub use variation::{Change, Common, Variation};
 
-use crate::contact::{FrictionLaw, Marched};
+use crate::contact::{FrictionLaw, Marched, Parameter};
 use crate::structure::{
     compliance, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure, HarmonicLoad, Ports,
     Ring, RingCoupling, RingSector, Structure,
@@ -21,6 +21,10 @@ use gathered::Gathered;
 use resonances::{slip_kinds, States};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// Slip limit, relative to the largest load, that counts as none: it changes the motion by less, and
+/// the slip that it bounds is lost in the rounding of the displacements.
+const NO_LIMIT: f64 = 1e-13;
 
 /// One contact: its law and the rows of B that give its relative displacements.
 #[derive(Debug)]
@@ -167,8 +171,8 @@ impl Model {
         let (structure, ports) = ring.assembled()?;
         Ok(Self {
             structure: Arc::new(structure),
+            laws: perceptible(laws, &ports.loads)?,
             ports: Arc::new(ports),
-            laws,
             points,
             compliance: Arc::clone(&ring) as Arc<dyn Compliance>,
             modal_base: "sectors",
@@ -185,6 +189,7 @@ impl Model {
         points: Vec<Range<usize>>,
     ) -> Result<Self, Error> {
         let (compliance, modal_base) = body.compliance(&structure, &ports)?;
+        let laws = perceptible(laws, &ports.loads)?;
         let (structure, ports) = (Arc::new(structure), Arc::new(ports));
         let states = Arc::new(States::of(&body, structure.dofs()));
         Ok(Self { structure, ports, laws, points, compliance, modal_base, body, states })
@@ -228,6 +233,7 @@ impl Model {
         let (mut ports, mut compliance) = (Arc::clone(&self.ports), Arc::clone(&self.compliance));
         let (mut modal_base, body) = (self.modal_base, self.body.clone());
         let mut states = Arc::clone(&self.states);
+        let laws = perceptible(laws, &self.ports.loads)?;
         let same = stiffness == ports.stiffness;
         if !same {
             ports = Arc::new(Ports { stiffness, ..Ports::clone(&ports) });
@@ -300,4 +306,21 @@ impl Model {
         self.laws.iter().all(|law| law.is_odd())
             && self.compliance.forced_harmonics().iter().all(|k| k % 2 == 1)
     }
+}
+
+/// Laws with the slip limits that count against the loads; others are zero.
+fn perceptible(
+    mut laws: Vec<Box<dyn FrictionLaw>>,
+    loads: &[HarmonicLoad],
+) -> Result<Vec<Box<dyn FrictionLaw>>, Error> {
+    let amplitudes = loads.iter().flat_map(|load| &load.amplitude);
+    let least = NO_LIMIT * amplitudes.map(|force| force.norm()).fold(0.0, f64::max);
+    for law in &mut laws {
+        for (index, limit) in law.parameters().into_iter().enumerate() {
+            if limit.name == Parameter::SLIP_FORCE && 0.0 < limit.value && limit.value < least {
+                *law = law.with_parameter(index, 0.0)?;
+            }
+        }
+    }
+    Ok(laws)
 }

@@ -2,13 +2,17 @@
 
 use super::modal_system::{Body, ModalSystem};
 use crate::contact::PointState;
+use crate::error::brief;
 use crate::Error;
 use faer::Mat;
 
 /// Force beyond its slip limit that printed digits may leave in a given state.
 const ROUNDING: f64 = 1e-9;
-/// Share of a contact's forces that no deformation gives which printed digits may leave.
+/// Share of a contact's forces that no deformation gives which printed digits may leave, …
 const PRINTED: f64 = 1e-6;
+/// … and share of what their stiffness makes of the motion, where the forces are but the
+/// rounding of that.
+const CANCELLED: f64 = 1e-12;
 
 /// Changes of state per point after which the states are taken as they are.
 const FLIPS: usize = 8;
@@ -60,12 +64,16 @@ impl State {
             return Err(Error::value("state", *value, "every value must be finite"));
         }
         let (motion, force) = values.split_at(2 * modes);
+        let mut state = Self::rest(system);
+        state.displacement = system.to_modes(&motion[..modes]);
+        state.velocity = system.to_modes(&motion[modes..]);
+        let negligible = CANCELLED * state.largest_force(system);
         for (point, (f, limit)) in force.iter().zip(system.limits()).enumerate() {
-            if f.abs() > limit * (1.0 + ROUNDING) {
+            if f.abs() > limit * (1.0 + ROUNDING) + negligible {
                 return Err(Error::value(
                     format!("state: force of contact point {}", point + 1),
                     *f,
-                    &format!("must lie within its slip limit of {limit} N"),
+                    &format!("must lie within its slip limit of {} N", brief(*limit)),
                 ));
             }
         }
@@ -73,24 +81,44 @@ impl State {
             let own = &force[body.points.clone()];
             let carried = body.elastic.carried(own);
             let size = own.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-            if let Some(i) = (0..own.len()).find(|&i| (own[i] - carried[i]).abs() > PRINTED * size)
-            {
+            let most = (PRINTED * size).max(negligible);
+            if let Some(i) = (0..own.len()).find(|&i| (own[i] - carried[i]).abs() > most) {
                 return Err(Error::value(
                     format!("state: force of contact {}, point {i}", number + 1),
                     own[i],
                     &format!(
                         "no deformation of the contact gives these forces; the nearest that one gives is {}",
-                        carried[i]
+                        brief(carried[i])
                     ),
                 ));
             }
         }
-        let mut state = Self::rest(system);
-        state.displacement = system.to_modes(&motion[..modes]);
-        state.velocity = system.to_modes(&motion[modes..]);
         state.force = force.to_vec();
         state.settle_points(system);
         Ok(state)
+    }
+
+    /// Force that the contacts would have if all parts of their displacements, each at the amplitude
+    /// that its energy gives it, pushed the same way: what the rounding of the forces counts against.
+    fn largest_force(&self, system: &ModalSystem) -> f64 {
+        let squares = system.omega_squared.iter().map(|square| square.max(0.0));
+        let amplitudes: Vec<f64> = (self.displacement.iter().zip(&self.velocity).zip(squares))
+            .map(|((x, v), square)| x.hypot(if square > 0.0 { v / square.sqrt() } else { 0.0 }))
+            .collect();
+        let stroke = |point: usize| -> f64 {
+            let parts = system.contact_shape(point).iter().zip(&amplitudes);
+            parts.map(|(shape, amplitude)| (shape * amplitude).abs()).sum()
+        };
+        let mut largest = 0.0_f64;
+        for body in system.bodies() {
+            let (stiffness, first) = (body.law.stiffness(), body.points.start);
+            for i in 0..body.points.len() {
+                let parts =
+                    body.points.clone().map(|j| stiffness[(i, j - first)].abs() * stroke(j));
+                largest = largest.max(parts.sum());
+            }
+        }
+        largest
     }
 
     /// Displacements and velocities of the DOFs and contact forces, one after the other.
