@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import wraps
+from types import FrameType
 from typing import Any, ParamSpec, TypeAlias, cast
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
 from stickslip.errors import ModelError
+from stickslip.interruption import SIGNALS
 
 __all__ = ["NOT_CONVERGED", "Command", "Commands", "guarded"]
 
-NOT_CONVERGED, REFUSED, DEFECT, STOPPED = 1, 2, 70, 130
+NOT_CONVERGED, REFUSED, DEFECT = 1, 2, 70
+STOPPED = 128
+"""Exit code of a run that a signal has ended, beside the signal's number."""
 
 P = ParamSpec("P")
 # These classes are typer's or click's, as the version of typer has it.
@@ -66,12 +73,39 @@ class Commands(TyperGroup):
         try:
             code = super().main(args, prog_name, complete_var, False, windows_expand_args, **extra)
         except typer.Abort:
-            code = STOPPED
+            code = STOPPED + signal.SIGINT
         except _Refusal as error:
             line = " ".join(cast("typer.BadParameter", error).format_message().split()).rstrip(".")
             complain("error", f"{line}; see stickslip --help")
             code = REFUSED
         sys.exit(code if isinstance(code, int) else 0)
+
+
+@contextmanager
+def _ended_by_signals(ended: list[int]) -> Iterator[None]:
+    """Let signals that would kill a run end it as Ctrl-C does, and note them.
+
+    Signals that the parent ignores, as ``nohup`` does with SIGHUP and a shell without job control
+    with the Ctrl-C of what it runs behind ``&``, stay ignored.
+    """
+
+    def end(number: int, _: FrameType | None) -> None:
+        ended.append(number)
+        raise KeyboardInterrupt
+
+    mortal = [
+        number
+        for number in SIGNALS
+        if threading.current_thread() is threading.main_thread()
+        and signal.getsignal(number) is signal.SIG_DFL
+    ]
+    for number in mortal:
+        signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number in mortal:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -83,8 +117,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
         if os.environ.get("STICKSLIP_DEBUG", "0") not in ("", "0"):
             return command(*args, **kwargs)
+        ended: list[int] = []
         try:
-            with warnings.catch_warnings():
+            with warnings.catch_warnings(), _ended_by_signals(ended):
                 # the table marks these peaks
                 warnings.filterwarnings("ignore", message="peak of ", category=UserWarning)
                 command(*args, **kwargs)
@@ -92,7 +127,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             raise
         except KeyboardInterrupt as error:
             complain("interrupted", str(error) or "nothing more was saved")
-            raise typer.Exit(STOPPED) from None
+            raise typer.Exit(STOPPED + (ended[0] if ended else signal.SIGINT)) from None
         except ModelError as error:
             complain("error", str(error))
             raise typer.Exit(REFUSED) from None
