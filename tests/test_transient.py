@@ -331,13 +331,10 @@ def test_a_dof_of_hardly_any_mass_is_refused_by_name(analysis):
 
 @pytest.mark.timeout(60)
 def test_harmonic_balance_takes_a_dof_of_hardly_any_mass():
-    without = ss.forced_response(light(1e-12), [85.0], 15)
-    with_some = ss.forced_response(light(1e-9), [85.0], 15)
-    assert without.converged.all()
-    np.testing.assert_allclose(without.amplitude("body"), with_some.amplitude("body"), rtol=1e-6)
-    # Its exact orbits need ten times the steps of a common one, and are found.
-    light_enough = ss.exact_response(light(1e-6), [85.0])
-    assert light_enough.converged.all()
+    assert ss.forced_response(light(1e-12), [85.0], 15).converged.all()
+    balance = ss.forced_response(light(1e-6), [85.0], 63)
+    orbit = ss.exact_response(light(1e-6), [85.0])
+    np.testing.assert_allclose(balance.amplitude("body"), orbit.amplitude("body"), rtol=1e-3)
     # Cycles by balance go without their stability.
     cycles = ss.limit_cycles(light(1e-12), -np.diag([1.0, 0.0]), harmonics=3, max_points=10)
     assert cycles.ratio.size
