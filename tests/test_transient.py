@@ -300,3 +300,41 @@ def test_a_result_beyond_the_memory_is_refused_before_it_is_computed(monkeypatch
     with pytest.raises(ss.ModelError, match=r"needs .* keep fewer periods with keep=\.\.\."):
         ss.transient(snecma_beam(), 170.0, 1000)
     assert ss.transient(snecma_beam(), 170.0, 1000, keep=1).periods == 1000
+
+
+def light(mass):
+    """A body of 1 kg with a contact at a dof of hardly any mass."""
+    stiffness = [[2e4, -1e4], [-1e4, 1.2e4]]
+    structure = ss.Structure(
+        np.diag([1.0, mass]), stiffness, ss.Rayleigh(mass=0.5), dofs=["body", "pad"]
+    )
+    contact = ss.Jenkins("pad", stiffness=1e4, slip_force=1.0)
+    return ss.Model(structure, [contact], [ss.Force("body", 5.0)])
+
+
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize(
+    "analysis",
+    [
+        lambda model: ss.exact_response(model, [85.0]),
+        lambda model: ss.transient(model, 85.0, 10),
+        lambda model: ss.transient(model, 85.0, 10, scheme="rk4"),
+        lambda model: ss.classify(model, {"body": 0.01}),
+        lambda model: ss.basin_map(model, starts=[{"body": 0.01}]),
+        lambda model: ss.limit_cycles(model, -np.eye(2), method="exact"),
+    ],
+)
+def test_a_dof_of_hardly_any_mass_is_refused_by_name(analysis):
+    with pytest.raises(ss.ModelError, match=r"^mass of dof 'pad': with 1e-12 kg .* condense"):
+        analysis(light(1e-12))
+
+
+@pytest.mark.timeout(60)
+def test_harmonic_balance_takes_a_dof_of_hardly_any_mass():
+    assert ss.forced_response(light(1e-12), [85.0], 15).converged.all()
+    balance = ss.forced_response(light(1e-6), [85.0], 63)
+    orbit = ss.exact_response(light(1e-6), [85.0])
+    np.testing.assert_allclose(balance.amplitude("body"), orbit.amplitude("body"), rtol=1e-3)
+    # Cycles by balance go without their stability.
+    cycles = ss.limit_cycles(light(1e-12), -np.diag([1.0, 0.0]), harmonics=3, max_points=10)
+    assert cycles.ratio.size

@@ -125,6 +125,8 @@ impl<'a> Fates<'a> {
         let sticking = Sticking::new(model, &system)?;
         let (squares, modes) = sticking.modes()?;
         let highest = squares.last().copied().unwrap_or(0.0);
+        // Beside a mass that is hardly there every true oscillation would pass for rigid motion.
+        system.check_pace(model, system.slowest_dof(model), RIGID.powf(-0.5))?;
         let Some(lowest) = squares.iter().copied().find(|w| *w > RIGID * highest) else {
             let remedy = "no motion of the stuck structure oscillates; ground the structure";
             return Err(Error::value("stiffness", highest, remedy));

@@ -377,4 +377,23 @@ mod tests {
         }
         assert!(turned_back > 0);
     }
+
+    #[test]
+    fn a_flow_takes_the_steps_that_it_is_granted_and_asks_whether_to_end() {
+        let model = masses();
+        let system = ModalSystem::new(&model).unwrap();
+        let mut state = State::rest(&system);
+        state.velocity[0] = 1.0;
+        let mut flow = Flow::new(&model, &system, 1.0).granted(7);
+        let run = flow.run(&mut state.clone(), 1e6, &mut |_| {});
+        assert_eq!((run, flow.steps, flow.is_spent()), (Err(Halt::Steps), 7, true));
+        let asked = std::cell::Cell::new(0);
+        let interrupted = || {
+            asked.set(asked.get() + 1);
+            asked.get() > 3
+        };
+        let mut flow = Flow::new(&model, &system, 1.0).watched(&interrupted);
+        let run = flow.run(&mut state, 1e6, &mut |_| {});
+        assert_eq!((run, flow.steps), (Err(Halt::Interrupted), 3 * LOOK));
+    }
 }

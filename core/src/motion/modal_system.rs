@@ -153,6 +153,19 @@ impl ModalSystem {
         if ratio <= fastest {
             return Ok(());
         }
+        let rates = Self::dof_rates(model);
+        let fastest = |a: &usize, b: &usize| rates[*a].total_cmp(&rates[*b]);
+        let dof = (0..rates.len()).max_by(fastest).unwrap_or(0);
+        Err(Error::TooFast { dof, ratio, omega })
+    }
+
+    /// The least rate at which a DOF that is held moves while all others are fixed [1/s].
+    pub(super) fn slowest_dof(&self, model: &Model) -> f64 {
+        Self::dof_rates(model).into_iter().filter(|rate| *rate > 0.0).fold(self.rate, f64::min)
+    }
+
+    /// Rates at which the DOFs move while all others are fixed [1/s].
+    fn dof_rates(model: &Model) -> Vec<f64> {
         let structure = model.structure();
         let rows = &model.ports().rows;
         let held = rows.transpose() * model.contact_stiffness() * rows;
@@ -161,8 +174,7 @@ impl ModalSystem {
             let stiffness = structure.stiffness()[(dof, dof)] + held[(dof, dof)];
             (stiffness.abs() / mass).sqrt() + structure.damping()[(dof, dof)].abs() / mass
         };
-        let dof = (0..self.modes()).max_by(|a, b| rate(*a).total_cmp(&rate(*b))).unwrap_or(0);
-        Err(Error::TooFast { dof, ratio, omega })
+        (0..structure.mass().nrows()).map(rate).collect()
     }
 
     /// Displacement of DOF `dof` per modal coordinate.

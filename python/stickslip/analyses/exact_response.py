@@ -166,7 +166,7 @@ def exact_response(
         orders = settings.fixed_harmonics or REPORTED_HARMONICS
         points = sum(contact.points for contact in model.contacts)
         state = 2 * len(model.structure) + points
-        require_memory(grid.size, orders, len(dofs), points, extra=3 * grid.size * state)
+        require_memory(grid.size, orders, len(dofs), points, extra=3 * state + 2 * len(dofs) + 16)
         solution = _solve(model, grid, dofs, settings, share)
         result = _result(model, settings, dofs, solution, grid.size - solution.computed)
         if result.interrupted:

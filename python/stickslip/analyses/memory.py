@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
+from pathlib import Path
 
 from stickslip.errors import ModelError
 
 __all__ = ["require_memory", "require_numbers"]
 
 SHARE = 0.75
-"""Share of the physical memory that a result may take."""
+"""Share of the memory that an analysis may take."""
+
+COPIES = 3.2
+"""Copies of a result while it is saved: itself, its dataset, and the file that is built."""
+
+_PER_POINT = 80
+"""Numbers that a point of the core takes beside its own: vectors, their allocation, its status."""
 
 
 def require_memory(
     points: int, harmonics: int, observed: int, contact_points: int, *, extra: int = 0
 ) -> None:
-    """Refuse a result that would not fit into the memory.
+    """Refuse a curve that would not fit into the memory while it is computed and saved.
 
     Parameters
     ----------
@@ -28,38 +36,45 @@ def require_memory(
     contact_points : int
         Number of contact points, of each of which displacement and force are kept.
     extra : int, optional
-        How many real numbers more the result holds.
+        How many real numbers more the result holds per point.
 
     Raises
     ------
     ModelError
-        If the result takes more than `SHARE` of the physical memory.
+        If the curve takes more than `SHARE` of the memory.
     """
+    series = 2 * (harmonics + 1) * (observed + 2 * contact_points)
+    kept = series + observed + 2 * contact_points + 7 + extra
+    # The core keeps its unknowns and the sampling errors, too; the assumptions look at all dofs.
+    core = kept + 2 * (harmonics + 1) * contact_points + 5 * observed + _PER_POINT
     require_numbers(
-        2 * points * (harmonics + 1) * (observed + 2 * contact_points) + extra,
-        f"the result of {points} points, {observed} dofs and harmonics up to {harmonics}",
+        points * kept,
+        f"omega: the result of {points} points, {observed} dofs and harmonics up to {harmonics}",
         "name fewer dofs with observe=[...], or give fewer points",
+        core=points * core,
     )
 
 
-def require_numbers(numbers: int, what: str, remedy: str) -> None:
-    """Refuse a result of so many real numbers that it would not fit into the memory.
+def require_numbers(numbers: int, what: str, remedy: str, *, core: int | None = None) -> None:
+    """Refuse a result that would not fit into the memory while it is computed and saved.
 
     Parameters
     ----------
     numbers : int
-        Real numbers of eight bytes.
+        Real numbers of eight bytes in the result.
     what : str
-        What they are.
+        The entry that makes it large, and its value.
     remedy : str
         How to need fewer.
+    core : int, optional
+        Real numbers in the core, from which the result is made. Default: as many.
 
     Raises
     ------
     ModelError
-        If they take more than `SHARE` of the physical memory.
+        If it takes more than `SHARE` of the memory.
     """
-    needed = 8 * numbers
+    needed = 8 * max((numbers if core is None else core) + numbers, COPIES * numbers)
     there = physical_memory()
     if there is not None and needed > SHARE * there:
         raise ModelError(
@@ -68,9 +83,11 @@ def require_numbers(numbers: int, what: str, remedy: str) -> None:
 
 
 def physical_memory() -> int | None:
-    """Return the bytes of physical memory; None where the system does not tell."""
-    try:
-        memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):
-        return None
-    return memory if memory > 0 else None
+    """Return the bytes of memory that a process may have; None where the system does not tell."""
+    known = []
+    with suppress(AttributeError, ValueError, OSError):
+        known.append(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    # A container may have less than the machine; "max" is no number.
+    with suppress(ValueError, OSError):
+        known.append(int(Path("/sys/fs/cgroup/memory.max").read_text(encoding="ascii")))
+    return min((one for one in known if one > 0), default=None)

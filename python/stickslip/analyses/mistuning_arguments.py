@@ -8,6 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.analyses.memory import require_numbers
 from stickslip.checks import brief, text, unknown, whole_number
 from stickslip.disk.arguments import NEXT
 from stickslip.disk.bladed_disk import BladedDisk
@@ -24,6 +25,8 @@ def patterns_of(
     """Return the patterns, and whether they were drawn."""
     if isinstance(patterns, int | np.integer):
         count = whole_number(patterns, "patterns", smallest=1)
+        what = f"patterns: {count} of {sectors} sectors"
+        require_numbers(count * sectors, f"{what} each", "give fewer patterns")
         return drawn_patterns(sectors, count, distribution, seed=seed), True
     try:
         given = np.asarray(patterns)

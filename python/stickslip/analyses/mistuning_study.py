@@ -148,7 +148,11 @@ def mistuning_study(
     pool = processors() if threads is None else whole_number(threads, "threads", smallest=1)
     disks = coupled_disks(disk, coupling_stiffness)
     count = deviations.size * len(disks) * len(rows) * len(names)
-    require_numbers(8 * count, f"the result of {count} peaks", "give fewer patterns")
+    # Deviations and peaks; the core has its own of the former.
+    each = disk.sectors * deviations.size * len(disks) * len(rows)
+    kept = 8 * count + disk.sectors * len(rows)
+    what = f"patterns: the result of {count} peaks"
+    require_numbers(kept, what, "give fewer patterns", core=3 * each)
     start = time.perf_counter()
     series = [Series(one, value, tuned_peaks(one, settings, names)) for value, one in disks]
     work = Work(disk, settings, names, deviations, series, rows)

@@ -37,8 +37,13 @@ SCHEMES = ("exact", "rk4")
 """The exact flow between events, and the classical Runge-Kutta method of fourth order."""
 
 STABLE_TURN = 2.8
-MOST_STEPS = 2_000_000
 """Largest angle per step at which the classical Runge-Kutta method is stable: sqrt(8), rounded."""
+
+MOST_STEPS = 2_000_000
+"""Steps per period from which on the core names the dof that asks for them."""
+
+DROPPED = 16
+"""Periods that the core keeps beyond twice the wanted ones before it drops any."""
 
 PERIODS, STEPS, SAMPLES = 200, 1000, 128
 
@@ -202,7 +207,6 @@ def _require_stable(model: Model, settings: TransientSettings) -> None:
     """Refuse Runge-Kutta steps in which the fastest stuck motion would grow without bound."""
     turn = turn_per_step(model, settings)
     needed = math.ceil(settings.steps * turn / STABLE_TURN)
-    # The core names the dof of a motion that needs more.
     if settings.steps < needed < MOST_STEPS:
         raise ModelError(
             f"steps: {settings.steps} Runge-Kutta steps per period are unstable: the highest stuck "
@@ -218,10 +222,15 @@ def _require_room(model: Model, settings: TransientSettings, dofs: tuple[str, ..
     kept = min(settings.keep or settings.periods, settings.periods)
     rows = kept * settings.samples + 1
     each = 2 * len(model.structure) + points + 2 * len(dofs) + 1
+    row = 1 + 2 * len(dofs) + 2 * points
+    # Periods that are not to be kept are dropped a number of them at once.
+    held = min(2 * kept + DROPPED, settings.periods) * settings.samples + 1
+    whole = (settings.periods + 1) * each
     require_numbers(
-        rows * (1 + 2 * len(dofs) + 2 * points) + (settings.periods + 1) * each,
+        rows * row + whole,
         f"the result of {rows} instants, {len(dofs)} dofs and {settings.periods} periods",
         "name fewer dofs with observe=[...], or keep fewer periods with keep=...",
+        core=held * row + whole,
     )
 
 

@@ -3,7 +3,7 @@
 The command ``report`` is added by `stickslip.cli.reporting`.
 
 Exit codes: 0 all is well, 1 some points did not converge, 2 the input is refused, 70 a defect of
-the program, 130 interrupted by Ctrl-C.
+the program, 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: 128 and the signal's number.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import typer
 from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded, integer
 from stickslip.errors import Interrupted, ModelError
 from stickslip.files import make_folder, require_place, require_writable, write
+from stickslip.interruption import Interruption
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
@@ -169,8 +170,8 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curv
 
     curves: list[Curve] = []
     cases = study.cases
-    with progress(study.name, wanted=not quiet) as advance:
-        results = study.run(advance)
+    with progress(study.name, wanted=not quiet) as advance, Interruption(advance) as watch:
+        results = study.run(watch)
         try:
             for case, result in zip(cases, results, strict=True):
                 file = out / f"{case.name}.nc"
@@ -178,17 +179,26 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curv
                     result.save(file)
                     _remove_partial(_partial(out, case))
                 curves.append(Curve(case, result, file))
+                watch.heed()
         except Interrupted as stop:
             complain("interrupted", "saving what was computed")
-            # under another name, so that a complete curve of an earlier run is not lost
-            file = _partial(out, cases[len(curves)])
+            case, result = cases[len(curves)], cast("Result", stop.result)
+            # a part under another name, so that a complete curve of an earlier run is not lost
+            file = _partial(out, case) if result.interrupted else out / f"{case.name}.nc"
             with _counted(len(curves), study, out):
-                cast("Result", stop.result).save(file)
-            raise KeyboardInterrupt(
-                f"{len(curves)} of {len(cases)} {_nouns(study)} complete in {out}, "
-                f"the next one as far as it went in {file}{_rest(study)}"
-            ) from None
+                result.save(file)
+            if result.interrupted:
+                rest = f"the next one as far as it went in {file}{_rest(study)}"
+                raise KeyboardInterrupt(f"{_complete(curves, study, out)}, {rest}") from None
+            curves.append(Curve(case, result, file))
+            raise KeyboardInterrupt(_complete(curves, study, out)) from None
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(_complete(curves, study, out)) from None
     return curves
+
+
+def _complete(curves: Sequence[Curve], study: Study, out: Path) -> str:
+    return f"{len(curves)} of {len(study.cases)} {_nouns(study)} complete in {out}"
 
 
 @contextmanager
@@ -401,13 +411,16 @@ def certify(
     wanted = _points(points)
     target = out or result
     require_place(target)
-    try:
-        with console.progress(result.name, wanted=True) as advance:
-            certified = certify(load(result), wanted, seed=seed, dofs=dof, progress=advance)
-    except Interrupted as stop:
-        console.complain("interrupted", "saving what was compared")
-        cast("ForcedResponse", stop.result).save(target)
-        raise KeyboardInterrupt(f"{stop}, now in {target}") from None
+    with (
+        console.progress(result.name, wanted=True) as advance,
+        Interruption(advance) as watch,
+    ):
+        try:
+            certified = certify(load(result), wanted, seed=seed, dofs=dof, progress=watch)
+        except Interrupted as stop:
+            console.complain("interrupted", "saving what was compared")
+            cast("ForcedResponse", stop.result).save(target)
+            raise KeyboardInterrupt(f"{stop}, now in {target}") from None
     console.show_all(certificates([("", certified)], "", "m"))
     certified.save(target)
     console.tell("")

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import sys
+import threading
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import wraps
+from types import FrameType
 from typing import Any, ParamSpec, TypeAlias, cast
 
 import typer
@@ -15,10 +19,13 @@ from typer.core import TyperCommand, TyperGroup
 
 from stickslip.checks import brief
 from stickslip.errors import ModelError
+from stickslip.interruption import SIGNALS
 
 __all__ = ["NOT_CONVERGED", "Command", "Commands", "guarded", "integer"]
 
-NOT_CONVERGED, REFUSED, DEFECT, STOPPED = 1, 2, 70, 130
+NOT_CONVERGED, REFUSED, DEFECT = 1, 2, 70
+STOPPED = 128
+"""Exit code of a run that a signal has ended, beside the signal's number."""
 
 P = ParamSpec("P")
 # These classes are typer's or click's, as the version of typer has it.
@@ -73,7 +80,7 @@ class Commands(TyperGroup):
             code = super().main(args, prog_name, complete_var, False, windows_expand_args, **extra)
             sys.stdout.flush()
         except typer.Abort:
-            code = STOPPED
+            code = STOPPED + signal.SIGINT
         except _Refusal as error:
             line = " ".join(cast("typer.BadParameter", error).format_message().split()).rstrip(".")
             complain("error", f"{line}; see stickslip --help")
@@ -97,6 +104,33 @@ def integer(written: object) -> int:
     return int(text)
 
 
+@contextmanager
+def _ended_by_signals(ended: list[int]) -> Iterator[None]:
+    """Let signals that would kill a run end it as Ctrl-C does, and note them.
+
+    Signals that the parent ignores, as ``nohup`` does with SIGHUP and a shell without job control
+    with the Ctrl-C of what it runs behind ``&``, stay ignored.
+    """
+
+    def end(number: int, _: FrameType | None) -> None:
+        ended.append(number)
+        raise KeyboardInterrupt
+
+    mortal = [
+        number
+        for number in SIGNALS
+        if threading.current_thread() is threading.main_thread()
+        and signal.getsignal(number) is signal.SIG_DFL
+    ]
+    for number in mortal:
+        signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number in mortal:
+            signal.signal(number, signal.SIG_DFL)
+
+
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
     """Turn what a command raises into one line on standard error and an exit code."""
 
@@ -106,8 +140,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
         if os.environ.get("STICKSLIP_DEBUG", "0") not in ("", "0"):
             return command(*args, **kwargs)
+        ended: list[int] = []
         try:
-            with warnings.catch_warnings():
+            with warnings.catch_warnings(), _ended_by_signals(ended):
                 # the table marks these peaks
                 warnings.filterwarnings("ignore", message="peak of ", category=UserWarning)
                 command(*args, **kwargs)
@@ -115,7 +150,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             raise
         except KeyboardInterrupt as error:
             complain("interrupted", str(error) or "nothing more was saved")
-            raise typer.Exit(STOPPED) from None
+            raise typer.Exit(STOPPED + (ended[0] if ended else signal.SIGINT)) from None
         except ModelError as error:
             complain("error", str(error))
             raise typer.Exit(REFUSED) from None
