@@ -128,8 +128,8 @@ def undamped_chain(force, slip_force):
     return ss.Model(structure, [contact], [ss.Force("b", force)])
 
 
-# Energy: at the mode (1, sqrt(2), 1) friction of slip force F dissipates up to 4 F per amplitude and
-# period, and the force P brings pi sqrt(2) P.
+# Energy: at the mode (1, sqrt(2), 1) friction of slip force F dissipates up to 4 F per amplitude
+# and period, and the force P brings pi sqrt(2) P.
 BOUND = 30.0 * np.pi * np.sqrt(2.0) / 4.0
 
 

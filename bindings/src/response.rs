@@ -11,8 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, refine_peak, sweep, sweep_range, ForcedBalance, Point, PointStatus, Progress,
-    HIGHEST_ORDER,
+    self, sweep, sweep_range, ForcedBalance, Point, PointStatus, Progress, HIGHEST_ORDER,
 };
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::orbit::Rescue;
@@ -249,40 +248,6 @@ pub fn forced_response(
             None => sweep(balance, &grid),
         }
     })
-}
-
-/// Frequency and amplitude at the true maximum of one DOF in a bracket.
-#[pyfunction]
-#[allow(clippy::too_many_arguments)]
-pub fn peak(
-    py: Python<'_>,
-    problem: &Problem,
-    omega_lo: f64,
-    omega_hi: f64,
-    omega_guess: f64,
-    dof: usize,
-    measure: &str,
-    harmonics: Option<usize>,
-    tolerance: f64,
-    residual: ResidualArgument,
-    method: &str,
-    jacobian: &str,
-    march: Option<March>,
-    max_harmonics: usize,
-    max_samples: usize,
-    max_iterations: usize,
-) -> PyResult<(f64, f64)> {
-    let method = parse_method(method, jacobian)?;
-    let settings =
-        settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
-    let settings = March::applied(march, max_samples, settings)?;
-    let model = Arc::clone(&problem.model);
-    let measure: Measure = measure.parse().map_err(refused)?;
-    let bracket = [omega_lo, omega_guess, omega_hi];
-    let (found, watch) =
-        Watch::during(py, None, |look| refine_peak(&model, settings, dof, measure, bracket, look));
-    watch.raise()?;
-    found.map_err(refused)
 }
 
 /// Amplitudes of series `X_0, X_1, …`, one per row, with the exact extrema of their polynomials.

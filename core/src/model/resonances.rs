@@ -262,7 +262,8 @@ where
     let points: Vec<SlippingPoint> = points().filter(slips).collect();
     let stuck = points.iter().map(|one| one.limit / (one.stiffness * one.seen));
     let (mut low, mut high) = (stuck.fold(f64::INFINITY, f64::min), driven / decay);
-    if !(low < high) {
+    let starts = low < high;
+    if !starts {
         return None;
     }
     high = high.min(1e12 * low);

@@ -143,9 +143,7 @@ def summits(
             "max_iterations": settings.max_iterations,
         }
         try:
-            rows = _core.summits(
-                result.model.problem, quest, settings.march, settings.max_samples
-            )
+            rows = _core.summits(result.model.problem, quest, settings.march, settings.max_samples)
         except ValueError as error:
             raise ModelError(f"peak of {groups[0][0]!r}: {error}") from error
     return [
@@ -253,18 +251,14 @@ def _row(result: ForcedResponse, dof: str, peak: Peak) -> Summary:
     )
 
 
-def _curve(
-    result: ForcedResponse, dof: str, measure: Measure
-) -> tuple[Float, Float, Bool]:
+def _curve(result: ForcedResponse, dof: str, measure: Measure) -> tuple[Float, Float, Bool]:
     """Sort the solved points by frequency, and tell which of them have an unsolved neighbour.
 
     Of equal frequencies the larger amplitude is kept.
     """
     omega, amplitude = result.omega, result.amplitude(dof, measure)
     if not np.isfinite(amplitude).any():
-        raise ModelError(
-            f"peak of {dof!r}: none of the {omega.size} points is solved; see status"
-        )
+        raise ModelError(f"peak of {dof!r}: none of the {omega.size} points is solved; see status")
     order = np.lexsort((-amplitude, omega))
     omega, first = np.unique(omega[order], return_index=True)
     amplitude = amplitude[order][first]
