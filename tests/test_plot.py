@@ -136,7 +136,9 @@ def test_limits_of_a_free_structure_with_a_static_load(ax):
     loads = [ss.Force("x", 1.0), ss.Force("x", 2.0, harmonic=0)]
     model = ss.Model(structure, [ss.Jenkins("x", stiffness=4.0, slip_force=9.0)], loads)
     frf = ss.forced_response(model, [1.0, 1.5, 2.5], 5, residual="from_rest")
-    plot.curves(frf, "x", ax=ax)
+    # At its resonance the contact slips under the static load, and nothing holds it.
+    with pytest.warns(UserWarning, match="could not be solved everywhere"):
+        plot.curves(frf, "x", ax=ax)
     assert len(lines(ax, "limit")) == 2
     with pytest.raises(ss.ModelError, match="moves freely"):
         plot.curves(frf, "x", ax=ax, measure="max")
