@@ -130,6 +130,8 @@ def test_limits_of_contacts_that_never_or_always_slip():
     )
 
 
+# At its resonance the contact slips under the static load, and nothing holds it.
+@pytest.mark.filterwarnings("ignore:peak of 'x'.*could not be solved everywhere")
 def test_limits_of_a_free_structure_with_a_static_load(ax):
     """Its contact holds it; without, the half range exists all the same, the mean does not."""
     structure = ss.Structure([[1.0]], [[0.0]], [[0.1]], ["x"])

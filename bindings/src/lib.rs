@@ -25,7 +25,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<problem::Problem>()?;
     module.add_class::<response::Solution>()?;
     module.add_function(wrap_pyfunction!(response::forced_response, module)?)?;
-    module.add_function(wrap_pyfunction!(response::peak, module)?)?;
     module.add_function(wrap_pyfunction!(response::amplitude, module)?)?;
     module.add_function(wrap_pyfunction!(contacts::contact_force, module)?)?;
     module.add_function(wrap_pyfunction!(contacts::contact_phases, module)?)?;

@@ -6,7 +6,7 @@ use crate::arrays::{
 use crate::problem::Problem;
 pub use crate::settings::ResidualArgument;
 use crate::settings::{parse_method, settings, March};
-use crate::watch::{given_up, watched, whole};
+use crate::watch::{given_up, watched};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,8 +14,7 @@ use pyo3::types::PyDict;
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, refine_peak, sweep, sweep_range, ForcedBalance, Kept, Point, PointStatus, Progress,
-    HIGHEST_ORDER,
+    self, sweep, sweep_range, ForcedBalance, Kept, Point, PointStatus, Progress, HIGHEST_ORDER,
 };
 use stickslip_core::contact::PointSummary;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
@@ -289,38 +288,6 @@ pub fn forced_response(
             None => sweep(balance, &grid),
         }
     })
-}
-
-/// Frequency and amplitude at the true maximum of one DOF in a bracket.
-#[pyfunction]
-#[allow(clippy::too_many_arguments)]
-pub fn peak(
-    py: Python<'_>,
-    problem: &Problem,
-    omega_lo: f64,
-    omega_hi: f64,
-    omega_guess: f64,
-    dof: usize,
-    measure: &str,
-    harmonics: Option<usize>,
-    tolerance: f64,
-    residual: ResidualArgument,
-    method: &str,
-    jacobian: &str,
-    march: Option<March>,
-    max_harmonics: usize,
-    max_samples: usize,
-    max_iterations: usize,
-) -> PyResult<(f64, f64)> {
-    let method = parse_method(method, jacobian)?;
-    let settings =
-        settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
-    let settings = March::applied(march, max_samples, settings)?;
-    let model = Arc::clone(&problem.model);
-    let measure: Measure = measure.parse().map_err(refused)?;
-    let bracket = [omega_lo, omega_guess, omega_hi];
-    whole(py, move |look| refine_peak(&model, settings, dof, measure, bracket, look))?
-        .map_err(refused)
 }
 
 /// Amplitudes of series `X_0, X_1, …`, one per row, with the exact extrema of their polynomials.

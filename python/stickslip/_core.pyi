@@ -108,23 +108,6 @@ def forced_response(
     max_iterations: int,
     progress: Callable[[float], None] | None,
 ) -> Solution: ...
-def peak(
-    problem: Problem,
-    omega_lo: float,
-    omega_hi: float,
-    omega_guess: float,
-    dof: int,
-    measure: str,
-    harmonics: int | None,
-    tolerance: float,
-    residual: Residual,
-    method: str,
-    jacobian: str,
-    march: March,
-    max_harmonics: int,
-    max_samples: int,
-    max_iterations: int,
-) -> tuple[float, float]: ...
 def amplitude(coefficients: Complex, measure: str) -> Float: ...
 def contact_force(
     problem: Problem,

@@ -118,8 +118,7 @@ fn stops(
             reach[dof] > size
         })
     };
-    let counts =
-        |one: &&Resonance| one.forced || one.reach.as_ref().is_none_or(|reach| rises(reach));
+    let counts = |one: &&Resonance| one.forced || one.reach.as_ref().is_none_or(rises);
     let mut stops: Vec<(f64, f64)> = resonances
         .iter()
         .filter(counts)

@@ -2,7 +2,8 @@
 //!
 //! A contact that sticks is a spring, one that slips a bounded force. Between the two friction damps
 //! a motion as much as it shifts its frequency, so that whatever is narrow lies near a pole of a
-//! state in which every point does one or the other.
+//! state in which every point does one or the other, or where the little that slipping points still
+//! carry moves it from there.
 
 use super::{Body, Model};
 use crate::contact::FrictionLaw;
@@ -19,6 +20,8 @@ const MOST_STATES: usize = 16;
 const MOST_DOFS: usize = 400;
 /// Decay, over the highest natural frequency, that is rounding of none.
 const UNDAMPED: f64 = 1e-14;
+/// Bisections of an amplitude over up to twelve decades.
+const BISECTIONS: usize = 30;
 /// Share of a product of shapes that is rounding of none.
 const NOISE: f64 = 1e-9;
 
@@ -42,8 +45,9 @@ pub struct Resonance {
 #[derive(Debug)]
 struct State {
     poles: Poles,
-    /// Effect of a unit force at every contact point on every pole; none of points that stick.
-    contacts: Vec<Vec<f64>>,
+    /// Effect of a unit force at every contact point on every pole, and what the point shows of it;
+    /// none of points that stick.
+    contacts: Vec<Vec<[f64; 2]>>,
     /// Whether all points that can slip do.
     slips: bool,
 }
@@ -85,6 +89,8 @@ impl Model {
         let forced = self.compliance.forced_harmonics();
         let lowest = forced.iter().copied().find(|&k| k > 0).unwrap_or(1);
         let limits: Vec<f64> = self.laws.iter().flat_map(|law| law.limits()).collect();
+        let stiffness = self.contact_stiffness();
+        let stiffness: Vec<f64> = (0..limits.len()).map(|i| stiffness[(i, i)]).collect();
         let inside = |omega: f64| (low..=high).contains(&omega);
         let mut found = Vec::new();
         for harmonic in harmonics.filter(|&k| k > 0) {
@@ -111,18 +117,13 @@ impl Model {
                 let poles = &state.poles;
                 let highest = poles.values.iter().map(|s| s.norm()).fold(0.0, f64::max);
                 for (j, pole) in poles.values.iter().enumerate() {
-                    let omega = pole.im / order;
-                    if !inside(omega) {
-                        continue;
-                    }
                     let left = poles.left.row(j);
                     let driven = (0..load.len()).map(|i| left[i] * load[i]).sum::<c64>().norm();
                     let driven = if driven > NOISE * left.norm_l2() * size { driven } else { 0.0 };
-                    let friction: f64 = state.contacts[j]
-                        .iter()
-                        .zip(&limits)
-                        .filter(|(effect, _)| **effect > 0.0)
-                        .map(|(effect, limit)| share * effect * limit)
+                    let points = || state.contacts[j].iter().zip(&limits).zip(&stiffness);
+                    let friction: f64 = points()
+                        .filter(|(([effect, _], _), _)| *effect > 0.0)
+                        .map(|(([effect, _], limit), _)| share * effect * limit)
                         .sum();
                     let decay = pole.re.abs();
                     let damped = decay > UNDAMPED * highest;
@@ -132,13 +133,26 @@ impl Model {
                         seen if seen > shown && driven + friction > 0.0 => seen * height,
                         _ => 0.0,
                     };
-                    found.push(Resonance {
-                        omega,
-                        bandwidth: 2.0 * decay / order,
-                        reach: Some((0..right.nrows()).map(seen).collect()),
-                        unbounded: !damped && state.slips && driven > friction,
-                        forced: is_forced,
+                    let moved = shift(driven, decay, &|| {
+                        points().map(|((&[effect, seen], &limit), &stiffness)| SlippingPoint {
+                            effect,
+                            seen,
+                            limit,
+                            stiffness,
+                        })
                     });
+                    for omega in [Some(pole.im), moved.map(|by| pole.im + by)] {
+                        let Some(omega) = omega.map(|w| w / order).filter(|&w| inside(w)) else {
+                            continue;
+                        };
+                        found.push(Resonance {
+                            omega,
+                            bandwidth: 2.0 * decay / order,
+                            reach: Some((0..right.nrows()).map(seen).collect()),
+                            unbounded: !damped && state.slips && driven > friction,
+                            forced: is_forced,
+                        });
+                    }
                 }
             }
         }
@@ -194,10 +208,16 @@ impl Model {
             let rows = Mat::from_fn(all.nrows(), all.ncols(), |i, j| c64::new(all[(i, j)], 0.0));
             (Poles::real(matrices)?, rows)
         };
-        let effects = &poles.left * rows.adjoint();
+        let (effects, shown) = (&poles.left * rows.adjoint(), &rows * &poles.right);
         let effect = |j: usize, i: usize| {
             let noise = NOISE * poles.left.row(j).norm_l2() * rows.row(i).norm_l2();
-            Some(effects[(j, i)].norm()).filter(|size| slips[i] && *size > noise).unwrap_or(0.0)
+            let size = effects[(j, i)].norm();
+            let counts = slips[i] && size > noise;
+            if counts {
+                [size, shown[(i, j)].norm()]
+            } else {
+                [0.0, 0.0]
+            }
         };
         let contacts = (0..poles.values.len())
             .map(|j| (0..rows.nrows()).map(|i| effect(j, i)).collect())
@@ -206,6 +226,61 @@ impl Model {
         let all = limits.zip(slips).all(|(limit, slips)| *slips || limit.is_infinite());
         Ok(State { poles, contacts, slips: all })
     }
+}
+
+/// A point that slips in a resonance: the effect of its force, what it shows of the motion, its slip
+/// limit and its stiffness.
+struct SlippingPoint {
+    effect: f64,
+    seen: f64,
+    limit: f64,
+    stiffness: f64,
+}
+
+impl SlippingPoint {
+    /// Fundamental of a Jenkins element of this point over its displacement `u`: the stiffness, and
+    /// the force in phase with the velocity (Griffin 1980).
+    fn describing(&self, u: f64) -> [f64; 2] {
+        if self.stiffness * u <= self.limit {
+            return [self.stiffness, 0.0];
+        }
+        let share = self.limit / (self.stiffness * u);
+        let angle = (1.0 - 2.0 * share).acos();
+        let elastic = self.stiffness / PI * (angle - 0.5 * (2.0 * angle).sin());
+        [elastic, 4.0 / PI * self.limit * (1.0 - share)]
+    }
+}
+
+/// By how much friction moves a resonance that a load drives with the rate `driven` against its
+/// `decay`: at the amplitude at which the load makes up for what is lost. To first order in what
+/// the points still carry; the neighbours of a state are states by themselves.
+fn shift<I>(driven: f64, decay: f64, points: &dyn Fn() -> I) -> Option<f64>
+where
+    I: Iterator<Item = SlippingPoint>,
+{
+    let slips = |point: &SlippingPoint| point.effect > 0.0 && point.seen > 0.0 && point.limit > 0.0;
+    let points: Vec<SlippingPoint> = points().filter(slips).collect();
+    let stuck = points.iter().map(|one| one.limit / (one.stiffness * one.seen));
+    let (mut low, mut high) = (stuck.fold(f64::INFINITY, f64::min), driven / decay);
+    let starts = low < high;
+    if !starts {
+        return None;
+    }
+    high = high.min(1e12 * low);
+    let lost = |a: f64| {
+        let friction = points.iter().map(|one| one.effect * one.describing(one.seen * a)[1]);
+        decay * a + friction.sum::<f64>()
+    };
+    for _ in 0..BISECTIONS {
+        let middle = (low * high).sqrt();
+        if lost(middle) < driven {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let carried = |one: &SlippingPoint| one.effect * one.seen * one.describing(one.seen * low)[0];
+    Some(points.iter().map(carried).sum())
 }
 
 /// Which points always slip, and which never do: what the states of a model depend on.

@@ -180,11 +180,16 @@ def _told(
     at_edge = bool(np.isclose(peak[0], omega[[0, -1]], rtol=1e-7, atol=0.0).any())
     if beside_gap:
         unsolved = int((~result.arrays.solved).sum())
-        warnings.warn(
-            f"peak of {dof!r}: {unsolved} of {result.omega.size} points are not solved, some of "
-            "them beside the maximum, which may be higher there; see status for the remedy",
-            stacklevel=_outside(),
+        text = (
+            f"{unsolved} of {result.omega.size} points are not solved, some of them beside the "
+            "maximum, which may be higher there; see status for the remedy"
         )
+        if not unsolved:
+            text = (
+                "between the computed points the response could not be solved everywhere, and may "
+                "be higher there; compute more points to see where and why"
+            )
+        warnings.warn(f"peak of {dof!r}: {text}", stacklevel=_outside())
     return Peak(*peak, at_edge, beside_gap)
 
 
