@@ -9,6 +9,7 @@ mod cycle_start;
 mod effort;
 mod evaluation;
 mod forced;
+mod from_orbit;
 mod jacobian;
 mod ladder;
 mod limit_cycle;

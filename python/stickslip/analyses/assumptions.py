@@ -71,6 +71,7 @@ def assumptions_of(
     missing: int = 0,
     interrupted: bool = False,
     single: bool = False,
+    orbits: int = 0,
 ) -> tuple[str, ...]:
     """Say what a forced response took for granted, one text per assumption.
 
@@ -92,6 +93,8 @@ def assumptions_of(
         Whether the run was stopped before its end.
     single : bool, optional
         Whether the method knows one harmonic only, and says so itself.
+    orbits : int, optional
+        Number of points whose harmonics are those of exact orbits.
 
     Returns
     -------
@@ -106,6 +109,7 @@ def assumptions_of(
             *contact_assumptions(model, settings, arrays),
             _BASES.get(base, f"The compliance is evaluated by {base}."),
             _frequencies(settings, arrays, missing, interrupted=interrupted),
+            _orbits(orbits),
             _observed(model, dofs),
             damping_assumption(model.structure.damping),
             _truncation(dofs, arrays, _OTHER_METHOD if single else "keep more harmonics there"),
@@ -306,6 +310,15 @@ def _frequencies(settings: Settings, arrays: Arrays, missing: int, *, interrupte
     return (
         f"The {arrays.omega.size} frequencies between {low:g} and {high:g} rad/s were chosen to a "
         f"tolerance of {settings.tolerance:g}."
+    )
+
+
+def _orbits(count: int) -> str:
+    if not count:
+        return ""
+    return (
+        f"{count} {'point takes its' if count == 1 else 'points take their'} harmonics from the "
+        "exact orbit, which costs less than a balance of so many."
     )
 
 

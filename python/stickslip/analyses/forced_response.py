@@ -318,6 +318,7 @@ def _result(
             half_wave=solution.half_wave,
             missing=solution.omega.size - arrays.omega.size,
             interrupted=solution.interrupted,
+            orbits=solution.counters["orbits"],
         ),
     )
 
