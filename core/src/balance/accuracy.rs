@@ -84,7 +84,9 @@ pub(super) fn errors(
     let kept = solution.harmonics.slots();
     load.chunks_exact_mut(harmonics.slots()).for_each(|series| series[..kept].fill(0.0));
     let mut expected = extended.slip_load();
-    let Some(step) = newton_step(&mut extended, solved, &defect, LEFT[0]) else { return Ok(infinite) };
+    let Some(step) = newton_step(&mut extended, solved, &defect, LEFT[0]) else {
+        return Ok(infinite);
+    };
     extended.add_tangent_product(&step, &mut load);
     extended.add_tangent_product(&step, &mut expected);
     let mut add = |extended: &Condensed<'_>, step: &[f64], load: &[f64]| {
@@ -98,7 +100,9 @@ pub(super) fn errors(
     extended.value(&corrected, &mut defect);
     let mut load = extended.slip_load();
     load.iter_mut().zip(&expected).for_each(|(q, expected)| *q -= expected);
-    let Some(step) = newton_step(&mut extended, solved, &defect, LEFT[1]) else { return Ok(infinite) };
+    let Some(step) = newton_step(&mut extended, solved, &defect, LEFT[1]) else {
+        return Ok(infinite);
+    };
     extended.add_tangent_product(&step, &mut load);
     add(&extended, &step, &load)?;
     Ok(errors)

@@ -154,9 +154,8 @@ impl<'a> Condensed<'a> {
             gather(harmonics, order, x, &mut u);
             gather(harmonics, order, slip_load, &mut q);
             let at = (index, order);
-            self.linear.slip_displacement(
-                compliance, at, self.omega, &u, &q, observe, &mut moved,
-            )?;
+            self.linear
+                .slip_displacement(compliance, at, self.omega, &u, &q, observe, &mut moved)?;
             store(&moved);
         }
         Ok(())

@@ -21,7 +21,7 @@ use std::sync::Arc;
 const UNBOUNDED: f64 = 1e12;
 
 /// Unknowns of slipping contacts above which a point takes its harmonics from the exact orbit.
-const EXCESSIVE: usize = 256;
+const EXCESSIVE: usize = 120;
 
 /// The harmonic balance of a model under its loads, from point to point.
 pub struct ForcedBalance<'a> {

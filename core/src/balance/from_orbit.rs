@@ -11,7 +11,6 @@ use crate::solve::{norm, System as _};
 use crate::Error;
 use faer::c64;
 
-
 impl ForcedBalance<'_> {
     /// The point at `omega` [rad/s] from the exact orbit, with at least the harmonics of `least`
     /// and as many as the tolerance asks for; `None` if there is no orbit.
@@ -24,7 +23,9 @@ impl ForcedBalance<'_> {
         let Some(amplitudes) = (self.rescue)(omega, highest) else { return Ok(None) };
         let mut order = least.harmonics;
         loop {
-            let Some(mut point) = self.point_of(omega, order, &amplitudes)? else { return Ok(None) };
+            let Some(mut point) = self.point_of(omega, order, &amplitudes)? else {
+                return Ok(None);
+            };
             let errors = point.error_estimate.iter().copied();
             let error = self.scale.relative(&point, OF_HARMONICS, errors);
             if error <= self.settings.tolerance || order >= highest {
@@ -62,6 +63,32 @@ impl ForcedBalance<'_> {
         let mut left = vec![0.0; x.len()];
         equations.value(&x, &mut left);
         let mut point = self.recover(&equations, omega, &x, PointStatus::Converged)?;
+        // The forces of stiff contacts are those of the orbit: the displacements that are left out
+        // would change them.
+        let contacts = model.compliance().contacts();
+        let all = self.settings.max_harmonics + 1;
+        let Some(forces) = amplitudes.get(contacts * all..2 * contacts * all) else {
+            return Ok(None);
+        };
+        let mut load = vec![0.0; x.len()];
+        for (row, series) in load.chunks_exact_mut(harmonics.slots()).enumerate() {
+            let slip_load: Vec<c64> = (0..=order)
+                .map(|k| {
+                    let stuck: c64 = (0..contacts)
+                        .map(|j| amplitudes[j * all + k] * model.contact_stiffness()[(row, j)])
+                        .sum();
+                    stuck - forces[row * all + k]
+                })
+                .collect();
+            harmonics.write_series(&slip_load, series);
+            point.contact_force[row * (order + 1)..(row + 1) * (order + 1)]
+                .copy_from_slice(&forces[row * all..=row * all + order]);
+        }
+        equations.displacements(&x, &load, self.observe, |k, observed, _, _| {
+            for (dof, value) in observed.iter().enumerate() {
+                point.displacement[dof * (order + 1) + k] = *value;
+            }
+        })?;
         point.residual = norm(&left) / norm(&x).max(f64::MIN_POSITIVE);
         // Slip loads fall with the square of the order, and beyond the last mode the compliance does
         // so too: all harmonics beyond H move a DOF less than those from H/2 to H do.

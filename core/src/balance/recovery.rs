@@ -99,8 +99,7 @@ impl ForcedBalance<'_> {
         let table = self.table(order);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
-        point.error_estimate =
-            errors(&model, &table, residual, &solution, self.observe, solved)?;
+        point.error_estimate = errors(&model, &table, residual, &solution, self.observe, solved)?;
         Ok(())
     }
 }
