@@ -71,9 +71,9 @@ def test_automatic_harmonics_keep_the_tolerance(seed: int) -> None:
 def test_nearly_rigid_contacts_at_low_frequency_take_the_exact_orbit() -> None:
     beam = ss.reference.snecma_beam(force=25.0)
     rigid = ss.Jenkins("damper", stiffness=2.4e10, slip_force=246.048)
-    model = ss.Model(beam.structure, [rigid], [ss.Force("tip", 2500.0)])
-    frf = ss.forced_response(model, [20.0])
-    exact = ss.exact_response(model, [20.0])
+    model = ss.Model(beam.structure, [rigid], [ss.Force("tip", 400.0)])
+    frf = ss.forced_response(model, [5.0])
+    exact = ss.exact_response(model, [5.0])
     assert frf.counters["orbits"] == 1
     assert any("exact orbit" in text for text in frf.assumptions)
     assert frf.amplitude("tip") == pytest.approx(exact.amplitude("tip"), rel=1e-3)
