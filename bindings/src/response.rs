@@ -240,6 +240,7 @@ pub fn counters<'py>(
     counters.set_item("updates", profile.updates)?;
     counters.set_item("restarts", profile.restarts)?;
     counters.set_item("homotopies", profile.homotopies)?;
+    counters.set_item("orbits", profile.orbits)?;
     Ok(counters)
 }
 

@@ -25,6 +25,8 @@ pub struct Profile {
     pub restarts: usize,
     /// Points that needed homotopy after the chosen method had failed.
     pub homotopies: usize,
+    /// Points whose harmonics are those of exact orbits.
+    pub orbits: usize,
 }
 
 impl Profile {

@@ -20,6 +20,9 @@ use std::sync::Arc;
 /// one that friction does not bound.
 const UNBOUNDED: f64 = 1e12;
 
+/// Unknowns of slipping contacts above which a point takes its harmonics from the exact orbit.
+const EXCESSIVE: usize = 120;
+
 /// The harmonic balance of a model under its loads, from point to point.
 pub struct ForcedBalance<'a> {
     pub(super) model: &'a Model,
@@ -33,7 +36,7 @@ pub struct ForcedBalance<'a> {
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
-    rescue: &'a FreshStart<'a>,
+    pub(super) rescue: &'a FreshStart<'a>,
     share: f64,
     pub(super) profile: Profile,
 }
@@ -171,6 +174,15 @@ impl<'a> ForcedBalance<'a> {
             point.iterations = iterations;
             let more = match point.status {
                 PointStatus::Converged => match self.judge(&point) {
+                    Verdict::More(more) if self.is_excessive(more, &point) => {
+                        self.ladder.stay(resolution);
+                        if let Some(mut exact) = self.from_orbit(omega, more)? {
+                            exact.iterations = iterations;
+                            return Ok(exact);
+                        }
+                        point.status = PointStatus::HarmonicsLimit;
+                        return Ok(point);
+                    }
                     Verdict::More(more) => {
                         start = point.unknowns;
                         more
@@ -191,6 +203,14 @@ impl<'a> ForcedBalance<'a> {
             };
             resolution = more;
         }
+    }
+
+    /// Whether more harmonics cost more than the exact orbit.
+    fn is_excessive(&self, more: Resolution, point: &Point) -> bool {
+        let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
+        let per_order = if self.half_wave { 1 } else { 2 };
+        let grows = more.harmonics > point.harmonics && more.samples.is_none();
+        grows && slipping.max(1) * per_order * more.harmonics > EXCESSIVE
     }
 
     /// What the errors of a solution ask for.

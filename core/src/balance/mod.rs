@@ -9,6 +9,7 @@ mod cycle_start;
 mod effort;
 mod evaluation;
 mod forced;
+mod from_orbit;
 mod jacobian;
 mod ladder;
 mod limit_cycle;
@@ -42,7 +43,8 @@ pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
 pub use unknowns::Unknowns;
 
-/// Amplitudes of the contact displacements, point after point, from which a balance up to a
+/// Amplitudes of the contact displacements, point after point, and perhaps of the contact forces
+/// behind them, from which a balance up to a
 /// harmonic may start at a frequency [rad/s] at which Newton's method has failed.
 pub type FreshStart<'a> = dyn Fn(f64, usize) -> Option<Vec<faer::c64>> + 'a;
 

@@ -26,7 +26,8 @@ impl<'a> Rescue<'a> {
     }
 
     /// Amplitudes U_0, U_1, … up to `highest` of all contact displacements of the orbit at `omega`
-    /// [rad/s], point after point; `None` if none is found.
+    /// [rad/s], point after point, and behind them those of the contact forces; `None` if none is
+    /// found.
     pub fn amplitudes(&self, omega: f64, highest: usize) -> Option<Vec<c64>> {
         let mut prepared = self.orbits.borrow_mut();
         let orbits = prepared.get_or_insert_with(|| {
@@ -37,7 +38,8 @@ impl<'a> Rescue<'a> {
         let orbits = orbits.as_mut()?;
         orbits.report_up_to(highest);
         let orbit = orbits.solve(omega, None).ok()?;
-        (orbit.response.status == PointStatus::Converged)
-            .then_some(orbit.response.contact_displacement)
+        let mut amplitudes = orbit.response.contact_displacement;
+        amplitudes.extend(orbit.response.contact_force);
+        (orbit.response.status == PointStatus::Converged).then_some(amplitudes)
     }
 }
