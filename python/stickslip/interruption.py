@@ -43,6 +43,7 @@ class Interruption:
     def __init__(self, progress: Callable[[float], None] | None = None) -> None:
         self._progress = progress
         self._handlers: dict[int, Callable[[int, FrameType | None], Any]] = {}
+        self._installed = dict(self._handlers)
         self._noted: tuple[int, float] | None = None
         self._at_once = False
 
@@ -51,6 +52,11 @@ class Interruption:
             for number in SIGNALS:
                 handler = signal.getsignal(number)
                 if callable(handler):
+                    self._installed[number] = handler
+                    # Within another such block that one must not put the signal off once more.
+                    outer = getattr(handler, "__self__", None)
+                    if isinstance(outer, Interruption):
+                        handler = outer._handlers[number]
                     self._handlers[number] = handler
                     signal.signal(number, self._note)
         return self
@@ -61,7 +67,7 @@ class Interruption:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for number, handler in self._handlers.items():
+        for number, handler in self._installed.items():
             signal.signal(number, handler)
         if not isinstance(error, KeyboardInterrupt):
             self.heed()
