@@ -7,69 +7,75 @@ import sys
 import pytest
 
 from stickslip import ModelError
-from stickslip.files import whole
+from stickslip.files import write
 
 KILLED = """
 import os, pathlib, signal, sys
-from stickslip.files import whole
-with whole(pathlib.Path(sys.argv[1])) as temporary:
-    temporary.write_text("half")
-    os.kill(os.getpid(), signal.SIGKILL)
+from stickslip.files import write
+os.fsync = lambda handle: os.kill(os.getpid(), signal.SIGKILL)
+write(pathlib.Path(sys.argv[1]), b"half")
 """
 
 
-def write(target, text="whole"):
-    with whole(target) as temporary:
-        temporary.write_text(text)
+def names(folder):
+    return {file.name for file in folder.iterdir()}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGKILL")
-def test_what_a_killed_program_left_is_removed_by_the_next_one(tmp_path):
+def test_what_killed_programs_left_is_removed_by_the_next_one(tmp_path):
     target = tmp_path / "beam.nc"
     for _ in range(2):
         subprocess.run([sys.executable, "-c", KILLED, target], check=False)
-    left = [file.name for file in tmp_path.iterdir()]
-    assert len(left) == 1  # the second removed that of the first
-    assert left[0].startswith(".beam.nc.")
-    write(tmp_path / "other.nc")
-    assert {file.name for file in tmp_path.iterdir()} == {*left, "other.nc"}
-    write(target)
-    assert {file.name for file in tmp_path.iterdir()} == {"beam.nc", "other.nc"}
+    assert len(names(tmp_path)) == 2
+    assert all(name.startswith(".stickslip-") for name in names(tmp_path))
+    write(target, b"whole")
+    assert names(tmp_path) == {"beam.nc"}
 
 
-def test_what_another_writes_now_is_left_alone(tmp_path):
+def test_what_another_writes_now_is_left_alone(tmp_path, monkeypatch):
     target = tmp_path / "beam.nc"
-    with whole(target) as one:
-        one.write_text("one")
-        write(target, "other")
-        assert one.exists()
-    assert target.read_text() == "one"
-    mine = tmp_path / f".beam.nc.{os.getppid()}-0123abcd.part"
-    mine.touch()
-    write(target)
-    assert mine.exists()
+    sync = os.fsync
+
+    def write_meanwhile(handle):
+        monkeypatch.setattr(os, "fsync", sync)
+        write(tmp_path / "other.nc", b"other")
+        sync(handle)
+
+    monkeypatch.setattr(os, "fsync", write_meanwhile)
+    write(target, b"one")
+    assert target.read_bytes() == b"one"
+    assert names(tmp_path) == {"beam.nc", "other.nc"}
 
 
-def test_unfinished_files_of_earlier_versions_are_removed_when_they_are_old(tmp_path):
-    target, left = tmp_path / "beam.nc", tmp_path / ".beam.nc.0123abcd.part"
+@pytest.mark.parametrize(
+    "name",
+    [
+        ".stickslip-00000000-1-0123abcd.part",  # of another machine, which shares the disk
+        ".stickslip-0123abcd-99999999-0123abcd.part",
+        ".beam.nc.0123abcd.part",  # as the first version named them
+    ],
+)
+def test_unfinished_files_of_which_nothing_is_known_are_removed_when_they_are_old(tmp_path, name):
+    left = tmp_path / name
     left.touch()
-    write(target)
+    write(tmp_path / "beam.nc", b"whole")
     assert left.exists()
     os.utime(left, (0, 0))
-    write(target)
+    write(tmp_path / "beam.nc", b"whole")
     assert not left.exists()
 
 
 def test_files_of_other_names_are_left_alone(tmp_path):
-    names = [".beam.nc.part", ".beam.nc.99999999-0123abcd.part.txt", ".beam-nc.1-0123abcd.part"]
-    for name in names:
+    others = {".beam.nc.part", ".stickslip-1-2.part.txt", ".beam-nc.1-0123abcd.part"}
+    for name in others:
         (tmp_path / name).touch()
-    write(tmp_path / "beam.nc")
-    assert {file.name for file in tmp_path.iterdir()} == {*names, "beam.nc"}
+        os.utime(tmp_path / name, (0, 0))
+    write(tmp_path / "beam.nc", b"whole")
+    assert names(tmp_path) == {*others, "beam.nc"}
 
 
 @pytest.mark.parametrize("name", ["nul", "NUL.nc", "con.txt", "Aux.png", "com1.htm", "lpt\u00b9"])
 def test_names_of_devices_are_refused(tmp_path, name):
     with pytest.raises(ModelError, match="is the name of a device on Windows; give another name"):
-        write(tmp_path / name)
-    assert not list(tmp_path.iterdir())
+        write(tmp_path / name, b"")
+    assert not names(tmp_path)

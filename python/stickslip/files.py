@@ -24,7 +24,10 @@ __all__ = ["make_folder", "refusal", "require_place", "require_writable", "write
 
 _MARK, _END = ".stickslip-", ".part"
 _HOST = f"{zlib.crc32(platform.node().encode()):08x}"
-_TEMPORARY = re.compile(rf"{re.escape(_MARK)}([0-9a-f]{{8}})-(\d{{1,9}})-[0-9a-f]{{8}}\.part")
+_TEMPORARY = re.compile(
+    rf"(?:{re.escape(_MARK)}([0-9a-f]{{8}})-(\d{{1,9}})-|\..+\.)[0-9a-f]{{8}}{re.escape(_END)}"
+)
+"""Also as the first version named them, without host and process."""
 _STALE = 3600.0
 """Seconds after which a temporary file is one of a killed run: bytes take seconds to be written."""
 
@@ -161,11 +164,11 @@ def _remove_stale(folder: Path) -> None:
                     os.unlink(entry.path)
 
 
-def _is_stale(entry: os.DirEntry[str], host: str, process: str) -> bool:
+def _is_stale(entry: os.DirEntry[str], host: str | None, process: str | None) -> bool:
     """Return whether the process that wrote a temporary file is gone, as far as one can tell."""
     if time.time() - entry.stat().st_mtime > _STALE:
         return True
-    if host != _HOST or os.name == "nt":
+    if process is None or host != _HOST or os.name == "nt":
         return False
     try:
         os.kill(int(process), 0)
