@@ -279,7 +279,7 @@ pub fn forced_response(
     let model = Arc::clone(&problem.model);
     swept(py, progress.as_ref(), observe.len(), &model, move |model, kept, look| {
         let rescue = Rescue::new(model, settings.residual, look);
-        let fresh_start = |omega: f64, highest: usize| rescue.amplitudes(omega, highest);
+        let fresh_start = |omega: f64, highest: usize| rescue.harmonics(omega, highest);
         let balance = ForcedBalance::new(model, settings, &observe)?
             .watched(look)
             .rescued(&fresh_start)

@@ -7,14 +7,14 @@
 //! stays on a plateau until Hω passes the highest stuck natural frequency.
 //!
 //! Friction is piecewise: discarded harmonics may let points slip that did not, or stick, which no
-//! tangent foresees. A second step, with the force at the corrected motion and the same tangent,
-//! says how far the first one is to be trusted, and counts beside it.
+//! tangent foresees. A second step, with the force at the corrected motion, says how far the first
+//! one is to be trusted: the larger of the first and an eighth of the second is the estimate.
 //!
-//! Both steps come from products alone. The kept harmonics are solved by the factors of the balance
-//! itself, and contacts that carry no slip load take no part.
+//! Contacts that carry no slip load take no part. Few slipping ones are eliminated; for many, and
+//! in rings, both steps come from products alone, and the factors of the balance itself solve the
+//! kept harmonics.
 
 use super::condensed::Condensed;
-use super::effort::Effort;
 use super::unknowns::Unknowns;
 use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
@@ -28,33 +28,37 @@ const MARGIN: usize = 4;
 const SHARE: f64 = 0.5;
 /// … and past the highest stuck natural frequency by this factor, …
 const PAST_LAST_MODE: f64 = 1.2;
-/// … as far as this order, and as it costs no more than the solution did.
-const HIGHEST: usize = 512;
-/// Share of the right side that the first step leaves, and the second, of which only the size
-/// counts.
-const LEFT: [f64; 2] = [0.02, 0.2];
+/// … as far as the slipping contacts have no more unknowns than this, …
+const UNKNOWNS: usize = 128;
+/// … and not beyond this multiple of the kept harmonics and so many more: every order costs a
+/// compliance, and the estimate must not cost more than the solution did.
+const GROWTH: (usize, usize) = (4, 12);
+/// Share of the second step that counts: where it is large, both overshoot.
+const TRUST: f64 = 0.125;
+/// Share of the right side that products leave.
+const LEFT: f64 = 1e-7;
 /// Most products per step; a tenth of them is usual.
 const PRODUCTS: usize = 60;
 /// A contact without slip load whose displacement moves by more than this share may begin to slip.
 const MOVED: f64 = 1e-3;
 
-/// Highest harmonic of the extended balance at a frequency, for a solution that took some effort.
+/// Highest harmonic of the extended balance at a frequency. It follows from the model and the
+/// solution, not from the way to it: two methods estimate alike.
 pub(super) fn extended_order(
     kept: &Harmonics,
     omega: f64,
     model: &Model,
-    effort: &Effort,
+    slipping: usize,
 ) -> usize {
     let last_mode = model.compliance().highest_frequency();
-    let reach = (PAST_LAST_MODE * last_mode / omega).min(HIGHEST as f64) as usize;
+    let per_order = if kept.half_wave() { 1 } else { 2 };
+    let grown = GROWTH.0 * kept.highest() + GROWTH.1;
+    let affordable = grown.min(UNKNOWNS / (per_order * slipping.max(1)));
+    let reach = (PAST_LAST_MODE * last_mode / omega).min(affordable as f64) as usize;
     let beyond = kept.highest() + (SHARE * kept.highest() as f64) as usize;
-    let least = kept.highest() + MARGIN;
+    let wanted = reach.max(beyond.min(affordable));
     // Steps of four keep the number of sample tables small along a curve.
-    let mut order = reach.max(beyond).max(least).next_multiple_of(4);
-    while order > least && !effort.covers(order) {
-        order = (order - 4).max(least);
-    }
-    order
+    wanted.max(kept.highest() + MARGIN).next_multiple_of(4)
 }
 
 /// Sum over all harmonics of the change that the extended balance would bring to each observed
@@ -84,27 +88,31 @@ pub(super) fn errors(
     let kept = solution.harmonics.slots();
     load.chunks_exact_mut(harmonics.slots()).for_each(|series| series[..kept].fill(0.0));
     let mut expected = extended.slip_load();
-    let Some(step) = newton_step(&mut extended, solved, &defect, LEFT[0]) else {
+    let Some(step) = newton_step(&mut extended, solved, &defect) else {
         return Ok(infinite);
     };
     extended.add_tangent_product(&step, &mut load);
     extended.add_tangent_product(&step, &mut expected);
-    let mut add = |extended: &Condensed<'_>, step: &[f64], load: &[f64]| {
+    let mut seconds = errors.clone();
+    let add = |extended: &Condensed<'_>, step: &[f64], load: &[f64], sums: &mut [f64]| {
         extended.changes(step, load, observe, |moved| {
-            errors.iter_mut().zip(moved).for_each(|(error, x)| *error += x.norm());
+            sums.iter_mut().zip(moved).for_each(|(sum, x)| *sum += x.norm());
         })
     };
-    add(&extended, &step, &load)?;
+    add(&extended, &step, &load, &mut errors)?;
     extended.idle = wake(&extended, &start, &step);
     let corrected: Vec<f64> = start.iter().zip(&step).map(|(x, s)| x + s).collect();
     extended.value(&corrected, &mut defect);
     let mut load = extended.slip_load();
     load.iter_mut().zip(&expected).for_each(|(q, expected)| *q -= expected);
-    let Some(step) = newton_step(&mut extended, solved, &defect, LEFT[1]) else {
+    let Some(step) = newton_step(&mut extended, solved, &defect) else {
         return Ok(infinite);
     };
     extended.add_tangent_product(&step, &mut load);
-    add(&extended, &step, &load)?;
+    add(&extended, &step, &load, &mut seconds)?;
+    // A first step that the second does not correct much is trusted as it is.
+    let larger = |(error, second): (&mut f64, f64)| *error = error.max(TRUST * second);
+    errors.iter_mut().zip(seconds).for_each(larger);
     Ok(errors)
 }
 
@@ -114,10 +122,13 @@ fn newton_step(
     extended: &mut Condensed<'_>,
     solved: &mut Condensed<'_>,
     defect: &[f64],
-    left: f64,
 ) -> Option<Vec<f64>> {
     let slots = extended.harmonics().slots();
-    if Effort::of(solved, 0).eliminates(extended.harmonics()) {
+    let active: usize = {
+        let loads = extended.loads.iter().zip(extended.model.points());
+        loads.filter(|(load, _)| load.active).map(|(_, points)| points.len()).sum()
+    };
+    if extended.model.compliance().ring().is_none() && active * slots <= 2 * UNKNOWNS {
         let mut step = vec![0.0; defect.len()];
         let regular = extended.solve(defect, &mut step);
         step.iter_mut().for_each(|s| *s = -*s);
@@ -151,7 +162,7 @@ fn newton_step(
         out.iter_mut().zip(x).for_each(|(out, x)| *out = x - *out);
         precondition(out);
     };
-    let step = gmres(product, &rhs, &weights, left, PRODUCTS);
+    let step = gmres(product, &rhs, &weights, LEFT, PRODUCTS);
     (regular && norm(&step).is_finite()).then_some(step)
 }
 

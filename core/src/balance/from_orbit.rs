@@ -7,6 +7,7 @@ use super::ladder::Resolution;
 use super::scale::OF_HARMONICS;
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
+use super::ContactHarmonics;
 use crate::solve::{norm, System as _};
 use crate::Error;
 use faer::c64;
@@ -20,10 +21,10 @@ impl ForcedBalance<'_> {
         least: Resolution,
     ) -> Result<Option<Point>, Error> {
         let highest = self.settings.max_harmonics;
-        let Some(amplitudes) = (self.rescue)(omega, highest) else { return Ok(None) };
+        let Some(orbit) = (self.rescue)(omega, highest) else { return Ok(None) };
         let mut order = least.harmonics;
         loop {
-            let Some(mut point) = self.point_of(omega, order, &amplitudes)? else {
+            let Some(mut point) = self.point_of(omega, order, &orbit)? else {
                 return Ok(None);
             };
             let errors = point.error_estimate.iter().copied();
@@ -40,13 +41,12 @@ impl ForcedBalance<'_> {
         }
     }
 
-    /// The point with the harmonics up to `order` of contact displacements that are known up to the
-    /// highest one.
+    /// The point with the harmonics up to `order` of an orbit that is known up to the highest one.
     fn point_of(
         &mut self,
         omega: f64,
         order: usize,
-        amplitudes: &[c64],
+        orbit: &ContactHarmonics,
     ) -> Result<Option<Point>, Error> {
         let table = self.table(order);
         let model = self.evaluated(None)?;
@@ -56,7 +56,8 @@ impl ForcedBalance<'_> {
         }
         let harmonics = equations.harmonics();
         let mut x = vec![0.0; equations.size()];
-        let points = amplitudes.chunks_exact(self.settings.max_harmonics + 1);
+        let all = self.settings.max_harmonics + 1;
+        let points = orbit.displacement.chunks_exact(all);
         for (amplitudes, series) in points.zip(x.chunks_exact_mut(harmonics.slots())) {
             harmonics.write_series(amplitudes, series);
         }
@@ -66,16 +67,15 @@ impl ForcedBalance<'_> {
         // The forces of stiff contacts are those of the orbit: the displacements that are left out
         // would change them.
         let contacts = model.compliance().contacts();
-        let all = self.settings.max_harmonics + 1;
-        let Some(forces) = amplitudes.get(contacts * all..2 * contacts * all) else {
-            return Ok(None);
-        };
+        let forces = &orbit.force;
         let mut load = vec![0.0; x.len()];
         for (row, series) in load.chunks_exact_mut(harmonics.slots()).enumerate() {
             let slip_load: Vec<c64> = (0..=order)
                 .map(|k| {
                     let stuck: c64 = (0..contacts)
-                        .map(|j| amplitudes[j * all + k] * model.contact_stiffness()[(row, j)])
+                        .map(|j| {
+                            orbit.displacement[j * all + k] * model.contact_stiffness()[(row, j)]
+                        })
                         .sum();
                     stuck - forces[row * all + k]
                 })

@@ -2,7 +2,6 @@
 
 use super::accuracy::{errors, extended_order};
 use super::condensed::Condensed;
-use super::effort::Effort;
 use super::forced::ForcedBalance;
 use super::sampling::{finer_than, sampling_errors};
 use super::settings::Method;
@@ -85,15 +84,15 @@ impl ForcedBalance<'_> {
     ) -> Result<(), Error> {
         point.error_estimate = vec![0.0; self.observe.len()];
         point.sampling_error = vec![0.0; self.observe.len()];
-        if point.contacts.iter().all(|contact| contact.slip_fraction == 0.0) {
+        let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
+        if slipping == 0 {
             return Ok(());
         }
         // Few samples, as long as nobody insists on them, must not hide harmonics.
         let climb = self.ladder.samples_climb();
         let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
-        let effort = Effort::of(solved, self.observe.len());
         let harmonics = solved.harmonics();
-        let order = extended_order(harmonics, point.omega, self.model, &effort).min(resolved);
+        let order = extended_order(harmonics, point.omega, self.model, slipping).min(resolved);
         let least = if climb { (2 * (order + 1)).next_power_of_two() } else { 0 };
         let model = self.evaluated(point.samples.map(|samples| samples.max(least)))?;
         let table = self.table(order);

@@ -3,10 +3,9 @@
 
 use super::periodic::PeriodicOrbits;
 use super::settings::OrbitSettings;
-use crate::balance::{PointStatus, Progress};
+use crate::balance::{ContactHarmonics, Point, PointStatus, Progress};
 use crate::contact::Residual;
 use crate::model::Model;
-use faer::c64;
 use std::cell::RefCell;
 
 /// Finds exact orbits on demand.
@@ -25,10 +24,9 @@ impl<'a> Rescue<'a> {
         Self { model, residual, progress, orbits: RefCell::new(None) }
     }
 
-    /// Amplitudes U_0, U_1, … up to `highest` of all contact displacements of the orbit at `omega`
-    /// [rad/s], point after point, and behind them those of the contact forces; `None` if none is
+    /// Harmonics up to `highest` of the orbit at `omega` [rad/s], at the contacts; `None` if none is
     /// found.
-    pub fn amplitudes(&self, omega: f64, highest: usize) -> Option<Vec<c64>> {
+    pub fn harmonics(&self, omega: f64, highest: usize) -> Option<ContactHarmonics> {
         let mut prepared = self.orbits.borrow_mut();
         let orbits = prepared.get_or_insert_with(|| {
             let settings = OrbitSettings { residual: self.residual, ..OrbitSettings::default() };
@@ -38,8 +36,10 @@ impl<'a> Rescue<'a> {
         let orbits = orbits.as_mut()?;
         orbits.report_up_to(highest);
         let orbit = orbits.solve(omega, None).ok()?;
-        let mut amplitudes = orbit.response.contact_displacement;
-        amplitudes.extend(orbit.response.contact_force);
-        (orbit.response.status == PointStatus::Converged).then_some(amplitudes)
+        let Point { status, contact_displacement, contact_force, .. } = orbit.response;
+        (status == PointStatus::Converged).then_some(ContactHarmonics {
+            displacement: contact_displacement,
+            force: contact_force,
+        })
     }
 }
