@@ -252,8 +252,8 @@ def test_a_branch_that_ends_early_says_what_has_not_been_tried(whole, end, metho
         onset=(0.0, 225.4), phase_dof=0, jumps=0, ends=[("range", 0.01), (end, 3.08)]
     )
     settings = replace(whole.settings, method=method)
-    texts = cycle_assumptions(whole.model, settings, whole.arrays, ends)
-    (text,) = [text for text in texts if text.startswith("Stalled")]
+    told = cycle_assumptions(whole.model, settings, whole.arrays, ends)
+    (text,) = [one.text for one in told if one.severity == "failure"]
     assert f"method='{method}'" not in text
     assert ("more harmonics than the 31 kept" in text) == (method == "newton")
     assert "ratio = 3.08" in text

@@ -101,7 +101,7 @@ def test_every_edit_is_noticed(path, change):
         ("slip_fraction", (0, 0), 1.5, "slip_fraction = 1.5, outside 0 to 1"),
         ("error_estimate", (0, 0), -1.0, "error_estimate = -1, outside 0 to inf"),
         ("harmonics_kept", 0, -1, "harmonics_kept = -1, outside 0 to inf"),
-        ("status", 0, 7, "status 7 is unknown"),
+        ("status", 0, 99, "status 99 is unknown"),
         ("neutral", 0, -1, "neutral = -1, outside 0 to inf"),
     ],
 )

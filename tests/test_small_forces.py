@@ -93,13 +93,13 @@ UNIT = np.eye(2)
 )
 def test_arrays_of_another_kind_are_refused_in_one_line(matrix):
     with pytest.raises(TypeError, match="expected an array of float64 in 2 dimensions, got") as one:
-        _core.Problem(matrix, UNIT, UNIT, [], [])
+        _core.Problem(matrix, UNIT, UNIT, [], [], False)
     assert "\n" not in str(one.value)
 
 
 @pytest.mark.parametrize("omega", [[1.0], np.array([1]), np.ones((1, 1)), None, "1 rad/s"])
 def test_frequencies_of_another_kind_are_refused_in_one_line(omega):
-    problem = _core.Problem(UNIT, UNIT, UNIT, [], [])
+    problem = _core.Problem(UNIT, UNIT, UNIT, [], [], False)
     rest = (3, 1e-3, "centred", "newton", "exact", None, 63, 4096, 50, None)
     with pytest.raises(TypeError, match=r"expected \(from, to\) or an array") as one:
         _core.forced_response(problem, omega, np.array([0]), *rest)
@@ -119,7 +119,7 @@ def test_histories_that_memory_cannot_hold_are_refused(samples):
 
 def test_small_numbers_are_named_with_an_exponent():
     with pytest.raises(ValueError, match=r"= -1e-200: ") as one:
-        _core.Problem(UNIT, UNIT, UNIT, [("jenkins", UNIT[:1], SMALL)], [])
+        _core.Problem(UNIT, UNIT, UNIT, [("jenkins", UNIT[:1], SMALL)], [], False)
     assert len(str(one.value)) < 150
 
 

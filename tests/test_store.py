@@ -94,7 +94,7 @@ def test_dataset(frf):
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs
-    assert flags["flag_values"].tolist() == [0, 1, 2, 3, 4, 5, 6]
+    assert flags["flag_values"].tolist() == list(range(8))
     assert flags["flag_meanings"].split() == [
         "converged",
         "stalled",
@@ -103,6 +103,7 @@ def test_dataset(frf):
         "harmonics_limit",
         "orbit_stalled",
         "samples_limit",
+        "steps_limit",
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5
@@ -336,7 +337,7 @@ def test_missing_variables(unsealed, name):
     ("name", "value", "message"),
     [
         ("dof", [b"tip", b"elsewhere"], "unknown dof 'elsewhere'"),
-        ("status", [7] * 12, "status 7 is unknown"),
+        ("status", [99] * 12, "status 99 is unknown"),
         ("contacts", [b'{"law": "velcro", "dofs": ["tip"], "parameters": {}}'], "law 'velcro'"),
         ("contacts", [b"{"], "not a complete stickslip result"),
     ],

@@ -31,7 +31,7 @@ def test_the_steps_that_the_message_asks_for_are_stable():
 
 
 def test_coarse_steps_are_named_with_how_many_would_do():
-    assert "; 206 steps per period would." in coarse(run(50))[0]
+    assert "; take 206 steps per period." in coarse(run(50))[0]
     assert len(coarse(run(205))) == 1
     assert coarse(run(206)) == []
 

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -153,7 +154,9 @@ def test_a_disk_that_takes_nothing_is_a_failing_one(tmp_path, monkeypatch):
 
 
 def test_what_killed_runs_have_left_is_removed(tmp_path):
-    old, new = tmp_path / ".stickslip-0123abcd.part", tmp_path / ".stickslip-4567abcd.part"
+    old, new = (
+        tmp_path / f".stickslip-{host}-1-0123abcd.part" for host in ("01234567", "89abcdef")
+    )
     for file in (old, new):
         file.write_bytes(b"half a fi")
     os.utime(old, (time.time() - 7200.0,) * 2)
@@ -217,26 +220,26 @@ def mesh(_, target):
 
 
 def reproduced_picture(_, target):
-    from stickslip.reproduce.folder import write_picture
+    from stickslip_reproduce.folder import write_picture
 
     write_picture(reproduced().plot, target)
 
 
 def reproduced_record(_, target):
-    from stickslip.reproduce import COARSE, items
-    from stickslip.reproduce.folder import write_record
+    from stickslip_reproduce import COARSE, items
+    from stickslip_reproduce.folder import write_record
 
     write_record(items()["fig-2.3"], reproduced(), 0.0, COARSE, target.parent)
 
 
 def reproduced_index(_, target):
-    from stickslip.reproduce.folder import write_index
+    from stickslip_reproduce.folder import write_index
 
     write_index(target.parent)
 
 
 def reproduced():
-    from stickslip.reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
+    from stickslip_reproduce.numbers import Axis, Fact, Numbers, Panel, Plot, Series
 
     panel = Panel((Series("curve", [1.0, 2.0], [1.0, 3.0]),))
     return Numbers(Plot(Axis("x"), Axis("y"), (panel,)), (Fact("peak", 3.0, "m"),))
@@ -250,9 +253,9 @@ WRITERS = {
     "a.json": (schema, "cli/commands.py"),
     "a.uff": (universal_file, "io/frf.py"),
     "a.vtu": (mesh, "fe/solid.py"),
-    "b.png": (reproduced_picture, "reproduce/folder.py"),
-    "fig-2.3.json": (reproduced_record, "reproduce/folder.py"),
-    "index.html": (reproduced_index, "reproduce/folder.py"),
+    "b.png": (reproduced_picture, "stickslip_reproduce/folder.py"),
+    "fig-2.3.json": (reproduced_record, "stickslip_reproduce/folder.py"),
+    "index.html": (reproduced_index, "stickslip_reproduce/folder.py"),
 }
 
 
@@ -286,8 +289,9 @@ WRITING = {
 
 def test_nothing_else_in_the_package_writes_files():
     users = set()
-    for module in sorted(PACKAGE.rglob("*.py")):
-        place = module.relative_to(PACKAGE).as_posix()
+    modules = [*PACKAGE.rglob("*.py"), *PACKAGE.with_name("stickslip_reproduce").rglob("*.py")]
+    for module in sorted(modules):
+        place = module.relative_to(PACKAGE.parent).as_posix().removeprefix("stickslip/")
         nodes = list(ast.walk(ast.parse(module.read_text(encoding="utf-8"))))
         for node in nodes:
             if isinstance(node, ast.Call) and place != "files.py":
@@ -376,7 +380,8 @@ def test_a_folder_that_takes_no_files_is_refused_before_anything_is_computed(fol
 
 def test_an_interrupted_study_on_a_full_disk_ends_in_one_line(folder, monkeypatch):
     def interrupted(*_):
-        raise ss.Interrupted("stopped", ss.forced_response(snecma_beam(), [190.0], 3))
+        part = replace(ss.forced_response(snecma_beam(), [190.0], 3), interrupted=True)
+        raise ss.Interrupted("stopped", part)
 
     monkeypatch.setattr("stickslip.study.Study.run", lambda *_: map(interrupted, [0]))
     with monkeypatch.context() as patch:
