@@ -35,6 +35,8 @@ const ASIDE: f64 = 1e-8;
 const SEEN: f64 = 0.5;
 /// What a resonance may exceed the height by that its load and friction can give it.
 const SHARE: f64 = 2.0;
+/// Resonances up to this many times as high as the samples beside them are overlaid by others.
+const OVERLAID: f64 = 10.0;
 /// Gain in height, relative, that the shortest interval must not promise.
 const UNRESOLVED: f64 = 1e-3;
 
@@ -221,11 +223,36 @@ impl<'a, 'b> Search<'a, 'b> {
             if self.is_interrupted() {
                 return Ok(false);
             }
-            match sample {
-                Some(sample) => self.insert(sample, vec![UNSEEN; self.dofs.len()]),
-                None => self.close(at, reach),
+            let Some(sample) = sample else {
+                self.close(at, reach);
+                continue;
+            };
+            let overlaid = self.is_overlaid(&candidates[next]);
+            self.insert(sample, vec![UNSEEN; self.dofs.len()]);
+            for aside in if overlaid { &[-0.5, 0.5][..] } else { &[] } {
+                let omega = (at + aside * bandwidth).clamp(self.aim.span.0, self.aim.span.1);
+                if let Some(sample) = self.solve(omega, None)? {
+                    self.insert(sample, vec![UNSEEN; self.dofs.len()]);
+                }
             }
         }
+    }
+
+    /// Whether others show as much at a resonance as it does by itself: together they are highest
+    /// beside it, and the interpolant, of a resonance alone, does not see that from afar.
+    fn is_overlaid(&self, candidate: &Candidate) -> bool {
+        candidate.reach.iter().enumerate().any(|(group, reach)| {
+            (0.0..OVERLAID * self.beside_height(candidate.at, group)).contains(reach)
+        })
+    }
+
+    /// The highest of a group at the samples on either side.
+    fn beside_height(&self, at: f64, group: usize) -> f64 {
+        let after = self.samples.partition_point(|sample| sample.at < at);
+        let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
+        let around = around.filter_map(|i| self.samples.get(i));
+        let heights = around.flat_map(|sample| &sample.knots[self.curves(group)]);
+        heights.map(|knot| knot.height).fold(0.0, f64::max)
     }
 
     /// Whether a resonance that no point has seen may be higher than what has been found.
@@ -238,8 +265,7 @@ impl<'a, 'b> Search<'a, 'b> {
             return false;
         }
         candidate.reach.iter().enumerate().any(|(group, reach)| {
-            let heights = around.iter().flat_map(|sample| &sample.knots[self.curves(group)]);
-            let beside = heights.map(|knot| knot.height).fold(0.0, f64::max);
+            let beside = self.beside_height(candidate.at, group);
             *reach > 0.0 && beside + SHARE * reach > self.height(group) * (1.0 + self.aim.gain)
         })
     }
