@@ -31,8 +31,10 @@ const MOST_FAILURES: usize = 40;
 const DOUBT: f64 = 1e-6;
 /// Distance at which an undamped resonance is passed, relative to the frequency.
 const ASIDE: f64 = 1e-8;
-/// Resonances closer than this share of a bandwidth to a point are seen from there.
-const SEEN: f64 = 0.5;
+/// Resonances closer than this share of a bandwidth to a point are seen from there, …
+const SEEN: f64 = 0.1;
+/// … and what others overlay if there are points on both sides within this share.
+const AROUND: f64 = 0.75;
 /// What a resonance may exceed the height by that its load and friction can give it.
 const SHARE: f64 = 2.0;
 /// Resonances up to this many times as high as the samples beside them are overlaid by others.
@@ -260,8 +262,11 @@ impl<'a, 'b> Search<'a, 'b> {
         let after = self.samples.partition_point(|sample| sample.at < candidate.at);
         let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
         let around: Vec<&Sample> = around.filter_map(|i| self.samples.get(i)).collect();
-        let near = (SEEN * candidate.bandwidth).max(2.0 * ASIDE * candidate.at);
-        if around.iter().any(|sample| (sample.at - candidate.at).abs() <= near) {
+        let within = |share: f64| {
+            let near = (share * candidate.bandwidth).max(2.0 * ASIDE * candidate.at);
+            around.iter().filter(|sample| (sample.at - candidate.at).abs() <= near).count()
+        };
+        if within(SEEN) > 0 && (within(AROUND) == around.len() || !self.is_overlaid(candidate)) {
             return false;
         }
         candidate.reach.iter().enumerate().any(|(group, reach)| {
@@ -284,7 +289,9 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Adds a sample, with the errors allowed for on both sides of it.
     fn insert(&mut self, sample: Sample, errors: Vec<f64>) {
         let after = self.samples.partition_point(|other| other.at < sample.at);
-        if self.samples.get(after).is_some_and(|other| other.at == sample.at) {
+        let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
+        let mut around = around.filter_map(|i| self.samples.get(i));
+        if around.any(|other| (other.at - sample.at).abs() <= SHORTEST * sample.at) {
             return;
         }
         self.samples.insert(after, sample);
@@ -384,7 +391,11 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Solves inside an interval.
     fn split(&mut self, interval: usize, share: f64) -> Result<(), Error> {
         let gap = self.gaps[interval].clone();
-        let Some(sample) = self.inside(interval, gap.stride(share))? else {
+        let ends = [&self.samples[interval], &self.samples[interval + 1]].map(|sample| sample.at);
+        // What is too short to be split would keep an error that nothing has measured.
+        let least = (2.0 * SHORTEST * ends[1] / (ends[1] - ends[0])).min(0.5);
+        let share = gap.stride(share).clamp(least, 1.0 - least);
+        let Some(sample) = self.inside(interval, share)? else {
             // Nothing more is asked of an interval whose inside cannot be solved.
             self.gaps[interval].closed = true;
             return Ok(());
