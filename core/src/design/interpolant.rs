@@ -42,6 +42,29 @@ impl Interpolant {
         Self { cubics, reference }
     }
 
+    /// Share and height of the top of a parabola that leaves either end with its slope and meets the
+    /// other, if it rises from there.
+    pub(super) fn cap(left: Knot, right: Knot) -> (f64, f64) {
+        let width = right.at - left.at;
+        let from = |near: Knot, far: Knot, rise: f64| {
+            let bend = near.height + rise - far.height;
+            let share = 0.5 * rise / bend;
+            let inside = rise > 0.0 && bend > 0.0 && share < 1.0;
+            if inside {
+                (share, near.height + 0.5 * share * rise)
+            } else {
+                (0.5, 0.0)
+            }
+        };
+        let one = from(left, right, width * left.slope);
+        let (share, height) = from(right, left, -width * right.slope);
+        if one.1 >= height {
+            one
+        } else {
+            (1.0 - share, height)
+        }
+    }
+
     /// Height at the share `t` of the interval; infinite where the cubic has no sense.
     pub(super) fn height(&self, t: f64) -> f64 {
         if t <= 0.5 {

@@ -39,6 +39,8 @@ const AROUND: f64 = 0.75;
 const SHARE: f64 = 2.0;
 /// Resonances up to this many times as high as the samples beside them are overlaid by others.
 const OVERLAID: f64 = 10.0;
+/// Gain in height, relative, that a parabola must not promise.
+const BROAD: f64 = 1e-4;
 /// Gain in height, relative, that the shortest interval must not promise.
 const UNRESOLVED: f64 = 1e-3;
 
@@ -176,7 +178,8 @@ impl<'a, 'b> Search<'a, 'b> {
             more = self.approach(&look.candidates, &mut open, seeds)?;
             let most_points = self.aim.most_points.max(2 * self.samples.len());
             while self.samples.len() < most_points && !self.is_interrupted() {
-                let Some((interval, share)) = self.most_promising() else { break };
+                let next = self.most_promising().or_else(|| self.most_suspicious());
+                let Some((interval, share)) = next else { break };
                 self.split(interval, share)?;
             }
             if self.is_interrupted() {
@@ -382,6 +385,28 @@ impl<'a, 'b> Search<'a, 'b> {
                 let (share, promise) = gap.promises[group];
                 if promise / reference > best.1 {
                     best = (Some((i, share)), promise / reference);
+                }
+            }
+        }
+        best.0
+    }
+
+    /// The interval into which a curve rises from an end, if it may hold the highest point as a
+    /// parabola: friction cuts resonances off that broadly, and 1/A² does not see it.
+    fn most_suspicious(&self) -> Option<(usize, f64)> {
+        let mut best = (None, 1.0 + BROAD);
+        for group in 0..self.aim.groups.len() {
+            let reference = self.height(group);
+            for (i, pair) in self.samples.windows(2).enumerate() {
+                if reference == 0.0 || self.gaps[i].closed || is_shortest(pair) {
+                    continue;
+                }
+                for curve in self.curves(group) {
+                    let (share, height) =
+                        Interpolant::cap(pair[0].knots[curve], pair[1].knots[curve]);
+                    if height / reference > best.1 {
+                        best = (Some((i, share)), height / reference);
+                    }
                 }
             }
         }
