@@ -42,8 +42,8 @@ impl Interpolant {
         Self { cubics, reference }
     }
 
-    /// Share and height of the top of a parabola that leaves either end with its slope and meets the
-    /// other, if it rises from there.
+    /// Share of the top of a parabola that leaves either end with its slope and meets the other, if it
+    /// rises from there, and the height of that slope at the top, twice as far up.
     pub(super) fn cap(left: Knot, right: Knot) -> (f64, f64) {
         let width = right.at - left.at;
         let from = |near: Knot, far: Knot, rise: f64| {
@@ -51,7 +51,7 @@ impl Interpolant {
             let share = 0.5 * rise / bend;
             let inside = rise > 0.0 && bend > 0.0 && share < 1.0;
             if inside {
-                (share, near.height + 0.5 * share * rise)
+                (share, near.height + share * rise)
             } else {
                 (0.5, 0.0)
             }
