@@ -175,45 +175,7 @@ def test_tables_show_what_nothing_bounds(tmp_path):
     assert "inf: neither damping nor friction bounds" in shown.output
 
 
-def two_equal_beams(slip_forces):
-    """Return two chains of two masses that a weak spring joins, with a contact at each."""
-    part = np.array([[2e4, -1e4], [-1e4, 1e4]])
-    stiffness = np.kron(np.diag([1.0, 1.001]), part)
-    stiffness[np.ix_([1, 3], [1, 3])] += 10.0 * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    structure = ss.Structure(np.eye(4), stiffness, ss.ModalDamping(5e-5), ["a", "b", "c", "d"])
-    contacts = [
-        ss.Jenkins(dof, stiffness=2e4, slip_force=limit)
-        for dof, limit in zip("bd", slip_forces, strict=True)
-    ]
-    return ss.Model(structure, contacts, [ss.Force("a", 1.0)])
-
-
-@pytest.mark.parametrize("limits", [(0.1, 3.0), (0.1, 1.0), (0.03, 10.0)])
-@pytest.mark.parametrize("dof", ["b", "d"])
-def test_a_resonance_behind_a_torn_contact_is_found(limits, dof):
-    model = two_equal_beams(limits)
-    curve = ss.damper_curve(
-        model, slip_force=[1.0], common="factor", dof=dof, omega=(40, 300), harmonics=1
-    )
-    assert curve.status[0] == "converged"
-    assert curve.amplitude[0] >= (1 - 1e-3) * highest(model, dof, (40.0, 300.0), 1)
-
-
-@pytest.mark.parametrize("dof", ["b", "d"])
-@pytest.mark.parametrize("damping", [5e-4, 5e-3])
-def test_a_small_resonance_on_the_flank_of_others_is_highest_beside_itself(damping, dof):
-    # A quasi-static response with a mode that it hardly shows.
-    stiffness = np.diag([1e6, 9e4, 4e6])
-    stiffness[0, 1] = stiffness[1, 0] = 3e3
-    structure = ss.Structure(np.eye(3), stiffness, ss.ModalDamping(damping), ["b", "c", "d"])
-    model = ss.Model(structure, [], [ss.Force("b", 1.0), ss.Force("d", 1.0)])
-    span = (277.0, 302.0)
-    fine = ss.forced_response(model, np.linspace(*span, 4001), 1, observe=[dof])
-    coarse = ss.forced_response(model, np.linspace(*span, 5), 1, observe=[dof])
-    assert coarse.peak(dof).amplitude >= (1 - 1e-6) * fine.amplitude(dof).max()
-
-
-@pytest.mark.parametrize("seed", [8])
+@pytest.mark.parametrize("seed", [125, 170, 196])
 def test_no_value_of_its_curve_lies_below_an_optimum(seed):
     generator = np.random.default_rng(seed)
     model, dof = random_model(generator)

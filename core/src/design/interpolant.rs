@@ -143,4 +143,14 @@ mod tests {
         let t = Interpolant::new(a, b, a.height).top().unwrap();
         assert!((a.at + t * (b.at - a.at) - natural).abs() < 1e-4);
     }
+
+    #[test]
+    fn a_rise_from_the_far_higher_end_is_seen() {
+        let knot = |at: f64, height: f64, slope: f64| Knot { at, height, slope };
+        let left = knot(139.7759545558, 4.207571e-9, 6.667e-9);
+        let right = knot(140.3784662742, 1.840719e-3, -1.199e-1);
+        assert!(Interpolant::new(left, right, right.height).promise(0.0).1 > right.height);
+        let (share, height) = Interpolant::cap(left, right);
+        assert!(share > 0.5 && share < 1.0 && height > right.height);
+    }
 }
