@@ -240,7 +240,6 @@ pub fn counters<'py>(
     counters.set_item("updates", profile.updates)?;
     counters.set_item("restarts", profile.restarts)?;
     counters.set_item("homotopies", profile.homotopies)?;
-    counters.set_item("orbits", profile.orbits)?;
     Ok(counters)
 }
 
@@ -279,7 +278,7 @@ pub fn forced_response(
     let model = Arc::clone(&problem.model);
     swept(py, progress.as_ref(), observe.len(), &model, move |model, kept, look| {
         let rescue = Rescue::new(model, settings.residual, look);
-        let fresh_start = |omega: f64, highest: usize| rescue.harmonics(omega, highest);
+        let fresh_start = |omega: f64, highest: usize| rescue.amplitudes(omega, highest);
         let balance = ForcedBalance::new(model, settings, &observe)?
             .watched(look)
             .rescued(&fresh_start)

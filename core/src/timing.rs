@@ -25,8 +25,6 @@ pub struct Profile {
     pub restarts: usize,
     /// Points that needed homotopy after the chosen method had failed.
     pub homotopies: usize,
-    /// Points whose harmonics are those of exact orbits.
-    pub orbits: usize,
 }
 
 impl Profile {

@@ -36,8 +36,6 @@ pub struct Condensed<'a> {
     /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
     pub(super) softened: Option<(f64, Vec<Box<dyn FrictionLaw>>)>,
     pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
-    /// Contacts that are taken to carry no slip load; empty if all laws are evaluated.
-    pub(super) idle: Vec<bool>,
     pub(super) factor: Option<Factor>,
     /// Points of contacts with a tangent, of the last factorisation.
     pub(super) active: Vec<usize>,
@@ -65,7 +63,6 @@ impl<'a> Condensed<'a> {
             load_scale: 1.0,
             softened: None,
             interrupted: None,
-            idle: Vec::new(),
             factor: None,
             active: Vec::new(),
             profile: Profile::default(),
@@ -134,33 +131,6 @@ impl<'a> Condensed<'a> {
         Ok(())
     }
 
-    /// Changes of the DOFs `observe` at every kept order, handed to `store(values)`, when contact
-    /// displacements and slip loads change by `x` and `slip_load`.
-    ///
-    /// # Errors
-    /// As [`Condensed::set_omega`].
-    pub(super) fn changes(
-        &self,
-        x: &[f64],
-        slip_load: &[f64],
-        observe: &[usize],
-        mut store: impl FnMut(&[c64]),
-    ) -> Result<(), Error> {
-        let harmonics = self.table.harmonics();
-        let compliance = self.model.compliance();
-        let (mut u, mut q) = (Vec::new(), Vec::new());
-        let mut moved = vec![c64::new(0.0, 0.0); observe.len()];
-        for (index, order) in harmonics.orders().enumerate() {
-            gather(harmonics, order, x, &mut u);
-            gather(harmonics, order, slip_load, &mut q);
-            let at = (index, order);
-            self.linear
-                .slip_displacement(compliance, at, self.omega, &u, &q, observe, &mut moved)?;
-            store(&moved);
-        }
-        Ok(())
-    }
-
     /// Displacements of the DOFs `observe` and their derivatives in ω at every kept order, handed to
     /// `store(order, values, rates)`, from contact displacements and slip loads and their rates;
     /// for equations with slopes.
@@ -201,11 +171,6 @@ impl<'a> Condensed<'a> {
             store(order, &values, &slopes);
         }
         Ok(())
-    }
-
-    /// Frequency of the motion [rad/s].
-    pub(super) fn omega(&self) -> f64 {
-        self.omega
     }
 
     /// Has the iterations ask whether to end the analysis.

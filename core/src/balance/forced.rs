@@ -20,11 +20,6 @@ use std::sync::Arc;
 /// one that friction does not bound.
 const UNBOUNDED: f64 = 1e12;
 
-/// Unknowns of slipping contacts above which a point takes its harmonics from the exact orbit, …
-const EXCESSIVE: usize = 120;
-/// … and those above which it is given up if there is no orbit.
-const HOPELESS: usize = 1000;
-
 /// The harmonic balance of a model under its loads, from point to point.
 pub struct ForcedBalance<'a> {
     pub(super) model: &'a Model,
@@ -38,7 +33,7 @@ pub struct ForcedBalance<'a> {
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
-    pub(super) rescue: &'a FreshStart<'a>,
+    rescue: &'a FreshStart<'a>,
     share: f64,
     pub(super) profile: Profile,
 }
@@ -177,19 +172,6 @@ impl<'a> ForcedBalance<'a> {
             let more = match point.status {
                 PointStatus::Converged => match self.judge(&point) {
                     Verdict::More(more) => {
-                        let unknowns = self.slipping_unknowns(more, &point);
-                        if unknowns > EXCESSIVE {
-                            if let Some(mut exact) = self.from_orbit(omega, more)? {
-                                self.ladder.stay(resolution);
-                                exact.iterations = iterations;
-                                return Ok(exact);
-                            }
-                        }
-                        if unknowns > HOPELESS {
-                            self.ladder.stay(resolution);
-                            point.status = PointStatus::HarmonicsLimit;
-                            return Ok(point);
-                        }
                         start = point.unknowns;
                         more
                     }
@@ -209,16 +191,6 @@ impl<'a> ForcedBalance<'a> {
             };
             resolution = more;
         }
-    }
-
-    /// Unknowns of the slipping contacts with more harmonics; 0 if it is samples that grow.
-    fn slipping_unknowns(&self, more: Resolution, point: &Point) -> usize {
-        if more.harmonics <= point.harmonics || more.samples.is_some() {
-            return 0;
-        }
-        let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
-        let per_order = if self.half_wave { 1 } else { 2 };
-        slipping.max(1) * per_order * more.harmonics
     }
 
     /// What the errors of a solution ask for.
@@ -343,11 +315,10 @@ impl<'a> ForcedBalance<'a> {
         report: &mut Report,
     ) {
         let harmonics = equations.harmonics();
-        let Some(orbit) = (self.rescue)(omega, harmonics.highest()) else { return };
+        let Some(amplitudes) = (self.rescue)(omega, harmonics.highest()) else { return };
         let orders = harmonics.highest() + 1;
         let mut trial = vec![0.0; x.len()];
-        let points =
-            orbit.displacement.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
+        let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
         points.for_each(|(amplitudes, series)| harmonics.write_series(amplitudes, series));
         let again = newton(equations, &mut trial, self.settings.newton);
         let again = if_bounded(again, &trial, equations);

@@ -25,10 +25,6 @@ impl Condensed<'_> {
         Profile::time(&mut law_time, || {
             for (index, load) in loads.iter_mut().enumerate() {
                 let motion = self.motion(index, x);
-                if self.idle.get(index) == Some(&true) {
-                    load.reset(motion.displacement.len(), false);
-                    continue;
-                }
                 match &self.softened {
                     None => self.model.laws()[index].slip_load(motion, tangent, load),
                     Some((share, laws)) => {

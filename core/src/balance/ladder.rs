@@ -162,11 +162,6 @@ impl Ladder {
         Some(self.allowed(harmonics, samples)).filter(|above| *above != at)
     }
 
-    /// Has the next point begin with the harmonics of this one.
-    pub(super) fn stay(&mut self, at: Resolution) {
-        self.rung.order = self.position(at);
-    }
-
     fn position(&self, at: Resolution) -> usize {
         self.orders.iter().position(|&order| order == at.harmonics).unwrap_or(0)
     }

@@ -103,26 +103,6 @@ impl Linear {
         }
     }
 
-    /// What slip loads alone add to [`Linear::displacement`].
-    #[allow(clippy::too_many_arguments)]
-    pub(super) fn slip_displacement(
-        &self,
-        compliance: &dyn Compliance,
-        (index, order): (usize, usize),
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        match (self, compliance.ring()) {
-            (Self::Ring { orders, .. }, Some(ring)) => {
-                ring.slip_displacement_of(&orders[index], order, omega, slip_load, observe, out)
-            }
-            _ => compliance.slip_displacement(order, omega, contact, slip_load, observe, out),
-        }
-    }
-
     /// Derivatives in ω of [`Linear::displacement`], with slip loads and contact displacements
     /// (`solution`: u, q) that change at `rates`; for equations with slopes.
     #[allow(clippy::too_many_arguments)]

@@ -8,7 +8,6 @@ mod cycle_point;
 mod cycle_start;
 mod evaluation;
 mod forced;
-mod from_orbit;
 mod jacobian;
 mod ladder;
 mod limit_cycle;
@@ -42,18 +41,9 @@ pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
 pub use unknowns::Unknowns;
 
-/// Harmonics 0, 1, … of the contacts, point after point.
-#[derive(Debug, Clone)]
-pub struct ContactHarmonics {
-    /// Of the relative displacements [m].
-    pub displacement: Vec<faer::c64>,
-    /// Of the contact forces [N].
-    pub force: Vec<faer::c64>,
-}
-
-/// Harmonics of the exact orbit at a frequency [rad/s], up to a given one: a start where Newton's
-/// method has failed, and the answer where a balance would cost more.
-pub type FreshStart<'a> = dyn Fn(f64, usize) -> Option<ContactHarmonics> + 'a;
+/// Amplitudes of the contact displacements, point after point, from which a balance up to a
+/// harmonic may start at a frequency [rad/s] at which Newton's method has failed.
+pub type FreshStart<'a> = dyn Fn(f64, usize) -> Option<Vec<faer::c64>> + 'a;
 
 /// Where a sweep puts its points as they are solved, for one who does not wait for its end.
 pub type Kept<T> = std::sync::Mutex<Vec<std::sync::Arc<T>>>;

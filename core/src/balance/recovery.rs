@@ -8,6 +8,7 @@ use super::settings::Method;
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
+use crate::fourier::Harmonics;
 use crate::solve::System as _;
 use crate::Error;
 use faer::c64;
@@ -61,12 +62,12 @@ impl ForcedBalance<'_> {
         x: &[f64],
         point: &mut Point,
     ) -> Result<(), Error> {
+        self.estimate_truncation(equations.harmonics(), x, Some(&*equations), point)?;
+        let Some(samples) = point.samples else { return Ok(()) };
         if self.settings.method != Method::Newton {
             // Broyden's method leaves no tangent at the solution.
             equations.residual(x, &mut vec![0.0; x.len()]);
         }
-        self.estimate_truncation(equations, x, point)?;
-        let Some(samples) = point.samples else { return Ok(()) };
         let finer = self.evaluated(Some(finer_than(samples)))?;
         point.sampling_error = sampling_errors(equations, &finer, x, self.observe, point)?;
         let errors = point.error_estimate.iter_mut().zip(&point.sampling_error);
@@ -74,12 +75,13 @@ impl ForcedBalance<'_> {
         Ok(())
     }
 
-    /// Writes what the discarded harmonics could change in a solution `x` of these equations, whose
-    /// tangents they have.
+    /// Writes what the discarded harmonics could change in a solution `x`, of these equations if
+    /// they are at hand.
     pub(super) fn estimate_truncation(
         &mut self,
-        solved: &mut Condensed<'_>,
+        harmonics: &Harmonics,
         x: &[f64],
+        solved: Option<&Condensed<'_>>,
         point: &mut Point,
     ) -> Result<(), Error> {
         point.error_estimate = vec![0.0; self.observe.len()];
@@ -91,14 +93,14 @@ impl ForcedBalance<'_> {
         // Few samples, as long as nobody insists on them, must not hide harmonics.
         let climb = self.ladder.samples_climb();
         let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
-        let harmonics = solved.harmonics();
         let order = extended_order(harmonics, point.omega, self.model, slipping).min(resolved);
         let least = if climb { (2 * (order + 1)).next_power_of_two() } else { 0 };
         let model = self.evaluated(point.samples.map(|samples| samples.max(least)))?;
         let table = self.table(order);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
-        point.error_estimate = errors(&model, &table, residual, &solution, self.observe, solved)?;
+        point.error_estimate =
+            errors(&model, &table, residual, &solution, self.observe, point, solved)?;
         Ok(())
     }
 }

@@ -5,7 +5,6 @@
 //! `sum_j m_ij X_j + k_i (a_i − i b_i) X_i/A_i = r_i` keeps them. As everywhere it is condensed
 //! onto the stuck structure: `U = U^stuck + G Q`, `Q_i = (k_i − K_i(|U_i|)) U_i`.
 
-use super::condensed::Condensed;
 use super::forced::{is_bounded, ForcedBalance};
 use super::jacobian::contactwise;
 use super::solution::{Point, PointStatus, Solution};
@@ -117,14 +116,7 @@ impl<'a> Equations<'a> {
         let mut point = self.recover(balance, omega, &x)?;
         (point.residual, point.iterations) = (report.residual, report.iterations);
         if estimate {
-            // The same solution as that of the balance, whose tangents the estimate needs.
-            let table = balance.table(1);
-            let mut equations =
-                Condensed::new(self.model, &table, balance.settings.residual, false);
-            if equations.set_omega(omega).is_ok() {
-                equations.residual(&x, &mut vec![0.0; x.len()]);
-                balance.estimate_truncation(&mut equations, &x, &mut point)?;
-            }
+            balance.estimate_truncation(&self.harmonics, &x, None, &mut point)?;
         }
         point.unknowns = Some(Unknowns { harmonics: self.harmonics.clone(), values: x });
         balance.profile.recovery += start.elapsed();

@@ -3,9 +3,10 @@
 
 use super::periodic::PeriodicOrbits;
 use super::settings::OrbitSettings;
-use crate::balance::{ContactHarmonics, Point, PointStatus, Progress};
+use crate::balance::{PointStatus, Progress};
 use crate::contact::Residual;
 use crate::model::Model;
+use faer::c64;
 use std::cell::RefCell;
 
 /// Finds exact orbits on demand.
@@ -24,9 +25,9 @@ impl<'a> Rescue<'a> {
         Self { model, residual, progress, orbits: RefCell::new(None) }
     }
 
-    /// Harmonics up to `highest` of the orbit at `omega` [rad/s], at the contacts; `None` if none is
-    /// found.
-    pub fn harmonics(&self, omega: f64, highest: usize) -> Option<ContactHarmonics> {
+    /// Amplitudes U_0, U_1, … up to `highest` of all contact displacements of the orbit at `omega`
+    /// [rad/s], point after point; `None` if none is found.
+    pub fn amplitudes(&self, omega: f64, highest: usize) -> Option<Vec<c64>> {
         let mut prepared = self.orbits.borrow_mut();
         let orbits = prepared.get_or_insert_with(|| {
             let settings = OrbitSettings { residual: self.residual, ..OrbitSettings::default() };
@@ -36,10 +37,7 @@ impl<'a> Rescue<'a> {
         let orbits = orbits.as_mut()?;
         orbits.report_up_to(highest);
         let orbit = orbits.solve(omega, None).ok()?;
-        let Point { status, contact_displacement, contact_force, .. } = orbit.response;
-        (status == PointStatus::Converged).then_some(ContactHarmonics {
-            displacement: contact_displacement,
-            force: contact_force,
-        })
+        (orbit.response.status == PointStatus::Converged)
+            .then_some(orbit.response.contact_displacement)
     }
 }

@@ -8,7 +8,6 @@ mod curve;
 mod cyclic_tridiagonal;
 mod damping;
 mod eigen;
-mod gmres;
 mod homotopy;
 mod kernels;
 mod line_search;
@@ -22,7 +21,6 @@ pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Ste
 pub use curve::Curve;
 pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use eigen::hermitian_eigen;
-pub use gmres::gmres;
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
 pub use qr::Qr;

@@ -26,25 +26,6 @@ impl Ring {
         })
     }
 
-    /// [`Compliance::slip_displacement`] with the equations of this harmonic and frequency at hand.
-    ///
-    /// # Errors
-    /// As [`Compliance::receptance`].
-    pub fn slip_displacement_of(
-        &self,
-        order: &RingOrder,
-        harmonic: usize,
-        omega: f64,
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        let motion = order.respond(false, slip_load);
-        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
-            sector.slip_displacement(harmonic, omega, port, force, dof, value)
-        })
-    }
-
     /// Derivative in ω of [`Ring::displacement_of`] with slip loads that change at `slip_rate`; the
     /// equations must have slopes.
     ///
@@ -170,8 +151,10 @@ impl Compliance for Ring {
         observe: &[usize],
         out: &mut [c64],
     ) -> Result<(), Error> {
-        let order = self.order(harmonic, omega, false)?;
-        self.slip_displacement_of(&order, harmonic, omega, slip_load, observe, out)
+        let motion = self.order(harmonic, omega, false)?.respond(false, slip_load);
+        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
+            sector.slip_displacement(harmonic, omega, port, force, dof, value)
+        })
     }
 
     fn displacement_slope(

@@ -85,8 +85,7 @@ _ADVICE = {
         "Run the analysis again for the missing omega."
     ),
     Status.HARMONICS_LIMIT: (
-        "max_harmonics, or an effort at which more harmonics cost more than the exact orbit, was "
-        "reached before the discarded harmonics met the tolerance. "
+        "max_harmonics was reached before the discarded harmonics met the tolerance. "
         "Read error_estimate, and raise max_harmonics or tolerance, or use exact_response."
     ),
     Status.ORBIT_STALLED: (
