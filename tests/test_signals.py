@@ -298,15 +298,15 @@ for module in list(sys.modules.values()):
     if getattr(module, "require_numbers", None) is refuse:
         module.require_numbers = reckon
 del result
-count = 6000
+count = 20_000
 before = status("VmRSS")
 result = {call}
 result.save({str(tmp_path / "file.nc")!r})
 print(json.dumps([max(needed), status("VmHWM") - before]))
 """
     needed, taken = json.loads(child(code).stdout)
-    # HDF5 and the allocator keep some memory of their own.
-    assert taken <= needed + 16e6
+    # HDF5 and the allocator keep some memory of their own: little of so large a result.
+    assert taken <= 1.1 * needed
     assert needed <= 2.5 * taken
 
 

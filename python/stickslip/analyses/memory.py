@@ -13,8 +13,8 @@ __all__ = ["require_memory", "require_numbers"]
 SHARE = 0.75
 """Share of the memory that an analysis may take."""
 
-COPIES = 3.2
-"""Copies of a result while it is saved: itself, its dataset, and the file that is built."""
+COPIES = 3.8
+"""Copies of a result while it is saved: itself, its dataset, the file, and the room it grows in."""
 
 _PER_POINT = 80
 """Numbers that a point of the core takes beside its own: vectors, their allocation, its status."""

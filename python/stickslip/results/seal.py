@@ -8,6 +8,7 @@ ended, reads them beforehand.
 from __future__ import annotations
 
 import hashlib
+import re
 import subprocess
 import sys
 from collections.abc import Hashable
@@ -54,10 +55,13 @@ def seal_variable() -> dict[Hashable, object]:
     return {SEAL: ("seal_byte", entries, {"units": "1", "long_name": meaning})}
 
 
-def sealed(content: bytearray) -> bytearray:
+def sealed(content: memoryview) -> memoryview:
     """Fill in the digest of a file that has the variable, and return the file."""
-    start = content.index(_MARK) + len(_MARK)
-    content[start : start + _DIGEST] = _digest(content, start)
+    # A memoryview has no `find`, and a file is too large to be copied for it.
+    mark = re.search(re.escape(_MARK), content)
+    if mark is None:
+        raise ValueError("the file has no variable for the seal")
+    content[mark.end() : mark.end() + _DIGEST] = _digest(content, mark.end())
     return content
 
 
@@ -91,7 +95,7 @@ def require_harmless(content: bytes) -> None:
         raise ValueError(told[-1] if told and done.returncode > 0 else "its reader crashed")
 
 
-def _digest(content: bytes | bytearray, start: int) -> bytes:
+def _digest(content: bytes | memoryview, start: int) -> bytes:
     mark = hashlib.blake2b(digest_size=_DIGEST)
     view = memoryview(content)
     for part in (view[:start], bytes(_DIGEST), view[start + _DIGEST :]):

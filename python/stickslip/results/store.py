@@ -75,7 +75,7 @@ def save(result: Result, path: str | os.PathLike[str]) -> None:
     write(target, sealed(_netcdf(dataset)))
 
 
-def _netcdf(dataset: xr.Dataset) -> bytearray:
+def _netcdf(dataset: xr.Dataset) -> memoryview:
     """Return the bytes of a NetCDF 4 file."""
     import h5netcdf  # type: ignore[import-untyped, unused-ignore]
     from xarray.backends import H5NetCDFStore
@@ -83,7 +83,7 @@ def _netcdf(dataset: xr.Dataset) -> bytearray:
     content = io.BytesIO()
     with h5netcdf.File(content, "w") as file:
         dataset.dump_to_store(H5NetCDFStore(file), encoding=_encoding(dataset))
-    return bytearray(content.getbuffer())
+    return content.getbuffer()
 
 
 def load(path: str | os.PathLike[str]) -> Any:
