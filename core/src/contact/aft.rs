@@ -178,6 +178,8 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             let alternates = samples.sign < 0.0 && change > SLOW * last_change;
             if alternates {
                 step.average(&before);
+                let (u, Step { state, force, .. }) = (samples.at(0), &mut step);
+                self.law.return_map(u, u, state, force, None);
             }
             round.averaged.push(alternates);
             last_change = change;
@@ -447,6 +449,10 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
 
     fn limits(&self) -> Vec<f64> {
         self.law.limits()
+    }
+
+    fn onsets(&self) -> Vec<f64> {
+        self.law.onsets()
     }
 
     fn return_map(

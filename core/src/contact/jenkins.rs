@@ -9,27 +9,18 @@
 //! points are common to all elements, so that the tangent has one term of rank one for each of them,
 //! however many elements there are.
 
-use super::cycle::{Cycle, Path, Slip, Stick};
-use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement};
+use super::cycle::{Cycle, Path};
+use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement as _};
 use super::registry::numbers;
+use super::slider_integrals::add_slipping;
 use super::{
-    ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointState, PointSummary,
-    Residual, SlipLoad,
+    ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointSummary, Residual, Slider,
+    SlipLoad,
 };
-use crate::fourier::{Harmonics, IntervalSums};
 use crate::Error;
 use faer::Mat;
 use std::f64::consts::TAU;
 use std::sync::Arc;
-
-/// One elastic, perfectly plastic element.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slider {
-    /// k_d [N/m].
-    pub stiffness: f64,
-    /// F_d [N].
-    pub slip_force: f64,
-}
 
 /// Elastic, perfectly plastic elements in parallel, all on one displacement.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,111 +30,6 @@ pub struct Jenkins {
     pub(super) factor: f64,
     /// The stiffness that they were built with.
     pub(super) unit: Vec<f64>,
-}
-
-impl Slider {
-    /// An element of stiffness k_d [N/m] and slip force F_d [N]; an infinite slip force never
-    /// slips.
-    ///
-    /// # Errors
-    /// Negative or NaN parameters, infinite stiffness.
-    pub fn new(stiffness: f64, slip_force: f64) -> Result<Self, Error> {
-        if !(stiffness.is_finite() && stiffness >= 0.0) {
-            return Err(Error::value(
-                "jenkins: stiffness",
-                stiffness,
-                "must be finite and not negative; take about 1000 times the local stiffness of the structure for a rigid damper",
-            ));
-        }
-        if slip_force.is_nan() || slip_force < 0.0 {
-            return Err(Error::value(
-                "jenkins: slip_force",
-                slip_force,
-                "must not be negative; infinity means that the contact never slips",
-            ));
-        }
-        Ok(Self { stiffness, slip_force })
-    }
-
-    /// Force that is beyond which the element slips: none of one without spring.
-    fn limit(&self) -> f64 {
-        if self.stiffness == 0.0 {
-            0.0
-        } else {
-            self.slip_force
-        }
-    }
-
-    /// Slip load of a stuck element and its derivatives in the middle and in half the range of u.
-    fn held_load(&self, residual: Residual, middle: f64, half_range: f64) -> (f64, f64, f64) {
-        let k = self.stiffness;
-        let (wanted, wanted_slope) = match residual {
-            Residual::Centred => (0.0, 0.0),
-            Residual::FromRest => (k * middle, k),
-            Residual::Value(force) => (force, 0.0),
-        };
-        let room = self.slip_force - k * half_range;
-        if wanted.abs() <= room {
-            (k * middle - wanted, k - wanted_slope, 0.0)
-        } else {
-            (k * middle - room.copysign(wanted), k, k.copysign(wanted))
-        }
-    }
-
-    fn summary(&self, cycle: &Cycle, span: f64) -> PointSummary {
-        match cycle {
-            Cycle::Free => PointSummary {
-                slip_fraction: f64::from(u8::from(self.slip_force == 0.0)),
-                dissipation: 0.0,
-            },
-            Cycle::Stuck => PointSummary::default(),
-            Cycle::Slipping { slips, .. } => {
-                let length: f64 = slips.iter().map(|slip| slip.end - slip.start).sum();
-                let travel: f64 = slips.iter().map(|slip| slip.travel).sum();
-                PointSummary {
-                    slip_fraction: length / span,
-                    dissipation: self.slip_force * travel * TAU / span,
-                }
-            }
-        }
-    }
-
-    /// Force at an angle inside the span that the intervals cover.
-    fn force_at(&self, sticks: &[Stick], slips: &[Slip], theta: f64, u: f64) -> f64 {
-        if let Some(slip) = slips.iter().find(|s| theta >= s.start && theta < s.end) {
-            return slip.sign * self.slip_force;
-        }
-        let stick = sticks.iter().find(|s| theta >= s.start && theta <= s.end);
-        let load = stick.or(sticks.last()).map_or(0.0, |s| s.slip_load);
-        (self.stiffness * u - load).clamp(-self.slip_force, self.slip_force)
-    }
-}
-
-impl SlipElement for Slider {
-    fn stiffness(&self) -> Mat<f64> {
-        Mat::from_fn(1, 1, |_, _| self.stiffness)
-    }
-
-    fn limits(&self) -> Vec<f64> {
-        vec![self.limit()]
-    }
-
-    fn tangent(&self, points: &[PointState]) -> Mat<f64> {
-        let sticks = points[0] == PointState::Stuck && self.slip_force > 0.0;
-        Mat::from_fn(1, 1, |_, _| if sticks { self.stiffness } else { 0.0 })
-    }
-
-    fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
-        Mat::from_fn(1, 1, |_, _| points[0].sign().abs())
-    }
-
-    fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
-        let trial = force[0] + self.stiffness * du[0];
-        force[0] = trial.clamp(-self.slip_force, self.slip_force);
-        if let Some(gain) = gain {
-            gain[0] = f64::from(u8::from(trial == force[0]));
-        }
-    }
 }
 
 impl Jenkins {
@@ -236,6 +122,15 @@ impl ContactLaw for Jenkins {
 
     fn limits(&self) -> Vec<f64> {
         vec![self.sliders.iter().map(Slider::limit).sum()]
+    }
+
+    fn onsets(&self) -> Vec<f64> {
+        let rubs = self.sliders.iter().filter(|slider| slider.limit() > 0.0);
+        let onset = rubs.map(|slider| slider.slip_force / slider.stiffness);
+        vec![match self.sliders.len() {
+            1 => self.sliders[0].limit(),
+            _ => self.total_stiffness() * onset.fold(f64::INFINITY, f64::min),
+        }]
     }
 
     fn return_map(
@@ -364,11 +259,11 @@ impl HarmonicForce for Jenkins {
         let cycles = self.cycles(&path);
         if cycles.iter().any(|cycle| matches!(cycle, Cycle::Slipping { .. })) {
             out.active = true;
-            self.add_slipping(motion, &path, &cycles, tangent, out);
+            add_slipping(&self.sliders, motion, &path, &cycles, tangent, out);
         }
         for (slider, cycle) in self.sliders.iter().zip(&cycles) {
             match cycle {
-                Cycle::Free => add_free(slider.stiffness, motion, tangent, out),
+                Cycle::Free => slider.add_free(motion, tangent, out),
                 Cycle::Stuck if harmonics.has_mean() => {
                     slider.add_stuck(motion, &path, tangent, out);
                 }
@@ -441,207 +336,6 @@ impl HarmonicForce for Jenkins {
                 }
             }
             _ => self.sliders[index - 1].slip_force_slope(motion, &path, out),
-        }
-    }
-}
-
-impl Jenkins {
-    /// Adds the exact integrals of the elements that slip: `k_d u ∓ F_d` while an element slips, the
-    /// slip load of its last turning point while it sticks.
-    fn add_slipping(
-        &self,
-        motion: Motion<'_>,
-        path: &Path<'_>,
-        cycles: &[Cycle],
-        tangent: bool,
-        out: &mut SlipLoad,
-    ) {
-        let harmonics = motion.table.harmonics();
-        let size = harmonics.slots();
-        let weight = 2.0 / harmonics.span();
-        let mut turns = Turns::new(harmonics, path, tangent);
-        let mut sums = IntervalSums::new(harmonics);
-        let mut at_end = vec![0.0; size];
-        for (slider, cycle) in self.sliders.iter().zip(cycles) {
-            let Cycle::Slipping { sticks, slips } = cycle else { continue };
-            let k = slider.stiffness;
-            for (index, stick) in sticks.iter().enumerate() {
-                // The last interval ends at the last turning point, without slip behind it.
-                let slip = slips.get(index);
-                let end = if slip.is_some() {
-                    harmonics.antiderivative(stick.end, &mut at_end);
-                    &at_end[..]
-                } else {
-                    turns.last()
-                };
-                add_difference(
-                    end,
-                    turns.antiderivative(stick.anchor),
-                    weight * stick.slip_load,
-                    &mut out.value,
-                );
-                if tangent {
-                    turns.anchor(stick.anchor, slip.map(|_| &at_end[..]), k * weight);
-                }
-                let Some(slip) = slip else { continue };
-                let constant = -weight * slip.sign * slider.slip_force;
-                add_difference(turns.antiderivative(slip.turn), &at_end, constant, &mut out.value);
-                sums.add_end(slip.start, -k);
-                turns.slipping[slip.turn] += k;
-            }
-        }
-        for (turn, k) in path.turns.iter().zip(&turns.slipping).filter(|(_, k)| **k > 0.0) {
-            sums.add_end(turn.theta, *k);
-        }
-        let SlipLoad { value, tangent: matrix, .. } = out;
-        sums.products(harmonics, weight, |i, j, v| {
-            value[i] += v * motion.displacement[j];
-            if tangent {
-                matrix[i * size + j] = v;
-            }
-        });
-        if tangent {
-            turns.add_anchors(harmonics, matrix);
-        }
-        halve_mean_row(harmonics, size, out, tangent);
-    }
-}
-
-impl Slider {
-    /// Adds the mean slip load of an element that never slips.
-    fn add_stuck(&self, motion: Motion<'_>, path: &Path<'_>, tangent: bool, out: &mut SlipLoad) {
-        let harmonics = motion.table.harmonics();
-        let size = harmonics.slots();
-        let (load, by_middle, by_range) =
-            self.held_load(motion.residual, path.middle(), path.half_range());
-        out.value[0] += load;
-        if by_middle == 0.0 && by_range == 0.0 {
-            return;
-        }
-        out.active = true;
-        if tangent {
-            let (mut high, mut low) = (vec![0.0; size], vec![0.0; size]);
-            harmonics.basis(path.crest.theta, &mut high);
-            harmonics.basis(path.trough.theta, &mut low);
-            for (j, slope) in out.tangent[..size].iter_mut().enumerate() {
-                *slope += 0.5 * (by_middle * (high[j] + low[j]) + by_range * (high[j] - low[j]));
-            }
-        }
-    }
-}
-
-/// Adds the slip load of an element without friction, `k_d u`.
-fn add_free(k: f64, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
-    let size = motion.displacement.len();
-    for (i, u) in motion.displacement.iter().enumerate() {
-        out.value[i] += k * u;
-        if tangent {
-            out.tangent[i * size + i] += k;
-        }
-    }
-    out.active |= k > 0.0;
-}
-
-/// Basis integrals over intervals, from the antiderivatives at their two ends.
-pub(super) struct Bounds {
-    /// Antiderivatives at the start and, behind them, at the end.
-    ends: Vec<f64>,
-}
-
-impl Bounds {
-    pub(super) fn new(harmonics: &Harmonics) -> Self {
-        Self { ends: vec![0.0; 2 * harmonics.slots()] }
-    }
-
-    /// Adds `factor ∫ basis dθ` to `out`.
-    pub(super) fn add_integral(
-        &mut self,
-        harmonics: &Harmonics,
-        start: f64,
-        end: f64,
-        factor: f64,
-        out: &mut [f64],
-    ) {
-        let (from, to) = self.ends.split_at_mut(harmonics.slots());
-        harmonics.antiderivative(start, from);
-        harmonics.antiderivative(end, to);
-        for ((out, start), end) in out.iter_mut().zip(&*from).zip(&*to) {
-            *out += factor * (end - start);
-        }
-    }
-}
-
-/// What the turning points of a path gather from all elements.
-struct Turns {
-    size: usize,
-    /// Antiderivatives of the basis at the turning points.
-    antiderivatives: Vec<f64>,
-    /// Integrals over the stick intervals that begin at a turning point, by stiffness.
-    anchored: Vec<f64>,
-    /// Stiffness of the elements that slip up to the turning point.
-    slipping: Vec<f64>,
-}
-
-impl Turns {
-    fn new(harmonics: &Harmonics, path: &Path<'_>, tangent: bool) -> Self {
-        let (size, count) = (harmonics.slots(), path.turns.len());
-        let mut antiderivatives = vec![0.0; count * size];
-        for (turn, out) in path.turns.iter().zip(antiderivatives.chunks_exact_mut(size)) {
-            harmonics.antiderivative(turn.theta, out);
-        }
-        let anchored = vec![0.0; if tangent { count * size } else { 0 }];
-        Self { size, antiderivatives, anchored, slipping: vec![0.0; count] }
-    }
-
-    fn antiderivative(&self, turn: usize) -> &[f64] {
-        &self.antiderivatives[turn * self.size..(turn + 1) * self.size]
-    }
-
-    fn last(&self) -> &[f64] {
-        self.antiderivative(self.slipping.len() - 1)
-    }
-
-    /// Notes a stick interval from a turning point to where the antiderivatives are `end`, or to the
-    /// last turning point: its slip load follows the displacement there. Leaving this history out
-    /// breaks Newton's method.
-    fn anchor(&mut self, turn: usize, end: Option<&[f64]>, factor: f64) {
-        let (size, last) = (self.size, self.slipping.len() - 1);
-        let end = end.unwrap_or(&self.antiderivatives[last * size..]);
-        let start = &self.antiderivatives[turn * size..(turn + 1) * size];
-        add_difference(end, start, factor, &mut self.anchored[turn * size..(turn + 1) * size]);
-    }
-
-    /// Adds the change of rank one of every turning point at which an interval begins.
-    fn add_anchors(&self, harmonics: &Harmonics, tangent: &mut [f64]) {
-        let mut basis = vec![0.0; self.size];
-        let turns = self.anchored.chunks_exact(self.size);
-        for (turn, integral) in turns.enumerate() {
-            if integral.iter().all(|entry| *entry == 0.0) {
-                continue;
-            }
-            harmonics.differentiate(self.antiderivative(turn), &mut basis);
-            for (row, i) in tangent.chunks_exact_mut(self.size).zip(integral) {
-                for (entry, j) in row.iter_mut().zip(&basis) {
-                    *entry += i * j;
-                }
-            }
-        }
-    }
-}
-
-/// `out += factor (end − start)`.
-fn add_difference(end: &[f64], start: &[f64], factor: f64, out: &mut [f64]) {
-    for ((out, end), start) in out.iter_mut().zip(end).zip(start) {
-        *out += factor * (end - start);
-    }
-}
-
-/// The mean of a series is its integral over the period, not twice that.
-fn halve_mean_row(harmonics: &Harmonics, size: usize, out: &mut SlipLoad, tangent: bool) {
-    if harmonics.has_mean() {
-        out.value[0] *= 0.5;
-        if tangent {
-            out.tangent[..size].iter_mut().for_each(|entry| *entry *= 0.5);
         }
     }
 }

@@ -228,6 +228,11 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// never slips.
     fn limits(&self) -> Vec<f64>;
 
+    /// Force of every component at which slip begins [N].
+    fn onsets(&self) -> Vec<f64> {
+        self.limits()
+    }
+
     /// Return map of one step: takes the state through a change of the displacements and gives the
     /// force after it. All states are zero where the displacements are and nothing has slipped.
     fn return_map(

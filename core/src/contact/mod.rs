@@ -7,7 +7,6 @@ mod describing;
 mod elastic;
 mod increment;
 mod jenkins;
-mod jenkins_parameters;
 mod jets;
 mod law;
 mod march_rate;
@@ -15,6 +14,9 @@ mod parameter;
 mod passage;
 mod registry;
 mod samples;
+mod slider;
+mod slider_integrals;
+mod slider_parameters;
 mod slip_series;
 mod slip_set;
 mod structural;
@@ -24,11 +26,12 @@ mod transitions;
 pub use aft::Aft;
 pub use describing::Describing;
 pub use elastic::Elastic;
-pub use jenkins::{Jenkins, Slider};
+pub use jenkins::Jenkins;
 pub use law::{
     ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary, Residual,
     ReturnMapJacobian, SlipElement, SlipLoad,
 };
 pub use parameter::Parameter;
 pub use registry::{law, Parameters};
+pub use slider::Slider;
 pub use structural::StructuralDamper;

@@ -8,9 +8,9 @@
 //! `∂f/∂a = f − Σ F_i ∂f/∂F_i`.
 
 use super::derivative::Derivative;
-use super::jenkins::Bounds;
 use super::law::HarmonicForce as _;
 use super::passage::Passage;
+use super::slider_integrals::Bounds;
 use super::slip_series::halve_mean;
 use super::{Elastic, Motion, Parameter, SlipLoad, StructuralDamper};
 use crate::Error;

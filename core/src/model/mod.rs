@@ -269,6 +269,12 @@ impl Model {
         &self.laws
     }
 
+    /// Number of numbers in a state in time: displacements, velocities and what the laws remember.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        2 * self.structure.dofs() + self.laws.iter().map(|law| law.state_size()).sum::<usize>()
+    }
+
     /// Rows of B that belong to each contact.
     #[must_use]
     pub fn points(&self) -> &[Range<usize>] {

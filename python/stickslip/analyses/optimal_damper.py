@@ -271,7 +271,8 @@ def _stuck_forces(
         position, point = model.point(ref)
         place = min(point, model.contacts[position].points - 1)
         column = response.arrays.contact_force[:, :, response._columns(position, place)][:, :, 0]
-        forces = amplitude_of(np.ascontiguousarray(column), "half_range")
+        share = model.contacts[position].slider_shares[point]
+        forces = share * amplitude_of(np.ascontiguousarray(column), "half_range")
         start = forces[np.isfinite(forces)][:1].sum()
         relative = variation.common == "factor" or variation.parameter == "level"
         own = model.contacts[position].slider_limits[point]

@@ -83,6 +83,11 @@ class Contact(ABC):
         """Slip limit of each part that sticks or slips by itself [N]: as a rule, of each point."""
         return self.limits
 
+    @property
+    def slider_shares(self) -> tuple[float, ...]:
+        """Share of the force of its stuck point that each of these parts carries."""
+        return (1.0,) * len(self.slider_limits)
+
     @abstractmethod
     def parameters(self) -> dict[str, float]:
         """Return the parameters that are single numbers, by name, in SI units."""

@@ -91,6 +91,12 @@ class ParallelJenkins(Contact):
         pairs = zip(self.stiffness, self.slip_forces, strict=True)
         return tuple(force if stiffness else 0.0 for stiffness, force in pairs)
 
+    @property
+    def slider_shares(self) -> tuple[float, ...]:
+        """Share of the stiffness that each element has."""
+        total = sum(self.stiffness) or 1.0
+        return tuple(stiffness / total for stiffness in self.stiffness)
+
     def rows(self, structure: Structure) -> Matrix:
         """Return B of u = B x, shape (1, N): +1 at `dof`, -1 at `other`; see `Contact.rows`."""
         return end_rows(structure, self.dof, self.other)

@@ -1,4 +1,4 @@
-//! How the force of a Jenkins element depends on its parameters at a fixed displacement.
+//! How the force of an element depends on its parameters at a fixed displacement.
 //!
 //! Between the events of the path `f = k_d (u − u_a) ± F_d` while it sticks, from the turning
 //! point u_a at which the last slip ended, and `f = ±F_d` while it slips. The events move with
@@ -6,8 +6,8 @@
 //! the exact derivatives.
 
 use super::cycle::{Cycle, Path, Slip, Stick};
-use super::jenkins::{Bounds, Slider};
-use super::{Motion, Residual};
+use super::slider_integrals::Bounds;
+use super::{Motion, Residual, Slider};
 use crate::fourier::{Harmonics, IntervalSums};
 
 impl Slider {
