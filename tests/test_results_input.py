@@ -60,7 +60,7 @@ def test_wrong_omega(omega, message):
         ({"tolerance": 0.6}, r"tolerance: 0.6; give a fraction"),
         ({"tolerance": np.nan}, r"tolerance: nan"),
         ({"tolerance": "small"}, r"tolerance: 'small' is not a number"),
-        ({"residual": "centered"}, r"unknown residual 'centered'; did you mean 'centred'\?"),
+        ({"residual": "centered"}, r"unknown choice 'centered'; did you mean 'centred'\?"),
         ({"residual": np.inf}, r"residual: inf"),
         ({"residual": None}, r"residual: None is not a number"),
         ({"method": "newtn"}, r"method: unknown choice 'newtn'; did you mean 'newton'\?"),

@@ -9,8 +9,8 @@ from stickslip.results.arrays import Arrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 
 if TYPE_CHECKING:
-    from stickslip.analyses.exact_response import ExactSettings
     from stickslip.analyses.forced_response import Settings
+    from stickslip.settings.orbits import ExactSettings
 
 __all__ = ["contact_assumptions", "residual_assumption", "start_assumption"]
 

@@ -21,7 +21,7 @@ from stickslip.results.dataset import (
     curve_arrays,
     curve_dataset,
     curve_parts,
-    curve_settings,
+    settings_of,
 )
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.analyses.exact_response import ExactSettings
     from stickslip.plot import MultiplierOptions
+    from stickslip.settings.orbits import ExactSettings
 
 __all__ = ["ExactResponse"]
 
@@ -325,7 +325,7 @@ class ExactResponse(ForcedResponse):
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
         """Return the exact response that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.analyses.exact_response import ExactSettings
+        from stickslip.settings.orbits import ExactSettings
 
         orbits = OrbitArrays(**curve_arrays(dataset, _VARIABLES))
         given = curve_parts(dataset, model, orbits)
@@ -333,7 +333,7 @@ class ExactResponse(ForcedResponse):
             raise ValueError(
                 f"{orbits.state.shape[1]} entries per state, {len(state_names(model))} in the model"
             )
-        return cls(settings=ExactSettings(**curve_settings(dataset)), **given)
+        return cls(settings=ExactSettings.stored(settings_of(dataset)), **given)
 
     def plot_multipliers(self, **options: Unpack[MultiplierOptions]) -> Axes:
         """Draw the multipliers in the complex plane, with the unit circle.

@@ -16,7 +16,7 @@ from stickslip.results.result import Result
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
-    from stickslip.analyses.forced_response import Settings
+    from stickslip.settings.balance import ForcedSettings
 
 __all__ = ["Sweep"]
 
@@ -27,13 +27,13 @@ class Sweep(Result):
 
     Attributes
     ----------
-    settings : Settings
+    settings : ForcedSettings
         How.
     arrays : Arrays
         Every number by its name.
     """
 
-    settings: Settings
+    settings: ForcedSettings
     arrays: Arrays
 
     @property

@@ -10,20 +10,17 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, Strict, Tag, model_validator
 
-from stickslip.analyses.cycle_settings import CycleSettings
-from stickslip.analyses.forced_response import MAX_HARMONICS
-from stickslip.analyses.limit_cycles import MAX_POINTS, limit_cycles
+from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.checks import real_matrix
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.study.entries import (
+from stickslip.settings.cycles import CycleKeys
+from stickslip.settings.entries import (
     Contacts,
-    Count,
     Factor,
     SlipForce,
     StiffnessValue,
     Table,
-    Tolerance,
     number_or,
 )
 from stickslip.study.structure_table import (
@@ -62,16 +59,13 @@ class SlipForceSpan(Table):
     end: SlipForce = Field(alias="to", description="Highest slip force.")
 
 
-class LimitCyclesTable(Table):
+class LimitCyclesTable(CycleKeys):
     """Limit cycles under the damping C + r C_neg, along the ratio r or a parameter of contacts."""
 
     kind: Literal["limit-cycles"] = Field(description="The analysis.")
     negative_damping: DampingSource = Field(
         description="C_neg: a matrix, Rayleigh damping or modal damping with negative numbers.",
         examples=[{"rayleigh": {"mass": -7.49, "stiffness": -2.6e-5}}, {"modal": [-0.01, 0.0]}],
-    )
-    mode: Annotated[int, Field(ge=0)] = Field(
-        default=0, description="Mode of the stuck structure, counted from 0."
     )
     ratio: (
         Annotated[
@@ -95,25 +89,6 @@ class LimitCyclesTable(Table):
         default=None,
         description="Names of the contacts that take the value, or [name, point]; left out: all.",
     )
-    common: Literal["value", "factor"] = Field(
-        default="value",
-        description="Whether contacts take the value, or multiply their own by it.",
-    )
-    method: Literal["newton", "exact"] = Field(
-        default="newton", description="Harmonic balance, or exact orbits."
-    )
-    harmonics: Annotated[
-        Annotated[Count, Tag("<number>")] | Annotated[Literal["auto"], Tag("<text>")],
-        number_or("<text>"),
-    ] = Field(default=31, description="Highest harmonic kept, or 'auto': as the tolerance asks.")
-    tolerance: Tolerance = Field(
-        default=1e-3, description="Relative accuracy of what is automatic."
-    )
-    stability: bool = Field(default=True, description="Whether Floquet multipliers are computed.")
-    max_harmonics: Count = Field(
-        default=MAX_HARMONICS, description="Highest harmonic that may be kept."
-    )
-    max_points: Count = Field(default=MAX_POINTS, description="Most points of the branch.")
 
     @model_validator(mode="after")
     def _require_sense(self) -> Self:
@@ -122,16 +97,6 @@ class LimitCyclesTable(Table):
             raise ValueError("give one of stiffness and slip_force")
         if followed and not (self.ratio is None or len(self._ratios()) == 1):
             raise ValueError("ratio must be one number in a list while a parameter is followed")
-        # what the analysis would refuse is refused while the file is read, before any computing
-        CycleSettings(
-            mode=self.mode,
-            harmonics=self.harmonics,
-            method=self.method,
-            tolerance=self.tolerance,
-            stability=self.stability,
-            max_harmonics=self.max_harmonics,
-            max_points=self.max_points,
-        )
         return self
 
     def _ratios(self) -> tuple[float, ...]:
@@ -167,19 +132,12 @@ class LimitCyclesTable(Table):
         return limit_cycles(
             model,
             self._negative_damping(),
-            mode=self.mode,
             ratio=ratio,
             stiffness=spans["stiffness"],
             slip_force=spans["slip_force"],
             contacts=self.contacts,
-            common=self.common,
-            harmonics=self.harmonics,
-            method=self.method,
-            tolerance=self.tolerance,
-            stability=self.stability,
             progress=progress,
-            max_harmonics=self.max_harmonics,
-            max_points=self.max_points,
+            **self.part(CycleKeys),
         )
 
     def _negative_damping(self) -> np.ndarray | DampingLaw:

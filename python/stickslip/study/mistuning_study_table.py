@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import Field, Strict, Tag, WithJsonSchema, model_validator
+from pydantic import Field, Strict, Tag
 
-from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS, Settings
 from stickslip.analyses.mistuning_study import mistuning_study
-from stickslip.checks import MAX_COUNT
-from stickslip.disk.pattern import DISTRIBUTIONS
-from stickslip.study.analysis_entries import ResidualEntry
-from stickslip.study.entries import (
+from stickslip.settings.entries import (
     Count,
     Dof,
     Omega,
@@ -20,9 +16,9 @@ from stickslip.study.entries import (
     StiffnessValue,
     Table,
     Text,
-    Tolerance,
     number_or,
 )
+from stickslip.settings.peaks import MistuningKeys
 
 if TYPE_CHECKING:
     from stickslip.model import Model
@@ -38,7 +34,7 @@ class PeakRange(Table):
     end: Omega = Field(alias="to", description="Highest frequency.", examples=["40 Hz"])
 
 
-class MistuningStudyTable(Table):
+class MistuningStudyTable(MistuningKeys):
     """Amplification factors of many disks whose sectors deviate, and their distribution."""
 
     kind: Literal["mistuning-study"] = Field(description="The analysis.")
@@ -65,12 +61,6 @@ class MistuningStudyTable(Table):
         description="Number of patterns drawn; or the patterns, in units of the deviation.",
         examples=[1000],
     )
-    distribution: Annotated[
-        Literal["normal", "uniform"], WithJsonSchema({"enum": list(DISTRIBUTIONS)})
-    ] = Field(default="normal", description="Distribution of the patterns drawn.")
-    seed: Annotated[int, Field(ge=0, le=MAX_COUNT)] = Field(
-        default=0, description="Seed of the patterns drawn."
-    )
     dofs: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
         default=None,
         description="DOFs of a sector; left out: those that carry a force or a contact.",
@@ -83,46 +73,11 @@ class MistuningStudyTable(Table):
         description="Stiffnesses that all couplings take in turn; left out: their own.",
         examples=[["1e3 N/m", "1e4 N/m"]],
     )
-    measure: Literal["half_range", "max", "fundamental"] = Field(
-        default="half_range", description="Measure of the amplitude."
-    )
-    harmonics: Annotated[
-        Annotated[Count, Tag("<number>")] | Annotated[Literal["auto"], Tag("<text>")],
-        number_or("<text>"),
-    ] = Field(
-        default="auto", description="Highest harmonic kept, or 'auto': as the tolerance asks."
-    )
-    tolerance: Tolerance = Field(
-        default=1e-3, description="Relative accuracy of what is automatic."
-    )
-    residual: ResidualEntry = "centred"
-    max_harmonics: Count = Field(
-        default=MAX_HARMONICS, description="Highest harmonic that may be kept."
-    )
-    max_iterations: Count = Field(
-        default=MAX_ITERATIONS, description="Iterations per point before it counts as stalled."
-    )
-    threads: Count | None = Field(
-        default=None, description="Threads; left out: as many as there are processors."
-    )
-
     store: Text | None = Field(
         default=None,
         description="File in which disks are kept as they come, for a run that goes on where it "
         "was stopped; left out: beside the result.",
     )
-
-    @model_validator(mode="after")
-    def _require_settings(self) -> Self:
-        # what the analysis would refuse is refused while the file is read, before any computing
-        Settings(
-            harmonics=self.harmonics,
-            tolerance=self.tolerance,
-            residual=self.residual,
-            max_harmonics=self.max_harmonics,
-            max_iterations=self.max_iterations,
-        )
-        return self
 
     @property
     def levels(self) -> None:
@@ -146,17 +101,9 @@ class MistuningStudyTable(Table):
             self.deviation,
             omega=(self.omega.begin, self.omega.end),
             patterns=self.patterns,
-            seed=self.seed,
-            distribution=self.distribution,
             dofs=self.dofs,
             coupling_stiffness=self.coupling_stiffness,
-            measure=self.measure,
-            harmonics=self.harmonics,
-            tolerance=self.tolerance,
-            residual=self.residual,
-            threads=self.threads,
             store=self.store,
             progress=progress,
-            max_harmonics=self.max_harmonics,
-            max_iterations=self.max_iterations,
+            **self.part(MistuningKeys),
         )

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, Strict
 
 from stickslip.model import StructuralDamper
-from stickslip.study.entries import Dof, SlipForce, Table, Text
+from stickslip.settings.entries import Dof, SlipForce, Table, Text
 from stickslip.study.structure_table import Rows
 
 __all__ = ["StructuralTable"]

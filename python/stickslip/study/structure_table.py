@@ -8,9 +8,8 @@ from typing import Annotated
 from pydantic import BeforeValidator, Discriminator, Field, Strict, Tag
 
 from stickslip.checks import unknown
-from stickslip.errors import ModelError
-from stickslip.study.entries import (
-    HERE,
+from stickslip.errors import EntryError
+from stickslip.settings.entries import (
     Dof,
     Number,
     Rate,
@@ -80,16 +79,16 @@ def _matrix_form(value: object) -> str | None:
 def _rows(value: object) -> object:
     widths = {len(row) for row in value if isinstance(row, list)} if isinstance(value, list) else {}
     if len(widths) > 1:
-        raise ModelError(f"{HERE} has rows of different lengths")
+        raise EntryError("", " has rows of different lengths")
     return value
 
 
 def _damping(value: object) -> object:
     forms = ("rayleigh", "modal", "file")
     if isinstance(value, Mapping) and not value:
-        raise ModelError(f"{HERE} = {{}} is empty; write {{rayleigh = ...}} or {{modal = ...}}")
+        raise EntryError("", " = {} is empty; write {rayleigh = ...} or {modal = ...}")
     if isinstance(value, Mapping) and not {*forms, "key"} & value.keys():
-        raise ModelError(f"{HERE}: {unknown('key', next(iter(value)), forms)}")
+        raise EntryError("", f": {unknown('key', next(iter(value)), forms)}")
     return value
 
 

@@ -22,8 +22,9 @@ from stickslip.disk.arguments import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure
+from stickslip.settings.entries import FILE
+from stickslip.settings.refusal import refusal
 from stickslip.study.analysis_entries import level_name
-from stickslip.study.complaint import complaint
 from stickslip.study.limit_cycles_table import with_matrices
 from stickslip.study.structure_table import MatrixFile, ModalDampingTable, RayleighDamping
 from stickslip.study.tables import ForceTable, StudyTables
@@ -259,9 +260,9 @@ def _read(text: str) -> StudyTables:
         raise ModelError("not readable: a number is too long, or lists nest too deep") from None
 
     try:
-        return StudyTables.model_validate(content)
+        return StudyTables.model_validate(content, context=FILE)
     except ValidationError as error:
-        raise ModelError(complaint(error)) from None
+        raise refusal(error) from None
 
 
 def _real(text: str) -> float:

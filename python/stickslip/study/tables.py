@@ -12,15 +12,14 @@ from pydantic import (
     model_validator,
 )
 
-from stickslip.checks import MAX_COUNT, brief
-from stickslip.errors import ModelError
+from stickslip.checks import brief
+from stickslip.errors import EntryError, ModelError
 from stickslip.model import Force, Jenkins
-from stickslip.study.analysis import AnalysisTable
-from stickslip.study.disk_table import CouplingTable, DiskTable
-from stickslip.study.entries import (
-    HERE,
+from stickslip.settings.entries import (
+    ONE_OF,
     Angle,
     Dof,
+    Index,
     Newtons,
     SlipForce,
     StiffnessValue,
@@ -28,6 +27,8 @@ from stickslip.study.entries import (
     Text,
     chosen_by,
 )
+from stickslip.study.analysis import AnalysisTable
+from stickslip.study.disk_table import CouplingTable, DiskTable
 from stickslip.study.structural_table import StructuralTable
 from stickslip.study.structure_table import StructureTable
 
@@ -36,9 +37,10 @@ __all__ = ["ForceTable", "JenkinsTable", "OutputTable", "StudyTables"]
 
 def _two_dofs(value: object) -> object:
     if isinstance(value, list) and len(value) != 2:
-        raise ModelError(
-            f"{HERE} = {brief(value)} names {len(value)} dofs; give two, or write dof = ... for a "
-            "contact to ground"
+        raise EntryError(
+            "",
+            f" = {brief(value)} names {len(value)} dofs; give two, or write dof = ... for a "
+            "contact to ground",
         )
     return value
 
@@ -98,9 +100,7 @@ class ForceTable(Table):
     dof: Dof = Field(description="The DOF it acts on.")
     amplitude: Newtons = Field(description="Amplitude.", examples=["20.3 N", 20.3])
     phase: Angle = Field(default=0.0, description="Phase.", examples=["90 deg"])
-    harmonic: Annotated[int, Field(ge=0, le=MAX_COUNT)] = Field(
-        default=1, description="Multiple of omega; 0: a static load."
-    )
+    harmonic: Index = Field(default=1, description="Multiple of omega; 0: a static load.")
 
     @property
     def touched(self) -> tuple[str, ...]:
@@ -130,10 +130,10 @@ class OutputTable(Table):
         description="DOFs tabulated and drawn; left out: those that carry a force or a contact.",
         examples=[["tip", "damper"]],
     )
-    omega_unit: Literal["rad/s", "Hz"] = Field(
+    omega_unit: Annotated[Literal["rad/s", "Hz"], ONE_OF] = Field(
         default="rad/s", description="Unit of the frequency axis."
     )
-    length_unit: Annotated[Literal["m", "mm", "um"], BeforeValidator(_length_unit)] = Field(
+    length_unit: Annotated[Literal["m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)] = Field(
         default="m", description="Unit of the amplitudes."
     )
 
