@@ -243,7 +243,7 @@ def test_automatic_samples_of_random_systems(stiffness, limit, damping, mass):
         ({"evaluation": "marched", "samples": 512, "harmonics": "auto"}, "up to 255; .* 1024"),
         (
             {"evaluation": "marched", "samples": "many"},
-            "samples: unknown choice 'many'.* or a whole",
+            "unknown choice 'many'.* or a whole",
         ),
         ({"evaluation": "marched", "max_samples": 1000}, "max_samples: 1000 is not a power of two"),
         (

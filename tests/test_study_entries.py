@@ -38,7 +38,7 @@ BAD_ENTRIES = [
     (
         "amplitude = 1",
         "amplitude = 1\nharmonic = -1",
-        "force 1: harmonic: -1 lies below 0; give at",
+        "force 1: harmonic: -1 lies below 0",
     ),
     ("amplitude = 1", "amplitude = 1\nharmonic = 1.5", "harmonic: 1.5 is not an integer"),
     (

@@ -83,7 +83,7 @@ def _checked_function(function: FunctionType) -> Callable[..., Any]:
 
 
 def misfit(
-    function: FunctionType, args: tuple[object, ...], keywords: Mapping[str, object]
+    function: Callable[..., Any], args: tuple[object, ...], keywords: Mapping[str, object]
 ) -> str | None:
     """Word what of a call does not fit; None if nothing is found."""
     parameters = list(inspect.signature(function).parameters.values())

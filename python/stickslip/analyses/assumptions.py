@@ -335,7 +335,7 @@ def _harmonics(settings: ForcedSettings, arrays: Arrays, half_wave: bool) -> Dia
 
 
 def _frequencies(
-    settings: ForcedSettings, arrays: Arrays, missing: int, *, interrupted: bool
+    settings: ForcedSettings | ExactSettings, arrays: Arrays, missing: int, *, interrupted: bool
 ) -> Diagnostic | None:
     count = int((arrays.status != Status.NOT_COMPUTED.code).sum())
     reached = f"{arrays.omega[-1] if count else np.nan:.6g} rad/s"

@@ -21,7 +21,6 @@ from stickslip.results.dataset import (
     curve_arrays,
     curve_dataset,
     curve_parts,
-    settings_of,
 )
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
@@ -29,7 +28,7 @@ from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
 from stickslip.results.stability import States, flag_variable, stability_of, truth_of
-from stickslip.results.variables import Variable, names, state_names
+from stickslip.results.variables import Variable, names, settings_of, state_names
 
 if TYPE_CHECKING:
     from typing import Unpack

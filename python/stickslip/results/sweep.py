@@ -17,6 +17,7 @@ from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip.settings.balance import ForcedSettings
+    from stickslip.settings.orbits import ExactSettings
 
 __all__ = ["Sweep"]
 
@@ -27,13 +28,13 @@ class Sweep(Result):
 
     Attributes
     ----------
-    settings : ForcedSettings
+    settings : ForcedSettings or ExactSettings
         How.
     arrays : Arrays
         Every number by its name.
     """
 
-    settings: ForcedSettings
+    settings: ForcedSettings | ExactSettings
     arrays: Arrays
 
     @property

@@ -31,7 +31,7 @@ class PointSettings(Settings):
     """How long a point is iterated."""
 
     max_iterations: Count = Field(
-        100, description="Iterations per point before it is reported as stalled."
+        default=100, description="Iterations per point before it is reported as stalled."
     )
 
 
@@ -39,7 +39,7 @@ class SteadySettings(PointSettings):
     """What a steady state leaves open."""
 
     residual: Residual = Field(
-        "centred",
+        default="centred",
         description="Force [N] that a contact holds at mid-range of its displacement if it never "
         "slips; the steady state alone does not determine it. See "
         "`ForcedResponse.residual_bounds`.",
@@ -51,15 +51,15 @@ class HarmonicSettings(SteadySettings):
     """Which harmonics are kept, and how accurately."""
 
     harmonics: Harmonics = Field(
-        "auto",
+        default="auto",
         description='Highest harmonic kept, or "auto": per point, as many as `tolerance` asks for.',
     )
     tolerance: Tolerance = Field(
-        1e-3,
+        default=1e-3,
         description="Relative accuracy of automatic harmonics, samples and steps, from 1e-8 to "
         "0.5.",
     )
-    max_harmonics: Count = Field(255, description="Highest harmonic that may be kept.")
+    max_harmonics: Count = Field(default=255, description="Highest harmonic that may be kept.")
 
     @model_validator(mode="after")
     def _require_harmonics_below_their_limit(self) -> Self:
@@ -90,28 +90,28 @@ class BalanceSettings(HarmonicSettings):
     """How a forced response is computed by harmonic balance."""
 
     method: Annotated[Literal["newton", "broyden"], ONE_OF] = Field(
-        "newton",
+        default="newton",
         description="Solver of the balance equations. Broyden's updates one Jacobian per point by "
         "rank one; on failure both go over to the same homotopy.",
     )
     jacobian: Annotated[Literal["exact", "differences"], ONE_OF] = Field(
-        "exact",
+        default="exact",
         description="First Jacobian of Broyden's method: the exact one, or forward differences.",
     )
     evaluation: Annotated[Literal["exact", "marched"], ONE_OF] = Field(
-        "exact",
+        default="exact",
         description="Friction laws by exact Fourier integrals, or marched through equidistant "
         "samples: the alternating frequency/time scheme, for comparisons and for laws without a "
         "closed form. Its sampling error is part of the error estimate.",
     )
     samples: Harmonics = Field(
-        "auto",
+        default="auto",
         description="Samples per period of the marched evaluation, even and at least 4 (H + 1), or "
         '"auto": per point the power of two whose sampling error stays below a quarter of '
         "`tolerance`.",
     )
     max_samples: Annotated[int, Whole(32, 1 << 20)] = Field(
-        16384, description="Most automatic samples per period, a power of two."
+        default=16384, description="Most automatic samples per period, a power of two."
     )
 
     @model_validator(mode="after")
@@ -153,6 +153,6 @@ class ForcedSettings(BalanceSettings):
     """How a forced response was computed."""
 
     span: Span | None = Field(
-        None,
+        default=None,
         description="Ends of an adaptive sweep [rad/s]; none: omega was given point by point.",
     )

@@ -43,12 +43,12 @@ def _orders(order: int | Literal["auto"]) -> int | Literal["auto"]:
 
 class _ModeSettings(Settings):
     mode: Index = Field(
-        0,
+        default=0,
         description="Mode of the stuck structure, counted from 0; with damping C the branch begins "
         "at the ratio at which this mode loses it.",
     )
     harmonics: Annotated[Harmonics, AfterValidator(_orders)] = Field(
-        31,
+        default=31,
         description='Harmonics kept, odd ones alone, at all points of the branch; "auto": as '
         "`tolerance` asks, which one point in twenty may miss, with that status. Of exact orbits "
         "the highest reported.",
@@ -59,23 +59,25 @@ class BranchSettings(_ModeSettings):
     """How a branch of limit cycles is computed."""
 
     method: CycleMethod = Field(
-        "newton",
+        default="newton",
         description="Harmonic balance with the frequency as an unknown, or exact orbits by "
         "shooting with the period as an unknown.",
     )
     tolerance: Tolerance = Field(
-        1e-3, description="Relative accuracy that automatic harmonics aim at."
+        default=1e-3, description="Relative accuracy that automatic harmonics aim at."
     )
     stability: Flag = Field(
-        True,
+        default=True,
         description="Whether Floquet multipliers are computed: those of the exact orbit to which a "
         "point of the harmonic balance belongs, and along the exact flow from the balance where "
         "there is none. Not for travelling waves.",
     )
     max_harmonics: Annotated[int, Whole(1, MOST_HARMONICS)] = Field(
-        255, description='Highest harmonic that "auto" may keep.'
+        default=255, description='Highest harmonic that "auto" may keep.'
     )
-    max_points: Annotated[int, Whole(2)] = Field(5000, description="Most points of a branch.")
+    max_points: Annotated[int, Whole(2)] = Field(
+        default=5000, description="Most points of a branch."
+    )
 
     @property
     def fixed_harmonics(self) -> int | None:
@@ -93,17 +95,18 @@ class CycleSettings(BranchSettings):
     """How limit cycles were computed."""
 
     variation: Variation | None = Field(
-        None, description="The parameter of contacts that is followed; none for the ratio r."
+        default=None,
+        description="The parameter of contacts that is followed; none for the ratio r.",
     )
     ratio: Annotated[float, Field(gt=0.0)] = Field(
-        1.0, description="r, where a parameter of contacts is followed."
+        default=1.0, description="r, where a parameter of contacts is followed."
     )
     values: Annotated[tuple[float, ...], Strict(False)] | None = Field(
-        None,
+        default=None,
         description="Values of what is followed at which cycles are wanted; none for the branch.",
     )
     span: Annotated[tuple[float, float], Strict(False)] = Field(
-        (LOWEST_RATIO, inf), description="Range of what is followed."
+        default=(LOWEST_RATIO, inf), description="Range of what is followed."
     )
 
     @property
@@ -119,7 +122,8 @@ class CycleSettings(BranchSettings):
 
 class _LimitSettings(_ModeSettings):
     method: CycleMethod = Field(
-        "exact", description="Exact orbits, or harmonic balance; see `stickslip.limit_cycles`."
+        default="exact",
+        description="Exact orbits, or harmonic balance; see `stickslip.limit_cycles`.",
     )
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from numbers import Integral
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from stickslip.checks import MAX_COUNT, brief, members, whole_number
+from stickslip.checks import brief, members, whole_number
 from stickslip.errors import EntryError
 from stickslip.settings.balance import PointSettings, SteadySettings
 from stickslip.settings.entries import ONE_OF, Flag, Index, Span, Tolerance, Whole
@@ -19,10 +20,11 @@ class OrbitSettings(SteadySettings):
     """How exact orbits are computed."""
 
     harmonics: Annotated[int, Whole(1, 255)] = Field(
-        32, description="Highest harmonic of each orbit reported; the orbits do not depend on it."
+        default=32,
+        description="Highest harmonic of each orbit reported; the orbits do not depend on it.",
     )
     tolerance: Tolerance = Field(
-        1e-3,
+        default=1e-3,
         description="Relative accuracy to which the frequencies of a range are chosen, from 1e-8 "
         "to 0.5.",
     )
@@ -31,9 +33,9 @@ class OrbitSettings(SteadySettings):
 class ExactSettings(OrbitSettings):
     """How exact orbits were computed."""
 
-    method: Annotated[Literal["exact"], ONE_OF] = Field("exact", description="Shooting.")
+    method: Annotated[Literal["exact"], ONE_OF] = Field(default="exact", description="Shooting.")
     span: Span | None = Field(
-        None, description="Ends of the range of frequencies [rad/s]; none: omega was given."
+        default=None, description="Ends of the range of frequencies [rad/s]; none: omega was given."
     )
 
     @property
@@ -51,7 +53,7 @@ class SingleHarmonicSettings(PointSettings):
     """How a single harmonic is balanced."""
 
     estimate: Flag = Field(
-        True,
+        default=True,
         description="Estimate the error of leaving the higher harmonics out, which takes most of "
         "the time. Without it `ForcedResponse.error_estimate` is not-a-number.",
     )
@@ -67,7 +69,10 @@ def _points(value: object) -> int | str | tuple[int, ...]:
     given = members(value, "", "points=[...]")
     if not given:
         raise EntryError("", ": empty; give at least one position")
-    return tuple(whole_number(one, "", smallest=-MAX_COUNT) for one in given)
+    for one in given:
+        if isinstance(one, bool) or not isinstance(one, Integral):
+            raise EntryError("", f": {brief(one)} is not an integer; give positions from 0")
+    return tuple(map(int, given))
 
 
 class CertifySettings(Settings):
@@ -78,11 +83,11 @@ class CertifySettings(Settings):
         BeforeValidator(_points),
         WithJsonSchema({"type": ["integer", "string", "array"]}),
     ] = Field(
-        20,
+        default=20,
         description='How many points to choose at random, "all", or the positions of points from '
         "0. Points that are not solved are passed over.",
         examples=[20, "all", [0, 10, 20]],
     )
     seed: Index = Field(
-        0, description="Of the random choice: the same seed chooses the same points."
+        default=0, description="Of the random choice: the same seed chooses the same points."
     )

@@ -26,7 +26,8 @@ class PeakSettings(HarmonicSettings):
     """Which amplitude has the peak."""
 
     measure: Measure = Field(
-        "half_range", description="Measure of the amplitude; see `ForcedResponse.amplitude`."
+        default="half_range",
+        description="Measure of the amplitude; see `ForcedResponse.amplitude`.",
     )
 
 
@@ -38,7 +39,7 @@ class DamperKeys(_FollowedPeak, CommonSettings):
     """How a damper curve is computed."""
 
     mode: Index = Field(
-        0, description="The mode around whose resonance the peak is sought, counted from 0."
+        default=0, description="The mode around whose resonance the peak is sought, counted from 0."
     )
 
 
@@ -55,16 +56,16 @@ class MistuningKeys(PeakSettings):
     """How the disks of a mistuning study are made and computed."""
 
     seed: Index = Field(
-        0,
+        default=0,
         description="Of the patterns drawn. Pattern i of a seed is the same however many there "
         "are, and the same for all deviations and couplings.",
     )
     distribution: _Distribution = Field(
-        "normal",
+        default="normal",
         description="Distribution of zero mean and unit deviation of the patterns drawn.",
     )
     threads: Count | None = Field(
-        None, description="Threads. Default: as many as there are processors."
+        default=None, description="Threads. Default: as many as there are processors."
     )
 
 
@@ -75,6 +76,6 @@ class MistuningSettings(PeakSettings):
         description="Range of frequencies in which peaks are the highest points [rad/s]."
     )
     distribution: _Distribution | None = Field(
-        "normal", description="What patterns are drawn from; none: they were given."
+        default="normal", description="What patterns are drawn from; none: they were given."
     )
-    seed: Index | None = Field(0, description="Of the patterns drawn.")
+    seed: Index | None = Field(default=0, description="Of the patterns drawn.")

@@ -115,7 +115,7 @@ def configured(
             try:
                 given = signature.bind(*args, **keywords).arguments
             except TypeError:
-                raise CallError(misfit(call, args, keywords)) from None
+                raise CallError(str(misfit(call, args, keywords))) from None
             settings = kind.of(**{name: given.pop(name) for name in keys if name in given})
             return function(**given, settings=settings)
 

@@ -28,7 +28,7 @@ class CommonSettings(Settings):
     """How contacts share the value of a parameter."""
 
     common: Common = Field(
-        "value",
+        default="value",
         description="Whether the contacts all take the value, or multiply their own by it. The "
         "stiffness of a structure-like damper is a matrix, and takes a factor alone.",
     )
@@ -41,7 +41,7 @@ class Variation(CommonSettings):
         description="A parameter of contacts, or a factor on all forces."
     )
     contacts: Annotated[tuple[Chosen, ...], Strict(False)] = Field(
-        (),
+        default=(),
         description="Names of the contacts whose parameter it is, or points of them as (name, "
         "point); none for a level.",
     )

@@ -97,7 +97,7 @@ class MistuningStudyTable(MistuningKeys):
     def run(self, model: Model, progress: Callable[[float], None] | None) -> MistuningStudy:
         """Compute the study, but for what its store holds."""
         return mistuning_study(
-            model,  # type: ignore[arg-type]
+            model,
             self.deviation,
             omega=(self.omega.begin, self.omega.end),
             patterns=self.patterns,
