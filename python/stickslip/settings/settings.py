@@ -92,9 +92,8 @@ def configured(
     """
 
     def decorate(function: Callable[..., _Result]) -> Callable[..., _Result]:
-        own = [
-            one for one in inspect.signature(function).parameters.values() if one.name != "settings"
-        ]
+        written = inspect.signature(function)
+        own = [one for one in written.parameters.values() if one.name != "settings"]
         keys = kind.model_fields
         ordered = sorted(keys, key=lambda name: not keys[name].is_required())
 
@@ -107,7 +106,8 @@ def configured(
                 *(_parameter(name, keys[name], placed=True) for name in placed),
                 *(_parameter(name, keys[name]) for name in ordered if name not in placed),
                 *of_kind(inspect.Parameter.KEYWORD_ONLY),
-            ]
+            ],
+            return_annotation=written.return_annotation,
         )
 
         @wraps(function)
@@ -120,6 +120,7 @@ def configured(
             return function(**given, settings=settings)
 
         call.__signature__ = signature  # type: ignore[attr-defined]
+        call.__settings__ = kind  # type: ignore[attr-defined]
         call.__doc__ = _documented(function.__doc__ or "", signature, keys)
         return call
 

@@ -7,12 +7,10 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-import numpy as np
 from pydantic import Field, Strict, Tag, model_validator
 
 from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.checks import real_matrix
-from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import (
@@ -23,15 +21,14 @@ from stickslip.settings.entries import (
     Table,
     number_or,
 )
+from stickslip.study.matrices import damping_of, matrix_of
 from stickslip.study.structure_table import (
     DampingSource,
     ModalDampingTable,
     RayleighDamping,
-    StructureTable,
 )
 
 if TYPE_CHECKING:
-    from stickslip.model.damping import DampingLaw
     from stickslip.results.limit_cycles import LimitCycles
     from stickslip.study.tables import StudyTables
 
@@ -131,7 +128,7 @@ class LimitCyclesTable(CycleKeys):
         }
         return limit_cycles(
             model,
-            self._negative_damping(),
+            damping_of(self.negative_damping, Path()),
             ratio=ratio,
             stiffness=spans["stiffness"],
             slip_force=spans["slip_force"],
@@ -139,19 +136,6 @@ class LimitCyclesTable(CycleKeys):
             progress=progress,
             **self.part(CycleKeys),
         )
-
-    def _negative_damping(self) -> np.ndarray | DampingLaw:
-        from stickslip.model.structure import ModalDamping, Rayleigh
-
-        match self.negative_damping:
-            case RayleighDamping(rayleigh=factor):
-                return Rayleigh(mass=factor.mass, stiffness=factor.stiffness)
-            case ModalDampingTable(modal=ratio):
-                return ModalDamping(ratio)
-            case tuple() as rows:
-                return np.array(rows, dtype=np.float64)
-            case other:
-                raise ModelError(f"negative_damping: {other!r} has not been read")
 
 
 def with_matrices(tables: StudyTables, folder: Path) -> StudyTables:
@@ -162,9 +146,7 @@ def with_matrices(tables: StudyTables, folder: Path) -> StudyTables:
     source = analysis.negative_damping
     if isinstance(source, RayleighDamping | ModalDampingTable | tuple):
         return tables
-    from stickslip.study.study import _damping
-
-    matrix = _damping(StructureTable.model_construct(damping=source), folder)
+    matrix = matrix_of(source, folder, "negative_damping")
     rows = tuple(tuple(map(float, row)) for row in real_matrix(matrix, "negative_damping"))
     read = analysis.model_copy(update={"negative_damping": rows})
     return tables.model_copy(update={"analysis": read})
