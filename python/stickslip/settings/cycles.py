@@ -8,7 +8,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import AfterValidator, Field, Strict
 
 from stickslip.checks import whole_number
-from stickslip.settings.entries import ONE_OF, Flag, Harmonics, Index, Tolerance, Whole
+from stickslip.settings.entries import ONE_OF, Factor, Flag, Harmonics, Index, Tolerance, Whole
 from stickslip.settings.settings import Settings
 from stickslip.settings.variation import CommonSettings, Variation
 
@@ -98,9 +98,7 @@ class CycleSettings(BranchSettings):
         default=None,
         description="The parameter of contacts that is followed; none for the ratio r.",
     )
-    ratio: Annotated[float, Field(gt=0.0)] = Field(
-        default=1.0, description="r, where a parameter of contacts is followed."
-    )
+    ratio: Factor = Field(default=1.0, description="r, where a parameter of contacts is followed.")
     values: Annotated[tuple[float, ...], Strict(False)] | None = Field(
         default=None,
         description="Values of what is followed at which cycles are wanted; none for the branch.",

@@ -32,7 +32,7 @@ from stickslip.errors import EntryError
 from stickslip.units import quantity
 
 __all__ = [
-    "FILE",
+    "CALL",
     "ONE_OF",
     "RESIDUALS",
     "Angle",
@@ -67,17 +67,17 @@ __all__ = [
     "span_of",
 ]
 
-FILE = "study file"
-"""Context of the validation of a study file, whose quantities may carry units."""
+CALL = "call"
+"""Context of the validation of a function's arguments; texts with units stand in study files."""
 
 # ----------------------------------------------------------------------------------------- numbers
 
 
 def _number(value: Any, info: ValidationInfo, unit: str, *, finite: bool = True) -> float:
     """Return a number in SI units; of study files also a text with a unit."""
-    if info.context == FILE:
-        return quantity(value, unit, "", finite=finite)
-    return real_number(value, "", finite=finite)
+    if info.context == CALL:
+        return real_number(value, "", finite=finite)
+    return quantity(value, unit, "", finite=finite)
 
 
 def quantity_of(unit: str, bound: str = "", *, finite: bool = True) -> BeforeValidator:
@@ -212,7 +212,7 @@ def _count_or_auto(value: object) -> int | str:
 
 
 def _residual(value: object, info: ValidationInfo) -> float | str:
-    written = info.context == FILE and isinstance(value, str) and value[:1] in "+-.0123456789"
+    written = info.context != CALL and isinstance(value, str) and value[:1] in "+-.0123456789"
     if not isinstance(value, str) or written:
         return _number(value, info, "N")
     if value not in RESIDUALS:

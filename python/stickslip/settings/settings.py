@@ -15,10 +15,10 @@ from pydantic.fields import FieldInfo
 
 from stickslip.calls import misfit
 from stickslip.errors import CallError
-from stickslip.settings.entries import Table
+from stickslip.settings.entries import CALL, Table
 from stickslip.settings.refusal import refusal
 
-__all__ = ["Settings", "configured", "type_in_words"]
+__all__ = ["Settings", "configured", "described", "type_in_words"]
 
 _Result = TypeVar("_Result")
 _INDENT = 4 * " "
@@ -39,7 +39,7 @@ class Settings(Table):
             If a value is of the wrong type or outside its range.
         """
         try:
-            return cls.model_validate(values)
+            return cls.model_validate(values, context=CALL)
         except ValidationError as error:
             raise refusal(error) from None
 
@@ -143,13 +143,14 @@ def _documented(text: str, signature: inspect.Signature, keys: Mapping[str, Fiel
     for block in re.split(rf"\n(?={indent}\S)", section[2]):
         names = block.split(" : ")[0].replace("*", "").split(", ")
         entries |= dict.fromkeys((name.strip() for name in names), block)
-    entries |= {name: _entry(name, field, indent) for name, field in keys.items()}
+    entries |= {name: described(name, field, indent) for name, field in keys.items()}
     blocks = dict.fromkeys(entries[name] for name in signature.parameters if name in entries)
     head = text[: section.start(2)]
     return head + "\n".join(blocks) + text[section.end(2) :]
 
 
-def _entry(name: str, field: FieldInfo, indent: str) -> str:
+def described(name: str, field: FieldInfo, indent: str) -> str:
+    """Return what numpydoc says of a key."""
     optional = "" if field.is_required() else ", optional"
     first = f"{indent}{name} : {type_in_words(field.annotation, field.metadata)}{optional}"
     inner = indent + _INDENT

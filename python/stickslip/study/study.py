@@ -19,7 +19,6 @@ from stickslip.disk.arguments import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Structure
-from stickslip.settings.entries import FILE
 from stickslip.settings.refusal import refusal
 from stickslip.study.analysis_entries import level_name
 from stickslip.study.limit_cycles_table import with_matrices
@@ -255,7 +254,7 @@ def _read(text: str) -> StudyTables:
         raise ModelError("not readable: a number is too long, or lists nest too deep") from None
 
     try:
-        return StudyTables.model_validate(content, context=FILE)
+        return StudyTables.model_validate(content)
     except ValidationError as error:
         raise refusal(error) from None
 
