@@ -222,7 +222,7 @@ def _residual(value: object, info: ValidationInfo) -> float | str:
 
 def span_of(span: object, entry: str = "") -> tuple[float, float]:
     """Return the two ends of a range of frequencies, checked."""
-    if not isinstance(span, tuple | list):
+    if not isinstance(span, tuple):
         raise EntryError(entry, ": give a range (from, to) in rad/s")
     if len(span) != 2:
         raise EntryError(entry, f": a range has two ends, not {len(span)}; write (start, end)")
