@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
 import numpy as np
 from pydantic import (
@@ -16,6 +16,7 @@ from pydantic import (
     GetCoreSchemaHandler,
     PlainValidator,
     Strict,
+    Tag,
     ValidationInfo,
     WithJsonSchema,
     model_validator,
@@ -44,6 +45,8 @@ __all__ = [
     "Harmonics",
     "Index",
     "Length",
+    "ListOr",
+    "Many",
     "Measure",
     "Newtons",
     "Number",
@@ -52,6 +55,7 @@ __all__ = [
     "Ratio",
     "Residual",
     "SlipForce",
+    "Some",
     "Span",
     "StiffnessValue",
     "Table",
@@ -144,6 +148,11 @@ def _flag(value: object) -> bool:
 
 ONE_OF = _OneOf()
 
+_T = TypeVar("_T")
+_R = TypeVar("_R")
+Many: TypeAlias = Annotated[tuple[_T, ...], Strict(False)]
+Some: TypeAlias = Annotated[tuple[_T, ...], Strict(False), Field(min_length=1)]
+
 Newtons = Annotated[float, quantity_of("N"), _quantity_schema("20.3 N", "1.2 kN")]
 SlipForce = Annotated[
     float, quantity_of("N", "not be negative", finite=False), _quantity_schema("246 N", "1.2 kN")
@@ -198,7 +207,7 @@ _Contact = Annotated[
     PlainValidator(_contact),
     WithJsonSchema({"type": ["string", "array"], "examples": ["blade", ["structural", 0]]}),
 ]
-Contacts = Annotated[tuple[_Contact, ...], Strict(False), Field(min_length=1)]
+Contacts = Some[_Contact]
 
 # ------------------------------------------------------------------------- numbers or words, ranges
 
@@ -295,3 +304,9 @@ def number_or(*others: str) -> Discriminator:
         return next((other for other in others if isinstance(value, kinds[other])), "<number>")
 
     return Discriminator(form)
+
+
+ListOr: TypeAlias = Annotated[
+    Annotated[Some[_T], Tag("<list>")] | Annotated[_R, Tag("<number>")], number_or("<list>")
+]
+"""A list of some, or something else."""

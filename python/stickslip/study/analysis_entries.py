@@ -10,14 +10,22 @@ from numpy.typing import NDArray
 from pydantic import (
     Discriminator,
     Field,
-    Strict,
     Tag,
     model_validator,
 )
 
-from stickslip.settings.entries import ONE_OF, Dof, Factor, Omega, Table, Whole
+from stickslip.settings.entries import ONE_OF, Dof, Factor, Omega, Some, Table, Whole
 
-__all__ = ["AnalysisEntries", "OmegaEntry", "OmegaRange", "level_name", "omegas"]
+__all__ = [
+    "AnalysisEntries",
+    "ObserveEntries",
+    "OmegaEntry",
+    "OmegaRange",
+    "PeakRange",
+    "SingleResult",
+    "level_name",
+    "omegas",
+]
 
 
 def level_name(level: float) -> str:
@@ -62,8 +70,7 @@ def _omega_form(value: object) -> str | None:
 
 
 OmegaEntry = Annotated[
-    Annotated[OmegaRange, Tag("<range>")]
-    | Annotated[tuple[Omega, ...], Strict(False), Field(min_length=1), Tag("<list>")],
+    Annotated[OmegaRange, Tag("<range>")] | Annotated[Some[Omega], Tag("<list>")],
     Discriminator(
         _omega_form,
         custom_error_type="omega_form",
@@ -83,15 +90,36 @@ def omegas(
     return entry.values() if isinstance(entry, OmegaRange) else list(entry)
 
 
-class AnalysisEntries(Table):
-    """The keys of every analysis."""
+class PeakRange(Table):
+    """The range of frequencies in which peaks are looked for."""
 
-    observe: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
+    begin: Omega = Field(alias="from", description="Lowest frequency.", examples=["150 rad/s"])
+    end: Omega = Field(alias="to", description="Highest frequency.", examples=["40 Hz"])
+
+
+class SingleResult(Table):
+    """An analysis without levels."""
+
+    @property
+    def levels(self) -> None:
+        """There is one result."""
+        return None
+
+
+class ObserveEntries(Table):
+    """The key of every analysis that observes DOFs."""
+
+    observe: Some[Dof] | None = Field(
         default=None,
         description="DOFs to keep in the results; left out: all but modal coordinates.",
         examples=[["tip"]],
     )
-    levels: Annotated[tuple[Factor, ...], Strict(False), Field(min_length=1)] | None = Field(
+
+
+class AnalysisEntries(ObserveEntries):
+    """The keys of every analysis with forces."""
+
+    levels: Some[Factor] | None = Field(
         default=None,
         description="Factors on every force: one result each; left out: the forces as written.",
         examples=[[0.5, 1, 2]],

@@ -6,13 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Field, Strict, model_validator
+from pydantic import Field, model_validator
 
 from stickslip.analyses.basin_map import basin_map
 from stickslip.model import Model
 from stickslip.results.arrays import Float
-from stickslip.settings.entries import Dof, Index, Length, Table, Whole
+from stickslip.settings.entries import Dof, Index, Length, Many, Table, Whole
 from stickslip.settings.motion import Axis, BasinKeys
+from stickslip.study.analysis_entries import ObserveEntries, SingleResult
 
 if TYPE_CHECKING:
     from stickslip.results.basin_map import BasinMap
@@ -49,11 +50,11 @@ class AxisTable(Table):
         return np.linspace(self.begin, self.end, self.points)
 
 
-class BasinMapTable(BasinKeys):
+class BasinMapTable(BasinKeys, ObserveEntries, SingleResult):
     """What becomes of free motions from many starts."""
 
     kind: Literal["basin-map"] = Field(description="The analysis.")
-    axes: Annotated[tuple[AxisTable, ...], Strict(False)] = Field(
+    axes: Many[AxisTable] = Field(
         min_length=2,
         max_length=2,
         description="The two axes of the map, the first drawn upwards.",
@@ -63,22 +64,12 @@ class BasinMapTable(BasinKeys):
         default={},
         description="Displacements by DOF that the axes are added to; left out: none.",
     )
-    observe: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
-        default=None,
-        description="DOFs to keep in the results; left out: all but modal coordinates.",
-        examples=[["tip"]],
-    )
 
     @model_validator(mode="after")
     def _require_distinct_axes(self) -> Self:
         if self.axes[0].axis == self.axes[1].axis:
             raise ValueError("axes holds the same axis twice; give two of them")
         return self
-
-    @property
-    def levels(self) -> None:
-        """Free motions have no forces."""
-        return None
 
     @property
     def named_dofs(self) -> Mapping[str, Sequence[str]]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Field, Strict, Tag, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from stickslip.analyses.damper_curve import damper_curve
 from stickslip.model import Model
@@ -14,14 +14,14 @@ from stickslip.results.arrays import Float
 from stickslip.settings.entries import (
     Contacts,
     Factor,
-    Omega,
+    ListOr,
     SlipForce,
     Table,
     Whole,
-    number_or,
     quantity_of,
 )
 from stickslip.settings.peaks import DamperKeys
+from stickslip.study.analysis_entries import PeakRange, SingleResult
 
 if TYPE_CHECKING:
     from stickslip.results.damper_curve import DamperCurve
@@ -34,13 +34,6 @@ Stiffness = Annotated[
     quantity_of("N/m", "not be negative", finite=False),
     WithJsonSchema({"type": ["number", "string"]}),
 ]
-
-
-class OmegaSpan(Table):
-    """The range of frequencies in which the peak is looked for."""
-
-    begin: Omega = Field(alias="from", description="Lowest frequency.", examples=["150 rad/s"])
-    end: Omega = Field(alias="to", description="Highest frequency.", examples=["40 Hz"])
 
 
 class SlipForceRange(Table):
@@ -78,43 +71,22 @@ def _values(given: Range | tuple[float, ...] | None) -> Float | None:
     return np.geomspace(given.begin, given.end, given.points)
 
 
-class DamperCurveTable(DamperKeys):
+class DamperCurveTable(DamperKeys, SingleResult):
     """Peak amplitude and frequency along a parameter of the contacts or the level of the forces."""
 
     kind: Literal["damper-curve"] = Field(description="The analysis.")
-    slip_force: (
-        Annotated[
-            Annotated[tuple[SlipForce, ...], Strict(False), Field(min_length=1), Tag("<list>")]
-            | Annotated[SlipForceRange, Tag("<number>")],
-            number_or("<list>"),
-        ]
-        | None
-    ) = Field(
+    slip_force: ListOr[SlipForce, SlipForceRange] | None = Field(
         default=None,
         title="slip_force",
         description="Slip forces: a list or a range.",
         examples=[{"from": "1 N", "to": "10 kN", "points": 60}],
     )
-    stiffness: (
-        Annotated[
-            Annotated[tuple[Stiffness, ...], Strict(False), Field(min_length=1), Tag("<list>")]
-            | Annotated[StiffnessRange, Tag("<number>")],
-            number_or("<list>"),
-        ]
-        | None
-    ) = Field(
+    stiffness: ListOr[Stiffness, StiffnessRange] | None = Field(
         default=None,
         title="stiffness",
         description="Contact stiffnesses: a list, inf for rigid, or a range.",
     )
-    level: (
-        Annotated[
-            Annotated[tuple[Factor, ...], Strict(False), Field(min_length=1), Tag("<list>")]
-            | Annotated[LevelRange, Tag("<number>")],
-            number_or("<list>"),
-        ]
-        | None
-    ) = Field(
+    level: ListOr[Factor, LevelRange] | None = Field(
         default=None,
         title="level",
         description="Factors on every force: a list or a range.",
@@ -123,7 +95,7 @@ class DamperCurveTable(DamperKeys):
         default=None,
         description="Names of the contacts that take the value, or [name, point]; left out: all.",
     )
-    omega: OmegaSpan | None = Field(
+    omega: PeakRange | None = Field(
         default=None,
         title="omega",
         description="Range of the peak; left out: around the resonance of 'mode'.",
@@ -135,11 +107,6 @@ class DamperCurveTable(DamperKeys):
         if len(given) != 1:
             raise ValueError("give exactly one of slip_force, stiffness and level")
         return self
-
-    @property
-    def levels(self) -> None:
-        """A damper curve is one result."""
-        return None
 
     @property
     def observe(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, Strict, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from stickslip.checks import brief
 from stickslip.disk import Coupling
@@ -21,6 +21,7 @@ from stickslip.settings.entries import (
     Index,
     Number,
     Ratio,
+    Some,
     StiffnessValue,
     Table,
 )
@@ -69,7 +70,7 @@ class InterfaceTable(Table):
 class MistuningTable(Table):
     """Deviations of the sectors' stiffness: given, or drawn at random."""
 
-    pattern: Annotated[tuple[Ratio, ...], Strict(False), Field(min_length=1)] | None = Field(
+    pattern: Some[Ratio] | None = Field(
         default=None,
         description="Deviation of each sector; left out: drawn at random.",
         examples=[[0.02, "-3 %", 0.0]],

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Literal, Self
 
-from pydantic import Field, Strict, Tag, model_validator
+from pydantic import Field, model_validator
 
 from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.checks import real_matrix
@@ -16,11 +16,12 @@ from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import (
     Contacts,
     Factor,
+    ListOr,
     SlipForce,
     StiffnessValue,
     Table,
-    number_or,
 )
+from stickslip.study.analysis_entries import SingleResult
 from stickslip.study.matrices import damping_of, matrix_of
 from stickslip.study.structure_table import (
     DampingSource,
@@ -56,7 +57,7 @@ class SlipForceSpan(Table):
     end: SlipForce = Field(alias="to", description="Highest slip force.")
 
 
-class LimitCyclesTable(CycleKeys):
+class LimitCyclesTable(CycleKeys, SingleResult):
     """Limit cycles under the damping C + r C_neg, along the ratio r or a parameter of contacts."""
 
     kind: Literal["limit-cycles"] = Field(description="The analysis.")
@@ -64,14 +65,7 @@ class LimitCyclesTable(CycleKeys):
         description="C_neg: a matrix, Rayleigh damping or modal damping with negative numbers.",
         examples=[{"rayleigh": {"mass": -7.49, "stiffness": -2.6e-5}}, {"modal": [-0.01, 0.0]}],
     )
-    ratio: (
-        Annotated[
-            Annotated[tuple[Factor, ...], Strict(False), Field(min_length=1), Tag("<list>")]
-            | Annotated[RatioRange, Tag("<number>")],
-            number_or("<list>"),
-        ]
-        | None
-    ) = Field(
+    ratio: ListOr[Factor, RatioRange] | None = Field(
         default=None,
         title="ratio",
         description="Ratios r: a list or a range; left out: the whole branch.",
@@ -98,11 +92,6 @@ class LimitCyclesTable(CycleKeys):
 
     def _ratios(self) -> tuple[float, ...]:
         return self.ratio if isinstance(self.ratio, tuple) else ()
-
-    @property
-    def levels(self) -> None:
-        """A branch is one result."""
-        return None
 
     @property
     def observe(self) -> None:

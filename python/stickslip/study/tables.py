@@ -20,8 +20,10 @@ from stickslip.settings.entries import (
     Angle,
     Dof,
     Index,
+    Many,
     Newtons,
     SlipForce,
+    Some,
     StiffnessValue,
     Table,
     Text,
@@ -125,7 +127,7 @@ ContactTable = Annotated[
 class OutputTable(Table):
     """What is tabulated and drawn."""
 
-    dofs: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
+    dofs: Some[Dof] | None = Field(
         default=None,
         description="DOFs tabulated and drawn; left out: those that carry a force or a contact.",
         examples=[["tip", "damper"]],
@@ -151,18 +153,14 @@ class StudyTables(Table):
     )
     description: str = Field(default="", description="What is studied, for the reader.")
     structure: StructureTable = Field(description="The linear structure.")
-    contact: Annotated[tuple[ContactTable, ...], Strict(False)] = Field(
-        default=(), description="The friction contacts."
-    )
-    force: Annotated[tuple[ForceTable, ...], Strict(False)] = Field(
-        default=(), description="The forces."
-    )
+    contact: Many[ContactTable] = Field(default=(), description="The friction contacts.")
+    force: Many[ForceTable] = Field(default=(), description="The forces.")
     disk: DiskTable | None = Field(
         default=None,
         title="Disk",
         description="Makes the structure a sector of a bladed disk; left out: it is the whole.",
     )
-    coupling: Annotated[tuple[CouplingTable, ...], Strict(False)] = Field(
+    coupling: Many[CouplingTable] = Field(
         default=(), description="Springs between neighbouring sectors of the disk."
     )
     analysis: AnalysisTable = Field(description="What to compute.")
