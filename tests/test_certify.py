@@ -223,7 +223,7 @@ def test_rounding_beside_a_static_load_is_no_error():
         (True, {}, "points: True is not an integer"),
         ([], {}, "points: empty; give at least one position"),
         ([51], {}, "index: 51; there are 51 points, 0 to 50"),
-        ([1.0], {}, "index: 1.0 is not an integer"),
+        ([1.0], {}, "points: 1.0 is not an integer"),
         (3, {"seed": -1}, "seed: -1 lies below 0"),
         (3, {"dofs": "tpi"}, r"unknown dof 'tpi'; did you mean 'tip'\?"),
         (3, {"dofs": []}, "dofs: empty"),

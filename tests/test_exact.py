@@ -8,8 +8,8 @@ import pytest
 
 import stickslip as ss
 from stickslip import _core
-from stickslip.analyses.exact_response import ExactSettings
 from stickslip.reference import beam_pair, snecma_beam
+from stickslip.settings.orbits import ExactSettings
 
 GRID = np.linspace(150.0, 250.0, 40)
 
@@ -288,7 +288,7 @@ def test_a_point_without_orbit_says_so():
         ([one_dof(), [1.0]], {"harmonics": "auto"}, "harmonics: 'auto' is not an integer"),
         ([one_dof(), [1.0]], {"harmonics": 0}, "harmonics: 0 lies below 1"),
         ([one_dof(), [1.0]], {"harmonics": 10**7}, "harmonics: 10000000 .*; give at most 255"),
-        ([one_dof(), [1.0]], {"residual": "none"}, "unknown residual 'none'"),
+        ([one_dof(), [1.0]], {"residual": "none"}, "unknown choice 'none'"),
         ([one_dof(), [1.0]], {"observe": ["y"]}, "observe: unknown dof 'y'"),
         ([one_dof(), [1.0]], {"progress": 3}, "progress: 3 cannot be called"),
         ([one_dof(), [1.0]], {"max_iterations": 0}, "max_iterations: 0 lies below 1"),

@@ -1,4 +1,3 @@
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -251,7 +250,7 @@ def test_a_branch_that_ends_early_says_what_has_not_been_tried(whole, end, metho
     ends = SimpleNamespace(
         onset=(0.0, 225.4), phase_dof=0, jumps=0, ends=[("range", 0.01), (end, 3.08)]
     )
-    settings = replace(whole.settings, method=method)
+    settings = whole.settings.model_copy(update={"method": method})
     told = cycle_assumptions(whole.model, settings, whole.arrays, ends)
     (text,) = [one.text for one in told if one.severity == "failure"]
     assert f"method='{method}'" not in text

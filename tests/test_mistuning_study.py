@@ -12,6 +12,7 @@ from stickslip.disk import BladedDisk, mistuning_pattern
 from stickslip.disk.family import family
 from stickslip.disk.pattern import drawn_patterns
 from stickslip.results.status import Status
+from stickslip.settings.balance import BalanceSettings
 
 SPAN = (150.0, 260.0)
 UNIFORM = np.random.default_rng(0).uniform(-np.sqrt(3.0), np.sqrt(3.0), 36)
@@ -137,9 +138,9 @@ def test_the_disks_are_those_of_mistuned(damping):
     pattern = mistuning_pattern(4, 0.1, seed=5)
     made = family(disk).mistuned(pattern)
     grid, observe = np.array([180.0, 220.0]), np.arange(12)
-    settings = (3, 1e-3, "centred", "newton", "exact", None, 255, 16384, 50, None)
-    mine = _core.forced_response(made, grid, observe, *settings).displacement
-    theirs = _core.forced_response(disk.mistuned(pattern).problem, grid, observe, *settings)
+    settings = BalanceSettings.of(harmonics=3, max_iterations=50)
+    mine = _core.forced_response(made, grid, observe, settings, None).displacement
+    theirs = _core.forced_response(disk.mistuned(pattern).problem, grid, observe, settings, None)
     gap = np.abs(mine - theirs.displacement).max()
     assert gap < 1e-11 * np.abs(mine).max()
 

@@ -1,7 +1,11 @@
 """The package: its exports, and libraries that wait for their use."""
 
+import importlib
+import inspect
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -35,3 +39,24 @@ def test_heavy_libraries_wait_for_their_use():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_the_stub_has_the_keys_of_the_settings():
+    """What editors read is what `docs/make_stub.py` writes of the signatures at run time."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "docs"))
+    try:
+        make_stub = importlib.import_module("make_stub")
+    finally:
+        del sys.path[0]
+    text = make_stub.stub()
+    assert "max_samples: int = 16384" in text
+    assert make_stub.STUB.read_text("utf-8") == text
+
+
+def test_help_names_every_key():
+    for name in ss.__all__:
+        value = getattr(ss, name)
+        if not hasattr(value, "__settings__"):
+            continue
+        for key in inspect.signature(value).parameters:
+            assert re.search(rf"^    (\w+, )*{key}(, \w+)* : ", value.__doc__, re.M), (name, key)

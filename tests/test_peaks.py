@@ -100,9 +100,7 @@ def test_summary_refines_only_the_peaks_asked_for(monkeypatch):
     frf = ss.forced_response(snecma_beam(), GRID, harmonics=5)
     sought = []
     whole = _core.summits
-    monkeypatch.setattr(
-        _core, "summits", lambda *args: sought.append(args[1]["groups"]) or whole(*args)
-    )
+    monkeypatch.setattr(_core, "summits", lambda *args: sought.append(args[1]) or whole(*args))
     (row,) = frf.summary(["tip"])
     assert frf.summary("tip") == [row]
     assert row.dof == "tip"

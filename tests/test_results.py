@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.analyses.forced_response import Settings
 from stickslip.reference import snecma_beam
+from stickslip.settings.balance import ForcedSettings
 
 GRID = np.linspace(150.0, 250.0, 60)
 
@@ -263,14 +263,14 @@ def test_harmonics_limit_is_solved_but_not_converged():
 
 
 def test_settings():
-    settings = Settings(harmonics=np.int64(5), residual=np.float64(3.0), span=(1, 2))
+    settings = ForcedSettings.of(harmonics=np.int64(5), residual=np.float64(3.0), span=(1, 2))
     assert (settings.harmonics, settings.residual, settings.span) == (5, 3.0, (1.0, 2.0))
     assert type(settings.harmonics) is int
     assert settings.fixed_harmonics == 5
-    assert Settings().fixed_harmonics is None
+    assert ForcedSettings.of().fixed_harmonics is None
     with pytest.raises(ss.ModelError, match="a range has two ends, not 3"):
-        Settings(span=(1, 2, 3))
-    with pytest.raises(AttributeError):
+        ForcedSettings.of(span=(1, 2, 3))
+    with pytest.raises(ValueError, match="frozen"):
         settings.tolerance = 1.0
 
 

@@ -76,7 +76,7 @@ def test_the_result_says_what_it_is():
     [
         (None, {}, "model: None is not a Model"),
         (snecma_beam(), {"omega": (20.0, 350.0)}, r"omega: \(20.0, 350.0\) is a range"),
-        (snecma_beam(), {"estimate": 1}, "estimate: 1 is neither True nor False"),
+        (snecma_beam(), {"estimate": 1}, "estimate: 1; give True or False"),
         (snecma_beam(), {"observe": "tipp"}, "did you mean 'tip'"),
         (snecma_beam(), {"max_iterations": 0}, "max_iterations: 0 lies below 1"),
     ],

@@ -7,8 +7,8 @@ from typer.testing import CliRunner
 
 import stickslip as ss
 from stickslip import reference
-from stickslip.analyses.variation import Variation
 from stickslip.cli.commands import app
+from stickslip.settings.variation import Variation
 
 ENDS = ("1.tip", "2.tip")
 SPRING = 1e6

@@ -85,12 +85,12 @@ def test_the_example_in_small():
         ("[disk]\nsectors", "[disk]\nmistuning = {deviation = 0.1}\nsectors", "of a tuned one"),
         ('deviation = ["2 %", 0.05]', "", "analysis: 'deviation' is missing"),
         ('deviation = ["2 %", 0.05]', 'deviation = "2 N"', "'2 N'"),
-        ("patterns = 32", "patterns = 0", "patterns = 0 is below the least allowed, 1"),
-        ("patterns = 32", 'patterns = "many"', "patterns = 'many'"),
-        ("seed = 4", "seed = -1", "seed = -1"),
+        ("patterns = 32", "patterns = 0", "patterns: 0 lies below 1"),
+        ("patterns = 32", 'patterns = "many"', "patterns: 'many'"),
+        ("seed = 4", "seed = -1", "seed: -1"),
         ("seed = 4", 'dofs = ["tpi"]', "unknown dof 'tpi'"),
         ("seed = 4", "sed = 4", "unknown key 'sed'; did you mean 'seed'"),
-        ("harmonics = 3", "harmonics = 0", "harmonics = 0"),
+        ("harmonics = 3", "harmonics = 0", "harmonics: 0"),
     ],
 )
 def test_bad_studies_are_refused_in_one_line(old, new, message):

@@ -265,7 +265,7 @@ def test_bad_states(arguments, message):
     ("arguments", "options", "message"),
     [
         (["x", 1.0], {}, "model: 'x' is not a Model"),
-        ([one_dof(), 0.0], {}, "omega: 0; give one frequency above 0 rad/s"),
+        ([one_dof(), 0.0], {}, "omega = 0.0 must be positive"),
         ([one_dof(), [1.0]], {}, r"omega: \[1.0\] is not a number"),
         ([one_dof(), 1.0, 0], {}, "periods: 0 lies below 1"),
         ([one_dof(), 1.0, 2, "rk5"], {}, "scheme: unknown choice 'rk5'; did you mean 'rk4'"),

@@ -3,7 +3,7 @@
 use crate::arrays::{refused, series, table, vector, Array1, Array3};
 use crate::problem::Problem;
 use crate::response::{status_code, ResidualArgument};
-use crate::settings::{evaluated, settings};
+use crate::settings::{evaluated, HarmonicSettings, PeakSettings};
 use crate::variation::Varied;
 use crate::watch;
 use numpy::{Complex64, PyArray1, PyArray2, PyUntypedArrayMethods as _};
@@ -11,7 +11,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use stickslip_core::balance::{Cause, Linearised, Method, Settings, Unknowns};
+use stickslip_core::balance::{Cause, Linearised, Settings, Unknowns};
 use stickslip_core::design::{optimum, peak_curve, Curve, Peak, Target};
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::model::Variation;
@@ -105,35 +105,24 @@ impl Peaks {
     }
 }
 
-/// What is varied, and which peak is followed.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub struct Design {
-    variation: Varied,
-    dof: usize,
-    measure: String,
-    omega: (f64, f64),
-    harmonics: Option<usize>,
-    tolerance: f64,
-    residual: ResidualArgument,
-    max_harmonics: usize,
-    max_iterations: usize,
+/// The peak that is followed, and how it is solved for: `DamperSettings` of Python.
+pub struct DamperSettings {
+    peak: PeakSettings,
+    harmonic: HarmonicSettings,
 }
 
-impl Design {
-    fn parse(self) -> PyResult<(Variation, Target, Settings)> {
-        let variation = self.variation.into();
-        let measure: Measure = self.measure.parse().map_err(refused)?;
-        let target = Target { dof: self.dof, measure, span: self.omega };
-        let settings = settings(
-            self.harmonics,
-            self.tolerance,
-            &self.residual,
-            Method::Newton,
-            self.max_harmonics,
-            self.max_iterations,
-        )?;
-        Ok((variation, target, settings))
+impl<'a, 'py> FromPyObject<'a, 'py> for DamperSettings {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Self { peak: given.extract()?, harmonic: given.extract()? })
+    }
+}
+
+impl DamperSettings {
+    fn parse(&self, dof: usize) -> PyResult<(Target, Settings)> {
+        let measure: Measure = self.peak.measure.parse().map_err(refused)?;
+        Ok((Target { dof, measure, span: self.peak.span }, self.harmonic.parse()?))
     }
 }
 
@@ -153,11 +142,13 @@ fn watched<T: Send + 'static>(
 pub fn damper_curve(
     py: Python<'_>,
     problem: &Problem,
-    design: Design,
+    variation: Varied,
+    dof: usize,
     values: Array1<'_, f64>,
+    settings: DamperSettings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Peaks> {
-    let (variation, target, settings) = design.parse()?;
+    let (variation, (target, settings)) = (Variation::from(variation), settings.parse(dof)?);
     let values = values.as_array().to_vec();
     let model = Arc::clone(&problem.model);
     let curve = watched(py, progress.as_ref(), move |look| {
@@ -171,11 +162,13 @@ pub fn damper_curve(
 pub fn optimal_damper(
     py: Python<'_>,
     problem: &Problem,
-    design: Design,
+    variation: Varied,
+    dof: usize,
     bounds: (f64, f64),
+    settings: DamperSettings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Peaks, Peaks)> {
-    let (variation, target, settings) = design.parse()?;
+    let (variation, (target, settings)) = (Variation::from(variation), settings.parse(dof)?);
     let model = Arc::clone(&problem.model);
     let found = watched(py, progress.as_ref(), move |look| {
         optimum(&model, settings, &variation, bounds, &target, look)

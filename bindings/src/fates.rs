@@ -96,19 +96,26 @@ impl Fates {
     }
 }
 
+/// How it is found out what becomes of a motion.
+#[derive(FromPyObject)]
+pub struct ClassifySettings {
+    periods: usize,
+    tolerance: f64,
+}
+
 /// Follows free motions from start states, one per row, until it is decided what becomes of them.
 #[pyfunction]
 pub fn fates(
     py: Python<'_>,
     problem: &Problem,
     starts: Array2<'_, f64>,
-    periods: usize,
-    tolerance: f64,
+    settings: ClassifySettings,
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Fates> {
     let starts: Vec<Vec<f64>> =
         starts.as_array().outer_iter().map(|row| row.iter().copied().collect()).collect();
+    let ClassifySettings { periods, tolerance } = settings;
     let settings = FateSettings { periods, tolerance };
     let model = &problem.model;
     let began = std::time::Instant::now();

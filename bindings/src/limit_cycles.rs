@@ -264,55 +264,51 @@ impl Negative<'_> {
     }
 }
 
-/// What is followed.
+/// Which cycles are sought and how: `CycleSettings` of Python.
 #[derive(FromPyObject)]
-pub struct Followed {
-    #[pyo3(item)]
-    variation: Varied,
-    #[pyo3(item)]
+pub struct Settings {
+    mode: usize,
     ratio: f64,
-    #[pyo3(item)]
     values: Option<Vec<f64>>,
-    #[pyo3(item)]
-    range: (f64, f64),
+    span: (f64, f64),
+    method: String,
+    fixed_harmonics: Option<usize>,
+    max_harmonics: usize,
+    tolerance: f64,
+    stability: bool,
+    max_points: usize,
 }
 
-/// Limit cycles of a mode along what is varied; `proportional` says that a law made the negative
-/// damping, one that couples none of the modes without contacts.
+/// Limit cycles of a mode along what is varied, the ratio if nothing is; `proportional` says that a
+/// law made the negative damping, one that couples none of the modes without contacts.
 #[pyfunction]
-#[allow(clippy::too_many_arguments)]
 pub fn limit_cycles(
     py: Python<'_>,
     problem: &Problem,
     negative_damping: Negative<'_>,
     proportional: bool,
-    mode: usize,
-    followed: Followed,
-    exact: bool,
-    harmonics: Option<usize>,
-    max_harmonics: usize,
-    tolerance: f64,
-    stability: bool,
-    max_points: usize,
+    variation: Option<Varied>,
+    settings: Settings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<LimitCycles> {
-    if max_points < 2 {
+    if settings.max_points < 2 {
         return Err(PyValueError::new_err("max_points: must be at least 2"));
     }
     let negative = negative_damping.damping(proportional);
-    let Followed { variation, ratio, values, range } = followed;
-    let variation = Variation::from(variation);
+    let variation = variation.map_or(Variation::Ratio, Variation::from);
+    let ratio = settings.ratio;
+    let harmonics = settings.fixed_harmonics;
     let settings = CycleSettings {
-        mode,
-        values,
-        range,
-        exact,
+        mode: settings.mode,
+        values: settings.values,
+        range: settings.span,
+        exact: settings.method == "exact",
         harmonics: harmonics.map_or(HarmonicChoice::Auto, HarmonicChoice::Fixed),
-        max_harmonics,
-        tolerance,
-        reported: harmonics.unwrap_or(max_harmonics),
-        stability,
-        most: max_points,
+        max_harmonics: settings.max_harmonics,
+        tolerance: settings.tolerance,
+        reported: harmonics.unwrap_or(settings.max_harmonics),
+        stability: settings.stability,
+        most: settings.max_points,
     };
     let model = &problem.model;
     let own = Arc::clone(model);

@@ -2,12 +2,11 @@
 
 use crate::arrays::{matrix, refused, Array1, Array2};
 use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
-use crate::response::{status_code, ResidualArgument};
-use crate::settings::{settings, March};
+use crate::response::status_code;
+use crate::settings::{HarmonicSettings, LawEvaluation, PeakSettings};
 use crate::watch::{watched_parts, whole};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::balance::{Method, Settings};
 use stickslip_core::design::{self, study, Pattern, Summit};
 use stickslip_core::structure::RingCoupling;
 
@@ -61,33 +60,8 @@ impl TunedDisk {
     }
 }
 
-/// Which highest points are sought, and how: `groups` of DOFs, of each of which the highest.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub struct Quest {
-    groups: Vec<Vec<usize>>,
-    measure: String,
-    omega: (f64, f64),
-    harmonics: Option<usize>,
-    tolerance: f64,
-    residual: ResidualArgument,
-    max_harmonics: usize,
-    max_iterations: usize,
-}
-
-impl Quest {
-    fn parse(self) -> PyResult<(design::Quest, Settings)> {
-        let measure = self.measure.parse().map_err(refused)?;
-        let settings = settings(
-            self.harmonics,
-            self.tolerance,
-            &self.residual,
-            Method::Newton,
-            self.max_harmonics,
-            self.max_iterations,
-        )?;
-        Ok((design::Quest { groups: self.groups, measure, span: self.omega }, settings))
-    }
+fn quest(groups: Vec<Vec<usize>>, measure: &str, span: (f64, f64)) -> PyResult<design::Quest> {
+    Ok(design::Quest { groups, measure: measure.parse().map_err(refused)?, span })
 }
 
 /// Frequency, amplitude, DOF by its position in the group, status, harmonics kept, error estimate,
@@ -99,19 +73,22 @@ fn row(summit: &Summit) -> Row {
     (omega, amplitude, member, status_code(status), harmonics, error_estimate, at_edge)
 }
 
-/// The highest point of every group of DOFs.
+/// The highest point of every group of DOFs, of each of which the highest.
 #[pyfunction]
-#[pyo3(signature = (problem, quest, march=None, max_samples=0))]
+#[pyo3(signature = (problem, groups, measure, span, settings, evaluation=None))]
 pub fn summits(
     py: Python<'_>,
     problem: &Problem,
-    quest: Quest,
-    march: Option<March>,
-    max_samples: usize,
+    groups: Vec<Vec<usize>>,
+    measure: &str,
+    span: (f64, f64),
+    settings: HarmonicSettings,
+    evaluation: Option<LawEvaluation>,
 ) -> PyResult<Vec<Row>> {
     let model = Arc::clone(&problem.model);
-    let (quest, settings) = quest.parse()?;
-    let settings = March::applied(march, max_samples, settings)?;
+    let quest = quest(groups, measure, span)?;
+    let settings = settings.parse()?;
+    let settings = evaluation.map_or(Ok(settings), |evaluation| evaluation.apply(settings))?;
     let found = whole(py, move |look| design::summits(&model, settings, &quest, None, look))?;
     Ok(found.map_err(refused)?.summits.iter().map(row).collect())
 }
@@ -127,13 +104,15 @@ pub fn mistuning_study(
     disks: Vec<PyRef<'_, TunedDisk>>,
     which: Vec<usize>,
     deviations: Array2<'_, f64>,
-    quest: Quest,
+    groups: Vec<Vec<usize>>,
+    peak: PeakSettings,
+    settings: HarmonicSettings,
     orders: Vec<usize>,
     threads: usize,
     deliver: Py<PyAny>,
     progress: Py<PyAny>,
 ) -> PyResult<bool> {
-    let (quest, settings) = quest.parse()?;
+    let (quest, settings) = (quest(groups, &peak.measure, peak.span)?, settings.parse()?);
     let disks: Vec<Arc<design::TunedDisk>> =
         disks.iter().map(|one| Arc::clone(&one.disk)).collect();
     let rows: Vec<Vec<f64>> =

@@ -2,7 +2,8 @@
 
 use crate::arrays::{check_samples, indices, padded, refused, table, vector, Array1};
 use crate::problem::Problem;
-use crate::response::{counters, timings, ResidualArgument};
+use crate::response::{counters, timings};
+use crate::settings::SteadySettings;
 use crate::watch::{given_up, watched, whole};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
@@ -223,7 +224,7 @@ impl Orbits {
 
 /// Exact periodic orbits over a grid of frequencies.
 #[pyfunction]
-#[pyo3(signature = (problem, omega, observe, harmonics, residual, max_iterations, progress, rotation=None))]
+#[pyo3(signature = (problem, omega, observe, harmonics, settings, progress, rotation=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn exact_response(
     py: Python<'_>,
@@ -231,12 +232,11 @@ pub fn exact_response(
     omega: Array1<'_, f64>,
     observe: Array1<'_, i64>,
     harmonics: usize,
-    residual: ResidualArgument,
-    max_iterations: usize,
+    settings: SteadySettings,
     progress: Option<Py<PyAny>>,
     rotation: Option<(usize, usize, f64, f64, usize)>,
 ) -> PyResult<Orbits> {
-    let settings = OrbitSettings { harmonics, residual: residual.parse()?, max_iterations };
+    let settings = OrbitSettings { harmonics, ..settings.parse()? };
     let rotation = rotation.map(|(sectors, shift, wrap, sign, parts)| Rotation {
         sectors,
         shift,
@@ -271,24 +271,19 @@ pub fn exact_response(
     Ok(Orbits { inner, observed, contacts: model.compliance().contacts(), states: model.states() })
 }
 
-/// Frequency and exact amplitude at the true maximum of one DOF in a bracket.
+/// Frequency and exact amplitude at the true maximum of one DOF; `bracket` holds the lowest, the
+/// likely and the highest frequency.
 #[pyfunction]
-#[allow(clippy::too_many_arguments)]
 pub fn exact_peak(
     py: Python<'_>,
     problem: &Problem,
-    omega_lo: f64,
-    omega_hi: f64,
-    omega_guess: f64,
+    bracket: [f64; 3],
     dof: usize,
     measure: &str,
-    residual: ResidualArgument,
-    max_iterations: usize,
+    settings: SteadySettings,
 ) -> PyResult<(f64, f64)> {
-    let residual = residual.parse()?;
-    let settings = OrbitSettings { residual, max_iterations, ..OrbitSettings::default() };
+    let settings = settings.parse()?;
     let measure: Measure = measure.parse().map_err(refused)?;
-    let bracket = [omega_lo, omega_guess, omega_hi];
     let model = Arc::clone(&problem.model);
     whole(py, move |look| orbit_peak(&model, settings, dof, measure, bracket, look))?
         .map_err(refused)

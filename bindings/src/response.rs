@@ -4,8 +4,8 @@ use crate::arrays::{
     either, indices, is_half_wave, padded, refused, series, table, vector, Array1, Array2,
 };
 use crate::problem::Problem;
+use crate::settings::BalanceSettings;
 pub use crate::settings::ResidualArgument;
-use crate::settings::{parse_method, settings, March};
 use crate::watch::{given_up, watched};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::exceptions::PyValueError;
@@ -245,27 +245,15 @@ pub fn counters<'py>(
 
 /// Harmonic balance over a grid or a range of frequencies.
 #[pyfunction]
-#[allow(clippy::too_many_arguments)]
 pub fn forced_response(
     py: Python<'_>,
     problem: &Problem,
     omega: Frequencies<'_>,
     observe: Array1<'_, i64>,
-    harmonics: Option<usize>,
-    tolerance: f64,
-    residual: ResidualArgument,
-    method: &str,
-    jacobian: &str,
-    march: Option<March>,
-    max_harmonics: usize,
-    max_samples: usize,
-    max_iterations: usize,
+    settings: BalanceSettings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Solution> {
-    let method = parse_method(method, jacobian)?;
-    let settings =
-        settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
-    let settings = March::applied(march, max_samples, settings)?;
+    let settings = settings.parse()?;
     let observe = indices(&observe)?;
     let grid = match &omega {
         Frequencies::Grid(grid) => grid.as_array().to_vec(),

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use stickslip_core::balance::{Evaluation, HarmonicChoice, Method, SampleChoice, Settings};
 use stickslip_core::contact::Residual;
 use stickslip_core::model::Model;
+use stickslip_core::orbit::OrbitSettings;
 use stickslip_core::solve::{FirstJacobian, NewtonSettings};
 
 /// The assumed mean force of contacts that never slip: a name or a force in N.
@@ -36,24 +37,64 @@ impl ResidualArgument {
     }
 }
 
-/// Settings from what Python gives.
-pub fn settings(
-    harmonics: Option<usize>,
+/// Which harmonics are kept, and how far their equations are solved: `HarmonicSettings` of Python.
+#[derive(FromPyObject)]
+pub struct HarmonicSettings {
+    fixed_harmonics: Option<usize>,
     tolerance: f64,
-    residual: &ResidualArgument,
-    method: Method,
+    residual: ResidualArgument,
     max_harmonics: usize,
     max_iterations: usize,
-) -> PyResult<Settings> {
-    Ok(Settings {
-        harmonics: harmonics.map_or(HarmonicChoice::Auto, HarmonicChoice::Fixed),
-        tolerance,
-        residual: residual.parse()?,
-        max_harmonics,
-        method,
-        newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
-        ..Settings::default()
-    })
+}
+
+impl HarmonicSettings {
+    /// The settings of the core, with Newton's method and laws in closed form.
+    pub fn parse(&self) -> PyResult<Settings> {
+        Ok(Settings {
+            harmonics: self.fixed_harmonics.map_or(HarmonicChoice::Auto, HarmonicChoice::Fixed),
+            tolerance: self.tolerance,
+            residual: self.residual.parse()?,
+            max_harmonics: self.max_harmonics,
+            newton: NewtonSettings {
+                max_iterations: self.max_iterations,
+                ..NewtonSettings::default()
+            },
+            ..Settings::default()
+        })
+    }
+}
+
+/// How the balance is solved and its laws are evaluated: `BalanceSettings` of Python.
+pub struct BalanceSettings {
+    harmonic: HarmonicSettings,
+    solver: Solver,
+    evaluation: LawEvaluation,
+}
+
+#[derive(FromPyObject)]
+struct Solver {
+    method: String,
+    jacobian: String,
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for BalanceSettings {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            harmonic: given.extract()?,
+            solver: given.extract()?,
+            evaluation: given.extract()?,
+        })
+    }
+}
+
+impl BalanceSettings {
+    /// The settings of the core.
+    pub fn parse(self) -> PyResult<Settings> {
+        let method = parse_method(&self.solver.method, &self.solver.jacobian)?;
+        self.evaluation.apply(Settings { method, ..self.harmonic.parse()? })
+    }
 }
 
 /// Samples per period of a march: a number or "auto".
@@ -70,29 +111,55 @@ impl<'a, 'py> FromPyObject<'a, 'py> for March {
     }
 }
 
-impl March {
+/// Whether laws are marched, and through how many samples at most.
+#[derive(FromPyObject)]
+pub struct LawEvaluation {
+    march: Option<March>,
+    max_samples: usize,
+}
+
+impl LawEvaluation {
     /// The settings with laws that are marched, if a march is given.
-    pub fn applied(
-        march: Option<Self>,
-        max_samples: usize,
-        settings: Settings,
-    ) -> PyResult<Settings> {
-        let evaluation = match march {
+    pub fn apply(self, settings: Settings) -> PyResult<Settings> {
+        let evaluation = match self.march {
             None => Evaluation::Direct,
-            Some(Self::Samples(samples)) => Evaluation::Marched(SampleChoice::Fixed(samples)),
-            Some(Self::Name(name)) if name == "auto" => Evaluation::Marched(SampleChoice::Auto),
-            Some(Self::Name(name)) => {
+            Some(March::Samples(samples)) => Evaluation::Marched(SampleChoice::Fixed(samples)),
+            Some(March::Name(name)) if name == "auto" => Evaluation::Marched(SampleChoice::Auto),
+            Some(March::Name(name)) => {
                 return Err(PyValueError::new_err(format!(
                     "samples = \"{name}\": must be a number or \"auto\""
                 )))
             }
         };
-        Ok(Settings { evaluation, max_samples, ..settings })
+        Ok(Settings { evaluation, max_samples: self.max_samples, ..settings })
+    }
+}
+
+/// Of which amplitude the highest point is sought, and in which range of frequencies.
+#[derive(FromPyObject)]
+pub struct PeakSettings {
+    pub measure: String,
+    pub span: (f64, f64),
+}
+
+/// How long an orbit is iterated, and what it leaves open.
+#[derive(FromPyObject)]
+pub struct SteadySettings {
+    residual: ResidualArgument,
+    max_iterations: usize,
+}
+
+impl SteadySettings {
+    /// The settings of shooting.
+    pub fn parse(&self) -> PyResult<OrbitSettings> {
+        let residual = self.residual.parse()?;
+        let max_iterations = self.max_iterations;
+        Ok(OrbitSettings { residual, max_iterations, ..OrbitSettings::default() })
     }
 }
 
 /// A solver by its name, with the first Jacobian of Broyden's method.
-pub fn parse_method(method: &str, jacobian: &str) -> PyResult<Method> {
+fn parse_method(method: &str, jacobian: &str) -> PyResult<Method> {
     match (method, jacobian) {
         ("newton", _) => Ok(Method::Newton),
         ("broyden", "exact") => Ok(Method::Broyden(FirstJacobian::Exact)),

@@ -7,6 +7,13 @@ use pyo3::prelude::*;
 use stickslip_core::balance::{self, ForcedBalance, HarmonicChoice, Settings};
 use stickslip_core::solve::NewtonSettings;
 
+/// How a single harmonic is balanced.
+#[derive(FromPyObject)]
+pub struct SingleSettings {
+    estimate: bool,
+    max_iterations: usize,
+}
+
 /// Single-harmonic balance over a grid of frequencies.
 #[pyfunction]
 pub fn single_harmonic(
@@ -14,10 +21,10 @@ pub fn single_harmonic(
     problem: &Problem,
     omega: Array1<'_, f64>,
     observe: Array1<'_, i64>,
-    estimate: bool,
-    max_iterations: usize,
+    settings: SingleSettings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Solution> {
+    let SingleSettings { estimate, max_iterations } = settings;
     let settings = Settings {
         harmonics: HarmonicChoice::Fixed(1),
         newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },

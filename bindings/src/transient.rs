@@ -117,32 +117,44 @@ impl History {
     }
 }
 
-/// Follows a motion over periods of the excitation.
-#[pyfunction]
-#[allow(clippy::too_many_arguments)]
-pub fn transient(
-    py: Python<'_>,
-    problem: &Problem,
+/// How a motion is followed: `TransientSettings` of Python.
+#[derive(FromPyObject)]
+pub struct Settings {
     omega: f64,
-    scheme: &str,
+    scheme: String,
     periods: usize,
     tolerance: Option<f64>,
     steps: usize,
-    start: Option<Array1<'_, f64>>,
-    observe: Array1<'_, i64>,
     samples: usize,
     keep: Option<usize>,
+}
+
+impl Settings {
+    fn parse(self) -> PyResult<TransientSettings> {
+        let Self { omega, scheme, periods, tolerance, steps, samples, keep } = self;
+        let scheme = match scheme.as_str() {
+            "exact" => Scheme::Exact,
+            "rk4" => Scheme::RungeKutta(steps),
+            other => {
+                let message = format!("scheme = \"{other}\": must be \"exact\" or \"rk4\"");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        Ok(TransientSettings { omega, scheme, periods, tolerance, samples, keep })
+    }
+}
+
+/// Follows a motion over periods of the excitation.
+#[pyfunction]
+pub fn transient(
+    py: Python<'_>,
+    problem: &Problem,
+    settings: Settings,
+    start: Option<Array1<'_, f64>>,
+    observe: Array1<'_, i64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<History> {
-    let scheme = match scheme {
-        "exact" => Scheme::Exact,
-        "rk4" => Scheme::RungeKutta(steps),
-        other => {
-            let message = format!("scheme = \"{other}\": must be \"exact\" or \"rk4\"");
-            return Err(PyValueError::new_err(message));
-        }
-    };
-    let settings = TransientSettings { omega, scheme, periods, tolerance, samples, keep };
+    let settings = settings.parse()?;
     let observe = indices(&observe)?;
     let start = start.map(|state| state.as_array().to_vec());
     let observed = observe.len();

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use stickslip_core::model::{Common, Variation};
 
-/// What is varied: `parameter` is "level", "ratio" or one of the laws', of contacts or of points.
+/// What is varied: `parameter` is "level" or one of the laws', of contacts or of points.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Varied {
@@ -17,7 +17,6 @@ impl From<Varied> for Variation {
         let Varied { parameter, contacts, factor } = varied;
         match parameter.as_str() {
             "level" => Self::Level,
-            "ratio" => Self::Ratio,
             _ => {
                 let common = if factor { Common::Factor } else { Common::Value };
                 Self::Law { parameter, contacts, common }

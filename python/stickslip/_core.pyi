@@ -1,10 +1,16 @@
 """The compiled mathematics: arrays in, arrays out."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Literal, TypedDict
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
+
+from stickslip.settings.balance import BalanceSettings, HarmonicSettings, SteadySettings
+from stickslip.settings.cycles import CycleSettings
+from stickslip.settings.motion import ClassifySettings, TransientSettings
+from stickslip.settings.orbits import ExactSettings, SingleHarmonicSettings
+from stickslip.settings.peaks import DamperSettings, MistuningSettings
 
 Float = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -12,7 +18,7 @@ Parameters = Mapping[str, float | list[float]]
 Contact = tuple[str, Float, Parameters]
 SectorContact = tuple[str, Float, Float, Parameters]
 Residual = str | float
-March = int | Literal["auto"] | None
+Progress = Callable[[float], None] | None
 
 __version__: str
 
@@ -97,16 +103,8 @@ def forced_response(
     problem: Problem,
     omega: Float | tuple[float, float],
     observe: NDArray[np.int64],
-    harmonics: int | None,
-    tolerance: float,
-    residual: Residual,
-    method: str,
-    jacobian: str,
-    march: March,
-    max_harmonics: int,
-    max_samples: int,
-    max_iterations: int,
-    progress: Callable[[float], None] | None,
+    settings: BalanceSettings,
+    progress: Progress,
 ) -> Solution: ...
 def amplitude(coefficients: Complex, measure: str) -> Float: ...
 def contact_force(
@@ -128,22 +126,11 @@ def single_harmonic(
     problem: Problem,
     omega: Float,
     observe: NDArray[np.int64],
-    estimate: bool,
-    max_iterations: int,
-    progress: Callable[[float], None] | None,
+    settings: SingleHarmonicSettings,
+    progress: Progress,
 ) -> Solution: ...
 
 Summit = tuple[float, float, int, int, int, float, bool]
-
-class Quest(TypedDict):
-    groups: list[list[int]]
-    measure: str
-    omega: tuple[float, float]
-    harmonics: int | None
-    tolerance: float
-    residual: Residual
-    max_harmonics: int
-    max_iterations: int
 
 class TunedDisk:
     def __init__(
@@ -161,15 +148,19 @@ class TunedDisk:
 
 def summits(
     problem: Problem,
-    quest: Quest,
-    march: March = None,
-    max_samples: int = ...,
+    groups: list[list[int]],
+    measure: str,
+    span: tuple[float, float],
+    settings: HarmonicSettings | ExactSettings,
+    evaluation: BalanceSettings | ExactSettings | None = None,
 ) -> list[Summit]: ...
 def mistuning_study(
     disks: Sequence[TunedDisk],
     which: Sequence[int],
     deviations: Float,
-    quest: Quest,
+    groups: list[list[int]],
+    peak: MistuningSettings,
+    settings: HarmonicSettings,
     orders: Sequence[int],
     threads: int,
     deliver: Callable[[int, list[Summit], int], None],
@@ -199,20 +190,16 @@ def exact_response(
     omega: Float,
     observe: NDArray[np.int64],
     harmonics: int,
-    residual: Residual,
-    max_iterations: int,
-    progress: Callable[[float], None] | None,
+    settings: SteadySettings,
+    progress: Progress,
     rotation: tuple[int, int, float, float, int] | None = None,
 ) -> Orbits: ...
 def exact_peak(
     problem: Problem,
-    omega_lo: float,
-    omega_hi: float,
-    omega_guess: float,
+    bracket: tuple[float, float, float],
     dof: int,
     measure: str,
-    residual: Residual,
-    max_iterations: int,
+    settings: SteadySettings,
 ) -> tuple[float, float]: ...
 def orbit_history(
     problem: Problem, omega: float, state: Float, observe: NDArray[np.int64], samples: int
@@ -235,10 +222,9 @@ class Fates:
 def fates(
     problem: Problem,
     starts: Float,
-    periods: int,
-    tolerance: float,
+    settings: ClassifySettings,
     threads: int,
-    progress: Callable[[float], None] | None,
+    progress: Progress,
 ) -> Fates: ...
 
 class History:
@@ -273,33 +259,16 @@ class History:
 
 def transient(
     problem: Problem,
-    omega: float,
-    scheme: str,
-    periods: int,
-    tolerance: float | None,
-    steps: int,
+    settings: TransientSettings,
     start: Float | None,
     observe: NDArray[np.int64],
-    samples: int,
-    keep: int | None,
-    progress: Callable[[float], None] | None,
+    progress: Progress,
 ) -> History: ...
 
 class Varied(TypedDict):
     parameter: str
     contacts: list[tuple[int, int | None]]
     factor: bool
-
-class Design(TypedDict):
-    variation: Varied
-    dof: int
-    measure: str
-    omega: tuple[float, float]
-    harmonics: int | None
-    tolerance: float
-    residual: Residual
-    max_harmonics: int
-    max_iterations: int
 
 class Peaks:
     @property
@@ -327,15 +296,19 @@ class Peaks:
 
 def damper_curve(
     problem: Problem,
-    design: Design,
+    variation: Varied,
+    dof: int,
     values: Float,
-    progress: Callable[[float], None] | None,
+    settings: DamperSettings,
+    progress: Progress,
 ) -> Peaks: ...
 def optimal_damper(
     problem: Problem,
-    design: Design,
+    variation: Varied,
+    dof: int,
     bounds: tuple[float, float],
-    progress: Callable[[float], None] | None,
+    settings: DamperSettings,
+    progress: Progress,
 ) -> tuple[Peaks, Peaks]: ...
 def sensitivity(
     problem: Problem,
@@ -349,12 +322,6 @@ def sensitivity(
     causes: Sequence[str | tuple[int, int | None, str]],
     samples: NDArray[np.int64],
 ) -> Float: ...
-
-class Followed(TypedDict):
-    variation: Varied
-    ratio: float
-    values: list[float] | None
-    range: tuple[float, float]
 
 class LimitCycles:
     @property
@@ -416,13 +383,7 @@ def limit_cycles(
     problem: Problem,
     negative_damping: NDArray[np.float64] | NDArray[np.complex128],
     proportional: bool,
-    mode: int,
-    followed: Followed,
-    exact: bool,
-    harmonics: int | None,
-    max_harmonics: int,
-    tolerance: float,
-    stability: bool,
-    max_points: int,
-    progress: Callable[[float], None] | None,
+    variation: Varied | None,
+    settings: CycleSettings,
+    progress: Progress,
 ) -> LimitCycles: ...

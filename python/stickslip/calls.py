@@ -13,7 +13,7 @@ from typing import Any
 from stickslip.checks import listed, unknown
 from stickslip.errors import CallError
 
-__all__ = ["checked", "checked_names"]
+__all__ = ["checked", "checked_names", "misfit"]
 
 _PACKAGE = __name__.partition(".")[0]
 _WRAPPED = "__stickslip_checked__"
@@ -70,7 +70,7 @@ def _checked_function(function: FunctionType) -> Callable[..., Any]:
             # Only the call itself has no frame of its own: errors from inside are none of ours.
             if error.__traceback__ is None or error.__traceback__.tb_next is not None:
                 raise
-            message = _misfit(function, args, keywords)
+            message = misfit(function, args, keywords)
             if message is None:
                 raise
             raise CallError(message) from None
@@ -82,8 +82,8 @@ def _checked_function(function: FunctionType) -> Callable[..., Any]:
     return call
 
 
-def _misfit(
-    function: FunctionType, args: tuple[object, ...], keywords: Mapping[str, object]
+def misfit(
+    function: Callable[..., Any], args: tuple[object, ...], keywords: Mapping[str, object]
 ) -> str | None:
     """Word what of a call does not fit; None if nothing is found."""
     parameters = list(inspect.signature(function).parameters.values())

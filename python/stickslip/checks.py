@@ -14,7 +14,7 @@ from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.errors import ModelError
+from stickslip.errors import EntryError, ModelError
 
 __all__ = [
     "MAX_COUNT",
@@ -155,9 +155,9 @@ def text(value: object, entry: str) -> str:
         If `value` is not a string or holds nothing but white space.
     """
     if not isinstance(value, str):
-        raise ModelError(f"{entry}: {brief(value)} is not text; give a name in quotes")
+        raise EntryError(entry, f": {brief(value)} is not text; give a name in quotes")
     if not value.strip():
-        raise ModelError(f"{entry}: {brief(value)} is empty; give a name")
+        raise EntryError(entry, f": {brief(value)} is empty; give a name")
     return value
 
 
@@ -171,9 +171,9 @@ def choice(value: object, entry: str, choices: Iterable[str]) -> str:
     """
     names = list(choices)
     if not isinstance(value, str):
-        raise ModelError(f"{entry}: {brief(value)} is not text; known: {listed(names)}")
+        raise EntryError(entry, f": {brief(value)} is not text; known: {listed(names)}")
     if value not in names:
-        raise ModelError(f"{entry}: {unknown('choice', value, names)}")
+        raise EntryError(entry, f": {unknown('choice', value, names)}")
     return str(value)
 
 
@@ -270,20 +270,20 @@ def real_number(value: object, entry: str, *, finite: bool = True) -> float:
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, complex | np.complexfloating):
-        raise ModelError(f"{entry}: {brief(value)} is complex; give a real number")
+        raise EntryError(entry, f": {brief(value)} is complex; give a real number")
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise ModelError(f"{entry}: {brief(value)} is not a number; give a real number in SI units")
+        raise EntryError(entry, f": {brief(value)} is not a number; give a real number in SI units")
     try:
         number = float(value)
     except OverflowError:
-        raise ModelError(
-            f"{entry}: {brief(value)} is too large; give a number below 1e308"
+        raise EntryError(
+            entry, f": {brief(value)} is too large; give a number below 1e308"
         ) from None
     if number == 0.0 and value != 0:
-        raise ModelError(f"{entry}: {brief(value)} is too small for a number; write 0")
+        raise EntryError(entry, f": {brief(value)} is too small for a number; write 0")
     if np.isnan(number) or (finite and np.isinf(number)):
         kind = "finite number" if finite else "number"
-        raise ModelError(f"{entry}: {number} is not a {kind}; give a real number in SI units")
+        raise EntryError(entry, f": {number} is not a {kind}; give a real number in SI units")
     return number
 
 
@@ -296,14 +296,14 @@ def whole_number(value: object, entry: str, *, smallest: int = 0, largest: int =
         If `value` is not an integer (1.0 and True are not) or lies outside.
     """
     if isinstance(value, bool) or not isinstance(value, Integral):
-        raise ModelError(
-            f"{entry}: {brief(value)} is not an integer; give {smallest}, {smallest + 1}, ..."
+        raise EntryError(
+            entry, f": {brief(value)} is not an integer; give {smallest}, {smallest + 1}, ..."
         )
     number = int(value)
     if number < smallest:
-        raise ModelError(f"{entry}: {brief(value)} lies below {smallest}; give at least {smallest}")
+        raise EntryError(entry, f": {brief(value)} lies below {smallest}; give at least {smallest}")
     if number > largest:
-        raise ModelError(f"{entry}: {brief(value)} is too large; give at most {largest}")
+        raise EntryError(entry, f": {brief(value)} is too large; give at most {largest}")
     return number
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["CallError", "Interrupted", "ModelError"]
+__all__ = ["CallError", "EntryError", "Interrupted", "ModelError"]
 
 
 class ModelError(ValueError):
@@ -19,6 +19,25 @@ class ModelError(ValueError):
     def __init__(self, message: str = "", *, study: str | None = None) -> None:
         super().__init__(message)
         self.study = message if study is None else study
+
+
+class EntryError(ModelError):
+    """A value that an entry cannot have; `at` names the entry where its full name is known.
+
+    Parameters
+    ----------
+    entry : str
+        Name of the entry; empty where only the value is known.
+    said : str
+        What is wrong and the remedy, from the mark after the name on: ``: -1 lies below 0; ...``.
+    """
+
+    def __init__(self, entry: str, said: str) -> None:
+        super().__init__(f"{entry}{said}")
+        self.said = said
+
+    def __reduce__(self) -> tuple[type[EntryError], tuple[str, str]]:
+        return type(self), (str(self).removesuffix(self.said), self.said)
 
 
 class CallError(ModelError, TypeError):

@@ -9,7 +9,7 @@ from numbers import Real
 from typing import TYPE_CHECKING
 
 from stickslip.checks import brief, vanished
-from stickslip.errors import ModelError
+from stickslip.errors import EntryError
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -164,9 +164,9 @@ def _kind(unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-def _refusal(value: object, unit: str, entry: str, problem: str) -> ModelError:
+def _refusal(value: object, unit: str, entry: str, problem: str) -> EntryError:
     example = _KINDS.get(unit, ("", f"1 {unit}"))[1]
     plain = f"a number in {unit}" if unit else "a plain number"
-    return ModelError(
-        f"{entry} = {brief(value)} {problem}; write for instance '{example}' or {plain}"
+    return EntryError(
+        entry, f" = {brief(value)} {problem}; write for instance '{example}' or {plain}"
     )

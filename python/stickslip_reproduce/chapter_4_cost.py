@@ -30,6 +30,9 @@ PRINTED_INTEGRATION = 3807.6
 
 RUNGE_KUTTA = "Runge-Kutta"
 
+Method = Literal["broyden", "newton"]
+METHODS: tuple[Method, ...] = ("broyden", "newton")
+
 
 class Timing(NamedTuple):
     """What one method took for all frequencies."""
@@ -72,9 +75,7 @@ def timings(
     """
     model = ss.reference.snecma_beam(FORCE)
     rows = [
-        _balance(model, omega, kept, method, repeats)
-        for kept in harmonics
-        for method in ("broyden", "newton")
+        _balance(model, omega, kept, method, repeats) for kept in harmonics for method in METHODS
     ]
     rows.append(_orbits(model, omega, repeats))
     rows.append(_integration(model, omega, "exact", "exact flow from rest"))
@@ -82,7 +83,7 @@ def timings(
     return rows
 
 
-def _balance(model: ss.Model, omega: Float, kept: int, method: str, repeats: int) -> Timing:
+def _balance(model: ss.Model, omega: Float, kept: int, method: Method, repeats: int) -> Timing:
     taken = []
     for _ in range(repeats):
         start = time.process_time()

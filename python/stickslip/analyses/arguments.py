@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, real_number, text, unknown
+from stickslip.checks import brief, text, unknown
 from stickslip.disk.arguments import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.settings.balance import HarmonicSettings
+from stickslip.settings.entries import Residual, Span, span_of
 
 __all__ = [
-    "RESIDUALS",
     "Progress",
-    "Residual",
-    "Span",
     "grid_of",
     "observed_dofs",
     "physical_dofs",
@@ -29,18 +28,10 @@ __all__ = [
     "require_model",
     "require_progress",
     "require_time",
-    "residual_of",
-    "span_of",
-    "tolerance_of",
 ]
-
-RESIDUALS = ("centred", "from_rest")
-"""Named assumptions on the mean force of a contact that never slips."""
 
 _MODAL = re.compile(r"(.*\.)?mode-\d+")
 
-Residual: TypeAlias = Literal["centred", "from_rest"] | float
-Span: TypeAlias = tuple[float, float]
 Progress: TypeAlias = Callable[[float], None] | None
 
 
@@ -91,7 +82,7 @@ def require_progress(progress: object) -> None:
 def grid_of(omega: ArrayLike | Span) -> NDArray[np.float64] | Span:
     """Tell a range from a grid, and return either checked."""
     if isinstance(omega, tuple) and len(omega) == 2:
-        return span_of(omega)
+        return span_of(omega, "omega")
     try:
         values = np.asarray(omega)
     except ValueError:
@@ -111,36 +102,6 @@ def grid_of(omega: ArrayLike | Span) -> NDArray[np.float64] | Span:
             f"omega[{bad[0]}] is {grid[bad[0]]:g}; give finite frequencies above 0 rad/s"
         )
     return grid
-
-
-def span_of(span: tuple[object, ...]) -> Span:
-    """Return the two ends of a range of frequencies, checked."""
-    if len(span) != 2:
-        raise ModelError(f"omega: a range has two ends, not {len(span)}; write (start, end)")
-    start, end = (real_number(value, "omega: end of the range") for value in span)
-    if not (start > 0.0 and end > 0.0 and start != end):
-        raise ModelError(
-            f"omega: the range ({start:g}, {end:g}) must have two different ends above 0 rad/s; "
-            "write a list for single frequencies"
-        )
-    return start, end
-
-
-def tolerance_of(tolerance: object) -> float:
-    """Return a relative tolerance between 1e-8 and 0.5."""
-    value = real_number(tolerance, "tolerance")
-    if not 1e-8 <= value <= 0.5:
-        raise ModelError(f"tolerance: {value:g}; give a fraction from 1e-8 to 0.5")
-    return value
-
-
-def residual_of(residual: object) -> Residual:
-    """Return an assumption on the mean force of a contact that never slips."""
-    if isinstance(residual, str):
-        if residual not in RESIDUALS:
-            raise ModelError(f"{unknown('residual', residual, RESIDUALS)}, or a force in N")
-        return "centred" if residual == "centred" else "from_rest"
-    return real_number(residual, "residual")
 
 
 def physical_dofs(model: Model) -> tuple[str, ...]:
@@ -175,13 +136,14 @@ def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[st
     return tuple(map(str, names))
 
 
-def require_forced(model: Model, highest: int, entry: str) -> None:
-    """Refuse to leave out the harmonic of a force; `entry` names what bounds the harmonics."""
+def require_forced(model: Model, settings: HarmonicSettings) -> None:
+    """Refuse to leave out the harmonic of a force."""
+    highest = settings.highest
     for position, force in enumerate(model.forces, start=1):
         if force.harmonic > highest and force.amplitude:
             raise ModelError(
-                f"{entry}: {highest} would leave out force {position} at {force.dof!r}, of "
-                f"harmonic {force.harmonic}; give at least {force.harmonic}, or drop the force"
+                f"{settings.bound}: {highest} would leave out force {position} at {force.dof!r}, "
+                f"of harmonic {force.harmonic}; give at least {force.harmonic}, or drop the force"
             )
 
 

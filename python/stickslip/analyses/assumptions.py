@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,9 +19,9 @@ from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_toleranc
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
-    from stickslip.analyses.exact_response import ExactSettings
-    from stickslip.analyses.forced_response import Settings
-    from stickslip.analyses.transient import TransientSettings
+    from stickslip.settings.balance import ForcedSettings
+    from stickslip.settings.motion import TransientSettings
+    from stickslip.settings.orbits import ExactSettings
 
 __all__ = [
     "assumptions_of",
@@ -71,7 +70,7 @@ _DIRECT = (
 
 def assumptions_of(
     model: Model,
-    settings: Settings,
+    settings: ForcedSettings,
     dofs: tuple[str, ...],
     arrays: Arrays,
     *,
@@ -86,7 +85,7 @@ def assumptions_of(
     ----------
     model : Model
         What was computed.
-    settings : Settings
+    settings : ForcedSettings
         How.
     dofs : tuple of str
         The observed degrees of freedom.
@@ -159,7 +158,7 @@ def orbit_assumptions(
             f"harmonic balance chose to a tolerance of {settings.tolerance:g}.",
             tolerance=settings.tolerance,
         )
-    without_span = replace(settings, span=None)
+    without_span = settings.model_copy(update={"span": None})
     with np.errstate(all="ignore"):
         return present(
             (
@@ -310,7 +309,7 @@ def _kept(settings: TransientSettings) -> Diagnostic | None:
     )
 
 
-def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> Diagnostic | None:
+def _harmonics(settings: ForcedSettings, arrays: Arrays, half_wave: bool) -> Diagnostic | None:
     kept = arrays.harmonics[arrays.solved]
     if not kept.size:
         return None
@@ -336,7 +335,7 @@ def _harmonics(settings: Settings, arrays: Arrays, half_wave: bool) -> Diagnosti
 
 
 def _frequencies(
-    settings: Settings, arrays: Arrays, missing: int, *, interrupted: bool
+    settings: ForcedSettings | ExactSettings, arrays: Arrays, missing: int, *, interrupted: bool
 ) -> Diagnostic | None:
     count = int((arrays.status != Status.NOT_COMPUTED.code).sum())
     reached = f"{arrays.omega[-1] if count else np.nan:.6g} rad/s"

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.analyses.arguments import Progress, observed_dofs, prepare, require_progress
 from stickslip.analyses.classify import (
-    PERIODS,
-    TOLERANCE,
-    ClassifySettings,
     fate_assumptions,
     fates_of,
     free,
@@ -28,38 +23,21 @@ from stickslip.model.state import State
 from stickslip.results.arrays import Float
 from stickslip.results.basin_map import BasinMap
 from stickslip.results.fate_arrays import FateArrays
+from stickslip.settings.motion import Axis, BasinKeys, BasinSettings, ClassifySettings
+from stickslip.settings.settings import configured
 
-__all__ = ["Axis", "BasinSettings", "basin_map"]
-
-Axis: TypeAlias = str | int
-"""What an axis of a map is: the displacement of a degree of freedom, or the amplitude of a mode."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class BasinSettings(ClassifySettings):
-    """Which starts, and how it is found out what becomes of them.
-
-    Parameters
-    ----------
-    periods, tolerance
-        As of `ClassifySettings`.
-    axes : tuple of (str or int, tuple of float)
-        The two axes of a map with their values [m]; none of a list of starts.
-    """
-
-    axes: tuple[tuple[Axis, tuple[float, ...]], ...] = ()
+__all__ = ["basin_map"]
 
 
+@configured(BasinKeys)
 def basin_map(
     model: Model,
     axes: Mapping[Axis, ArrayLike] | None = None,
     *,
+    settings: BasinKeys,
     starts: Iterable[State | Mapping[str, float]] | None = None,
     base: State | Mapping[str, float] | None = None,
-    periods: int = PERIODS,
-    tolerance: float = TOLERANCE,
     observe: Iterable[str] | str | None = None,
-    threads: int | None = None,
     progress: Progress = None,
 ) -> BasinMap:
     """Find out what becomes of free motions from many starts, on all processors.
@@ -76,10 +54,6 @@ def basin_map(
         Instead of axes: the starts, each as `classify` takes it.
     base : State or mapping, optional
         What the axes are added to. Default: rest.
-    periods, tolerance, observe, progress
-        As of `classify`.
-    threads : int, optional
-        How many processors to use. Default: all. The result does not depend on it.
 
     Returns
     -------
@@ -100,12 +74,11 @@ def basin_map(
     alone = free(model)
     require_progress(progress)
     dofs = observed_dofs(observe, alone)
-    workers = 0 if threads is None else whole_number(threads, "threads", smallest=1)
     if (axes is None) == (starts is None):
         given = "neither is" if axes is None else "both are"
         raise ModelError(f"axes, starts: {given} given; give one of them")
     grid = () if axes is None else _axes(alone, axes)
-    settings = BasinSettings(periods=periods, tolerance=tolerance, axes=grid)
+    kept = BasinSettings.of(**settings.part(ClassifySettings), axes=grid)
     if starts is None:
         states = _over_axes(alone, grid, start_of(alone, {} if base is None else base, "base"))
     else:
@@ -114,17 +87,17 @@ def basin_map(
         states = _listed(alone, starts)
     prepare(alone)
     with Interruption(progress) as watch:
-        fates = fates_of(alone, states, settings, workers, watch)
+        fates = fates_of(alone, states, kept, settings.threads or 0, watch)
         arrays = FateArrays.of(fates, states, [alone.structure.index(dof) for dof in dofs])
         result = BasinMap(
             model=alone,
             dofs=dofs,
-            settings=settings,
+            settings=kept,
             arrays=arrays,
             interrupted=fates.interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
-            diagnostics=fate_assumptions(model, settings),
+            diagnostics=fate_assumptions(model, kept),
         )
         if result.interrupted:
             done = sum(reason != "interrupted" for reason in result.reason)

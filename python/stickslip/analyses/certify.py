@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from time import monotonic
-from typing import Literal
 
 import numpy as np
 
 from stickslip.analyses.arguments import Progress, prepare, require_progress
 from stickslip.analyses.reference_orbits import Orbits, orbits_of
-from stickslip.checks import brief, members, whole_number
+from stickslip.checks import brief, members
 from stickslip.errors import Interrupted, ModelError
 from stickslip.interruption import Interruption
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Int
 from stickslip.results.certificate import Certificate
 from stickslip.results.exact_response import ExactResponse
+from stickslip.settings.orbits import CertifySettings
+from stickslip.settings.settings import configured
 
 __all__ = ["certify"]
-
-POINTS = 20
 
 _SAMPLES = 1024
 """Instants per period at which curve and orbit are compared."""
@@ -33,11 +32,11 @@ _ORBITS = 0.5
 _REPORT_EVERY = 0.1
 
 
+@configured(CertifySettings, "points")
 def certify(
     result: ForcedResponse,
-    points: int | Literal["all"] | Sequence[int] = POINTS,
+    settings: CertifySettings,
     *,
-    seed: int = 0,
     dofs: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> ForcedResponse:
@@ -52,15 +51,8 @@ def certify(
     ----------
     result : ForcedResponse
         A harmonic balance.
-    points : int, "all" or sequence of int, optional
-        How many points to choose at random, all, or the positions of points. Points that are not
-        solved are passed over.
-    seed : int, optional
-        Of the random choice: the same seed chooses the same points.
     dofs : iterable of str, optional
         The observed degrees of freedom to compare. Default: all observed ones.
-    progress : callable, optional
-        Called about ten times per second with the fraction of the work that is done.
 
     Returns
     -------
@@ -79,7 +71,7 @@ def certify(
     _require_balance(result)
     require_progress(progress)
     compared = _dofs(result, dofs)
-    indices = _indices(result, points, seed)
+    indices = _indices(result, settings)
     prepare(result.model)
     with Interruption(progress) as watch:
         exact = orbits_of(
@@ -177,24 +169,19 @@ def _dofs(result: ForcedResponse, dofs: Iterable[str] | str | None) -> tuple[str
     return tuple(dict.fromkeys(names))
 
 
-def _indices(result: ForcedResponse, points: int | str | Sequence[int], seed: int) -> Int:
+def _indices(result: ForcedResponse, settings: CertifySettings) -> Int:
     """Return the positions of the points to compare, ascending, each once."""
     solved = np.flatnonzero(result.arrays.solved)
     if not solved.size:
         raise ModelError(f"result: none of the {result.omega.size} points is solved; see status")
-    if isinstance(points, str):
-        if points != "all":
-            raise ModelError(f'points: {brief(points)}; give "all", a number, or positions')
+    points = settings.points
+    if points == "all":
         return solved
-    if not isinstance(points, Iterable):
-        count = whole_number(points, "points", smallest=1)
-        generator = np.random.default_rng(whole_number(seed, "seed"))
-        return np.sort(generator.choice(solved, min(count, solved.size), replace=False))
-    given = members(points, "points", "points=[...]")
-    if not given:
-        raise ModelError("points: empty; give at least one position")
+    if isinstance(points, int):
+        generator = np.random.default_rng(settings.seed)
+        return np.sort(generator.choice(solved, min(points, solved.size), replace=False))
     try:
-        chosen = np.unique([result.position(index) for index in given])
+        chosen = np.unique([result.position(index) for index in points])
     except ModelError as error:
         raise ModelError(f"points: {error}") from None
     unsolved = np.setdiff1d(chosen, solved)

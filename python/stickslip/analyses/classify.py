@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,7 @@ from stickslip.analyses.arguments import (
     require_time,
 )
 from stickslip.analyses.memory import require_numbers
-from stickslip.checks import brief, real_number, whole_number
+from stickslip.checks import brief
 from stickslip.errors import Interrupted, ModelError
 from stickslip.interruption import Interruption
 from stickslip.model import Model, natural_frequencies
@@ -28,6 +27,8 @@ from stickslip.results.arrays import Float
 from stickslip.results.diagnostic import Diagnostic, diagnostic, present
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.motion_class import MotionClass
+from stickslip.settings.motion import ClassifySettings, TransientSettings
+from stickslip.settings.settings import configured
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -35,17 +36,12 @@ if TYPE_CHECKING:
     from stickslip import _core
 
 __all__ = [
-    "PERIODS",
-    "TOLERANCE",
-    "ClassifySettings",
     "classify",
     "fate_assumptions",
     "fates_of",
     "free",
     "start_of",
 ]
-
-PERIODS, TOLERANCE = 3000, 1e-6
 
 TAIL = 512
 """Slow periods of the motion that are kept for its spectrum."""
@@ -57,41 +53,12 @@ RIGID = 1e-5
 """Natural frequencies below this share of the highest are rigid-body motion."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class ClassifySettings:
-    """How it is found out what becomes of a motion.
-
-    Parameters
-    ----------
-    periods : int, optional
-        Longest motion, in periods of the lowest stuck mode.
-    tolerance : float, optional
-        Closing error of a settled motion, relative to its size.
-
-    Raises
-    ------
-    ModelError
-        If a value is of the wrong type or outside its range.
-    """
-
-    periods: int = PERIODS
-    tolerance: float = TOLERANCE
-
-    def __post_init__(self) -> None:
-        periods = whole_number(self.periods, "periods", smallest=4)
-        tolerance = real_number(self.tolerance, "tolerance")
-        if not 1e-10 <= tolerance <= 0.1:
-            raise ModelError(f"tolerance: {tolerance:g}; give a fraction from 1e-10 to 0.1")
-        object.__setattr__(self, "periods", periods)
-        object.__setattr__(self, "tolerance", tolerance)
-
-
+@configured(ClassifySettings)
 def classify(
     model: Model,
     start: State | Mapping[str, float],
+    settings: ClassifySettings,
     *,
-    periods: int = PERIODS,
-    tolerance: float = TOLERANCE,
     observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> MotionClass:
@@ -112,15 +79,6 @@ def classify(
     start : State or mapping of str to float
         State at t = 0, or displacements of some degrees of freedom [m], the others, velocities and
         contact forces zero.
-    periods : int, optional
-        Longest motion, in periods of the lowest stuck mode.
-    tolerance : float, optional
-        Closing error of a settled motion, relative to its size in the norm of energy.
-    observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all but modal coordinates
-        ("mode-1", ...).
-    progress : callable, optional
-        Called about ten times per second with the fraction of the work that is done.
 
     Returns
     -------
@@ -140,7 +98,6 @@ def classify(
     Guillen (1999), section 5.4.1, there by Runge-Kutta steps from eight starts, and growth or
     change of amplitude judged by eye. Ferri and Dowell (1985) on free motions of several modes.
     """
-    settings = ClassifySettings(periods=periods, tolerance=tolerance)
     alone = free(model)
     dofs = observed_dofs(observe, alone)
     require_progress(progress)
@@ -202,9 +159,7 @@ def fates_of(
     from stickslip import _core
 
     try:
-        return _core.fates(
-            model.problem, starts, settings.periods, settings.tolerance, threads, progress
-        )
+        return _core.fates(model.problem, starts, settings, threads, progress)
     except ModelError:
         raise
     except ValueError as error:
@@ -279,15 +234,9 @@ def _tail(
     observe = np.array(columns, dtype=np.int64)
     history = _core.transient(
         model.problem,
-        omega,
-        "exact",
-        TAIL,
-        None,
-        1,
+        TransientSettings(omega=omega, periods=TAIL, samples=samples),
         arrays.final[0],
         observe,
-        samples,
-        None,
         lambda _: watch.heed(),
     )
     return history.displacement[1:], history.interrupted

@@ -9,14 +9,14 @@ from stickslip.results.arrays import Arrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 
 if TYPE_CHECKING:
-    from stickslip.analyses.exact_response import ExactSettings
-    from stickslip.analyses.forced_response import Settings
+    from stickslip.settings.balance import ForcedSettings
+    from stickslip.settings.orbits import ExactSettings
 
 __all__ = ["contact_assumptions", "residual_assumption", "start_assumption"]
 
 
 def contact_assumptions(
-    model: Model, settings: Settings, arrays: Arrays
+    model: Model, settings: ForcedSettings, arrays: Arrays
 ) -> tuple[Diagnostic | None, ...]:
     """Say what was assumed of residual forces, starts and sampling; None where nothing was."""
     return (
@@ -27,7 +27,7 @@ def contact_assumptions(
 
 
 def residual_assumption(
-    model: Model, settings: Settings | ExactSettings, arrays: Arrays
+    model: Model, settings: ForcedSettings | ExactSettings, arrays: Arrays
 ) -> Diagnostic | None:
     """Say what contacts that never slip were taken to hold."""
     stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
@@ -67,7 +67,7 @@ def start_assumption(model: Model) -> Diagnostic | None:
     return diagnostic("start-of-march", f"{'; '.join(told)}.")
 
 
-def _evaluation(model: Model, settings: Settings, arrays: Arrays) -> Diagnostic | None:
+def _evaluation(model: Model, settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
     if settings.march is None or not model.contacts:
         return None
     taken = arrays.samples[arrays.solved]

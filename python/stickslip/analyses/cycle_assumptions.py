@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.analyses.cycle_settings import MOST_HARMONICS, CycleSettings
 from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
+from stickslip.settings.cycles import MOST_HARMONICS, CycleSettings
 
 if TYPE_CHECKING:
     from stickslip import _core

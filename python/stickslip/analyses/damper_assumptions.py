@@ -14,10 +14,9 @@ from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_toleranc
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
-    from stickslip.analyses.damper_settings import DamperSettings
-    from stickslip.analyses.mistuning_settings import MistuningSettings
     from stickslip.results.damper_curve import DamperArrays
     from stickslip.results.mistuning_arrays import MistuningArrays
+    from stickslip.settings.peaks import DamperSettings, MistuningSettings
 
 __all__ = ["damper_assumptions", "peak_assumptions"]
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.analyses.arguments import (
     Progress,
-    Residual,
-    Span,
     prepare,
     require_forced,
     require_held,
@@ -19,14 +17,9 @@ from stickslip.analyses.arguments import (
     require_progress,
 )
 from stickslip.analyses.damper_assumptions import damper_assumptions
-from stickslip.analyses.damper_settings import DamperSettings
-from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS
 from stickslip.analyses.variation import (
     PARAMETERS,
-    Common,
     Contacts,
-    Parameter,
-    Variation,
     chosen_contacts,
     local_stiffness,
     resonance_range,
@@ -34,9 +27,13 @@ from stickslip.analyses.variation import (
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
-from stickslip.results.arrays import Bool, Float, Measure
+from stickslip.results.arrays import Bool, Float
 from stickslip.results.damper_curve import DamperArrays, DamperCurve
 from stickslip.results.status import Status
+from stickslip.settings.entries import Span
+from stickslip.settings.peaks import DamperKeys, DamperSettings, PeakSettings
+from stickslip.settings.settings import configured
+from stickslip.settings.variation import Parameter, Variation
 
 if TYPE_CHECKING:
     from stickslip import _core
@@ -51,24 +48,17 @@ square of its inverse, while the harmonics needed stay at some hundred.
 """
 
 
+@configured(DamperKeys)
 def damper_curve(
     model: Model,
     *,
-    dof: str,
+    settings: DamperKeys,
     slip_force: ArrayLike | None = None,
     stiffness: ArrayLike | None = None,
     level: ArrayLike | None = None,
     contacts: Contacts | None = None,
-    common: Common = "value",
     omega: Span | None = None,
-    mode: int = 0,
-    measure: Measure = "half_range",
-    harmonics: int | Literal["auto"] = "auto",
-    tolerance: float = 1e-3,
-    residual: Residual = "centred",
     progress: Progress = None,
-    max_harmonics: int = MAX_HARMONICS,
-    max_iterations: int = MAX_ITERATIONS,
 ) -> DamperCurve:
     """Peak amplitude and frequency against slip force, contact stiffness or level of the forces.
 
@@ -77,10 +67,6 @@ def damper_curve(
 
     Parameters
     ----------
-    model : Model
-        Structure, contacts and forces.
-    dof : str
-        The degree of freedom whose peak is followed.
     slip_force, stiffness, level : array_like, shape (n,)
         Values of one of them, in the order to follow: slip forces F_d [N], stiffnesses k_d [N/m]
         of the contacts, or factors on all forces. An infinite slip force never slips; an infinite
@@ -90,19 +76,10 @@ def damper_curve(
         The contacts that take the value, or points of them as (contact, point). Of a contact with
         several points the slip forces that are finite, unless none is. Default: all contacts; of
         slip forces those that are finite, unless none is.
-    common : {"value", "factor"}, optional
-        Whether they all take the value, or multiply their own by it. The stiffness of a
-        structure-like damper is a matrix, and takes a factor alone.
     omega : (float, float), optional
         Range of frequencies in which the peak is the highest point [rad/s]. Default: from 5 %
         below the free to 5 % above the highest stuck natural frequency of `mode`, over the lowest
         harmonic of the forces.
-    mode : int, optional
-        The mode whose resonance that is, counted from 0.
-    measure : {"half_range", "max", "fundamental"}, optional
-        See `ForcedResponse.amplitude`.
-    harmonics, tolerance, residual, progress, max_harmonics, max_iterations
-        See `stickslip.forced_response`; automatic harmonics are chosen at every peak.
 
     Returns
     -------
@@ -125,33 +102,26 @@ def damper_curve(
     require_model(model)
     require_progress(progress)
     parameter, values = _one_of(slip_force=slip_force, stiffness=stiffness, level=level)
-    if parameter == "stiffness" and common == "factor" and np.isinf(values).any():
+    if parameter == "stiffness" and settings.common == "factor" and np.isinf(values).any():
         raise ModelError(
             "stiffness: an infinite factor has no meaning; give finite ones, or values"
         )
-    settings = settings_for(
+    kept = settings_for(
         model,
-        Variation(
+        Variation.of(
             parameter=parameter,
-            contacts=chosen_contacts(contacts, parameter, model, common),
-            common=common,
+            contacts=chosen_contacts(contacts, parameter, model, settings.common),
+            common=settings.common,
         ),
         values,
-        omega=omega,
-        mode=mode,
-        dof=dof,
-        measure=measure,
-        harmonics=harmonics,
-        tolerance=tolerance,
-        residual=residual,
-        max_harmonics=max_harmonics,
-        max_iterations=max_iterations,
+        omega,
+        settings,
     )
-    start = _rigid_from(model, settings.variation)
+    start = _rigid_from(model, kept.variation)
     rigid = start if _is_rigid(values, start).any() else None
     prepare(model)
     with Interruption(progress) as watch:
-        result = curve_of(model, settings, _peaks(model, settings, values, rigid, watch), rigid)
+        result = curve_of(model, kept, _peaks(model, kept, values, rigid, watch), rigid)
         if result.interrupted:
             done = int(result.arrays.solved.sum())
             raise stopped("damper curve", f"{done} of {values.size} values", result)
@@ -162,16 +132,8 @@ def settings_for(
     model: Model,
     variation: Variation,
     values: Float,
-    *,
     omega: Span | None,
-    mode: int,
-    dof: str,
-    measure: Measure,
-    harmonics: int | Literal["auto"],
-    tolerance: float,
-    residual: Residual,
-    max_harmonics: int,
-    max_iterations: int,
+    settings: DamperKeys,
 ) -> DamperSettings:
     """Return the checked settings of a curve over some values."""
     start = _rigid_from(model, variation)
@@ -179,26 +141,16 @@ def settings_for(
     if variation.parameter == "stiffness" and finite.size < values.size:
         finite = np.append(finite, start)
     if omega is None:
-        omega = resonance_range(model, variation, mode, finite)
+        omega = resonance_range(model, variation, settings.mode, finite)
     elif not isinstance(omega, tuple):
         raise ModelError("omega: give a range (from, to) in rad/s")
-    settings = DamperSettings(
-        variation=variation,
-        dof=dof,
-        measure=measure,
-        span=omega,
-        harmonics=harmonics,
-        tolerance=tolerance,
-        residual=residual,
-        max_harmonics=max_harmonics,
-        max_iterations=max_iterations,
+    kept = DamperSettings.of(
+        **settings.part(PeakSettings), dof=settings.dof, variation=variation, span=omega
     )
-    model.structure.index(settings.dof)
-    kept = settings.max_harmonics if settings.harmonics == "auto" else settings.harmonics
-    entry = "max_harmonics" if settings.harmonics == "auto" else "harmonics"
-    require_forced(model, kept, entry)
-    require_held(model, settings.residual)
-    return settings
+    model.structure.index(kept.dof)
+    require_forced(model, kept)
+    require_held(model, kept.residual)
+    return kept
 
 
 def curve_of(
@@ -236,7 +188,14 @@ def _peaks(
         ]
         solved = np.concatenate([np.array(pair) for pair in pairs])
     try:
-        peaks = _core.damper_curve(model.problem, settings.design(model), solved, progress)
+        peaks = _core.damper_curve(
+            model.problem,
+            settings.variation.varied(model),
+            model.structure.index(settings.dof),
+            solved,
+            settings,
+            progress,
+        )
     except ModelError:
         raise
     except ValueError as error:

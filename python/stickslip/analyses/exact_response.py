@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.analyses.arguments import (
     Progress,
-    Residual,
-    Span,
     grid_of,
     observed_dofs,
     prepare,
@@ -23,76 +20,35 @@ from stickslip.analyses.arguments import (
     require_time,
 )
 from stickslip.analyses.assumptions import orbit_assumptions
-from stickslip.analyses.forced_response import (
-    MAX_HARMONICS,
-    MAX_ITERATIONS,
-    Settings,
-    forced_response,
-)
+from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.memory import require_memory
-from stickslip.checks import whole_number
 from stickslip.errors import Interrupted, ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.exact_response import ExactResponse
 from stickslip.results.orbit_arrays import OrbitArrays
+from stickslip.settings.entries import Span
+from stickslip.settings.orbits import ExactSettings, OrbitSettings
+from stickslip.settings.settings import configured
 
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["REPORTED_HARMONICS", "ExactSettings", "exact_response"]
-
-REPORTED_HARMONICS = 32
-"""Highest harmonic reported unless another is asked for; the orbits do not depend on it."""
+__all__ = ["exact_response"]
 
 # Share of the progress that choosing the frequencies of a range is given.
 _CHOOSING = 0.2
 
 
-@dataclass(frozen=True, kw_only=True)
-class ExactSettings(Settings):
-    """How exact orbits are computed.
-
-    Parameters
-    ----------
-    harmonics : int, optional
-        Highest harmonic reported.
-    tolerance : float, optional
-        Relative accuracy to which the frequencies of a range are chosen.
-    residual : {"centred", "from_rest"} or float, optional
-        As in `Settings`.
-    max_iterations : int, optional
-        Iterations of shooting per point.
-    span : (float, float), optional
-        Ends of the range of frequencies [rad/s].
-
-    Raises
-    ------
-    ModelError
-        If a value is of the wrong type or outside its range.
-    """
-
-    methods: ClassVar[tuple[str, ...]] = ("exact",)
-
-    harmonics: int | Literal["auto"] = REPORTED_HARMONICS
-    method: str = "exact"
-
-    def __post_init__(self) -> None:
-        whole_number(self.harmonics, "harmonics", smallest=1, largest=MAX_HARMONICS)
-        super().__post_init__()
-
-
+@configured(OrbitSettings)
 def exact_response(
     model: Model,
     omega: ArrayLike | Span,
+    settings: OrbitSettings,
     *,
-    harmonics: int = REPORTED_HARMONICS,
-    tolerance: float = 1e-3,
-    residual: Residual = "centred",
     observe: Iterable[str] | str | None = None,
     progress: Progress = None,
-    max_iterations: int = MAX_ITERATIONS,
 ) -> ExactResponse:
     """Steady response over excitation frequency, by exact periodic orbits.
 
@@ -103,25 +59,9 @@ def exact_response(
 
     Parameters
     ----------
-    model : Model
-        Structure, contacts and forces.
     omega : array_like, shape (n,), or (float, float)
         Angular frequencies [rad/s], in the order given. A tuple of two numbers is a range: its
         frequencies are chosen by an adaptive harmonic balance first.
-    harmonics : int, optional
-        How many harmonics of each orbit are reported; the orbits do not depend on it.
-    tolerance : float, optional
-        Relative accuracy to which the frequencies of a range are chosen, from 1e-8 to 0.5.
-    residual : {"centred", "from_rest"} or float, optional
-        Force [N] that a contact holds at mid-range of its displacement if it never slips; the
-        steady state alone does not determine it. See `ForcedResponse.residual_bounds`.
-    observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all but modal coordinates
-        ("mode-1", ...).
-    progress : callable, optional
-        Called about ten times per second with the fraction of the work that is done.
-    max_iterations : int, optional
-        Iterations of shooting per point before it is reported as stalled.
 
     Returns
     -------
@@ -147,13 +87,7 @@ def exact_response(
     require_model(model)
     require_time(model)
     grid = grid_of(omega)
-    settings = ExactSettings(
-        harmonics=harmonics,
-        tolerance=tolerance,
-        residual=residual,
-        max_iterations=max_iterations,
-        span=grid if isinstance(grid, tuple) else None,
-    )
+    kept = ExactSettings.of(**dict(settings), span=grid if isinstance(grid, tuple) else None)
     dofs = observed_dofs(observe, model)
     require_progress(progress)
     require_held(model, settings.residual)
@@ -161,14 +95,15 @@ def exact_response(
     with Interruption(progress) as watch:
         share: Progress = watch
         if isinstance(grid, tuple):
-            grid = _frequencies(model, settings, dofs, watch)
+            grid = _frequencies(model, kept, dofs, watch)
             share = _later(watch)
-        orders = settings.fixed_harmonics or REPORTED_HARMONICS
         points = sum(contact.points for contact in model.contacts)
         state = 2 * len(model.structure) + points
-        require_memory(grid.size, orders, len(dofs), points, extra=3 * state + 2 * len(dofs) + 16)
-        solution = _solve(model, grid, dofs, settings, share)
-        result = _result(model, settings, dofs, solution, grid.size - solution.computed)
+        require_memory(
+            grid.size, settings.harmonics, len(dofs), points, extra=3 * state + 2 * len(dofs) + 16
+        )
+        solution = _solve(model, grid, dofs, kept, share)
+        result = _result(model, kept, dofs, solution, grid.size - solution.computed)
         if result.interrupted:
             raise stopped("exact response", f"{solution.computed} of {grid.size} points", result)
         return watch.completed(result, "exact response")
@@ -214,9 +149,8 @@ def _solve(
             model.problem,
             grid,
             np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
-            settings.fixed_harmonics or REPORTED_HARMONICS,
-            settings.residual,
-            settings.max_iterations,
+            settings.harmonics,
+            settings,
             progress,
         )
     except ModelError:

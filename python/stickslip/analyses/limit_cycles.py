@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.analyses.arguments import (
     Progress,
-    Span,
     prepare,
     refusal,
     require_model,
@@ -18,9 +17,7 @@ from stickslip.analyses.arguments import (
     require_time,
 )
 from stickslip.analyses.cycle_assumptions import cycle_assumptions
-from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSettings, wanted
-from stickslip.analyses.forced_response import MAX_HARMONICS
-from stickslip.analyses.variation import Common, Contacts, Parameter, Variation, chosen_contacts
+from stickslip.analyses.variation import Contacts, chosen_contacts
 from stickslip.checks import brief, real_number
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
@@ -29,36 +26,31 @@ from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import is_proportional, negative_matrix
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.limit_cycles import LimitCycles
+from stickslip.settings.cycles import LOWEST_RATIO, BranchSettings, CycleKeys, CycleSettings
+from stickslip.settings.entries import Span
+from stickslip.settings.settings import configured
+from stickslip.settings.variation import Parameter, Variation
 
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["limit_cycles", "negative_damping_of"]
+__all__ = ["limit_cycles", "negative_damping_of", "solve", "wanted"]
 
 AROUND = 1e3
 """Factor beyond the values of a parameter of contacts within which the branch is followed."""
 
-MAX_POINTS = 5000
-"""Most points of a branch unless another number is asked for."""
 
-
+@configured(CycleKeys)
 def limit_cycles(
     model: Model,
     negative_damping: ArrayLike | DampingLaw,
     *,
-    mode: int = 0,
+    settings: CycleKeys,
     ratio: ArrayLike | Span | None = None,
     stiffness: ArrayLike | Span | None = None,
     slip_force: ArrayLike | Span | None = None,
     contacts: Contacts | None = None,
-    common: Common = "value",
-    harmonics: int | Literal["auto"] = 31,
-    method: CycleMethod = "newton",
-    tolerance: float = 1e-3,
-    stability: bool = True,
     progress: Progress = None,
-    max_harmonics: int = MAX_HARMONICS,
-    max_points: int = MAX_POINTS,
 ) -> LimitCycles:
     """Limit cycles under the damping C + r C_neg: friction bounds what flutter feeds.
 
@@ -76,9 +68,6 @@ def limit_cycles(
         C_neg [kg/s], also unsymmetric; or `Rayleigh` or `ModalDamping` with negative numbers. Of
         a tuned disk also complex matrices of shape (n, N, N)
         by nodal diameter, which add i omega r C_neg to the dynamic stiffness.
-    mode : int, optional
-        Mode of the stuck structure, counted from 0; with damping C the branch begins at the ratio
-        at which this mode loses it.
     ratio : array_like, (float, float) or float, optional
         A list: exactly these ratios r, on both sides of the branch. A tuple: the branch from its
         sticking side on, until it leaves this range. Default: the whole branch from r = 0.01 on.
@@ -86,27 +75,8 @@ def limit_cycles(
     stiffness, slip_force : array_like or (float, float), optional
         Follow this parameter of contacts [N/m], [N] instead of r, at exactly these values, or in
         a range.
-    contacts, common
-        Which contacts take the value, and whether as their own or as a factor on it; see
-        `stickslip.damper_curve`.
-    harmonics : int or "auto", optional
-        Harmonics kept, odd ones alone, at all points of the branch; "auto": as `tolerance` asks,
-        which one point in twenty may miss, with that status. Of exact orbits the highest reported.
-    method : {"newton", "exact"}, optional
-        Harmonic balance with the frequency as an unknown, or exact orbits by shooting with the
-        period as an unknown.
-    tolerance : float, optional
-        Relative accuracy that automatic harmonics aim at.
-    stability : bool, optional
-        Whether Floquet multipliers are computed: those of the exact orbit to which a point of the
-        harmonic balance belongs, and along the exact flow from the balance where there is none.
-        Not for travelling waves.
-    progress : callable, optional
-        Called about ten times per second with the fraction of the work that is done.
-    max_harmonics : int, optional
-        Highest harmonic that "auto" may keep.
-    max_points : int, optional
-        Most points of a branch.
+    contacts : int, str, (contact, int), or iterable of these, optional
+        Which contacts take the value; see `stickslip.damper_curve`.
 
     Returns
     -------
@@ -130,37 +100,26 @@ def limit_cycles(
     require_model(model)
     require_progress(progress)
     matrix = negative_damping_of(negative_damping, model)
-    settings = _settings(
-        model,
-        {"stiffness": stiffness, "slip_force": slip_force},
-        ratio,
-        contacts,
-        common,
-        mode=mode,
-        harmonics=harmonics,
-        method=method,
-        tolerance=tolerance,
-        stability=stability,
-        max_harmonics=max_harmonics,
-        max_points=max_points,
+    kept = _settings(
+        model, {"stiffness": stiffness, "slip_force": slip_force}, ratio, contacts, settings
     )
     if settings.method == "exact":
         require_time(model)
     law = is_proportional(negative_damping)
     prepare(model)
     with Interruption(progress) as watch:
-        solution = solve(model, matrix, settings, watch, proportional=law)
+        solution = solve(model, matrix, kept, watch, proportional=law)
         arrays = CycleArrays.of(solution)
         result = LimitCycles(
             model=model,
             dofs=model.structure.dofs,
-            settings=settings,
+            settings=kept,
             arrays=arrays,
             negative_damping=matrix,
             interrupted=solution.interrupted,
             timings=dict(solution.timings),
             counters={**solution.counters, "jumps": solution.jumps},
-            diagnostics=cycle_assumptions(model, settings, arrays, solution),
+            diagnostics=cycle_assumptions(model, kept, arrays, solution),
         )
         if result.interrupted:
             raise stopped("limit cycles", f"{result.ratio.size} points", result)
@@ -221,28 +180,13 @@ def solve(
     from stickslip import _core
 
     variation = settings.variation
-    ratio: _core.Varied = {"parameter": "ratio", "contacts": [], "factor": False}
-    followed: _core.Followed = {
-        "variation": ratio if variation is None else variation.varied(model),
-        "ratio": settings.ratio,
-        "values": None if settings.values is None else list(settings.values),
-        "range": settings.span,
-    }
-    exact = settings.method == "exact"
-    harmonics = 31 if exact and settings.harmonics == "auto" else settings.harmonics
     try:
         return _core.limit_cycles(
             model.problem,
             matrix,
             proportional,
-            settings.mode,
-            followed,
-            exact,
-            None if harmonics == "auto" else harmonics,
-            settings.max_harmonics,
-            settings.tolerance,
-            settings.stability,
-            settings.max_points,
+            None if variation is None else variation.varied(model),
+            settings,
             progress,
         )
     except ModelError:
@@ -256,10 +200,10 @@ def _settings(
     parameters: dict[Parameter, ArrayLike | Span | None],
     ratio: ArrayLike | Span | None,
     contacts: Contacts | None,
-    common: Common,
-    **rest: Any,
+    settings: CycleKeys,
 ) -> CycleSettings:
     """Return checked settings."""
+    rest = settings.part(BranchSettings)
     given = [name for name, values in parameters.items() if values is not None]
     if len(given) > 1:
         raise ModelError("stiffness, slip_force: both are given; follow one of them")
@@ -267,14 +211,57 @@ def _settings(
         if contacts is not None:
             raise ModelError("contacts: the ratio is no parameter of contacts; leave them out")
         values, span = wanted(ratio, "ratio", (LOWEST_RATIO, inf))
-        return CycleSettings(values=values, span=span, **rest)
+        return CycleSettings.of(values=values, span=span, **rest)
     (name,) = given
-    variation = Variation(
-        parameter=name, contacts=chosen_contacts(contacts, name, model, common), common=common
+    variation = Variation.of(
+        parameter=name,
+        contacts=chosen_contacts(contacts, name, model, settings.common),
+        common=settings.common,
     )
     values, span = wanted(parameters[name], name, (inf, 0.0))
     if values is not None:
         # The other side of the branch is reached around a fold that may lie far outside.
         span = (values[0] / AROUND, values[-1] * AROUND)
     one = 1.0 if ratio is None else real_number(ratio, f"ratio, with {name} followed,")
-    return CycleSettings(variation=variation, ratio=one, values=values, span=span, **rest)
+    return CycleSettings.of(variation=variation, ratio=one, values=values, span=span, **rest)
+
+
+def wanted(
+    given: ArrayLike | Span | None, entry: str, span: Span
+) -> tuple[tuple[float, ...] | None, Span]:
+    """Return the values at which cycles are wanted, or none, and the range.
+
+    Parameters
+    ----------
+    given : array_like, (float, float) or None
+        Values; a tuple of two numbers is a range.
+    entry : str
+        Its name.
+    span : (float, float)
+        The range where nothing is given.
+
+    Raises
+    ------
+    ModelError
+        If a value is not a finite number above 0, or a range has no two different ends.
+    """
+    if given is None:
+        return None, span
+    if isinstance(given, tuple) and len(given) == 2:
+        low, high = sorted(
+            real_number(end, f"{entry}: end of the range", finite=False) for end in given
+        )
+        if not 0.0 < low < high:
+            raise ModelError(f"{entry}: the range ({low:g}, {high:g}) must have two ends above 0")
+        return None, (low, high)
+    try:
+        values = np.atleast_1d(np.asarray(given))
+    except ValueError:
+        raise ModelError(f"{entry}: a ragged list; give one list of values") from None
+    if values.dtype.kind not in "fiu" or values.ndim != 1 or not values.size:
+        raise ModelError(f"{entry}: {brief(given)}; give a list of numbers above 0, or (from, to)")
+    numbers = np.array(values, dtype=np.float64)
+    bad = np.flatnonzero(~(np.isfinite(numbers) & (numbers > 0.0)))
+    if bad.size:
+        raise ModelError(f"{entry}[{bad[0]}] is {numbers[bad[0]]:g}; give finite values above 0")
+    return tuple(map(float, np.unique(numbers))), (min(span[0], float(numbers.min())), span[1])

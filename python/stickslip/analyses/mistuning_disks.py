@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from numpy.typing import ArrayLike
 
 from stickslip.analyses.arguments import require_held
 from stickslip.analyses.mistuning_arguments import numbers_of
-from stickslip.analyses.mistuning_settings import MistuningSettings
 from stickslip.analyses.pattern_store import Identity, Row, digest
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.coupling import Coupling
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
 from stickslip.results.status import Status
+from stickslip.settings.peaks import MistuningSettings
 
 if TYPE_CHECKING:
     from stickslip.disk.mistuned import MistunedDisk
@@ -48,7 +48,13 @@ def tuned_peaks(
         groups = [[f"{blade}.{dof}" for blade in range(disk.sectors)] for dof in dofs]
     require_held(model, settings.residual)
     try:
-        found = _core.summits(model.problem, settings.quest(model, groups))
+        found = _core.summits(
+            model.problem,
+            [[model.structure.index(dof) for dof in group] for group in groups],
+            settings.measure,
+            settings.span,
+            settings,
+        )
     except ModelError:
         raise
     except ValueError as error:
@@ -135,5 +141,5 @@ def identity_of(
         "dofs": list(dofs),
         "omega": list(settings.span),
         "patterns": digest(patterns) if settings.distribution is None else "drawn",
-        **{name: value for name, value in asdict(settings).items() if name != "span"},
+        **{name: value for name, value in settings if name != "span"},
     }

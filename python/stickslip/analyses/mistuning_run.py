@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from stickslip.analyses.mistuning_assumptions import mistuning_assumptions
 from stickslip.analyses.mistuning_disks import Series
-from stickslip.analyses.mistuning_settings import MistuningSettings
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
@@ -22,6 +21,7 @@ from stickslip.results.arrays import Float
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.mistuning_arrays import MistuningArrays
 from stickslip.results.status import Status
+from stickslip.settings.peaks import MistuningSettings
 
 __all__ = ["Work"]
 
@@ -86,8 +86,6 @@ class Work:
     def _fault(self, key: Key, dof: int, row: Row, points: int) -> str | None:
         """Say what no row of this study can hold; stores of the first version have no digests."""
         low, high = self.settings.span
-        harmonics = self.settings.harmonics
-        kept = self.settings.max_harmonics if harmonics == "auto" else harmonics
         checks: dict[str, tuple[float, float, float]] = {
             "pattern": (key.pattern, 0, math.inf),
             "dof": (dof, 0, len(self.dofs) - 1),
@@ -95,7 +93,7 @@ class Work:
             "amplitude": (row.amplitude, sys.float_info.min, sys.float_info.max),
             "blade": (row.blade, 0, self.disk.sectors - 1),
             "status": (row.status, 0, len(Status) - 1),
-            "harmonics": (row.harmonics, 0, kept),
+            "harmonics": (row.harmonics, 0, self.settings.highest),
             "error_estimate": (row.error_estimate, 0.0, math.inf),
             "points": (points, 0, math.inf),
         }
@@ -149,7 +147,9 @@ class Work:
                 [family(one.disk) for one in self.series],
                 missing[:, 1].tolist(),
                 self.deviations[missing[:, 0], np.newaxis] * self.patterns[missing[:, 2]],
-                self.settings.quest(self.disk, [[dof] for dof in self.dofs]),
+                [[self.disk.structure.index(dof)] for dof in self.dofs],
+                self.settings,
+                self.settings,
                 [max(row.harmonics for row in one.tuned) for one in self.series],
                 threads,
                 deliver,

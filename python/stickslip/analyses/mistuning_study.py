@@ -5,12 +5,11 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from stickslip.analyses.arguments import Progress, Residual, Span, require_forced, require_progress
-from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS
+from stickslip.analyses.arguments import Progress, require_forced, require_progress
 from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.mistuning_arguments import (
     dofs_of,
@@ -21,15 +20,15 @@ from stickslip.analyses.mistuning_arguments import (
 )
 from stickslip.analyses.mistuning_disks import Series, coupled_disks, identity_of, tuned_peaks
 from stickslip.analyses.mistuning_run import Work
-from stickslip.analyses.mistuning_settings import MistuningSettings
 from stickslip.analyses.pattern_store import PatternStore
-from stickslip.checks import brief, whole_number
+from stickslip.checks import brief
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.pattern import Distribution
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
-from stickslip.results.arrays import Measure
 from stickslip.results.mistuning import MistuningStudy
+from stickslip.settings.entries import Span, span_of
+from stickslip.settings.peaks import MistuningKeys, MistuningSettings, PeakSettings
+from stickslip.settings.settings import configured
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -37,25 +36,18 @@ if TYPE_CHECKING:
 __all__ = ["mistuning_study"]
 
 
+@configured(MistuningKeys)
 def mistuning_study(
     disk: BladedDisk,
     deviation: ArrayLike,
     *,
+    settings: MistuningKeys,
     omega: Span,
     patterns: int | ArrayLike = 1000,
-    seed: int = 0,
-    distribution: Distribution = "normal",
     dofs: Iterable[str] | str | None = None,
     coupling_stiffness: ArrayLike | None = None,
-    measure: Measure = "half_range",
-    harmonics: int | Literal["auto"] = "auto",
-    tolerance: float = 1e-3,
-    residual: Residual = "centred",
-    threads: int | None = None,
     store: str | PathLike[str] | None = None,
     progress: Progress = None,
-    max_harmonics: int = MAX_HARMONICS,
-    max_iterations: int = MAX_ITERATIONS,
 ) -> MistuningStudy:
     """Amplification factors of disks whose blades deviate at random, and their distribution.
 
@@ -76,26 +68,15 @@ def mistuning_study(
         Range of frequencies in which peaks are the highest points [rad/s].
     patterns : int or array_like, shape (p, n), optional
         How many patterns are drawn; or the patterns themselves, in units of S.
-    seed : int, optional
-        Of the patterns drawn. Pattern i of a seed is the same however many there are, and the same
-        for all deviations and couplings.
-    distribution : {"normal", "uniform"}, optional
-        Distribution of zero mean and unit deviation of the patterns drawn.
     dofs : str or iterable of str, optional
         Degrees of freedom of a sector whose amplification is sought. Default: all that carry a
         contact or a force.
     coupling_stiffness : float or array_like, shape (c,), optional
         Stiffnesses that all couplings take in turn [N/m]. Default: those of the disk.
-    measure : {"half_range", "max", "fundamental"}, optional
-        See `ForcedResponse.amplitude`.
-    threads : int, optional
-        Threads. Default: as many as there are processors.
     store : path-like, optional
         File in which the results are kept as they come. If there is one of the same study already,
         with as many patterns, deviations and couplings or with others, only what is missing is
         computed: a run that was stopped, however rudely, goes on where it was.
-    harmonics, tolerance, residual, progress, max_harmonics, max_iterations
-        See `stickslip.forced_response`; automatic harmonics start from those of the tuned disk.
 
     Returns
     -------
@@ -125,44 +106,33 @@ def mistuning_study(
     if not isinstance(disk, BladedDisk):
         raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give the tuned disk")
     require_progress(progress)
-    if not isinstance(omega, tuple):
-        raise ModelError("omega: give a range (from, to) in rad/s")
-    rows, drawn = patterns_of(patterns, disk.sectors, distribution, seed)
-    settings = MistuningSettings(
-        span=omega,
-        distribution=distribution if drawn else None,
-        seed=whole_number(seed, "seed") if drawn else None,
-        measure=measure,
-        harmonics=harmonics,
-        tolerance=tolerance,
-        residual=residual,
-        max_harmonics=max_harmonics,
-        max_iterations=max_iterations,
+    rows, drawn = patterns_of(patterns, disk.sectors, settings.distribution, settings.seed)
+    kept = MistuningSettings.of(
+        **settings.part(PeakSettings),
+        span=span_of(omega, "omega"),
+        distribution=settings.distribution if drawn else None,
+        seed=settings.seed if drawn else None,
     )
     names = dofs_of(dofs, disk)
     deviations = numbers_of(deviation, "deviation", "0.05 for 5 %")
     require_stiff(deviations, rows)
-    automatic = settings.harmonics == "auto"
-    kept = settings.max_harmonics if settings.harmonics == "auto" else settings.harmonics
-    require_forced(disk, kept, "max_harmonics" if automatic else "harmonics")
-    pool = processors() if threads is None else whole_number(threads, "threads", smallest=1)
+    require_forced(disk, settings)
+    pool = settings.threads or processors()
     disks = coupled_disks(disk, coupling_stiffness)
     count = deviations.size * len(disks) * len(rows) * len(names)
     # Deviations and peaks; the core has its own of the former.
     each = disk.sectors * deviations.size * len(disks) * len(rows)
-    kept = 8 * count + disk.sectors * len(rows)
+    held = 8 * count + disk.sectors * len(rows)
     what = f"patterns: the result of {count} peaks"
-    require_numbers(kept, what, "give fewer patterns", core=3 * each)
+    require_numbers(held, what, "give fewer patterns", core=3 * each)
     start = time.perf_counter()
-    series = [Series(one, value, tuned_peaks(one, settings, names)) for value, one in disks]
-    work = Work(disk, settings, names, deviations, series, rows)
+    series = [Series(one, value, tuned_peaks(one, kept, names)) for value, one in disks]
+    work = Work(disk, kept, names, deviations, series, rows)
     with Interruption(progress) as watch:
         if store is None:
             complete = work.run(pool, watch, None)
         else:
-            identity = identity_of(
-                disk, settings, names, rows, given=coupling_stiffness is not None
-            )
+            identity = identity_of(disk, kept, names, rows, given=coupling_stiffness is not None)
             with PatternStore(store, identity) as kept_rows:
                 work.recall(kept_rows)
                 complete = work.run(pool, watch, kept_rows)

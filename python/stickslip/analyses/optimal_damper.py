@@ -3,40 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from stickslip.analyses.arguments import (
     Progress,
-    Residual,
-    Span,
     prepare,
     require_model,
     require_progress,
 )
 from stickslip.analyses.damper_curve import curve_of, settings_for
-from stickslip.analyses.damper_settings import DamperSettings
-from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS, forced_response
+from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.variation import (
-    Chosen,
-    Common,
     Contacts,
-    Parameter,
-    Variation,
     chosen_contacts,
     local_stiffness,
-    located,
 )
 from stickslip.checks import choice, real_number
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.contact import Contact
-from stickslip.results.arrays import Measure, amplitude_of
+from stickslip.results.arrays import amplitude_of
 from stickslip.results.damper_curve import DamperArrays, LeastPeak
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 from stickslip.results.optimal_damper import OptimalDamper
+from stickslip.settings.entries import Span
+from stickslip.settings.peaks import DamperKeys, DamperSettings
+from stickslip.settings.settings import configured
+from stickslip.settings.variation import Chosen, Parameter, Variation, located
 
 __all__ = ["optimal_damper"]
 
@@ -53,23 +48,16 @@ STIFFNESSES = (1e-2, 250.0)
 """Bounds of a stiffness, over that of the structure at the contact."""
 
 
+@configured(DamperKeys)
 def optimal_damper(
     model: Model,
     *,
-    dof: str,
+    settings: DamperKeys,
     parameter: Parameter = "slip_force",
     bounds: tuple[float, float] | None = None,
     contacts: Contacts | None = None,
-    common: Common = "value",
     omega: Span | None = None,
-    mode: int = 0,
-    measure: Measure = "half_range",
-    harmonics: int | Literal["auto"] = "auto",
-    tolerance: float = 1e-3,
-    residual: Residual = "centred",
     progress: Progress = None,
-    max_harmonics: int = MAX_HARMONICS,
-    max_iterations: int = MAX_ITERATIONS,
 ) -> OptimalDamper:
     """Find the slip force, stiffness or level at which the peak of a response is least.
 
@@ -80,10 +68,6 @@ def optimal_damper(
 
     Parameters
     ----------
-    model : Model
-        Structure, contacts and forces.
-    dof : str
-        The degree of freedom whose peak is to be least.
     parameter : {"slip_force", "stiffness", "level"}, optional
         What is varied. With "level", a factor on all forces, the amplitude per unit of level is
         made least: friction knows the ratio of force and slip force alone.
@@ -93,14 +77,11 @@ def optimal_damper(
         light damping that rises far above the load: the lower bound is then 0.03 times, and the
         upper one at most 10 000 times, what they bear at the low end of the range. For levels
         likewise; for stiffnesses: 1/100 to 250 times that of the structure.
-    contacts, common
-        Which contacts or points are varied, and whether they all take one common value or multiply
-        their own by one common factor; see `stickslip.damper_curve`. Different values for each
-        are not looked for.
-    omega, mode, measure
+    contacts : int, str, (contact, int), or iterable of these, optional
+        Which contacts or points are varied, all by one common value or factor; see
+        `stickslip.damper_curve`. Different values for each are not looked for.
+    omega : (float, float), optional
         See `stickslip.damper_curve`.
-    harmonics, tolerance, residual, progress, max_harmonics, max_iterations
-        See `stickslip.forced_response`; automatic harmonics are chosen at every peak.
 
     Returns
     -------
@@ -119,42 +100,34 @@ def optimal_damper(
     require_model(model)
     require_progress(progress)
     choice(parameter, "parameter", ("slip_force", "stiffness", "level"))
-    variation = Variation(
+    variation = Variation.of(
         parameter=parameter,
-        contacts=chosen_contacts(contacts, parameter, model, common),
-        common=common,
+        contacts=chosen_contacts(contacts, parameter, model, settings.common),
+        common=settings.common,
     )
     given = None if bounds is None else _checked(bounds)
     values = np.array(given if given is not None else (1.0,))
     if parameter == "stiffness" and given is None:
         given = _default_bounds(model, variation, None)
         values = np.array(given)
-    settings = settings_for(
-        model,
-        variation,
-        values,
-        omega=omega,
-        mode=mode,
-        dof=dof,
-        measure=measure,
-        harmonics=harmonics,
-        tolerance=tolerance,
-        residual=residual,
-        max_harmonics=max_harmonics,
-        max_iterations=max_iterations,
-    )
-    low, high = given if given is not None else _default_bounds(model, variation, settings)
+    kept = settings_for(model, variation, values, omega, settings)
+    low, high = given if given is not None else _default_bounds(model, variation, kept)
     prepare(model)
     with Interruption(progress) as watch:
         try:
             minima, peaks = _core.optimal_damper(
-                model.problem, settings.design(model), (low, high), watch
+                model.problem,
+                variation.varied(model),
+                model.structure.index(kept.dof),
+                (low, high),
+                kept,
+                watch,
             )
         except ModelError:
             raise
         except ValueError as error:
             raise ModelError(str(error)) from error
-        curve = curve_of(model, settings, (DamperArrays.of(peaks), peaks))
+        curve = curve_of(model, kept, (DamperArrays.of(peaks), peaks))
         if curve.interrupted:
             raise stopped("optimal damper", f"{curve.values.size} peaks", curve)
         rows = zip(minima.value, minima.omega, minima.amplitude, strict=True)

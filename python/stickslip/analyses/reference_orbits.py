@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.analyses.arguments import Progress, require_held
-from stickslip.analyses.forced_response import MAX_ITERATIONS
 from stickslip.analyses.memory import require_memory
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.wave_ring import rotation_of, wave_ring
@@ -16,6 +15,7 @@ from stickslip.errors import ModelError
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
 from stickslip.results.orbit_arrays import OrbitArrays
+from stickslip.settings.orbits import OrbitSettings
 
 if TYPE_CHECKING:
     from stickslip import _core
@@ -99,8 +99,7 @@ def orbits_of(
             omega,
             np.array(columns, dtype=np.int64),
             1,
-            result.settings.residual,
-            MAX_ITERATIONS,
+            OrbitSettings(residual=result.settings.residual),
             progress,
             rotation,
         )

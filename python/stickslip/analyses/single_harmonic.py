@@ -16,7 +16,6 @@ from stickslip.analyses.arguments import (
     require_progress,
 )
 from stickslip.analyses.assumptions import assumptions_of
-from stickslip.analyses.forced_response import MAX_ITERATIONS, Settings
 from stickslip.analyses.memory import require_memory
 from stickslip.checks import brief
 from stickslip.errors import ModelError
@@ -26,6 +25,9 @@ from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Arrays
 from stickslip.results.diagnostic import diagnostic
 from stickslip.results.status import Status
+from stickslip.settings.balance import ForcedSettings
+from stickslip.settings.orbits import SingleHarmonicSettings
+from stickslip.settings.settings import configured
 
 __all__ = ["single_harmonic"]
 
@@ -38,14 +40,14 @@ _NO_ESTIMATE = (
 )
 
 
+@configured(SingleHarmonicSettings)
 def single_harmonic(
     model: Model,
     omega: ArrayLike,
+    settings: SingleHarmonicSettings,
     *,
-    estimate: bool = True,
     observe: Iterable[str] | str | None = None,
     progress: Progress = None,
-    max_iterations: int = MAX_ITERATIONS,
 ) -> ForcedResponse:
     """Steady response over excitation frequency, by a single harmonic.
 
@@ -62,16 +64,6 @@ def single_harmonic(
         of harmonic 1.
     omega : array_like, shape (n,)
         Angular frequencies [rad/s], swept in the order given.
-    estimate : bool, optional
-        Estimate the error of leaving the higher harmonics out, which takes most of the time.
-        Without it `ForcedResponse.error_estimate` is not-a-number.
-    observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all but modal coordinates
-        ("mode-1", ...).
-    progress : callable, optional
-        Called about ten times per second with the fraction of the work that is done.
-    max_iterations : int, optional
-        Iterations per point before it is reported as stalled.
 
     Returns
     -------
@@ -103,9 +95,7 @@ def single_harmonic(
             f"{reason} np.linspace(start, end, 400)",
             study=f"{reason} {{from = ..., to = ..., points = 400}}",
         )
-    if not isinstance(estimate, bool):
-        raise ModelError(f"estimate: {brief(estimate)} is neither True nor False")
-    settings = Settings(harmonics=1, max_iterations=max_iterations)
+    kept = ForcedSettings.of(harmonics=1, max_iterations=settings.max_iterations)
     dofs = observed_dofs(observe, model)
     require_progress(progress)
     for position, force in enumerate(model.forces, start=1):
@@ -120,7 +110,7 @@ def single_harmonic(
     require_memory(grid.size, 1, len(dofs), sum(contact.points for contact in model.contacts))
     prepare(model)
     with Interruption(progress) as watch:
-        result = _solve(model, grid, dofs, settings, estimate, watch)
+        result = _solve(model, grid, dofs, kept, settings, watch)
         if result.interrupted:
             done = int((result.arrays.status != Status.NOT_COMPUTED.code).sum())
             raise stopped("single-harmonic response", f"{done} of {grid.size} points", result)
@@ -131,8 +121,8 @@ def _solve(
     model: Model,
     grid: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
     dofs: tuple[str, ...],
-    settings: Settings,
-    estimate: bool,
+    kept: ForcedSettings,
+    settings: SingleHarmonicSettings,
     progress: Progress,
 ) -> ForcedResponse:
     from stickslip import _core
@@ -142,8 +132,7 @@ def _solve(
             model.problem,
             grid,
             np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
-            estimate,
-            settings.max_iterations,
+            settings,
             progress,
         )
     except ModelError:
@@ -153,7 +142,7 @@ def _solve(
     arrays = Arrays.of(solution)
     told = assumptions_of(
         model,
-        settings,
+        kept,
         dofs,
         arrays,
         half_wave=solution.half_wave,
@@ -163,7 +152,7 @@ def _solve(
     )
     return ForcedResponse(
         model=model,
-        settings=settings,
+        settings=kept,
         dofs=dofs,
         arrays=arrays,
         half_wave=solution.half_wave,
@@ -173,6 +162,6 @@ def _solve(
         diagnostics=(
             diagnostic("method", _METHOD),
             *told,
-            *(() if estimate else (diagnostic("no-error-estimate", _NO_ESTIMATE),)),
+            *(() if settings.estimate else (diagnostic("no-error-estimate", _NO_ESTIMATE),)),
         ),
     )

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.analyses.arguments import Progress, require_model, require_progress, require_time
-from stickslip.analyses.cycle_settings import LOWEST_RATIO, CycleMethod, CycleSettings, wanted
-from stickslip.analyses.forced_response import MAX_HARMONICS
-from stickslip.analyses.limit_cycles import MAX_POINTS, negative_damping_of, solve
-from stickslip.analyses.variation import Common, Contacts, Parameter, Variation, chosen_contacts
+from stickslip.analyses.limit_cycles import negative_damping_of, solve, wanted
+from stickslip.analyses.variation import Contacts, chosen_contacts
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
@@ -20,22 +17,23 @@ from stickslip.model.destabilised import is_proportional
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 from stickslip.results.stability import stability_of
-from stickslip.results.stability_map import MapArrays, MapSettings, StabilityMap
+from stickslip.results.stability_map import MapArrays, StabilityMap
+from stickslip.settings.cycles import CycleSettings, MapKeys, MapSettings
+from stickslip.settings.settings import configured
+from stickslip.settings.variation import Parameter, Variation
 
 __all__ = ["stability_map"]
 
 
+@configured(MapKeys)
 def stability_map(
     model: Model,
     negative_damping: ArrayLike,
     *,
+    settings: MapKeys,
     stiffness: ArrayLike | None = None,
     slip_force: ArrayLike | None = None,
     contacts: Contacts | None = None,
-    common: Common = "value",
-    mode: int = 0,
-    harmonics: int | Literal["auto"] = 31,
-    method: CycleMethod = "exact",
     progress: Progress = None,
 ) -> StabilityMap:
     """Largest negative damping with limit cycles, and with stable ones, over a contact parameter.
@@ -54,11 +52,8 @@ def stability_map(
     stiffness, slip_force : array_like, shape (n,)
         Values of one of them, above 0 [N/m], [N]. Limit ratios depend on slip forces only through
         their proportions, as all displacements grow with them.
-    contacts, common
-        Which contacts take the value, and whether as their own or as a factor on it; see
-        `stickslip.damper_curve`.
-    mode, harmonics, method, progress
-        See `stickslip.limit_cycles`.
+    contacts : int, str, (contact, int), or iterable of these, optional
+        Which contacts take the value; see `stickslip.damper_curve`.
 
     Returns
     -------
@@ -90,17 +85,14 @@ def stability_map(
     (name,) = names
     values, _ = wanted(np.atleast_1d(np.asarray(given[name])), name, (inf, 0.0))
     assert values is not None
-    variation = Variation(
-        parameter=name, contacts=chosen_contacts(contacts, name, model, common), common=common
+    variation = Variation.of(
+        parameter=name,
+        contacts=chosen_contacts(contacts, name, model, settings.common),
+        common=settings.common,
     )
-    cycles = CycleSettings(
-        mode=mode,
-        harmonics=harmonics,
-        method=method,
-        max_harmonics=MAX_HARMONICS,
-        max_points=MAX_POINTS,
-        span=(LOWEST_RATIO, inf),
-    )
+    branch = settings.part(MapKeys)
+    del branch["common"]
+    cycles = CycleSettings.of(**branch)
     rows: list[tuple[float, float, float]] = []
     told: list[Diagnostic] = []
     interrupted = False
@@ -135,9 +127,7 @@ def stability_map(
         result = StabilityMap(
             model=model,
             dofs=model.structure.dofs,
-            settings=MapSettings(
-                variation=variation, mode=mode, harmonics=harmonics, method=method
-            ),
+            settings=MapSettings.of(variation=variation, **branch),
             arrays=MapArrays(
                 value=np.array(values[:done]), limit=limit, omega=omega, stable_limit=stable
             ),

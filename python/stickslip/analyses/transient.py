@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,21 +19,20 @@ from stickslip.analyses.arguments import (
 )
 from stickslip.analyses.assumptions import transient_assumptions, turn_per_step
 from stickslip.analyses.memory import require_numbers
-from stickslip.checks import brief, choice, real_number, whole_number
+from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.transient import Transient
 from stickslip.results.transient_arrays import TransientArrays
+from stickslip.settings.motion import TransientSettings
+from stickslip.settings.settings import configured
 
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["SCHEMES", "TransientSettings", "transient"]
-
-SCHEMES = ("exact", "rk4")
-"""The exact flow between events, and the classical Runge-Kutta method of fourth order."""
+__all__ = ["transient"]
 
 STABLE_TURN = 2.8
 """Largest angle per step at which the classical Runge-Kutta method is stable: sqrt(8), rounded."""
@@ -45,106 +43,23 @@ MOST_STEPS = 2_000_000
 DROPPED = 16
 """Periods that the core keeps beyond twice the wanted ones before it drops any."""
 
-PERIODS, STEPS, SAMPLES = 200, 1000, 128
 
-
-@dataclass(frozen=True, kw_only=True)
-class TransientSettings:
-    """How a transient is computed.
-
-    Parameters
-    ----------
-    omega : float
-        Angular frequency of the forces [rad/s].
-    scheme : {"exact", "rk4"}, optional
-        The exact flow between events, or Runge-Kutta steps.
-    periods : int, optional
-        Number of periods; with a tolerance their limit.
-    tolerance : float, optional
-        Change over a period, relative to the motion, at which the run ends. Default: none.
-    steps : int, optional
-        Steps per period, for "rk4".
-    samples : int, optional
-        Instants per period in the time histories.
-    keep : int, optional
-        How many of the last periods the time histories hold. Default: all.
-
-    Raises
-    ------
-    ModelError
-        If a value is of the wrong type or outside its range.
-    """
-
-    omega: float
-    scheme: str = "exact"
-    periods: int = PERIODS
-    tolerance: float | None = None
-    steps: int = STEPS
-    samples: int = SAMPLES
-    keep: int | None = None
-
-    def __post_init__(self) -> None:
-        periods = whole_number(self.periods, "periods", smallest=1)
-        checked: dict[str, object] = {
-            "omega": _omega(self.omega),
-            "scheme": choice(self.scheme, "scheme", SCHEMES),
-            "periods": periods,
-            "tolerance": None if self.tolerance is None else _tolerance(self.tolerance),
-            "steps": whole_number(self.steps, "steps", smallest=4),
-            "samples": whole_number(self.samples, "samples", smallest=2),
-            "keep": None if self.keep is None else whole_number(self.keep, "keep", smallest=1),
-        }
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
-
-
+@configured(TransientSettings, "omega", "periods", "scheme")
 def transient(
     model: Model,
-    omega: float,
-    periods: int = PERIODS,
-    scheme: Literal["exact", "rk4"] = "exact",
+    settings: TransientSettings,
     *,
-    tolerance: float | None = None,
     start: State | Mapping[str, float] | None = None,
-    steps: int = STEPS,
-    samples: int = SAMPLES,
     observe: Iterable[str] | str | None = None,
-    keep: int | None = None,
     progress: Progress = None,
 ) -> Transient:
     """Motion from a start state under the forces at one frequency, period after period.
 
     Parameters
     ----------
-    model : Model
-        Structure, contacts and forces.
-    omega : float
-        Angular frequency of the forces [rad/s].
-    periods : int, optional
-        Number of periods; with a tolerance their limit.
-    scheme : {"exact", "rk4"}, optional
-        "exact": power series, exact to rounding, between the instants of stick and slip, which
-        are located.
-        "rk4": the classical Runge-Kutta method of fourth order with the return map of the contacts
-        in every step; its error falls with the square of the step where contacts slip.
-    tolerance : float, optional
-        End the run once the state changes over a period by less than this, relative to the motion
-        in it, in the norm of energy. Default: compute all periods.
     start : State or mapping of str to float, optional
         State at t = 0, or displacements of some degrees of freedom [m], the others and everything
         else zero. ``other.final`` continues another run. Default: rest.
-    steps : int, optional
-        Steps per period, for "rk4".
-    samples : int, optional
-        Instants per period in the time histories, evenly spaced.
-    observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all but modal coordinates
-        ("mode-1", ...).
-    keep : int, optional
-        How many of the last periods the time histories and events hold; Poincare samples,
-        amplitudes and changes are kept of all. Default: all.
-    progress : callable, optional
-        Called about ten times per second with the fraction of the work that is done.
 
     Returns
     -------
@@ -166,15 +81,6 @@ def transient(
     """
     require_model(model)
     require_time(model)
-    settings = TransientSettings(
-        omega=omega,
-        scheme=scheme,
-        periods=periods,
-        tolerance=tolerance,
-        steps=steps,
-        samples=samples,
-        keep=keep,
-    )
     dofs = observed_dofs(observe, model)
     require_progress(progress)
     _require_stable(model, settings)
@@ -246,15 +152,9 @@ def _solve(
     try:
         return _core.transient(
             model.problem,
-            settings.omega,
-            settings.scheme,
-            settings.periods,
-            settings.tolerance,
-            settings.steps,
+            settings,
             None if start is None else start.vector,
             np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
-            settings.samples,
-            settings.keep,
             progress,
         )
     except ModelError:
@@ -284,17 +184,3 @@ def _result(
             model, settings, dofs, start, settled=history.settled, unbounded=history.unbounded
         ),
     )
-
-
-def _omega(omega: object) -> float:
-    value = real_number(omega, "omega")
-    if value <= 0.0:
-        raise ModelError(f"omega: {value:g}; give one frequency above 0 rad/s")
-    return value
-
-
-def _tolerance(tolerance: object) -> float:
-    value = real_number(tolerance, "tolerance")
-    if not 1e-12 <= value <= 0.5:
-        raise ModelError(f"tolerance: {value:g}; give a fraction from 1e-12 to 0.5")
-    return value

@@ -3,166 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TypeAlias, get_args
 
 import numpy as np
 
-from stickslip.analyses.arguments import Span
-from stickslip.checks import brief, choice, listed, unknown, whole_number
+from stickslip.checks import brief, listed, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef, natural_frequencies
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import Float
-
-if TYPE_CHECKING:
-    from stickslip import _core
+from stickslip.settings.entries import Span
+from stickslip.settings.variation import Chosen, Common, Parameter, Variation, located
 
 __all__ = [
     "PARAMETERS",
-    "Chosen",
-    "Common",
     "Contacts",
-    "Parameter",
-    "Variation",
     "chosen_contacts",
     "local_stiffness",
-    "located",
     "resonance_range",
 ]
 
-Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
-Common: TypeAlias = Literal["value", "factor"]
-
 Contacts: TypeAlias = Iterable[PointRef] | PointRef
 """Contacts or points of contacts, or one of them."""
-
-Chosen: TypeAlias = str | tuple[str, int]
-"""A contact by its name, or one of its points."""
 
 PARAMETERS: tuple[Parameter, ...] = get_args(Parameter)
 """What can be varied: a parameter of the contacts, or a factor on all forces."""
 
 MARGIN = 0.05
 """Share by which the range around a resonance reaches beyond its free and its stuck frequency."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Variation:
-    """What is varied.
-
-    Parameters
-    ----------
-    parameter : {"slip_force", "stiffness", "level"}
-        A parameter of contacts, or a factor on all forces.
-    contacts : tuple of str or (str, int)
-        Names of the contacts whose parameter it is, or points of them as (name, point); none for a
-        level.
-    common : {"value", "factor"}
-        Whether they all take the value, or multiply their own by it.
-
-    Raises
-    ------
-    ModelError
-        If a value is none of these.
-    """
-
-    parameter: Parameter
-    contacts: tuple[Chosen, ...] = ()
-    common: Common = "value"
-
-    def __post_init__(self) -> None:
-        choice(self.parameter, "parameter", PARAMETERS)
-        choice(self.common, "common", get_args(Common))
-        # Files hold lists.
-        chosen = (
-            ref if isinstance(ref, str) else (str(ref[0]), int(ref[1])) for ref in self.contacts
-        )
-        object.__setattr__(self, "contacts", tuple(chosen))
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """What is varied in words: names of contacts, points as "structural[0]"."""
-        return tuple(
-            ref if isinstance(ref, str) else f"{ref[0]}[{ref[1]}]" for ref in self.contacts
-        )
-
-    def varied(self, model: Model) -> _core.Varied:
-        """Return the variation as the compiled core takes it.
-
-        Raises
-        ------
-        ModelError
-            If the model lacks one of the contacts.
-        """
-        return {
-            "parameter": self.parameter,
-            "contacts": [located(model, ref) for ref in self.contacts],
-            "factor": self.common == "factor",
-        }
-
-    @property
-    def unit(self) -> str:
-        """Unit of the parameter."""
-        if self.common == "factor":
-            return "1"
-        return {"slip_force": "N", "stiffness": "N/m", "level": "1"}[self.parameter]
-
-    def apply(self, model: Model, value: float) -> Model:
-        """Return the model at a value of the parameter.
-
-        Parameters
-        ----------
-        model : Model
-            The model as it is.
-        value : float
-            The value, or the factor.
-
-        Returns
-        -------
-        Model
-            A new model.
-
-        Raises
-        ------
-        ModelError
-            If a contact refuses the value.
-        """
-        if self.parameter == "level":
-            return model.scaled(force=value)
-
-        def changed(contact: Contact) -> Contact:
-            chosen = [ref for ref in self.contacts if _name(ref) == contact.name]
-            if not chosen:
-                return contact
-            values = list(contact.adjustable()[self.parameter])
-            for ref in chosen:
-                for point in range(len(values)) if isinstance(ref, str) else [ref[1]]:
-                    values[point] = self._at(value, values[point])
-            return contact.adjusted(self.parameter, values)
-
-        return model.replaced(contacts=[changed(contact) for contact in model.contacts])
-
-    def _at(self, value: float, own: float) -> float:
-        """Return what becomes of a value; what never slips does so under every factor."""
-        if self.common == "value":
-            return value
-        return own if np.isinf(own) else value * own
-
-
-def _name(ref: Chosen) -> str:
-    return ref if isinstance(ref, str) else ref[0]
-
-
-def located(model: Model, ref: Chosen) -> tuple[int, int | None]:
-    """Return the position of a contact, and of one of its points if one is meant.
-
-    Raises
-    ------
-    ModelError
-        If the model lacks it.
-    """
-    return (model.contact_index(ref), None) if isinstance(ref, str) else model.point(ref)
 
 
 def chosen_contacts(

@@ -7,7 +7,7 @@ import io
 import platform
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, is_dataclass
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from importlib.resources import files
@@ -217,9 +217,9 @@ def _status(result: Any) -> str:
 
 def _settings(result: Any) -> list[Row]:
     settings = getattr(result, "settings", None)
-    if not is_dataclass(settings) or isinstance(settings, type):
+    if settings is None:
         return []
-    return [(name.replace("_", " "), _text(value)) for name, value in asdict(settings).items()]
+    return [(name.replace("_", " "), _text(value)) for name, value in settings.model_dump().items()]
 
 
 def _text(value: object) -> str:

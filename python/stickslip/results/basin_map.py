@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.analyses.basin_map import BasinSettings
     from stickslip.plot.basins import BasinOptions
+    from stickslip.settings.motion import BasinSettings
 
 __all__ = ["BasinMap", "Outcome"]
 
@@ -204,12 +204,11 @@ class BasinMap(Result):
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
         """Return the map that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.analyses.basin_map import BasinSettings
+        from stickslip.settings.motion import BasinSettings
 
-        values = settings_of(dataset)
-        axes = tuple((name, tuple(numbers)) for name, numbers in values["axes"])
+        settings = BasinSettings.stored(settings_of(dataset))
+        axes = settings.axes
         arrays = require_codes(FateArrays(**read(FATE_VARIABLES, dataset)))
-        settings = BasinSettings(**{**values, "axes": axes})
         if axes and np.prod([len(numbers) for _, numbers in axes]) != arrays.reason.size:
             raise ValueError(f"{arrays.reason.size} starts do not fill the axes")
         return cls(**parts(dataset, model), settings=settings, arrays=arrays)

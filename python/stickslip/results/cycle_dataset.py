@@ -147,15 +147,8 @@ def cycle_parts(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
     KeyError, ValueError
         If the dataset is incomplete, or belongs to another model.
     """
-    from stickslip.analyses.cycle_settings import CycleSettings
-    from stickslip.analyses.variation import Variation
+    from stickslip.settings.cycles import CycleSettings
 
-    values = settings_of(dataset)
-    if values["variation"] is not None:
-        values["variation"] = Variation(**values["variation"])
-    values["span"] = tuple(values["span"])
-    if values["values"] is not None:
-        values["values"] = tuple(values["values"])
     arrays = CycleArrays(value=dataset["value"].values, **read(_VARIABLES, dataset))
     points = sum(contact.points for contact in model.contacts)
     if arrays.contact_force.shape[2] != points:
@@ -167,7 +160,7 @@ def cycle_parts(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
     negative = np.ascontiguousarray(dataset["negative_damping"].values)
     negative.flags.writeable = False
     return parts(dataset, model) | {
-        "settings": CycleSettings(**values),
+        "settings": CycleSettings.stored(settings_of(dataset)),
         "arrays": arrays,
         "negative_damping": negative,
     }

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip._core import Peaks
-    from stickslip.analyses.damper_settings import DamperSettings
     from stickslip.plot.damper import DamperOptions
+    from stickslip.settings.peaks import DamperSettings
 
 __all__ = ["DamperArrays", "DamperCurve", "LeastPeak"]
 
@@ -274,12 +274,9 @@ class DamperCurve(Result):
         KeyError, ValueError
             If the dataset is incomplete, or belongs to another model.
         """
-        from stickslip.analyses.damper_settings import DamperSettings
-        from stickslip.analyses.variation import Variation
+        from stickslip.settings.peaks import DamperSettings
 
-        values = settings_of(dataset)
-        values |= {"variation": Variation(**values["variation"]), "span": tuple(values["span"])}
-        settings = DamperSettings(**values)
+        settings = DamperSettings.stored(settings_of(dataset))
         settings.variation.varied(model)
         arrays = DamperArrays(value=dataset["value"].values, **read(_VARIABLES, dataset))
         if arrays.status.max(initial=0) >= len(Status):

@@ -34,7 +34,6 @@ __all__ = [
     "curve_arrays",
     "curve_dataset",
     "curve_parts",
-    "curve_settings",
     "from_dataset",
     "to_dataset",
 ]
@@ -133,11 +132,14 @@ def from_dataset(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
     ValueError
         If a variable has other dimensions, or belongs to another model.
     """
-    from stickslip.analyses.forced_response import Settings
+    from stickslip.settings.balance import ForcedSettings
 
     arrays = curve_arrays(dataset, CURVE_VARIABLES)
+    settings = settings_of(dataset)
+    if "samples" in settings and settings["samples"] is None:
+        settings["samples"] = "auto"
     return curve_parts(dataset, model, Arrays(**arrays)) | {
-        "settings": Settings(**curve_settings(dataset)),
+        "settings": ForcedSettings.stored(settings),
         "certificate": Certificate.of_dataset(dataset),
     }
 
@@ -194,16 +196,6 @@ def curve_parts(dataset: xr.Dataset, model: Model, arrays: Arrays) -> dict[str, 
         "arrays": arrays,
         "half_wave": bool(dataset.attrs["half_wave"]),
     }
-
-
-def curve_settings(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the settings of a curve over frequency."""
-    settings = settings_of(dataset)
-    if settings["span"] is not None:
-        settings["span"] = tuple(settings["span"])
-    if "samples" in settings and settings["samples"] is None:
-        settings["samples"] = "auto"
-    return settings
 
 
 def _coordinates(result: ForcedResponse) -> dict[Hashable, object]:

@@ -21,7 +21,6 @@ from stickslip.results.dataset import (
     curve_arrays,
     curve_dataset,
     curve_parts,
-    curve_settings,
 )
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
@@ -29,7 +28,7 @@ from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
 from stickslip.results.stability import States, flag_variable, stability_of, truth_of
-from stickslip.results.variables import Variable, names, state_names
+from stickslip.results.variables import Variable, names, settings_of, state_names
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -37,8 +36,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.analyses.exact_response import ExactSettings
     from stickslip.plot import MultiplierOptions
+    from stickslip.settings.orbits import ExactSettings
 
 __all__ = ["ExactResponse"]
 
@@ -325,7 +324,7 @@ class ExactResponse(ForcedResponse):
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
         """Return the exact response that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.analyses.exact_response import ExactSettings
+        from stickslip.settings.orbits import ExactSettings
 
         orbits = OrbitArrays(**curve_arrays(dataset, _VARIABLES))
         given = curve_parts(dataset, model, orbits)
@@ -333,7 +332,7 @@ class ExactResponse(ForcedResponse):
             raise ValueError(
                 f"{orbits.state.shape[1]} entries per state, {len(state_names(model))} in the model"
             )
-        return cls(settings=ExactSettings(**curve_settings(dataset)), **given)
+        return cls(settings=ExactSettings.stored(settings_of(dataset)), **given)
 
     def plot_multipliers(self, **options: Unpack[MultiplierOptions]) -> Axes:
         """Draw the multipliers in the complex plane, with the unit circle.

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.analyses.cycle_settings import CycleSettings
     from stickslip.plot.cycles import CycleOptions
+    from stickslip.settings.cycles import CycleSettings
 
 __all__ = ["Limit", "LimitCycles", "StabilityChange"]
 

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.analyses.mistuning_settings import MistuningSettings
     from stickslip.plot.mistuning import DistributionOptions, TrendOptions
+    from stickslip.settings.peaks import MistuningSettings
 
 __all__ = ["MistuningStudy"]
 
@@ -305,9 +305,8 @@ class MistuningStudy(Result):
         KeyError, ValueError
             If the dataset is incomplete, or belongs to another model.
         """
-        from stickslip.analyses.mistuning_settings import MistuningSettings
+        from stickslip.settings.peaks import MistuningSettings
 
-        values = settings_of(dataset)
         arrays = MistuningArrays(
             deviation=coordinate(dataset, "deviation"),
             coupling=coordinate(dataset, "coupling_stiffness"),
@@ -315,7 +314,7 @@ class MistuningStudy(Result):
         )
         if arrays.status.max(initial=0) >= len(Status):
             raise ValueError(f"status {arrays.status.max()} is unknown")
-        settings = MistuningSettings(**values | {"span": tuple(values["span"])})
+        settings = MistuningSettings.stored(settings_of(dataset))
         return cls(**parts(dataset, model), settings=settings, arrays=arrays)
 
     def _dof(self, dof: str) -> int:

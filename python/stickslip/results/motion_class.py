@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.analyses.classify import ClassifySettings
     from stickslip.plot.basins import LineOptions
+    from stickslip.settings.motion import ClassifySettings
 
 __all__ = ["Line", "MotionClass"]
 
@@ -276,11 +276,11 @@ class MotionClass(Result):
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
         """Return the result that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.analyses.classify import ClassifySettings
+        from stickslip.settings.motion import ClassifySettings
 
         return cls(
             **parts(dataset, model),
-            settings=ClassifySettings(**settings_of(dataset)),
+            settings=ClassifySettings.stored(settings_of(dataset)),
             arrays=require_codes(FateArrays(**read(FATE_VARIABLES, dataset))),
             step=float(dataset.attrs["step"]),
             tail=dataset["tail"].values,

@@ -132,18 +132,11 @@ def summits(
     low, high = float(result.omega.min()), float(result.omega.max())
     if low < high and result.arrays.solved.any():
         settings = result.settings
-        quest: _core.Quest = {
-            "groups": [[result.model.structure.index(dof) for dof in dofs] for dofs in groups],
-            "measure": measure,
-            "omega": (low, high),
-            "harmonics": settings.fixed_harmonics,
-            "tolerance": settings.tolerance,
-            "residual": settings.residual,
-            "max_harmonics": settings.max_harmonics,
-            "max_iterations": settings.max_iterations,
-        }
+        groups_of = [[result.model.structure.index(dof) for dof in dofs] for dofs in groups]
         try:
-            rows = _core.summits(result.model.problem, quest, settings.march, settings.max_samples)
+            rows = _core.summits(
+                result.model.problem, groups_of, measure, (low, high), settings, settings
+            )
         except ValueError as error:
             raise ModelError(f"peak of {groups[0][0]!r}: {error}") from error
     return [
@@ -287,18 +280,14 @@ def of_orbits(
     """Return frequency and amplitude of the maximum inside a bracket, by exact orbits."""
     from stickslip import _core
 
-    settings = result.settings
     low, high, guess = bracket
     try:
         return _core.exact_peak(
             result.model.problem,
-            low,
-            high,
-            guess,
+            (low, guess, high),
             result.model.structure.index(dof),
             measure,
-            settings.residual,
-            settings.max_iterations,
+            result.settings,
         )
     except ValueError as error:
         raise ModelError(f"peak of {dof!r}: {error}") from error

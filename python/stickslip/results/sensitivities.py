@@ -171,6 +171,7 @@ class Sensitivities(ContactMotion):
             As `sensitivity` and `ForcedResponse.peak`.
         """
         from stickslip.analyses.forced_response import forced_response
+        from stickslip.settings.balance import BalanceSettings
 
         self._require_balance()
         if parameter == "omega":
@@ -180,21 +181,11 @@ class Sensitivities(ContactMotion):
             )
         causes = _causes(self.model, contact, parameter)
         peak = self.peak(dof, measure)
-        settings = self.settings
         there = forced_response(
             self.model,
             [peak.omega],
-            settings.harmonics,
-            tolerance=settings.tolerance,
-            residual=settings.residual,
-            method=settings.method,
-            jacobian=settings.jacobian,
-            evaluation=settings.evaluation,
-            samples=settings.samples,
             observe=[dof],
-            max_harmonics=settings.max_harmonics,
-            max_samples=settings.max_samples,
-            max_iterations=settings.max_iterations,
+            **self.settings.part(BalanceSettings),
         )
         slopes = there._slopes(dof, list(causes.values()), measure)[0]
         if parameter is None:

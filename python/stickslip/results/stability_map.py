@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import choice, whole_number
 from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.result import Result
@@ -27,29 +26,9 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.analyses.variation import Variation
+    from stickslip.settings.cycles import MapSettings
 
-__all__ = ["MapArrays", "MapSettings", "StabilityMap"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class MapSettings:
-    """How a stability map is computed: see `stickslip.stability_map`.
-
-    Raises
-    ------
-    ModelError
-        If a value is of the wrong type or outside its range.
-    """
-
-    variation: Variation
-    mode: int
-    harmonics: int | Literal["auto"]
-    method: str
-
-    def __post_init__(self) -> None:
-        whole_number(self.mode, "mode")
-        choice(self.method, "method", ("newton", "exact"))
+__all__ = ["MapArrays", "StabilityMap"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,15 +142,13 @@ class StabilityMap(Result):
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
         """Return the map that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.analyses.variation import Variation
+        from stickslip.settings.cycles import MapSettings
 
-        values = settings_of(dataset)
-        values |= {"variation": Variation(**values["variation"])}
         negative = np.ascontiguousarray(dataset["negative_damping"].values)
         negative.flags.writeable = False
         return cls(
             **parts(dataset, model),
-            settings=MapSettings(**values),
+            settings=MapSettings.stored(settings_of(dataset)),
             arrays=MapArrays(value=dataset["value"].values, **read(_VARIABLES, dataset)),
             negative_damping=negative,
         )

@@ -16,7 +16,8 @@ from stickslip.results.result import Result
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
-    from stickslip.analyses.forced_response import Settings
+    from stickslip.settings.balance import ForcedSettings
+    from stickslip.settings.orbits import ExactSettings
 
 __all__ = ["Sweep"]
 
@@ -27,13 +28,13 @@ class Sweep(Result):
 
     Attributes
     ----------
-    settings : Settings
+    settings : ForcedSettings or ExactSettings
         How.
     arrays : Arrays
         Every number by its name.
     """
 
-    settings: Settings
+    settings: ForcedSettings | ExactSettings
     arrays: Arrays
 
     @property

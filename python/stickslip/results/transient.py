@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.analyses.transient import TransientSettings
     from stickslip.plot import HistoryOptions, PoincareOptions, SpectrumOptions
+    from stickslip.settings.motion import TransientSettings
 
 __all__ = ["Transient"]
 

@@ -99,7 +99,7 @@ def from_dataset(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
     ValueError
         If a variable has other dimensions, or belongs to another model.
     """
-    from stickslip.analyses.transient import TransientSettings
+    from stickslip.settings.motion import TransientSettings
 
     values = read(_VARIABLES, dataset) | {"time": coordinate(dataset, "time")}
     arrays = TransientArrays(**values)
@@ -107,7 +107,7 @@ def from_dataset(dataset: xr.Dataset, model: Model) -> dict[str, Any]:
     if arrays.poincare.shape[1] != entries:
         raise ValueError(f"{arrays.poincare.shape[1]} entries per state, {entries} in the model")
     return parts(dataset, model) | {
-        "settings": TransientSettings(**settings_of(dataset)),
+        "settings": TransientSettings.stored(settings_of(dataset)),
         "arrays": arrays,
         "settled": bool(dataset.attrs["settled"]),
         "unbounded": bool(dataset.attrs["unbounded"]),

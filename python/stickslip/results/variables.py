@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -14,10 +13,10 @@ from stickslip.results.diagnostic import from_attributes, to_json
 
 if TYPE_CHECKING:
     import xarray as xr
-    from _typeshed import DataclassInstance
 
     from stickslip.model import Model
     from stickslip.results.result import Result
+    from stickslip.settings.settings import Settings
 
 __all__ = [
     "Variable",
@@ -95,7 +94,7 @@ def coordinate(dataset: xr.Dataset, name: str) -> NDArray[Any]:
     return values
 
 
-def attributes(result: Result, settings: DataclassInstance, title: str) -> dict[str, object]:
+def attributes(result: Result, settings: Settings, title: str) -> dict[str, object]:
     """Return what every dataset says of its result, tables as JSON texts."""
     from stickslip._core import __version__
 
@@ -103,7 +102,7 @@ def attributes(result: Result, settings: DataclassInstance, title: str) -> dict[
         "title": title,
         "Conventions": "CF-1.11",
         "stickslip_version": __version__,
-        "settings": json.dumps(asdict(settings)),
+        "settings": json.dumps(settings.model_dump()),
         "diagnostics": to_json(result.diagnostics),
         "timings": json.dumps(dict(result.timings)),
         "counters": json.dumps(dict(result.counters)),

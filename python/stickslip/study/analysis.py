@@ -6,15 +6,17 @@ from typing import Annotated
 
 from pydantic import Tag
 
-from stickslip.study.analysis_tables import ForcedResponseTable
+from stickslip.settings.entries import chosen_by
+from stickslip.study.analysis_tables import (
+    CertifyTable,
+    ExactTable,
+    ForcedResponseTable,
+    SingleHarmonicTable,
+)
 from stickslip.study.basin_map_table import BasinMapTable
-from stickslip.study.certify_table import CertifyTable
 from stickslip.study.damper_curve_table import DamperCurveTable
-from stickslip.study.entries import chosen_by
-from stickslip.study.exact_table import ExactTable
 from stickslip.study.limit_cycles_table import LimitCyclesTable
 from stickslip.study.mistuning_study_table import MistuningStudyTable
-from stickslip.study.single_harmonic_table import SingleHarmonicTable
 from stickslip.study.transient_table import TransientTable
 
 __all__ = ["AnalysisTable"]

@@ -8,22 +8,24 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import (
-    BeforeValidator,
     Discriminator,
     Field,
-    Strict,
     Tag,
-    WithJsonSchema,
     model_validator,
 )
 
-from stickslip.analyses.arguments import RESIDUALS, Residual
-from stickslip.checks import unknown
-from stickslip.errors import ModelError
-from stickslip.study.entries import HERE, Dof, Factor, Omega, Table
-from stickslip.units import quantity
+from stickslip.settings.entries import ONE_OF, Dof, Factor, Omega, Some, Table, Whole
 
-__all__ = ["AnalysisEntries", "OmegaEntry", "OmegaRange", "ResidualEntry", "level_name", "omegas"]
+__all__ = [
+    "AnalysisEntries",
+    "ObserveEntries",
+    "OmegaEntry",
+    "OmegaRange",
+    "PeakRange",
+    "SingleResult",
+    "level_name",
+    "omegas",
+]
 
 
 def level_name(level: float) -> str:
@@ -36,12 +38,12 @@ class OmegaRange(Table):
 
     begin: Omega = Field(alias="from", description="First frequency.", examples=["20 rad/s"])
     end: Omega = Field(alias="to", description="Last frequency.", examples=["50 Hz"])
-    points: Annotated[int, Field(ge=2, le=10_000_000)] | None = Field(
+    points: Annotated[int, Whole(2, 10_000_000)] | None = Field(
         default=None,
         description="Number of points; left out: chosen to the tolerance.",
         examples=[400],
     )
-    spacing: Literal["linear", "log"] | None = Field(
+    spacing: Annotated[Literal["linear", "log"], ONE_OF] | None = Field(
         default=None, description="Spacing of the points; left out: linear."
     )
 
@@ -67,17 +69,8 @@ def _omega_form(value: object) -> str | None:
     return "<list>" if isinstance(value, list | tuple) else None
 
 
-def _residual(value: float | str) -> float | str:
-    if not isinstance(value, str) or value[:1] in "+-.0123456789":
-        return quantity(value, "N", HERE)
-    if value not in RESIDUALS:
-        raise ModelError(f"{HERE}: {unknown('choice', value, RESIDUALS)}; or give a force in N")
-    return value
-
-
 OmegaEntry = Annotated[
-    Annotated[OmegaRange, Tag("<range>")]
-    | Annotated[tuple[Omega, ...], Strict(False), Field(min_length=1), Tag("<list>")],
+    Annotated[OmegaRange, Tag("<range>")] | Annotated[Some[Omega], Tag("<list>")],
     Discriminator(
         _omega_form,
         custom_error_type="omega_form",
@@ -86,16 +79,6 @@ OmegaEntry = Annotated[
     Field(
         description="Angular frequencies: a range or a list.",
         examples=[{"from": "20 rad/s", "to": "350 rad/s", "points": 400}, ["25 Hz", "26 Hz"]],
-    ),
-]
-ResidualEntry = Annotated[
-    Residual,
-    BeforeValidator(_residual),
-    WithJsonSchema({"anyOf": [{"enum": list(RESIDUALS)}, {"type": ["number", "string"]}]}),
-    Field(
-        description="Mean force assumed in a contact that never slips: 'centred', 'from_rest', "
-        "or a force.",
-        examples=["from_rest", "10 N"],
     ),
 ]
 
@@ -107,15 +90,36 @@ def omegas(
     return entry.values() if isinstance(entry, OmegaRange) else list(entry)
 
 
-class AnalysisEntries(Table):
-    """The keys of every analysis."""
+class PeakRange(Table):
+    """The range of frequencies in which peaks are looked for."""
 
-    observe: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
+    begin: Omega = Field(alias="from", description="Lowest frequency.", examples=["150 rad/s"])
+    end: Omega = Field(alias="to", description="Highest frequency.", examples=["40 Hz"])
+
+
+class SingleResult(Table):
+    """An analysis without levels."""
+
+    @property
+    def levels(self) -> None:
+        """There is one result."""
+        return None
+
+
+class ObserveEntries(Table):
+    """The key of every analysis that observes DOFs."""
+
+    observe: Some[Dof] | None = Field(
         default=None,
         description="DOFs to keep in the results; left out: all but modal coordinates.",
         examples=[["tip"]],
     )
-    levels: Annotated[tuple[Factor, ...], Strict(False), Field(min_length=1)] | None = Field(
+
+
+class AnalysisEntries(ObserveEntries):
+    """The keys of every analysis with forces."""
+
+    levels: Some[Factor] | None = Field(
         default=None,
         description="Factors on every force: one result each; left out: the forces as written.",
         examples=[[0.5, 1, 2]],

@@ -1,119 +1,93 @@
-"""The tables [analysis] of harmonic balances: one class per kind of analysis."""
+"""The tables [analysis] of curves over frequency: their settings and the frequencies."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Literal, Self
 
-from pydantic import Field, Tag, WithJsonSchema, model_validator
+from pydantic import Field, model_validator
 
-from stickslip.analyses.forced_response import (
-    EVALUATIONS,
-    JACOBIANS,
-    MAX_HARMONICS,
-    MAX_ITERATIONS,
-    MAX_SAMPLES,
-    METHODS,
-    Settings,
-    forced_response,
-)
+from stickslip.analyses.certify import certify
+from stickslip.analyses.exact_response import exact_response
+from stickslip.analyses.forced_response import forced_response
+from stickslip.analyses.single_harmonic import single_harmonic
 from stickslip.model import Model
-from stickslip.study.analysis_entries import (
-    AnalysisEntries,
-    OmegaEntry,
-    ResidualEntry,
-    omegas,
-)
-from stickslip.study.entries import Count, Tolerance, number_or
+from stickslip.settings.balance import BalanceSettings
+from stickslip.settings.orbits import CertifySettings, OrbitSettings, SingleHarmonicSettings
+from stickslip.study.analysis_entries import AnalysisEntries, OmegaEntry, OmegaRange, omegas
 
 if TYPE_CHECKING:
+    from stickslip.analyses.arguments import Progress
     from stickslip.results import ForcedResponse
+    from stickslip.results.exact_response import ExactResponse
 
-__all__ = ["BalanceTable", "ForcedResponseTable"]
+__all__ = ["CertifyTable", "ExactTable", "ForcedResponseTable", "SingleHarmonicTable"]
+
+# Share of the progress that the balance is given before it is certified.
+_BALANCE = 0.5
 
 
-class BalanceTable(AnalysisEntries):
-    """The keys of a harmonic balance."""
+class CurveEntries(AnalysisEntries):
+    """The keys of every curve over frequency."""
 
     omega: OmegaEntry
-    harmonics: Annotated[
-        Annotated[Count, Tag("<number>")] | Annotated[Literal["auto"], Tag("<text>")],
-        number_or("<text>"),
-    ] = Field(
-        default="auto", description="Highest harmonic kept, or 'auto': as the tolerance asks."
-    )
-    tolerance: Tolerance = Field(
-        default=1e-3, description="Relative accuracy of what is automatic."
-    )
-    residual: ResidualEntry = "centred"
-    method: Annotated[str, WithJsonSchema({"enum": list(METHODS)})] = Field(
-        default="newton", description="Solver."
-    )
-    jacobian: Annotated[str, WithJsonSchema({"enum": list(JACOBIANS)})] = Field(
-        default="exact", description="First Jacobian of Broyden's method."
-    )
-    evaluation: Annotated[str, WithJsonSchema({"enum": list(EVALUATIONS)})] = Field(
-        default="exact", description="Evaluation of the friction laws."
-    )
-    samples: Annotated[
-        Annotated[Count, Tag("<number>")] | Annotated[Literal["auto"], Tag("<text>")],
-        number_or("<text>"),
-    ] = Field(
-        default="auto",
-        description="Samples per period of a marched evaluation, or 'auto': as the tolerance asks.",
-    )
-    max_harmonics: Count = Field(
-        default=MAX_HARMONICS, description="Highest harmonic that may be kept."
-    )
-    max_samples: Count = Field(
-        default=MAX_SAMPLES, description="Most automatic samples, a power of two."
-    )
-    max_iterations: Count = Field(
-        default=MAX_ITERATIONS, description="Iterations per point before it counts as stalled."
-    )
-
-    @model_validator(mode="after")
-    def _require_settings(self) -> Self:
-        # what the analysis would refuse is refused while the file is read, before any computing
-        Settings(
-            harmonics=self.harmonics,
-            tolerance=self.tolerance,
-            residual=self.residual,
-            method=self.method,
-            jacobian=self.jacobian,
-            evaluation=self.evaluation,
-            samples=self.samples,
-            max_harmonics=self.max_harmonics,
-            max_samples=self.max_samples,
-            max_iterations=self.max_iterations,
-        )
-        return self
-
-    def balance(self, model: Model, progress: Callable[[float], None] | None) -> ForcedResponse:
-        """Compute one curve by harmonic balance."""
-        return forced_response(
-            model,
-            omegas(self.omega),
-            self.harmonics,
-            tolerance=self.tolerance,
-            residual=self.residual,
-            method=self.method,
-            jacobian=self.jacobian,
-            evaluation=self.evaluation,
-            samples=self.samples,
-            observe=self.observe,
-            progress=progress,
-            max_harmonics=self.max_harmonics,
-            max_samples=self.max_samples,
-            max_iterations=self.max_iterations,
-        )
 
 
-class ForcedResponseTable(BalanceTable):
+class ForcedResponseTable(BalanceSettings, CurveEntries):
     """Steady response to the forces, by harmonic balance."""
 
     kind: Literal["forced-response"] = Field(default="forced-response", description="The analysis.")
 
-    def run(self, model: Model, progress: Callable[[float], None] | None) -> ForcedResponse:
+    def run(self, model: Model, progress: Progress) -> ForcedResponse:
         """Compute one curve."""
-        return self.balance(model, progress)
+        settings = self.part(BalanceSettings)
+        omega = omegas(self.omega)
+        return forced_response(model, omega, observe=self.observe, progress=progress, **settings)
+
+
+class CertifyTable(CertifySettings, ForcedResponseTable):
+    """Steady response by harmonic balance, compared with exact orbits at some points."""
+
+    kind: Literal["certify"] = Field(description="The analysis.")  # type: ignore[assignment]
+
+    def run(self, model: Model, progress: Progress) -> ForcedResponse:
+        """Compute one curve, and compare it."""
+        balance = super().run(model, _within(progress, 0.0, _BALANCE))
+        settings = self.part(CertifySettings)
+        return certify(balance, progress=_within(progress, _BALANCE, 1.0), **settings)
+
+
+class ExactTable(OrbitSettings, CurveEntries):
+    """Steady response to the forces, by exact periodic orbits."""
+
+    kind: Literal["exact"] = Field(description="The analysis.")
+
+    def run(self, model: Model, progress: Progress) -> ExactResponse:
+        """Compute one curve."""
+        settings = self.part(OrbitSettings)
+        omega = omegas(self.omega)
+        return exact_response(model, omega, observe=self.observe, progress=progress, **settings)
+
+
+class SingleHarmonicTable(SingleHarmonicSettings, CurveEntries):
+    """Steady response to harmonic forces, by a single harmonic."""
+
+    kind: Literal["single-harmonic"] = Field(description="The analysis.")
+
+    @model_validator(mode="after")
+    def _require_points(self) -> Self:
+        if isinstance(self.omega, OmegaRange) and self.omega.points is None:
+            raise ValueError("omega: a range needs 'points' here; steps are not chosen")
+        return self
+
+    def run(self, model: Model, progress: Progress) -> ForcedResponse:
+        """Compute one curve."""
+        settings = self.part(SingleHarmonicSettings)
+        omega = omegas(self.omega)
+        return single_harmonic(model, omega, observe=self.observe, progress=progress, **settings)
+
+
+def _within(progress: Progress, start: float, end: float) -> Callable[[float], None] | None:
+    if progress is None:
+        return None
+    return lambda share: progress(start + (end - start) * share)

@@ -6,13 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Field, Strict, model_validator
+from pydantic import Field, model_validator
 
-from stickslip.analyses.basin_map import Axis, basin_map
-from stickslip.analyses.classify import PERIODS, TOLERANCE, ClassifySettings
+from stickslip.analyses.basin_map import basin_map
 from stickslip.model import Model
 from stickslip.results.arrays import Float
-from stickslip.study.entries import Count, Dof, Length, Table, Tolerance
+from stickslip.settings.entries import Dof, Index, Length, Many, Table, Whole
+from stickslip.settings.motion import Axis, BasinKeys
+from stickslip.study.analysis_entries import ObserveEntries, SingleResult
 
 if TYPE_CHECKING:
     from stickslip.results.basin_map import BasinMap
@@ -24,12 +25,12 @@ class AxisTable(Table):
     """An axis of the map: a displacement or the amplitude of a mode at the start."""
 
     dof: Dof | None = Field(default=None, description="DOF whose displacement it is.")
-    mode: Annotated[int, Field(ge=0)] | None = Field(
+    mode: Index | None = Field(
         default=None, description="Instead: stuck mode, counted from 0, whose amplitude it is."
     )
     begin: Length = Field(alias="from", description="First value.", examples=["-1 mm"])
     end: Length = Field(alias="to", description="Last value.", examples=["1 mm"])
-    points: Annotated[int, Field(ge=1, le=100_000)] = Field(description="Number of values.")
+    points: Annotated[int, Whole(1, 100_000)] = Field(description="Number of values.")
 
     @model_validator(mode="after")
     def _require_one(self) -> Self:
@@ -49,11 +50,11 @@ class AxisTable(Table):
         return np.linspace(self.begin, self.end, self.points)
 
 
-class BasinMapTable(Table):
+class BasinMapTable(BasinKeys, ObserveEntries, SingleResult):
     """What becomes of free motions from many starts."""
 
     kind: Literal["basin-map"] = Field(description="The analysis.")
-    axes: Annotated[tuple[AxisTable, ...], Strict(False)] = Field(
+    axes: Many[AxisTable] = Field(
         min_length=2,
         max_length=2,
         description="The two axes of the map, the first drawn upwards.",
@@ -63,38 +64,12 @@ class BasinMapTable(Table):
         default={},
         description="Displacements by DOF that the axes are added to; left out: none.",
     )
-    periods: Count = Field(
-        default=PERIODS,
-        description="Longest motion, in periods of the lowest stuck mode; at least 4.",
-    )
-    tolerance: Tolerance = Field(
-        default=TOLERANCE, description="Relative closing error of a settled motion."
-    )
-    observe: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
-        default=None,
-        description="DOFs to keep in the results; left out: all but modal coordinates.",
-        examples=[["tip"]],
-    )
-    threads: Count | None = Field(
-        default=None, description="Number of processors to use; left out: all."
-    )
 
     @model_validator(mode="after")
     def _require_distinct_axes(self) -> Self:
         if self.axes[0].axis == self.axes[1].axis:
             raise ValueError("axes holds the same axis twice; give two of them")
         return self
-
-    @model_validator(mode="after")
-    def _require_settings(self) -> Self:
-        # what the analysis would refuse is refused while the file is read, before any computing
-        ClassifySettings(periods=self.periods, tolerance=self.tolerance)
-        return self
-
-    @property
-    def levels(self) -> None:
-        """Free motions have no forces."""
-        return None
 
     @property
     def named_dofs(self) -> Mapping[str, Sequence[str]]:
@@ -108,9 +83,7 @@ class BasinMapTable(Table):
             model,
             {axis.axis: axis.values() for axis in self.axes},
             base=self.base or None,
-            periods=self.periods,
-            tolerance=self.tolerance,
             observe=self.observe,
-            threads=self.threads,
             progress=progress,
+            **self.part(BasinKeys),
         )

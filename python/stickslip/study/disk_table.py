@@ -8,13 +8,23 @@ from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, Strict, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from stickslip.checks import MAX_COUNT, brief
+from stickslip.checks import brief
 from stickslip.disk import Coupling
-from stickslip.disk.pattern import DISTRIBUTIONS, mistuning_pattern
-from stickslip.errors import ModelError
-from stickslip.study.entries import HERE, Count, Dof, Number, Ratio, StiffnessValue, Table
+from stickslip.disk.pattern import mistuning_pattern
+from stickslip.errors import EntryError
+from stickslip.settings.entries import (
+    ONE_OF,
+    Count,
+    Dof,
+    Index,
+    Number,
+    Ratio,
+    Some,
+    StiffnessValue,
+    Table,
+)
 from stickslip.study.structure_table import DampingSource, MatrixSource
 
 __all__ = ["CouplingTable", "DiskTable", "InterfaceTable", "MistuningTable"]
@@ -26,11 +36,8 @@ def _harmonics(value: object) -> object:
         return value
     for key in value:
         if not (isinstance(key, int) or (isinstance(key, str) and re.fullmatch("[0-9]{1,9}", key))):
-            raise ModelError(f"{HERE}: {brief(key)} is no harmonic; write {{3 = 6}}")
+            raise EntryError("", f": {brief(key)} is no harmonic; write {{3 = 6}}")
     return {int(key): order for key, order in value.items()}
-
-
-_Order = Annotated[int, Field(ge=0, le=MAX_COUNT)]
 
 
 class CouplingTable(Table):
@@ -63,7 +70,7 @@ class InterfaceTable(Table):
 class MistuningTable(Table):
     """Deviations of the sectors' stiffness: given, or drawn at random."""
 
-    pattern: Annotated[tuple[Ratio, ...], Strict(False), Field(min_length=1)] | None = Field(
+    pattern: Some[Ratio] | None = Field(
         default=None,
         description="Deviation of each sector; left out: drawn at random.",
         examples=[[0.02, "-3 %", 0.0]],
@@ -71,12 +78,10 @@ class MistuningTable(Table):
     deviation: Ratio | None = Field(
         default=None, description="Standard deviation of the random ones.", examples=["7 %"]
     )
-    distribution: Annotated[
-        Literal["normal", "uniform"], WithJsonSchema({"enum": list(DISTRIBUTIONS)})
-    ] = Field(default="normal", description="Distribution of the random ones.")
-    seed: Annotated[int, Field(ge=0, le=MAX_COUNT)] = Field(
-        default=0, description="Seed of the random ones."
+    distribution: Annotated[Literal["normal", "uniform"], ONE_OF] = Field(
+        default="normal", description="Distribution of the random ones."
     )
+    seed: Index = Field(default=0, description="Seed of the random ones.")
 
     @model_validator(mode="after")
     def _require_one_kind(self) -> Self:
@@ -95,9 +100,9 @@ class DiskTable(Table):
     """Makes the structure a sector of a bladed disk."""
 
     sectors: Count = Field(description="Number of sectors.", examples=[36])
-    engine_order: _Order = Field(description="Engine order of the forces.")
+    engine_order: Index = Field(description="Engine order of the forces.")
     engine_orders: Annotated[
-        Mapping[int, _Order],
+        Mapping[int, Index],
         BeforeValidator(_harmonics),
         WithJsonSchema({"type": "object", "additionalProperties": {"type": "integer"}}),
     ] = Field(

@@ -5,36 +5,31 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Literal, Self
 
-import numpy as np
-from pydantic import Field, Strict, Tag, model_validator
+from pydantic import Field, model_validator
 
-from stickslip.analyses.cycle_settings import CycleSettings
-from stickslip.analyses.forced_response import MAX_HARMONICS
-from stickslip.analyses.limit_cycles import MAX_POINTS, limit_cycles
+from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.checks import real_matrix
-from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.study.entries import (
+from stickslip.settings.cycles import CycleKeys
+from stickslip.settings.entries import (
     Contacts,
-    Count,
     Factor,
+    ListOr,
     SlipForce,
     StiffnessValue,
     Table,
-    Tolerance,
-    number_or,
 )
+from stickslip.study.analysis_entries import SingleResult
+from stickslip.study.matrices import damping_of, matrix_of
 from stickslip.study.structure_table import (
     DampingSource,
     ModalDampingTable,
     RayleighDamping,
-    StructureTable,
 )
 
 if TYPE_CHECKING:
-    from stickslip.model.damping import DampingLaw
     from stickslip.results.limit_cycles import LimitCycles
     from stickslip.study.tables import StudyTables
 
@@ -62,7 +57,7 @@ class SlipForceSpan(Table):
     end: SlipForce = Field(alias="to", description="Highest slip force.")
 
 
-class LimitCyclesTable(Table):
+class LimitCyclesTable(CycleKeys, SingleResult):
     """Limit cycles under the damping C + r C_neg, along the ratio r or a parameter of contacts."""
 
     kind: Literal["limit-cycles"] = Field(description="The analysis.")
@@ -70,17 +65,7 @@ class LimitCyclesTable(Table):
         description="C_neg: a matrix, Rayleigh damping or modal damping with negative numbers.",
         examples=[{"rayleigh": {"mass": -7.49, "stiffness": -2.6e-5}}, {"modal": [-0.01, 0.0]}],
     )
-    mode: Annotated[int, Field(ge=0)] = Field(
-        default=0, description="Mode of the stuck structure, counted from 0."
-    )
-    ratio: (
-        Annotated[
-            Annotated[tuple[Factor, ...], Strict(False), Field(min_length=1), Tag("<list>")]
-            | Annotated[RatioRange, Tag("<number>")],
-            number_or("<list>"),
-        ]
-        | None
-    ) = Field(
+    ratio: ListOr[Factor, RatioRange] | None = Field(
         default=None,
         title="ratio",
         description="Ratios r: a list or a range; left out: the whole branch.",
@@ -95,25 +80,6 @@ class LimitCyclesTable(Table):
         default=None,
         description="Names of the contacts that take the value, or [name, point]; left out: all.",
     )
-    common: Literal["value", "factor"] = Field(
-        default="value",
-        description="Whether contacts take the value, or multiply their own by it.",
-    )
-    method: Literal["newton", "exact"] = Field(
-        default="newton", description="Harmonic balance, or exact orbits."
-    )
-    harmonics: Annotated[
-        Annotated[Count, Tag("<number>")] | Annotated[Literal["auto"], Tag("<text>")],
-        number_or("<text>"),
-    ] = Field(default=31, description="Highest harmonic kept, or 'auto': as the tolerance asks.")
-    tolerance: Tolerance = Field(
-        default=1e-3, description="Relative accuracy of what is automatic."
-    )
-    stability: bool = Field(default=True, description="Whether Floquet multipliers are computed.")
-    max_harmonics: Count = Field(
-        default=MAX_HARMONICS, description="Highest harmonic that may be kept."
-    )
-    max_points: Count = Field(default=MAX_POINTS, description="Most points of the branch.")
 
     @model_validator(mode="after")
     def _require_sense(self) -> Self:
@@ -122,25 +88,10 @@ class LimitCyclesTable(Table):
             raise ValueError("give one of stiffness and slip_force")
         if followed and not (self.ratio is None or len(self._ratios()) == 1):
             raise ValueError("ratio must be one number in a list while a parameter is followed")
-        # what the analysis would refuse is refused while the file is read, before any computing
-        CycleSettings(
-            mode=self.mode,
-            harmonics=self.harmonics,
-            method=self.method,
-            tolerance=self.tolerance,
-            stability=self.stability,
-            max_harmonics=self.max_harmonics,
-            max_points=self.max_points,
-        )
         return self
 
     def _ratios(self) -> tuple[float, ...]:
         return self.ratio if isinstance(self.ratio, tuple) else ()
-
-    @property
-    def levels(self) -> None:
-        """A branch is one result."""
-        return None
 
     @property
     def observe(self) -> None:
@@ -166,34 +117,14 @@ class LimitCyclesTable(Table):
         }
         return limit_cycles(
             model,
-            self._negative_damping(),
-            mode=self.mode,
+            damping_of(self.negative_damping, Path()),
             ratio=ratio,
             stiffness=spans["stiffness"],
             slip_force=spans["slip_force"],
             contacts=self.contacts,
-            common=self.common,
-            harmonics=self.harmonics,
-            method=self.method,
-            tolerance=self.tolerance,
-            stability=self.stability,
             progress=progress,
-            max_harmonics=self.max_harmonics,
-            max_points=self.max_points,
+            **self.part(CycleKeys),
         )
-
-    def _negative_damping(self) -> np.ndarray | DampingLaw:
-        from stickslip.model.structure import ModalDamping, Rayleigh
-
-        match self.negative_damping:
-            case RayleighDamping(rayleigh=factor):
-                return Rayleigh(mass=factor.mass, stiffness=factor.stiffness)
-            case ModalDampingTable(modal=ratio):
-                return ModalDamping(ratio)
-            case tuple() as rows:
-                return np.array(rows, dtype=np.float64)
-            case other:
-                raise ModelError(f"negative_damping: {other!r} has not been read")
 
 
 def with_matrices(tables: StudyTables, folder: Path) -> StudyTables:
@@ -204,9 +135,7 @@ def with_matrices(tables: StudyTables, folder: Path) -> StudyTables:
     source = analysis.negative_damping
     if isinstance(source, RayleighDamping | ModalDampingTable | tuple):
         return tables
-    from stickslip.study.study import _damping
-
-    matrix = _damping(StructureTable.model_construct(damping=source), folder)
+    matrix = matrix_of(source, folder, "negative_damping")
     rows = tuple(tuple(map(float, row)) for row in real_matrix(matrix, "negative_damping"))
     read = analysis.model_copy(update={"negative_damping": rows})
     return tables.model_copy(update={"analysis": read})

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import Field, Strict, Tag, WithJsonSchema, model_validator
+from pydantic import Field, Strict
 
-from stickslip.analyses.forced_response import MAX_HARMONICS, MAX_ITERATIONS, Settings
 from stickslip.analyses.mistuning_study import mistuning_study
-from stickslip.checks import MAX_COUNT
-from stickslip.disk.pattern import DISTRIBUTIONS
-from stickslip.study.analysis_entries import ResidualEntry
-from stickslip.study.entries import (
+from stickslip.settings.entries import (
     Count,
     Dof,
-    Omega,
+    ListOr,
+    Many,
     Ratio,
+    Some,
     StiffnessValue,
-    Table,
     Text,
-    Tolerance,
-    number_or,
 )
+from stickslip.settings.peaks import MistuningKeys
+from stickslip.study.analysis_entries import PeakRange, SingleResult
 
 if TYPE_CHECKING:
     from stickslip.model import Model
@@ -31,103 +28,35 @@ if TYPE_CHECKING:
 __all__ = ["MistuningStudyTable"]
 
 
-class PeakRange(Table):
-    """The range of frequencies in which peaks are looked for."""
-
-    begin: Omega = Field(alias="from", description="Lowest frequency.", examples=["150 rad/s"])
-    end: Omega = Field(alias="to", description="Highest frequency.", examples=["40 Hz"])
-
-
-class MistuningStudyTable(Table):
+class MistuningStudyTable(MistuningKeys, SingleResult):
     """Amplification factors of many disks whose sectors deviate, and their distribution."""
 
     kind: Literal["mistuning-study"] = Field(description="The analysis.")
-    deviation: Annotated[
-        Annotated[tuple[Ratio, ...], Strict(False), Field(min_length=1), Tag("<list>")]
-        | Annotated[Ratio, Tag("<number>")],
-        number_or("<list>"),
-    ] = Field(
+    deviation: ListOr[Ratio, Ratio] = Field(
         description="Standard deviation of the sectors' stiffness, one or several.",
         examples=["7 %", ["1 %", "3 %", "5 %"]],
     )
     omega: PeakRange = Field(title="omega", description="Range of the peaks.")
-    patterns: Annotated[
-        Annotated[
-            tuple[Annotated[tuple[Annotated[float, Strict(False)], ...], Strict(False)], ...],
-            Strict(False),
-            Field(min_length=1),
-            Tag("<list>"),
-        ]
-        | Annotated[Count, Tag("<number>")],
-        number_or("<list>"),
-    ] = Field(
+    patterns: ListOr[Many[Annotated[float, Strict(False)]], Count] = Field(
         default=1000,
         description="Number of patterns drawn; or the patterns, in units of the deviation.",
         examples=[1000],
     )
-    distribution: Annotated[
-        Literal["normal", "uniform"], WithJsonSchema({"enum": list(DISTRIBUTIONS)})
-    ] = Field(default="normal", description="Distribution of the patterns drawn.")
-    seed: Annotated[int, Field(ge=0, le=MAX_COUNT)] = Field(
-        default=0, description="Seed of the patterns drawn."
-    )
-    dofs: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
+    dofs: Some[Dof] | None = Field(
         default=None,
         description="DOFs of a sector; left out: those that carry a force or a contact.",
         examples=[["tip"]],
     )
-    coupling_stiffness: (
-        Annotated[tuple[StiffnessValue, ...], Strict(False), Field(min_length=1)] | None
-    ) = Field(
+    coupling_stiffness: Some[StiffnessValue] | None = Field(
         default=None,
         description="Stiffnesses that all couplings take in turn; left out: their own.",
         examples=[["1e3 N/m", "1e4 N/m"]],
     )
-    measure: Literal["half_range", "max", "fundamental"] = Field(
-        default="half_range", description="Measure of the amplitude."
-    )
-    harmonics: Annotated[
-        Annotated[Count, Tag("<number>")] | Annotated[Literal["auto"], Tag("<text>")],
-        number_or("<text>"),
-    ] = Field(
-        default="auto", description="Highest harmonic kept, or 'auto': as the tolerance asks."
-    )
-    tolerance: Tolerance = Field(
-        default=1e-3, description="Relative accuracy of what is automatic."
-    )
-    residual: ResidualEntry = "centred"
-    max_harmonics: Count = Field(
-        default=MAX_HARMONICS, description="Highest harmonic that may be kept."
-    )
-    max_iterations: Count = Field(
-        default=MAX_ITERATIONS, description="Iterations per point before it counts as stalled."
-    )
-    threads: Count | None = Field(
-        default=None, description="Threads; left out: as many as there are processors."
-    )
-
     store: Text | None = Field(
         default=None,
         description="File in which disks are kept as they come, for a run that goes on where it "
         "was stopped; left out: beside the result.",
     )
-
-    @model_validator(mode="after")
-    def _require_settings(self) -> Self:
-        # what the analysis would refuse is refused while the file is read, before any computing
-        Settings(
-            harmonics=self.harmonics,
-            tolerance=self.tolerance,
-            residual=self.residual,
-            max_harmonics=self.max_harmonics,
-            max_iterations=self.max_iterations,
-        )
-        return self
-
-    @property
-    def levels(self) -> None:
-        """A mistuning study is one result."""
-        return None
 
     @property
     def observe(self) -> tuple[str, ...] | None:
@@ -142,21 +71,13 @@ class MistuningStudyTable(Table):
     def run(self, model: Model, progress: Callable[[float], None] | None) -> MistuningStudy:
         """Compute the study, but for what its store holds."""
         return mistuning_study(
-            model,  # type: ignore[arg-type]
+            model,
             self.deviation,
             omega=(self.omega.begin, self.omega.end),
             patterns=self.patterns,
-            seed=self.seed,
-            distribution=self.distribution,
             dofs=self.dofs,
             coupling_stiffness=self.coupling_stiffness,
-            measure=self.measure,
-            harmonics=self.harmonics,
-            tolerance=self.tolerance,
-            residual=self.residual,
-            threads=self.threads,
             store=self.store,
             progress=progress,
-            max_harmonics=self.max_harmonics,
-            max_iterations=self.max_iterations,
+            **self.part(MistuningKeys),
         )

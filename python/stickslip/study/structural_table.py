@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import Field, Strict
+from pydantic import Field
 
 from stickslip.model import StructuralDamper
-from stickslip.study.entries import Dof, SlipForce, Table, Text
+from stickslip.settings.entries import Dof, Many, SlipForce, Some, Table, Text
 from stickslip.study.structure_table import Rows
 
 __all__ = ["StructuralTable"]
@@ -20,7 +20,7 @@ class StructuralTable(Table):
     """A structure-like damper: a massless elastic body with several slipping contacts."""
 
     law: Literal["structural"] = Field(description="Friction law.")
-    dofs: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] = Field(
+    dofs: Some[Dof] = Field(
         description="The DOF that each contact touches; 'ground' is the ground.",
         examples=[["left.tip", "right.tip", "ground"]],
     )
@@ -28,7 +28,7 @@ class StructuralTable(Table):
         description="Stiffness of the damper by itself, row by row [N/m].",
         examples=[[[2e6, -2e6], [-2e6, 2e6]]],
     )
-    slip_forces: Annotated[tuple[SlipForce, ...], Strict(False)] = Field(
+    slip_forces: Many[SlipForce] = Field(
         description="Slip limit of each contact; inf: it never slips.",
         examples=[["25 N", 1e3]],
     )

@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated
 
-from pydantic import BeforeValidator, Discriminator, Field, Strict, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from stickslip.checks import unknown
-from stickslip.errors import ModelError
-from stickslip.study.entries import (
-    HERE,
+from stickslip.errors import EntryError
+from stickslip.settings.entries import (
     Dof,
+    ListOr,
+    Many,
     Number,
     Rate,
     Ratio,
     Table,
     Text,
     Time,
-    number_or,
 )
 
 __all__ = [
@@ -59,11 +59,9 @@ class RayleighDamping(Table):
 class ModalDampingTable(Table):
     """A damping ratio per mode of the structure without contacts."""
 
-    modal: Annotated[
-        Annotated[Ratio, Tag("<number>")]
-        | Annotated[tuple[Ratio, ...], Strict(False), Tag("<list>")],
-        number_or("<list>"),
-    ] = Field(description="One ratio for all modes, or one per mode.", examples=[0.001])
+    modal: ListOr[Ratio, Ratio] = Field(
+        description="One ratio for all modes, or one per mode.", examples=[0.001]
+    )
 
 
 def _matrix_form(value: object) -> str | None:
@@ -80,22 +78,20 @@ def _matrix_form(value: object) -> str | None:
 def _rows(value: object) -> object:
     widths = {len(row) for row in value if isinstance(row, list)} if isinstance(value, list) else {}
     if len(widths) > 1:
-        raise ModelError(f"{HERE} has rows of different lengths")
+        raise EntryError("", " has rows of different lengths")
     return value
 
 
 def _damping(value: object) -> object:
     forms = ("rayleigh", "modal", "file")
     if isinstance(value, Mapping) and not value:
-        raise ModelError(f"{HERE} = {{}} is empty; write {{rayleigh = ...}} or {{modal = ...}}")
+        raise EntryError("", " = {} is empty; write {rayleigh = ...} or {modal = ...}")
     if isinstance(value, Mapping) and not {*forms, "key"} & value.keys():
-        raise ModelError(f"{HERE}: {unknown('key', next(iter(value)), forms)}")
+        raise EntryError("", f": {unknown('key', next(iter(value)), forms)}")
     return value
 
 
-Rows = Annotated[
-    tuple[Annotated[tuple[Number, ...], Strict(False)], ...], Strict(False), BeforeValidator(_rows)
-]
+Rows = Annotated[Many[Many[Number]], BeforeValidator(_rows)]
 _FileName = Annotated[Text, Tag("<file>")]
 _FileTable = Annotated[MatrixFile, Tag("<table>")]
 _InlineRows = Annotated[Rows, Tag("<rows>")]
@@ -135,7 +131,7 @@ class StructureTable(Table):
         description="Damping matrix, Rayleigh or modal damping; left out: none.",
         examples=[{"rayleigh": {"mass": 7.49, "stiffness": 2.6e-5}}, {"modal": 0.001}],
     )
-    dofs: Annotated[tuple[Dof, ...], Strict(False)] | None = Field(
+    dofs: Many[Dof] | None = Field(
         default=None,
         description="Names of the DOFs, row by row; left out: '0', '1', ...",
         examples=[["damper", "tip", "mode"]],

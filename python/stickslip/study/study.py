@@ -6,13 +6,10 @@ import math
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 from pydantic import ValidationError
 
 from stickslip.analyses.arguments import physical_dofs
@@ -21,19 +18,17 @@ from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.arguments import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.model.structure import ModalDamping, Rayleigh, Structure
+from stickslip.model.structure import ModalDamping, Structure
+from stickslip.settings.refusal import refusal
 from stickslip.study.analysis_entries import level_name
-from stickslip.study.complaint import complaint
 from stickslip.study.limit_cycles_table import with_matrices
-from stickslip.study.structure_table import MatrixFile, ModalDampingTable, RayleighDamping
+from stickslip.study.matrices import damping_of, matrix_of, named, neighbour
 from stickslip.study.tables import ForceTable, StudyTables
 
 if TYPE_CHECKING:
-    from stickslip.checks import MatrixLike
-    from stickslip.model.structure import DampingLaw
     from stickslip.results.result import Result
     from stickslip.study.disk_table import DiskTable, InterfaceTable
-    from stickslip.study.structure_table import Rows, StructureTable
+    from stickslip.study.structure_table import StructureTable
     from stickslip.study.tables import ContactTable
 
 __all__ = ["Case", "Study", "json_schema", "notable_dofs"]
@@ -109,7 +104,7 @@ class Study:
         """
         path = file_path(path, "study file")
         if not is_file(path):
-            raise ModelError(f"{path}: no such study file{_neighbour(path)}")
+            raise ModelError(f"{path}: no such study file{neighbour(path)}")
         try:
             text = path.read_text(encoding="utf-8")
         except UnicodeDecodeError:
@@ -146,7 +141,7 @@ class Study:
         ModelError
             As `load`.
         """
-        with _named(source):
+        with named(source):
             tables = with_matrices(_read(text), Path(folder))
             model = _model(tables, Path(folder))
             _check_dofs(tables, model)
@@ -199,7 +194,7 @@ class Study:
         """
         cases = self.cases
         for number, case in enumerate(cases):
-            with _named(self.source):
+            with named(self.source):
                 result = self.tables.analysis.run(case.model, _part(progress, number, len(cases)))
             yield result
 
@@ -260,7 +255,7 @@ def _read(text: str) -> StudyTables:
     try:
         return StudyTables.model_validate(content)
     except ValidationError as error:
-        raise ModelError(complaint(error)) from None
+        raise refusal(error) from None
 
 
 def _real(text: str) -> float:
@@ -274,7 +269,7 @@ def _real(text: str) -> float:
 
 
 def _model(tables: StudyTables, folder: Path) -> Model:
-    with _named("structure"):
+    with named("structure"):
         structure = _structure(tables.structure, folder)
     if tables.disk is not None:
         return _disk(tables, tables.disk, structure, folder)
@@ -293,7 +288,7 @@ def _check_parts(tables: StudyTables, structure: Structure) -> None:
         *((f"force {number}", force) for number, force in enumerate(tables.force, 1)),
     ]
     for entry, part in parts:
-        with _named(entry):
+        with named(entry):
             _check_touched(part, structure.dofs, between_sectors=tables.disk is not None)
             part.build()
 
@@ -329,13 +324,13 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
     """Return the tuned disk of which the structure is a sector, or the mistuned one."""
     interface = None
     if table.boundary:
-        with _named("disk"):
+        with named("disk"):
             structure, interface = cyclic_sector(structure, table.boundary)
     if table.interface is not None:
-        with _named("disk: interface"):
+        with named("disk: interface"):
             interface = _interface(table.interface, folder)
     _check_parts(tables, structure)
-    with _named("disk"):
+    with named("disk"):
         disk = BladedDisk(
             structure,
             table.sectors,
@@ -352,9 +347,9 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
 
 
 def _interface(table: InterfaceTable, folder: Path) -> Interface:
-    stiffness = _matrix(table.stiffness, folder, "stiffness")
-    mass = None if table.mass is None else _matrix(table.mass, folder, "mass")
-    damping = _damping(table, folder)
+    stiffness = matrix_of(table.stiffness, folder, "stiffness")
+    mass = None if table.mass is None else matrix_of(table.mass, folder, "mass")
+    damping = damping_of(table.damping, folder)
     if isinstance(damping, ModalDamping):
         raise ModelError(
             "damping: modes belong to the whole disk; give a matrix or {rayleigh = ...}"
@@ -363,46 +358,9 @@ def _interface(table: InterfaceTable, folder: Path) -> Interface:
 
 
 def _structure(table: StructureTable, folder: Path) -> Structure:
-    mass = _matrix(table.mass, folder, "mass")
-    stiffness = _matrix(table.stiffness, folder, "stiffness")
-    return Structure(mass, stiffness, _damping(table, folder), table.dofs)
-
-
-def _damping(
-    table: StructureTable | InterfaceTable, folder: Path
-) -> MatrixLike | DampingLaw | None:
-    match table.damping:
-        case None:
-            return None
-        case RayleighDamping(rayleigh=factor):
-            return Rayleigh(mass=factor.mass, stiffness=factor.stiffness)
-        case ModalDampingTable(modal=ratio):
-            return ModalDamping(ratio)
-        case source:
-            return _matrix(source, folder, "damping")
-
-
-def _matrix(source: str | MatrixFile | Rows, folder: Path, entry: str) -> MatrixLike:
-    from stickslip.io import read_matrix
-
-    if isinstance(source, tuple):
-        return np.array(source, dtype=np.float64)
-    name, key = (source, None) if isinstance(source, str) else (source.file, source.key)
-    path = folder / file_path(name, entry)
-    if not is_file(path):
-        place = path.parent.resolve()
-        raise ModelError(f"{entry} = {brief(name)}: no such file in {place}{_neighbour(path)}")
-    with _named(entry):
-        return read_matrix(path, key)
-
-
-def _neighbour(path: Path) -> str:
-    """Suggest the file of the folder whose name is nearest."""
-    folder = path.parent
-    if not folder.is_dir():
-        return f"; there is no folder {folder} either"
-    near = get_close_matches(path.name, [file.name for file in folder.iterdir()], 1, 0.75)
-    return f"; did you mean '{near[0]}'?" if near else ""
+    mass = matrix_of(table.mass, folder, "mass")
+    stiffness = matrix_of(table.stiffness, folder, "stiffness")
+    return Structure(mass, stiffness, damping_of(table.damping, folder), table.dofs)
 
 
 def _check_name(name: str) -> None:
@@ -435,7 +393,7 @@ def _check_names(entry: str, names: Sequence[str], model: Model) -> None:
     first: dict[str, int] = {}
     key = entry.split()[-1]
     for number, name in enumerate(names, 1):
-        with _named(f"{entry}[{number}]"):
+        with named(f"{entry}[{number}]"):
             model.structure.index(name)
             if first.setdefault(name, number) < number:
                 raise ModelError(f"{brief(name)} is {key}[{first[name]}] too; name it once")
@@ -447,12 +405,3 @@ def _part(
     if progress is None:
         return None
     return lambda fraction: progress((number + fraction) / total)
-
-
-@contextmanager
-def _named(entry: str) -> Iterator[None]:
-    """Say where the entry stands that is complained of."""
-    try:
-        yield
-    except ModelError as error:
-        raise ModelError(f"{entry}: {error.study}") from None

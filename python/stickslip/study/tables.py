@@ -12,22 +12,25 @@ from pydantic import (
     model_validator,
 )
 
-from stickslip.checks import MAX_COUNT, brief
-from stickslip.errors import ModelError
+from stickslip.checks import brief
+from stickslip.errors import EntryError, ModelError
 from stickslip.model import Force, Jenkins, ParallelJenkins
-from stickslip.study.analysis import AnalysisTable
-from stickslip.study.disk_table import CouplingTable, DiskTable
-from stickslip.study.entries import (
-    HERE,
+from stickslip.settings.entries import (
+    ONE_OF,
     Angle,
     Dof,
+    Index,
+    Many,
     Newtons,
     SlipForce,
+    Some,
     StiffnessValue,
     Table,
     Text,
     chosen_by,
 )
+from stickslip.study.analysis import AnalysisTable
+from stickslip.study.disk_table import CouplingTable, DiskTable
 from stickslip.study.structural_table import StructuralTable
 from stickslip.study.structure_table import StructureTable
 
@@ -36,9 +39,10 @@ __all__ = ["ForceTable", "JenkinsTable", "OutputTable", "StudyTables"]
 
 def _two_dofs(value: object) -> object:
     if isinstance(value, list) and len(value) != 2:
-        raise ModelError(
-            f"{HERE} = {brief(value)} names {len(value)} dofs; give two, or write dof = ... for a "
-            "contact to ground"
+        raise EntryError(
+            "",
+            f" = {brief(value)} names {len(value)} dofs; give two, or write dof = ... for a "
+            "contact to ground",
         )
     return value
 
@@ -101,10 +105,10 @@ class ParallelJenkinsTable(EndsTable):
     """Jenkins elements in parallel on one displacement: the discrete Iwan model."""
 
     law: Literal["parallel-jenkins"] = Field(description="Friction law.")
-    stiffness: Annotated[tuple[StiffnessValue, ...], Strict(False), Field(min_length=1)] = Field(
+    stiffness: Some[StiffnessValue] = Field(
         description="Stiffness of each element.", examples=[["1e5 N/m", 2e5]]
     )
-    slip_forces: Annotated[tuple[SlipForce, ...], Strict(False), Field(min_length=1)] = Field(
+    slip_forces: Some[SlipForce] = Field(
         description="Slip limit of each element; inf: it never slips.", examples=[["5 N", 20]]
     )
 
@@ -121,9 +125,7 @@ class ForceTable(Table):
     dof: Dof = Field(description="The DOF it acts on.")
     amplitude: Newtons = Field(description="Amplitude.", examples=["20.3 N", 20.3])
     phase: Angle = Field(default=0.0, description="Phase.", examples=["90 deg"])
-    harmonic: Annotated[int, Field(ge=0, le=MAX_COUNT)] = Field(
-        default=1, description="Multiple of omega; 0: a static load."
-    )
+    harmonic: Index = Field(default=1, description="Multiple of omega; 0: a static load.")
 
     @property
     def touched(self) -> tuple[str, ...]:
@@ -150,15 +152,15 @@ ContactTable = Annotated[
 class OutputTable(Table):
     """What is tabulated and drawn."""
 
-    dofs: Annotated[tuple[Dof, ...], Strict(False), Field(min_length=1)] | None = Field(
+    dofs: Some[Dof] | None = Field(
         default=None,
         description="DOFs tabulated and drawn; left out: those that carry a force or a contact.",
         examples=[["tip", "damper"]],
     )
-    omega_unit: Literal["rad/s", "Hz"] = Field(
+    omega_unit: Annotated[Literal["rad/s", "Hz"], ONE_OF] = Field(
         default="rad/s", description="Unit of the frequency axis."
     )
-    length_unit: Annotated[Literal["m", "mm", "um"], BeforeValidator(_length_unit)] = Field(
+    length_unit: Annotated[Literal["m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)] = Field(
         default="m", description="Unit of the amplitudes."
     )
 
@@ -176,18 +178,14 @@ class StudyTables(Table):
     )
     description: str = Field(default="", description="What is studied, for the reader.")
     structure: StructureTable = Field(description="The linear structure.")
-    contact: Annotated[tuple[ContactTable, ...], Strict(False)] = Field(
-        default=(), description="The friction contacts."
-    )
-    force: Annotated[tuple[ForceTable, ...], Strict(False)] = Field(
-        default=(), description="The forces."
-    )
+    contact: Many[ContactTable] = Field(default=(), description="The friction contacts.")
+    force: Many[ForceTable] = Field(default=(), description="The forces.")
     disk: DiskTable | None = Field(
         default=None,
         title="Disk",
         description="Makes the structure a sector of a bladed disk; left out: it is the whole.",
     )
-    coupling: Annotated[tuple[CouplingTable, ...], Strict(False)] = Field(
+    coupling: Many[CouplingTable] = Field(
         default=(), description="Springs between neighbouring sectors of the disk."
     )
     analysis: AnalysisTable = Field(description="What to compute.")

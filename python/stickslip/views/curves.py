@@ -106,8 +106,8 @@ def _harmonics(result: ForcedResponse) -> str:
 
 def _samples(result: ForcedResponse) -> str:
     taken = result.samples[result.arrays.solved]
-    if result.settings.samples != "auto" or not taken.size:
-        return f"{result.settings.samples} per period"
+    if result.settings.march != "auto" or not taken.size:
+        return f"{result.settings.march} per period"
     return f"auto, {taken.min()} to {taken.max()} per period"
 
 

@@ -1,32 +1,29 @@
-"""What is wrong with a study file: the finding of pydantic, worded in one line for its author."""
+"""What is wrong with settings or a study file: what pydantic found, worded in one line."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from stickslip.checks import brief, unknown
+from stickslip.errors import EntryError, ModelError
 from stickslip.model.laws import unknown_law
-from stickslip.study.entries import HERE
 
-__all__ = ["complaint"]
+__all__ = ["refusal"]
 
 _PHRASES = {
-    "int_type": "is not a whole number",
-    "int_from_float": "is not a whole number",
     "string_type": "is not a text",
     "string_too_short": "is empty",
     "string_pattern_mismatch": 'is no file name; give letters, none of / \\ : * ? " < > |',
+    "bool_type": "is neither true nor false",
     "tuple_type": "is not a list",
     "list_type": "is not a list",
     "model_type": "is not a table",
     "model_attributes_type": "is not a table",
     "dict_type": "is not a table",
     "greater_than_equal": "is below the least allowed, {ge}",
-    "less_than_equal": "is above the most allowed, {le}",
     "too_short": "has too few entries; give at least {min_length}",
     "too_long": "has too many entries; give at most {max_length}",
 }
@@ -35,27 +32,29 @@ _REPEATED = ("contact", "force", "coupling")
 _TABLES = (*_REPEATED, "structure", "disk", "output")
 
 
-def complaint(error: ValidationError) -> str:
+def refusal(error: ValidationError) -> ModelError:
     """Word the first finding of a validation, and count the others.
 
     Parameters
     ----------
     error : pydantic.ValidationError
-        What reading the tables of a study file raised.
+        What settings, or the tables of a study file, raised.
 
     Returns
     -------
-    str
-        One line: the entry as it stands in the file, its value and the remedy, for example
-        ``contact 2: unknown key 'stifness'; did you mean 'stiffness'?``. Contacts, forces and
-        positions in lists are counted from 1.
+    ModelError
+        One line: the entry as it stands in the call or the file, its value and the remedy, for
+        example ``contact 2: unknown key 'stifness'; did you mean 'stiffness'?``. Contacts, forces
+        and positions in lists are counted from 1.
     """
     first, *others = error.errors(include_url=False)
+    cause = first.get("ctx", {}).get("error")
     more = f" (and {len(others)} more)" if others else ""
-    return _worded(first) + more
+    study = f"{_worded(first, study=True)}{more}" if isinstance(cause, ModelError) else None
+    return ModelError(f"{_worded(first)}{more}", study=study)
 
 
-def _worded(finding: ErrorDetails) -> str:
+def _worded(finding: ErrorDetails, *, study: bool = False) -> str:
     entry, value = _entry(finding["loc"]), finding["input"]
     context = finding.get("ctx", {})
     match finding["type"]:
@@ -65,11 +64,11 @@ def _worded(finding: ErrorDetails) -> str:
         case "unknown_key":
             return f"{entry}: {finding['msg']}" if entry else finding["msg"]
         case "value_error":
-            text = str(context["error"])
-            return text.replace(HERE, entry) if HERE in text or not entry else f"{entry}: {text}"
-        case "literal_error":
-            choices = re.findall(r"'([^']*)'", context["expected"])
-            return f"{entry}: {unknown('choice', value, choices)}"
+            cause = context["error"]
+            if isinstance(cause, EntryError):
+                return f"{entry}{cause.said}"
+            said = cause.study if study and isinstance(cause, ModelError) else str(cause)
+            return f"{entry}: {said}" if entry else said
         case "unknown_choice" if isinstance(value, Mapping):
             return f"{entry}: {_choice(value, context['key'], context['choices'].split())}"
         case "unknown_choice":

@@ -1,0 +1,236 @@
+"""What the package exports; written by `docs/make_stub.py`."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from os import PathLike
+from typing import Literal
+
+from numpy.typing import ArrayLike
+
+from stickslip import fe as fe
+from stickslip import plot as plot
+from stickslip import reference as reference
+from stickslip import study as study
+from stickslip._core import __version__ as __version__
+from stickslip.analyses.arguments import Progress
+from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle
+from stickslip.analyses.flutter_formulas import single_harmonic_cycles as single_harmonic_cycles
+from stickslip.analyses.variation import Contacts
+from stickslip.disk import BladedDisk as BladedDisk
+from stickslip.disk import Coupling as Coupling
+from stickslip.disk import InfluenceCoefficients as InfluenceCoefficients
+from stickslip.disk import Interface as Interface
+from stickslip.disk import MistunedDisk as MistunedDisk
+from stickslip.disk import aerodynamic_waves as aerodynamic_waves
+from stickslip.disk import cyclic_sector as cyclic_sector
+from stickslip.disk import mistuning_pattern as mistuning_pattern
+from stickslip.errors import Interrupted as Interrupted
+from stickslip.errors import ModelError as ModelError
+from stickslip.fe import Reduction as Reduction
+from stickslip.fe import Solid as Solid
+from stickslip.fe import craig_bampton as craig_bampton
+from stickslip.html.report import report as report
+from stickslip.io import Frf as Frf
+from stickslip.io import read_dofs as read_dofs
+from stickslip.io import read_frf as read_frf
+from stickslip.io import read_matrix as read_matrix
+from stickslip.io import write_frf as write_frf
+from stickslip.model import Force as Force
+from stickslip.model import Jenkins as Jenkins
+from stickslip.model import ModalDamping as ModalDamping
+from stickslip.model import Model as Model
+from stickslip.model import Rayleigh as Rayleigh
+from stickslip.model import StructuralDamper as StructuralDamper
+from stickslip.model import Structure as Structure
+from stickslip.model import join as join
+from stickslip.model import natural_frequencies as natural_frequencies
+from stickslip.model import slip_configurations as slip_configurations
+from stickslip.model.damping import DampingLaw
+from stickslip.model.damping import modal_damping as modal_damping
+from stickslip.model.destabilised import destabilised as destabilised
+from stickslip.model.state import State as State
+from stickslip.results import ForcedResponse as ForcedResponse
+from stickslip.results import Status as Status
+from stickslip.results.basin_map import BasinMap as BasinMap
+from stickslip.results.damper_curve import DamperCurve as DamperCurve
+from stickslip.results.diagnostic import Diagnostic as Diagnostic
+from stickslip.results.diagnostic import Severity as Severity
+from stickslip.results.exact_response import ExactResponse as ExactResponse
+from stickslip.results.limit_cycles import LimitCycles as LimitCycles
+from stickslip.results.mistuning import MistuningStudy as MistuningStudy
+from stickslip.results.motion_class import MotionClass as MotionClass
+from stickslip.results.optimal_damper import OptimalDamper as OptimalDamper
+from stickslip.results.stability_map import StabilityMap as StabilityMap
+from stickslip.results.store import load as load
+from stickslip.results.transient import Transient as Transient
+from stickslip.settings.entries import Span
+from stickslip.settings.motion import Axis
+from stickslip.settings.variation import Parameter
+
+def basin_map(
+    model: Model,
+    axes: Mapping[Axis, ArrayLike] | None = None,
+    *,
+    periods: int = 3000,
+    tolerance: float = 1e-06,
+    threads: int | None = None,
+    starts: Iterable[State | Mapping[str, float]] | None = None,
+    base: State | Mapping[str, float] | None = None,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> BasinMap: ...
+def certify(
+    result: ForcedResponse,
+    points: int | Literal["all"] | Sequence[int] = 20,
+    *,
+    seed: int = 0,
+    dofs: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> ForcedResponse: ...
+def classify(
+    model: Model,
+    start: State | Mapping[str, float],
+    *,
+    periods: int = 3000,
+    tolerance: float = 1e-06,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> MotionClass: ...
+def damper_curve(
+    model: Model,
+    *,
+    dof: str,
+    common: Literal["value", "factor"] = "value",
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float = "centred",
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 0.001,
+    max_harmonics: int = 255,
+    measure: Literal["half_range", "max", "fundamental"] = "half_range",
+    mode: int = 0,
+    slip_force: ArrayLike | None = None,
+    stiffness: ArrayLike | None = None,
+    level: ArrayLike | None = None,
+    contacts: Contacts | None = None,
+    omega: Span | None = None,
+    progress: Progress = None,
+) -> DamperCurve: ...
+def exact_response(
+    model: Model,
+    omega: ArrayLike | Span,
+    *,
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float = "centred",
+    harmonics: int = 32,
+    tolerance: float = 0.001,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> ExactResponse: ...
+def forced_response(
+    model: Model,
+    omega: ArrayLike | Span,
+    harmonics: int | Literal["auto"] = "auto",
+    *,
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float = "centred",
+    tolerance: float = 0.001,
+    max_harmonics: int = 255,
+    method: Literal["newton", "broyden"] = "newton",
+    jacobian: Literal["exact", "differences"] = "exact",
+    evaluation: Literal["exact", "marched"] = "exact",
+    samples: int | Literal["auto"] = "auto",
+    max_samples: int = 16384,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> ForcedResponse: ...
+def limit_cycles(
+    model: Model,
+    negative_damping: ArrayLike | DampingLaw,
+    *,
+    common: Literal["value", "factor"] = "value",
+    mode: int = 0,
+    harmonics: int | Literal["auto"] = 31,
+    method: Literal["newton", "exact"] = "newton",
+    tolerance: float = 0.001,
+    stability: bool = True,
+    max_harmonics: int = 255,
+    max_points: int = 5000,
+    ratio: ArrayLike | Span | None = None,
+    stiffness: ArrayLike | Span | None = None,
+    slip_force: ArrayLike | Span | None = None,
+    contacts: Contacts | None = None,
+    progress: Progress = None,
+) -> LimitCycles: ...
+def mistuning_study(
+    disk: BladedDisk,
+    deviation: ArrayLike,
+    *,
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float = "centred",
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 0.001,
+    max_harmonics: int = 255,
+    measure: Literal["half_range", "max", "fundamental"] = "half_range",
+    seed: int = 0,
+    distribution: Literal["normal", "uniform"] = "normal",
+    threads: int | None = None,
+    omega: Span,
+    patterns: int | ArrayLike = 1000,
+    dofs: Iterable[str] | str | None = None,
+    coupling_stiffness: ArrayLike | None = None,
+    store: str | PathLike[str] | None = None,
+    progress: Progress = None,
+) -> MistuningStudy: ...
+def optimal_damper(
+    model: Model,
+    *,
+    dof: str,
+    common: Literal["value", "factor"] = "value",
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float = "centred",
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 0.001,
+    max_harmonics: int = 255,
+    measure: Literal["half_range", "max", "fundamental"] = "half_range",
+    mode: int = 0,
+    parameter: Parameter = "slip_force",
+    bounds: tuple[float, float] | None = None,
+    contacts: Contacts | None = None,
+    omega: Span | None = None,
+    progress: Progress = None,
+) -> OptimalDamper: ...
+def single_harmonic(
+    model: Model,
+    omega: ArrayLike,
+    *,
+    max_iterations: int = 100,
+    estimate: bool = True,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> ForcedResponse: ...
+def stability_map(
+    model: Model,
+    negative_damping: ArrayLike,
+    *,
+    common: Literal["value", "factor"] = "value",
+    mode: int = 0,
+    harmonics: int | Literal["auto"] = 31,
+    method: Literal["newton", "exact"] = "exact",
+    stiffness: ArrayLike | None = None,
+    slip_force: ArrayLike | None = None,
+    contacts: Contacts | None = None,
+    progress: Progress = None,
+) -> StabilityMap: ...
+def transient(
+    model: Model,
+    omega: float,
+    periods: int = 200,
+    scheme: Literal["exact", "rk4"] = "exact",
+    *,
+    tolerance: float | None = None,
+    steps: int = 1000,
+    samples: int = 128,
+    keep: int | None = None,
+    start: State | Mapping[str, float] | None = None,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> Transient: ...

@@ -1,0 +1,158 @@
+"""How the equations of harmonic balance are solved."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from stickslip.errors import ModelError
+from stickslip.settings.entries import (
+    ONE_OF,
+    Count,
+    Harmonics,
+    Residual,
+    Span,
+    Tolerance,
+    Whole,
+)
+from stickslip.settings.settings import Settings
+
+__all__ = [
+    "BalanceSettings",
+    "ForcedSettings",
+    "HarmonicSettings",
+    "PointSettings",
+    "SteadySettings",
+]
+
+
+class PointSettings(Settings):
+    """How long a point is iterated."""
+
+    max_iterations: Count = Field(
+        default=100, description="Iterations per point before it is reported as stalled."
+    )
+
+
+class SteadySettings(PointSettings):
+    """What a steady state leaves open."""
+
+    residual: Residual = Field(
+        default="centred",
+        description="Force [N] that a contact holds at mid-range of its displacement if it never "
+        "slips; the steady state alone does not determine it. See "
+        "`ForcedResponse.residual_bounds`.",
+        examples=["from_rest", "10 N"],
+    )
+
+
+class HarmonicSettings(SteadySettings):
+    """Which harmonics are kept, and how accurately."""
+
+    harmonics: Harmonics = Field(
+        default="auto",
+        description='Highest harmonic kept, or "auto": per point, as many as `tolerance` asks for.',
+    )
+    tolerance: Tolerance = Field(
+        default=1e-3,
+        description="Relative accuracy of automatic harmonics, samples and steps, from 1e-8 to "
+        "0.5.",
+    )
+    max_harmonics: Count = Field(default=255, description="Highest harmonic that may be kept.")
+
+    @model_validator(mode="after")
+    def _require_harmonics_below_their_limit(self) -> Self:
+        if self.highest > self.max_harmonics:
+            raise ModelError(
+                f"harmonics: {self.harmonics} lies above max_harmonics = {self.max_harmonics}; "
+                "lower it, or raise max_harmonics"
+            )
+        return self
+
+    @property
+    def fixed_harmonics(self) -> int | None:
+        """The highest harmonic kept; None if it is chosen per point."""
+        return None if self.harmonics == "auto" else self.harmonics
+
+    @property
+    def highest(self) -> int:
+        """The highest harmonic that may be kept."""
+        return self.fixed_harmonics or self.max_harmonics
+
+    @property
+    def bound(self) -> str:
+        """The key that bounds the harmonics."""
+        return "max_harmonics" if self.harmonics == "auto" else "harmonics"
+
+
+class BalanceSettings(HarmonicSettings):
+    """How a forced response is computed by harmonic balance."""
+
+    method: Annotated[Literal["newton", "broyden"], ONE_OF] = Field(
+        default="newton",
+        description="Solver of the balance equations. Broyden's updates one Jacobian per point by "
+        "rank one; on failure both go over to the same homotopy.",
+    )
+    jacobian: Annotated[Literal["exact", "differences"], ONE_OF] = Field(
+        default="exact",
+        description="First Jacobian of Broyden's method: the exact one, or forward differences.",
+    )
+    evaluation: Annotated[Literal["exact", "marched"], ONE_OF] = Field(
+        default="exact",
+        description="Friction laws by exact Fourier integrals, or marched through equidistant "
+        "samples: the alternating frequency/time scheme, for comparisons and for laws without a "
+        "closed form. Its sampling error is part of the error estimate.",
+    )
+    samples: Harmonics = Field(
+        default="auto",
+        description="Samples per period of the marched evaluation, even and at least 4 (H + 1), or "
+        '"auto": per point the power of two whose sampling error stays below a quarter of '
+        "`tolerance`.",
+    )
+    max_samples: Annotated[int, Whole(32, 1 << 20)] = Field(
+        default=16384, description="Most automatic samples per period, a power of two."
+    )
+
+    @model_validator(mode="after")
+    def _require_sense(self) -> Self:
+        if self.jacobian != "exact" and self.method != "broyden":
+            raise ModelError(
+                f"jacobian: {self.jacobian!r} is a first Jacobian of Broyden's method; give "
+                "method='broyden' with it, or leave it out"
+            )
+        least, kept = 4 * (self.highest + 1), f"for harmonics up to {self.highest}"
+        if self.samples != "auto":
+            if self.evaluation == "exact":
+                raise ModelError(
+                    f"samples: {self.samples} for the exact evaluation, which has none; give "
+                    "evaluation='marched' with them, or leave them out"
+                )
+            if self.samples < least or self.samples % 2:
+                raise ModelError(
+                    f"samples: {self.samples} {kept}; give an even number from {least}"
+                )
+        if self.max_samples & (self.max_samples - 1):
+            raise ModelError(
+                f"max_samples: {self.max_samples} is not a power of two; give one, such as 4096"
+            )
+        if self.march == "auto" and self.max_samples < least:
+            raise ModelError(
+                f"max_samples: {self.max_samples} {kept}; give a power of two from {least}, or "
+                "keep fewer harmonics"
+            )
+        return self
+
+    @property
+    def march(self) -> int | Literal["auto"] | None:
+        """Samples per period of a marched evaluation; None if the evaluation is exact."""
+        return None if self.evaluation == "exact" else self.samples
+
+
+class ForcedSettings(BalanceSettings):
+    """How a forced response was computed."""
+
+    span: Span | None = Field(
+        default=None,
+        description="Ends of an adaptive sweep [rad/s]; none: omega was given point by point.",
+    )

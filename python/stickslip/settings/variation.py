@@ -1,0 +1,131 @@
+"""A family of models with one parameter: slip force, stiffness, or level of the forces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+
+import numpy as np
+from pydantic import Field, Strict
+
+from stickslip.model import Model
+from stickslip.model.contact import Contact
+from stickslip.settings.entries import ONE_OF
+from stickslip.settings.settings import Settings
+
+if TYPE_CHECKING:
+    from stickslip import _core
+
+__all__ = ["Chosen", "Common", "CommonSettings", "Parameter", "Variation", "located"]
+
+Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
+Common = Annotated[Literal["value", "factor"], ONE_OF]
+
+Chosen: TypeAlias = str | tuple[str, int]
+"""A contact by its name, or one of its points."""
+
+
+class CommonSettings(Settings):
+    """How contacts share the value of a parameter."""
+
+    common: Common = Field(
+        default="value",
+        description="Whether the contacts all take the value, or multiply their own by it. The "
+        "stiffness of a structure-like damper is a matrix, and takes a factor alone.",
+    )
+
+
+class Variation(CommonSettings):
+    """What is varied."""
+
+    parameter: Annotated[Parameter, ONE_OF] = Field(
+        description="A parameter of contacts, or a factor on all forces."
+    )
+    contacts: Annotated[tuple[Chosen, ...], Strict(False)] = Field(
+        default=(),
+        description="Names of the contacts whose parameter it is, or points of them as (name, "
+        "point); none for a level.",
+    )
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is varied in words: names of contacts, points as "structural[0]"."""
+        return tuple(
+            ref if isinstance(ref, str) else f"{ref[0]}[{ref[1]}]" for ref in self.contacts
+        )
+
+    def varied(self, model: Model) -> _core.Varied:
+        """Return the variation as the compiled core takes it.
+
+        Raises
+        ------
+        ModelError
+            If the model lacks one of the contacts.
+        """
+        return {
+            "parameter": self.parameter,
+            "contacts": [located(model, ref) for ref in self.contacts],
+            "factor": self.common == "factor",
+        }
+
+    @property
+    def unit(self) -> str:
+        """Unit of the parameter."""
+        if self.common == "factor":
+            return "1"
+        return {"slip_force": "N", "stiffness": "N/m", "level": "1"}[self.parameter]
+
+    def apply(self, model: Model, value: float) -> Model:
+        """Return the model at a value of the parameter.
+
+        Parameters
+        ----------
+        model : Model
+            The model as it is.
+        value : float
+            The value, or the factor.
+
+        Returns
+        -------
+        Model
+            A new model.
+
+        Raises
+        ------
+        ModelError
+            If a contact refuses the value.
+        """
+        if self.parameter == "level":
+            return model.scaled(force=value)
+
+        def changed(contact: Contact) -> Contact:
+            chosen = [ref for ref in self.contacts if _name(ref) == contact.name]
+            if not chosen:
+                return contact
+            values = list(contact.adjustable()[self.parameter])
+            for ref in chosen:
+                for point in range(len(values)) if isinstance(ref, str) else [ref[1]]:
+                    values[point] = self._at(value, values[point])
+            return contact.adjusted(self.parameter, values)
+
+        return model.replaced(contacts=[changed(contact) for contact in model.contacts])
+
+    def _at(self, value: float, own: float) -> float:
+        """Return what becomes of a value; what never slips does so under every factor."""
+        if self.common == "value":
+            return value
+        return own if np.isinf(own) else value * own
+
+
+def _name(ref: Chosen) -> str:
+    return ref if isinstance(ref, str) else ref[0]
+
+
+def located(model: Model, ref: Chosen) -> tuple[int, int | None]:
+    """Return the position of a contact, and of one of its points if one is meant.
+
+    Raises
+    ------
+    ModelError
+        If the model lacks it.
+    """
+    return (model.contact_index(ref), None) if isinstance(ref, str) else model.point(ref)
