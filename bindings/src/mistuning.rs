@@ -1,8 +1,9 @@
 //! Mistuned disks: the highest blade of one, and of many patterns in parallel threads.
 
 use crate::arrays::{matrix, refused, Array1, Array2};
+use crate::columns::status_code;
 use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
-use crate::response::{status_code, ResidualArgument};
+use crate::response::ResidualArgument;
 use crate::settings::{settings, March};
 use crate::watch::{watched_parts, whole};
 use pyo3::prelude::*;

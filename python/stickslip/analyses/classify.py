@@ -26,8 +26,8 @@ from stickslip.model import Model, natural_frequencies
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
 from stickslip.results.diagnostic import Diagnostic, diagnostic, present
-from stickslip.results.fate_arrays import FateArrays, Motion, Reason
-from stickslip.results.motion_class import MotionClass
+from stickslip.results.fate_arrays import Motion, Reason
+from stickslip.results.motion_class import MotionArrays, MotionClass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -150,18 +150,15 @@ def classify(
     prepare(alone)
     with Interruption(progress) as watch:
         fates = fates_of(alone, first.vector[None], settings, 1, watch)
-        arrays = FateArrays.of(fates, first.vector[None], columns)
-        stopped = fates.interrupted
-        tail, interrupted = _tail(
-            alone, arrays, omega, samples, columns, watch, interrupted=stopped
-        )
+        tail, interrupted = _tail(alone, fates, omega, samples, columns, watch)
+        amplitude = fates.columns["amplitude"][:, columns]
+        arrays = MotionArrays.of(fates, start=first.vector[None], amplitude=amplitude, tail=tail)
         result = MotionClass(
             model=alone,
             dofs=dofs,
             settings=settings,
             arrays=arrays,
             step=2.0 * np.pi / omega / samples,
-            tail=tail,
             interrupted=interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
@@ -261,21 +258,19 @@ def _tail_grid(model: Model, observed: int) -> tuple[float, int]:
 
 def _tail(
     model: Model,
-    arrays: FateArrays,
+    fates: _core.Fates,
     omega: float,
     samples: int,
     columns: list[int],
     watch: Interruption,
-    *,
-    interrupted: bool,
 ) -> tuple[Float, bool]:
     """Return the motion from its last state on, and whether the run was interrupted."""
     from stickslip import _core
 
-    reason = list(Reason)[int(arrays.reason[0])]
+    reason = list(Reason)[int(fates.columns["reason"][0])]
     unknown = reason in (Reason.CONTRADICTION, Reason.INTERRUPTED)
-    if interrupted or unknown or reason.motion in (Motion.UNBOUNDED, Motion.DECAYING):
-        return np.zeros((0, len(columns))), interrupted
+    if fates.interrupted or unknown or reason.motion in (Motion.UNBOUNDED, Motion.DECAYING):
+        return np.zeros((0, len(columns))), fates.interrupted
     observe = np.array(columns, dtype=np.int64)
     history = _core.transient(
         model.problem,
@@ -284,10 +279,10 @@ def _tail(
         TAIL,
         None,
         1,
-        arrays.final[0],
+        fates.columns["final"][0],
         observe,
         samples,
         None,
         lambda _: watch.heed(),
     )
-    return history.displacement[1:], history.interrupted
+    return history.columns["displacement"][1:], history.interrupted

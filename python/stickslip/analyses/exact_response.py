@@ -206,7 +206,7 @@ def _solve(
     dofs: tuple[str, ...],
     settings: ExactSettings,
     progress: Progress,
-) -> _core.Orbits:
+) -> _core.Solution:
     from stickslip import _core
 
     try:
@@ -229,10 +229,10 @@ def _result(
     model: Model,
     settings: ExactSettings,
     dofs: tuple[str, ...],
-    solution: _core.Orbits,
+    solution: _core.Solution,
     missing: int,
 ) -> ExactResponse:
-    arrays = OrbitArrays.of_orbits(solution)
+    arrays = OrbitArrays.of(solution)
     return ExactResponse(
         model=model,
         settings=settings,

@@ -150,13 +150,12 @@ def limit_cycles(
     prepare(model)
     with Interruption(progress) as watch:
         solution = solve(model, matrix, settings, watch, proportional=law)
-        arrays = CycleArrays.of(solution)
+        arrays = CycleArrays.of(solution, negative_damping=matrix)
         result = LimitCycles(
             model=model,
             dofs=model.structure.dofs,
             settings=settings,
             arrays=arrays,
-            negative_damping=matrix,
             interrupted=solution.interrupted,
             timings=dict(solution.timings),
             counters={**solution.counters, "jumps": solution.jumps},

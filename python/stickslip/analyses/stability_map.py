@@ -119,7 +119,7 @@ def stability_map(
                     if solution.interrupted:
                         interrupted = True
                         break
-                    arrays = CycleArrays.of(solution)
+                    arrays = CycleArrays.of(solution, negative_damping=matrix)
                     ratio, omega = arrays.turn
                     rows.append((ratio, omega, _stable_limit(arrays)))
                     if np.isnan(ratio):
@@ -139,9 +139,12 @@ def stability_map(
                 variation=variation, mode=mode, harmonics=harmonics, method=method
             ),
             arrays=MapArrays(
-                value=np.array(values[:done]), limit=limit, omega=omega, stable_limit=stable
+                value=np.array(values[:done]),
+                limit=limit,
+                omega=omega,
+                stable_limit=stable,
+                negative_damping=matrix,
             ),
-            negative_damping=matrix,
             interrupted=interrupted,
             timings={},
             counters={"branches": done},

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +16,20 @@ from stickslip.model import Model, PointRef
 from stickslip.model.state import State
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
 from stickslip.results.cycle_arrays import CHANGE_KINDS, CycleArrays
-from stickslip.results.cycle_dataset import cycle_dataset, cycle_parts
-from stickslip.results.result import Result
-from stickslip.results.stability import States, stability_counts, stability_of, truth_of
+from stickslip.results.fields import Numbers, Shown
+from stickslip.results.result import ColumnResult
+from stickslip.results.stability import (
+    States,
+    flag_variable,
+    stability_counts,
+    stability_of,
+    truth_of,
+)
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from typing import Unpack
 
-    import xarray as xr
     from matplotlib.axes import Axes
 
     from stickslip.analyses.cycle_settings import CycleSettings
@@ -62,7 +68,7 @@ class StabilityChange(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class LimitCycles(Result):
+class LimitCycles(ColumnResult):
     """Limit cycles of a mode, from the sticking to the slipping side of their branch.
 
     Attributes
@@ -71,15 +77,15 @@ class LimitCycles(Result):
         What was followed, and how.
     arrays : CycleArrays
         Every number by its name.
-    negative_damping : ndarray
-        C_neg of the damping C + r C_neg [kg/s], shape (N, N); of a tuned disk (n, N, N).
     """
 
     kind: ClassVar[str] = "limit_cycles"
+    title = "Limit cycles of a structure with dry friction"
+    columns = CycleArrays
+    settings_class = ("stickslip.analyses.cycle_settings", "CycleSettings")
 
     settings: CycleSettings
     arrays: CycleArrays
-    negative_damping: NDArray[Any]
 
     def __repr__(self) -> str:
         limit = self.limit
@@ -91,20 +97,10 @@ class LimitCycles(Result):
             f"{stability_counts(self.stability)}, {turn})"
         )
 
-    @property
-    def values(self) -> Float:
-        """Value of what is followed, shape (n,): r, or a parameter of contacts."""
-        return self.arrays.value
-
-    @property
-    def ratio(self) -> Float:
-        """Factor r on the negative damping, shape (n,)."""
-        return self.arrays.ratio
-
-    @property
-    def omega(self) -> Float:
-        """Angular frequency, shape (n,) [rad/s]."""
-        return self.arrays.omega
+    values = Shown[Float]("value")
+    ratio = Shown[Float]()
+    omega = Shown[Float]()
+    negative_damping = Shown[Numbers]()
 
     @cached_property
     def branch(self) -> NDArray[np.str_]:
@@ -363,25 +359,16 @@ class LimitCycles(Result):
             raise ModelError(f"index: {index}; there are {count} cycles")
         return position
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
+    def _words(self) -> Mapping[str, str]:
+        return {"unit": self.settings.unit, "followed": self.settings.followed}
 
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add the amplitude, which follows from other variables.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions cycle, harmonic, dof, point and multiplier.
-        """
-        return cycle_dataset(self, derived=derived)
-
-    @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the limit cycles in a dataset; see `Result.from_dataset`."""
-        return cls(**cycle_parts(dataset, model))
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        made: dict[Hashable, Any] = {"stable": flag_variable("cycle", self.stability)}
+        if derived:
+            meaning = "half peak-to-peak amplitude of the displacement"
+            values = np.stack([self.amplitude(dof) for dof in self.dofs], axis=1)
+            made["amplitude"] = (("cycle", "dof"), values, {"units": "m", "long_name": meaning})
+        return made
 
     def plot(self, dof: str, **options: Unpack[CycleOptions]) -> Axes:
         """Draw amplitude and frequency along the branch.

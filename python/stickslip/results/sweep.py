@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Integral
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from stickslip.checks import real_number
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Arrays, Bool, Float, Int, constant
-from stickslip.results.result import Result
+from stickslip.results.fields import Columns, Shown
+from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ __all__ = ["Sweep"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Sweep(Result):
+class Sweep(ColumnResult):
     """The points of a result.
 
     Attributes
@@ -33,33 +34,18 @@ class Sweep(Result):
         Every number by its name.
     """
 
+    columns: ClassVar[type[Columns]] = Arrays
+    settings_class: ClassVar[tuple[str, str]] = ("stickslip.analyses.forced_response", "Settings")
+    attributes: ClassVar[Attributes] = {"interrupted": bool, "half_wave": bool}
+
     settings: Settings
     arrays: Arrays
 
-    @property
-    def omega(self) -> Float:
-        """Angular frequency per point, shape (n,) [rad/s], in the order of the sweep."""
-        return self.arrays.omega
-
-    @property
-    def harmonics(self) -> Int:
-        """Highest harmonic kept per point, shape (n,)."""
-        return self.arrays.harmonics
-
-    @property
-    def samples(self) -> Int:
-        """Samples per period of marched friction laws per point, shape (n,); 0 if not marched."""
-        return self.arrays.samples
-
-    @property
-    def residual(self) -> Float:
-        """Relative residual of the balance equations per point, shape (n,)."""
-        return self.arrays.residual
-
-    @property
-    def iterations(self) -> Int:
-        """Iterations used per point, shape (n,)."""
-        return self.arrays.iterations
+    omega = Shown[Float]()
+    harmonics = Shown[Int]()
+    samples = Shown[Int]()
+    residual = Shown[Float]()
+    iterations = Shown[Int]()
 
     @cached_property
     def status(self) -> tuple[Status, ...]:
