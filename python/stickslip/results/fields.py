@@ -7,7 +7,7 @@ files, the check of what a file holds, and its documentation.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import Field, dataclass, field
+from dataclasses import Field, dataclass, field, fields
 from functools import partial
 from inspect import cleandoc
 from math import inf
@@ -158,7 +158,7 @@ class Columns:
 
     def __reduce__(self) -> tuple[Callable[[], Self], tuple[()]]:
         # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        values = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         return partial(type(self), **values), ()
 
     @classmethod

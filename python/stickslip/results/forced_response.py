@@ -227,7 +227,8 @@ class ForcedResponse(BladeMotion, Sensitivities):
         -------
         ndarray of float64, shape (n,)
             [m], in a displacement. The discarded harmonics of the contact forces, pushed through
-            the compliance; of a marched evaluation with the error of its samples.
+            the compliance; of a marched evaluation with the error of its samples, which alone is
+            `arrays.sampling_error`.
 
         Raises
         ------
