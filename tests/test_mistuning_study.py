@@ -138,9 +138,9 @@ def test_the_disks_are_those_of_mistuned(damping):
     made = family(disk).mistuned(pattern)
     grid, observe = np.array([180.0, 220.0]), np.arange(12)
     settings = (3, 1e-3, "centred", "newton", "exact", None, 255, 16384, 50, None)
-    mine = _core.forced_response(made, grid, observe, *settings).displacement
+    mine = _core.forced_response(made, grid, observe, *settings).columns["displacement"]
     theirs = _core.forced_response(disk.mistuned(pattern).problem, grid, observe, *settings)
-    gap = np.abs(mine - theirs.displacement).max()
+    gap = np.abs(mine - theirs.columns["displacement"]).max()
     assert gap < 1e-11 * np.abs(mine).max()
 
 
