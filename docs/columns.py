@@ -19,9 +19,10 @@ class Columns(griffe.Extension):
         """Say what the column of an attribute is."""
         if isinstance(attr.value, griffe.ExprCall) and str(attr.value.function).startswith("Shown"):
             attr.annotation = attr.value.function.slice
+            attr.value, attr.labels = None, {"property"}
             _document(attr)
 
 
 def _document(what: griffe.Object) -> None:
-    text = griffe.dynamic_import(what.path, ["python"]).__doc__
+    text = griffe.dynamic_import(what.path).__doc__
     what.docstring = griffe.Docstring(text, parent=what)

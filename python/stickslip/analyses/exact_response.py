@@ -233,15 +233,12 @@ def _result(
     missing: int,
 ) -> ExactResponse:
     arrays = OrbitArrays.of(solution)
-    return ExactResponse(
+    return ExactResponse.of(
+        solution,
         model=model,
         settings=settings,
         dofs=dofs,
         arrays=arrays,
-        half_wave=solution.half_wave,
-        interrupted=solution.interrupted,
-        timings=dict(solution.timings),
-        counters=dict(solution.counters),
         diagnostics=orbit_assumptions(
             model,
             settings,

@@ -151,13 +151,12 @@ def limit_cycles(
     with Interruption(progress) as watch:
         solution = solve(model, matrix, settings, watch, proportional=law)
         arrays = CycleArrays.of(solution, negative_damping=matrix)
-        result = LimitCycles(
+        result = LimitCycles.of(
+            solution,
             model=model,
             dofs=model.structure.dofs,
             settings=settings,
             arrays=arrays,
-            interrupted=solution.interrupted,
-            timings=dict(solution.timings),
             counters={**solution.counters, "jumps": solution.jumps},
             diagnostics=cycle_assumptions(model, settings, arrays, solution),
         )

@@ -201,6 +201,12 @@ class ColumnResult(Result):
     settings: DataclassInstance
     arrays: Columns
 
+    @classmethod
+    def of(cls, solution: object, **given: Any) -> Self:
+        """Return a result with the attributes, timings and counters that the core tells."""
+        names = {"timings", "counters", *cls.attributes} - set(given)
+        return cls(**{name: getattr(solution, name) for name in names}, **given)
+
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
