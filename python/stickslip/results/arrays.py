@@ -24,6 +24,7 @@ __all__ = [
     "Float",
     "Int",
     "Measure",
+    "amplitude_in",
     "amplitude_of",
     "constant",
     "mean_forces",
@@ -152,6 +153,14 @@ def amplitude_of(coefficients: Complex, measure: Measure) -> Float:
     if finite.any():
         values[finite] = _core.amplitude(np.ascontiguousarray(coefficients[finite]), measure)
     return values
+
+
+def amplitude_in(ranges: Float, measure: Measure) -> Float:
+    """Return the amplitudes, half ranges or largest |x|, of ranges of shape (n, 2)."""
+    low, high = ranges.T
+    if measure == "max":
+        return constant(np.maximum(np.abs(low), np.abs(high)))
+    return constant(0.5 * (high - low))
 
 
 def mean_forces(series: Complex, stiffness: float, slip_force: float) -> Float:

@@ -8,20 +8,19 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
 from stickslip.model.state import State
-from stickslip.results.arrays import Complex, Float, Int, Measure, constant
+from stickslip.results.arrays import Float, Measure, amplitude_in, constant
 from stickslip.results.contact_states import ContactStates, states_of
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
 from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
-from stickslip.results.stability import States, flag_variable, stability_of, truth_of
+from stickslip.results.stability import FloquetStability, flag_variable
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -35,7 +34,7 @@ __all__ = ["ExactResponse"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class ExactResponse(ForcedResponse):
+class ExactResponse(ForcedResponse, FloquetStability):
     """Exact periodic orbits over the excitation frequency.
 
     A `ForcedResponse` without truncation: amplitudes are the exact extrema of the orbits, waveforms
@@ -58,44 +57,6 @@ class ExactResponse(ForcedResponse):
 
     settings: ExactSettings
     arrays: OrbitArrays
-
-    @property
-    def multipliers(self) -> Complex:
-        """Floquet multipliers over the period, shape (n, 2 N + n_p).
-
-        First the neutral ones, then by falling modulus: what a small disturbance is multiplied by
-        in a period. A contact that slips forgets its force, which gives a multiplier of zero.
-        """
-        return self.arrays.multipliers
-
-    @property
-    def neutral(self) -> Int:
-        """How many multipliers are neutral, exactly 1, shape (n,).
-
-        A contact that never slips keeps any small change of its mean force for ever, and the motion
-        around it is the same. A structure that nothing holds stays where it is pushed to, or drifts
-        on where nothing slows it: its vibration is the same too.
-        """
-        return self.arrays.neutral
-
-    @cached_property
-    def stability(self) -> States:
-        """State of each orbit, "stable", "unstable" or "not decided", shape (n,).
-
-        Stable are orbits whose multipliers but the neutral ones lie inside the unit circle. Not
-        decided are points that are not solved, and orbits whose largest multiplier is 1 to
-        rounding, as those of structures without damping whose contacts stick.
-        """
-        return stability_of(self.multipliers, self.neutral, self.arrays.solved)
-
-    @cached_property
-    def stable(self) -> NDArray[np.object_]:
-        """`stability` as True, False or None (not decided) per orbit, shape (n,).
-
-        Of Python's objects: write ``exact.stable == True`` or ``exact.stability == "stable"`` to
-        choose orbits.
-        """
-        return truth_of(self.stability)
 
     @cached_property
     def energy(self) -> Energy:
@@ -176,14 +137,11 @@ class ExactResponse(ForcedResponse):
         """
         key = key_of(dof, measure)
         if key not in self._amplitudes:
-            low, high = self.arrays.range[:, self._column(dof)].T
-            if measure == "half_range":
-                values = 0.5 * (high - low)
-            elif measure == "max":
-                values = np.maximum(np.abs(low), np.abs(high))
+            if measure == "fundamental":
+                values = constant(np.abs(self.coefficients(dof)[:, 1]))
             else:
-                values = np.abs(self.coefficients(dof)[:, 1])
-            self._amplitudes[key] = constant(values)
+                values = amplitude_in(self.arrays.range[:, self._column(dof)], measure)
+            self._amplitudes[key] = values
         return self._amplitudes[key]
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:

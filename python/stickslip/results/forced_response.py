@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.checks import choice, text
 from stickslip.model import PointRef
-from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
+from stickslip.results.arrays import Float, Measure, amplitude_of, constant
 from stickslip.results.blades import BladeMotion
 from stickslip.results.certificate import Certificate
 from stickslip.results.energy import Energy, energy_of
@@ -77,26 +77,6 @@ class ForcedResponse(BladeMotion, Sensitivities):
             f"{type(self).__name__}({omega.size} points from {omega.min():g} to {omega.max():g} "
             f"rad/s ({solved}), {len(self.dofs)} dofs, harmonics={self.settings.harmonics!r})"
         )
-
-    def coefficients(self, dof: str) -> Complex:
-        """Return the harmonics of a displacement, X_k of x(t) = Re sum_k X_k exp(i k omega t).
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
-        Returns
-        -------
-        ndarray of complex128, shape (n, H+1)
-            [m]. At points that did not converge the last iterate, kept for diagnosis.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
-        """
-        return self.arrays.displacement[:, :, self._column(dof)]
 
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
         """Return the amplitude of a displacement over frequency.
@@ -214,28 +194,6 @@ class ForcedResponse(BladeMotion, Sensitivities):
 
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
         return summits(self, [dofs], measure)[0]
-
-    def error_estimate(self, dof: str) -> Float:
-        """Return what the discarded harmonics, and more samples, could still change.
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m], in a displacement. The discarded harmonics of the contact forces, pushed through
-            the compliance; of a marched evaluation with the error of its samples, which alone is
-            `arrays.sampling_error`.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
-        """
-        return self.arrays.error_estimate[:, self._column(dof)]
 
     def summary(self, dofs: Iterable[str] | str | None = None) -> list[Summary]:
         """Return the peaks of degrees of freedom, one row each.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.results.arrays import Arrays, Code, Complex, Float, Int
+from stickslip.results.arrays import Arrays, Bool, Code, Complex, Float, Int
 from stickslip.results.events import KINDS
 from stickslip.results.fields import Computed, column
 from stickslip.results.status import Status
@@ -97,3 +97,8 @@ class OrbitArrays(Arrays):
         if not divided or (np.diff(ends) < 0).any():
             raise ValueError(f"event_offset does not divide the {events} events")
         return arrays
+
+    @property
+    def known(self) -> Bool:
+        """(n,) Whether the multipliers of a point are known."""
+        return self.solved

@@ -13,7 +13,8 @@ from stickslip.checks import real_number
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Arrays, Bool, Float, Int, constant
 from stickslip.results.fields import Columns, Shown
-from stickslip.results.result import Attributes, ColumnResult
+from stickslip.results.periodic import PeriodicMotions
+from stickslip.results.result import Attributes
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ __all__ = ["Sweep"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Sweep(ColumnResult):
+class Sweep(PeriodicMotions):
     """The points of a result.
 
     Attributes
@@ -46,11 +47,6 @@ class Sweep(ColumnResult):
     samples = Shown[Int]()
     residual = Shown[Float]()
     iterations = Shown[Int]()
-
-    @cached_property
-    def status(self) -> tuple[Status, ...]:
-        """How each point ended; ``status[i].advice`` says what to do about it."""
-        return tuple(Status.from_code(int(code)) for code in self.arrays.status)
 
     @cached_property
     def converged(self) -> Bool:

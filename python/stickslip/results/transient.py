@@ -13,7 +13,7 @@ from stickslip.checks import choice, text, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
 from stickslip.model.state import State
-from stickslip.results.arrays import Float, Measure, constant
+from stickslip.results.arrays import Float, Measure, amplitude_in
 from stickslip.results.events import Events
 from stickslip.results.fields import Shown
 from stickslip.results.result import Attributes, ColumnResult
@@ -221,10 +221,7 @@ class Transient(ColumnResult):
             If there is no such degree of freedom or measure, or the former was not observed.
         """
         choice(measure, "measure", ("half_range", "max"))
-        low, high = self.arrays.range[:, self._column(dof)].T
-        if measure == "max":
-            return constant(np.maximum(np.abs(low), np.abs(high)))
-        return constant(0.5 * (high - low))
+        return amplitude_in(self.arrays.range[:, self._column(dof)], measure)
 
     def amplitude(self, dof: str, measure: Measure = "half_range") -> float:
         """Return the amplitude of a displacement in the last period.
