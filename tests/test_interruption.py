@@ -83,6 +83,7 @@ def test_interruption_before_the_first_point():
         contact_displacement=np.full((n, 2, 1), np.nan + 0j),
         contact_force=np.full((n, 2, 1), np.nan + 0j),
         error_estimate=np.full((n, 1), np.nan),
+        sampling_error=np.full((n, 1), np.nan),
         slip_fraction=np.full((n, 1), np.nan),
         dissipation=np.full((n, 1), np.nan),
     )

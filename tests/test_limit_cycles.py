@@ -313,7 +313,7 @@ def test_results_are_saved_and_loaded(whole, mass, tmp_path):
         again = ss.load(tmp_path / "a.nc")
         assert again.settings == result.settings
         assert again.assumptions == result.assumptions
-        for name in vars(type(result.arrays))["__dataclass_fields__"]:
+        for name in result.arrays.table():
             ours, theirs = getattr(result.arrays, name), getattr(again.arrays, name)
             assert ours.dtype == theirs.dtype
             assert np.array_equal(ours, theirs, equal_nan=True)

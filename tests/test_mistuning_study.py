@@ -139,9 +139,9 @@ def test_the_disks_are_those_of_mistuned(damping):
     made = family(disk).mistuned(pattern)
     grid, observe = np.array([180.0, 220.0]), np.arange(12)
     settings = BalanceSettings.of(harmonics=3, max_iterations=50)
-    mine = _core.forced_response(made, grid, observe, settings, None).displacement
+    mine = _core.forced_response(made, grid, observe, settings, None).columns["displacement"]
     theirs = _core.forced_response(disk.mistuned(pattern).problem, grid, observe, settings, None)
-    gap = np.abs(mine - theirs.displacement).max()
+    gap = np.abs(mine - theirs.columns["displacement"]).max()
     assert gap < 1e-11 * np.abs(mine).max()
 
 

@@ -84,6 +84,7 @@ def test_dataset(frf):
         "contact_force": "N",
         "amplitude": "m",
         "error_estimate": "m",
+        "sampling_error": "m",
         "slip_fraction": "1",
         "dissipation": "J",
         "residual": "1",

@@ -2,8 +2,8 @@
 
 use numpy::ndarray::Dimension;
 use numpy::{
-    Complex64, Element, Ix1, Ix2, Ix3, PyArray1, PyArray2, PyArray3, PyReadonlyArray,
-    PyUntypedArray, PyUntypedArrayMethods as _,
+    Complex64, Element, Ix1, Ix2, Ix3, PyArray1, PyArray2, PyReadonlyArray, PyUntypedArray,
+    PyUntypedArrayMethods as _,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -139,26 +139,6 @@ pub fn table<'py, T: numpy::Element + Clone>(
 ) -> PyResult<Bound<'py, PyArray2<T>>> {
     use numpy::PyArrayMethods as _;
     PyArray1::from_vec(py, values).reshape([rows, columns])
-}
-
-/// Amplitudes `(points, orders, columns)` of points that each have their own highest order, padded
-/// with zeros to the highest of all.
-pub fn padded<'py, 'a>(
-    py: Python<'py>,
-    columns: usize,
-    points: impl ExactSizeIterator<Item = (usize, &'a [Complex64])> + Clone,
-) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-    use numpy::PyArrayMethods as _;
-    let count = points.len();
-    let orders = 1 + points.clone().map(|(highest, _)| highest).max().unwrap_or(0);
-    let mut values = Vec::with_capacity(count * orders * columns);
-    for (n, (highest, amplitudes)) in points.enumerate() {
-        for order in 0..=highest {
-            values.extend(amplitudes.iter().skip(order).step_by(highest + 1).take(columns));
-        }
-        values.resize((n + 1) * orders * columns, Complex64::new(0.0, 0.0));
-    }
-    PyArray1::from_vec(py, values).reshape([count, orders, columns])
 }
 
 /// Indices of DOFs.

@@ -1,15 +1,16 @@
 //! Damper design: peaks along a parameter, the least of them, and sensitivities.
 
-use crate::arrays::{refused, series, table, vector, Array1, Array3};
+use crate::arrays::{refused, series, table, Array1, Array3};
+use crate::columns::{status_code, timings, Columns};
 use crate::problem::Problem;
-use crate::response::{status_code, ResidualArgument};
+use crate::response::ResidualArgument;
 use crate::settings::{evaluated, HarmonicSettings, PeakSettings};
 use crate::variation::Varied;
 use crate::watch;
-use numpy::{Complex64, PyArray1, PyArray2, PyUntypedArrayMethods as _};
+use numpy::{Complex64, PyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict as _, PyDict};
 use std::sync::Arc;
 use stickslip_core::balance::{Cause, Linearised, Settings, Unknowns};
 use stickslip_core::design::{optimum, peak_curve, Curve, Peak, Target};
@@ -18,90 +19,40 @@ use stickslip_core::model::Variation;
 use stickslip_core::Model;
 
 /// Peaks along a parameter.
-#[pyclass(frozen, module = "stickslip._core")]
+#[pyclass(frozen, get_all, module = "stickslip._core")]
 pub struct Peaks {
-    peaks: Vec<Peak>,
-    curve: Curve,
+    columns: Py<PyDict>,
+    interrupted: bool,
+    timings: Py<PyDict>,
+    counters: Py<PyDict>,
 }
 
-impl From<Curve> for Peaks {
-    fn from(curve: Curve) -> Self {
-        Self { peaks: curve.peaks.clone(), curve }
-    }
-}
-
-#[pymethods]
 impl Peaks {
-    #[getter]
-    fn value<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.peaks.iter().map(|p| p.value))
-    }
-
-    #[getter]
-    fn omega<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.peaks.iter().map(|p| p.omega))
-    }
-
-    #[getter]
-    fn amplitude<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.peaks.iter().map(|p| p.amplitude))
-    }
-
-    #[getter]
-    fn sensitivity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.peaks.iter().map(|p| p.slope))
-    }
-
-    #[getter]
-    fn error_estimate<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.peaks.iter().map(|p| p.error_estimate))
-    }
-
-    #[getter]
-    fn harmonics<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        vector(py, self.peaks.iter().map(|p| p.harmonics as i64))
-    }
-
-    #[getter]
-    fn at_edge<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        vector(py, self.peaks.iter().map(|p| p.at_edge))
-    }
-
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        vector(py, self.peaks.iter().map(|p| status_code(p.status)))
-    }
-
-    #[getter]
-    fn interrupted(&self) -> bool {
-        self.curve.interrupted
-    }
-
-    #[getter]
-    fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let profile = &self.curve.profile;
-        let timings = PyDict::new(py);
-        for (stage, time) in [
-            ("compliance", profile.compliance),
-            ("law", profile.law),
-            ("linear_solve", profile.linear_solve),
-            ("recovery", profile.recovery),
-            ("total", profile.total),
-        ] {
-            timings.set_item(stage, time.as_secs_f64())?;
-        }
-        Ok(timings)
-    }
-
-    #[getter]
-    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let profile = &self.curve.profile;
-        let counters = PyDict::new(py);
-        counters.set_item("points", self.curve.points)?;
-        counters.set_item("evaluations", profile.evaluations)?;
-        counters.set_item("factorisations", profile.factorisations)?;
-        counters.set_item("homotopies", profile.homotopies)?;
-        Ok(counters)
+    /// Some of the peaks of a curve.
+    fn new(py: Python<'_>, peaks: &[Peak], curve: &Curve) -> PyResult<Self> {
+        let columns = Columns::new(py);
+        let peaks = || peaks.iter();
+        columns.one("value", peaks().map(|p| p.value))?;
+        columns.one("omega", peaks().map(|p| p.omega))?;
+        columns.one("amplitude", peaks().map(|p| p.amplitude))?;
+        columns.one("sensitivity", peaks().map(|p| p.slope))?;
+        columns.one("error_estimate", peaks().map(|p| p.error_estimate))?;
+        columns.one("harmonics", peaks().map(|p| p.harmonics as i64))?;
+        columns.one("at_edge", peaks().map(|p| p.at_edge))?;
+        columns.one("status", peaks().map(|p| status_code(p.status)))?;
+        let profile = &curve.profile;
+        let counters = [
+            ("points", curve.points),
+            ("evaluations", profile.evaluations),
+            ("factorisations", profile.factorisations),
+            ("homotopies", profile.homotopies),
+        ];
+        Ok(Self {
+            columns: columns.end(),
+            interrupted: curve.interrupted,
+            timings: timings(py, profile)?,
+            counters: counters.into_py_dict(py)?.unbind(),
+        })
     }
 }
 
@@ -154,7 +105,7 @@ pub fn damper_curve(
     let curve = watched(py, progress.as_ref(), move |look| {
         peak_curve(&model, settings, &variation, &values, &target, look)
     })?;
-    Ok(curve.into())
+    Peaks::new(py, &curve.peaks, &curve)
 }
 
 /// The local minima of the peak over a parameter, the least first, and all peaks computed.
@@ -173,8 +124,8 @@ pub fn optimal_damper(
     let found = watched(py, progress.as_ref(), move |look| {
         optimum(&model, settings, &variation, bounds, &target, look)
     })?;
-    let minima = Peaks { peaks: found.minima, curve: found.curve.clone() };
-    Ok((minima, found.curve.into()))
+    let curve = &found.curve;
+    Ok((Peaks::new(py, &found.minima, curve)?, Peaks::new(py, &curve.peaks, curve)?))
 }
 
 /// What amplitudes are differentiated by: "omega", "level", or a parameter of a contact or of one of

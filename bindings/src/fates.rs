@@ -1,99 +1,43 @@
 //! What becomes of free motions: start states in, one row per start out.
 
-use crate::arrays::{refused, table, vector, Array2};
+use crate::arrays::{refused, Array2};
+use crate::columns::Columns;
 use crate::problem::Problem;
 use crate::watch::{given_up, watched};
-use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 use stickslip_core::motion::{self, Fate, FateSettings, Reason};
+use stickslip_core::Model;
 
 /// What becomes of some starts.
-#[pyclass(frozen, module = "stickslip._core")]
+#[pyclass(frozen, get_all, module = "stickslip._core")]
 pub struct Fates {
-    inner: Vec<Option<Fate>>,
-    dofs: usize,
-    states: usize,
-    #[pyo3(get)]
+    columns: Py<PyDict>,
     interrupted: bool,
     /// Wall-clock time [s].
-    #[pyo3(get)]
     seconds: f64,
 }
 
-impl Fates {
-    fn column<'py, T: numpy::Element + Clone>(
-        &self,
-        py: Python<'py>,
-        missing: T,
-        of: impl Fn(&Fate) -> T,
-    ) -> Bound<'py, PyArray1<T>> {
-        let values: Vec<T> =
-            self.inner.iter().map(|fate| fate.as_ref().map_or(missing.clone(), &of)).collect();
-        vector(py, values)
-    }
-
-    fn rows<'py>(
-        &self,
-        py: Python<'py>,
-        columns: usize,
-        of: impl Fn(&Fate) -> &[f64],
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let mut values = Vec::with_capacity(self.inner.len() * columns);
-        for fate in &self.inner {
-            match fate {
-                Some(fate) => values.extend_from_slice(of(fate)),
-                None => values.resize(values.len() + columns, f64::NAN),
-            }
-        }
-        table(py, self.inner.len(), columns, values)
-    }
-}
-
-#[pymethods]
-impl Fates {
-    /// (n,) codes of the reasons, in the order of `Reason` in Python.
-    #[getter]
-    fn reason<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        self.column(py, code(Reason::Interrupted), |fate| code(fate.reason))
-    }
-
-    #[getter]
-    fn mode<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        self.column(py, -1, |fate| {
-            fate.mode.and_then(|mode| i64::try_from(mode).ok()).unwrap_or(-1)
-        })
-    }
-
-    #[getter]
-    fn share<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.column(py, f64::NAN, |fate| fate.share)
-    }
-
-    #[getter]
-    fn omega<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.column(py, f64::NAN, |fate| fate.omega)
-    }
-
-    #[getter]
-    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.column(py, f64::NAN, |fate| fate.time)
-    }
-
-    #[getter]
-    fn events<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        self.column(py, 0, |fate| i64::try_from(fate.events).unwrap_or(i64::MAX))
-    }
-
-    #[getter]
-    fn amplitude<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.dofs, |fate| &fate.amplitude)
-    }
-
-    #[getter]
-    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.states, |fate| &fate.state)
-    }
+/// One row per start; of those that were not decided the numbers are missing.
+fn columns(py: Python<'_>, fates: &[Option<Fate>], model: &Model) -> PyResult<Py<PyDict>> {
+    let dofs = model.compliance().dofs();
+    let states = model.states();
+    let fates = || fates.iter().map(Option::as_ref);
+    let numbers = |of: fn(&Fate) -> f64| fates().map(move |fate| fate.map_or(f64::NAN, of));
+    let rows = |of: fn(&Fate) -> &[f64]| fates().map(move |fate| fate.map_or(&[][..], of));
+    let columns = Columns::new(py);
+    let reason = |fate: Option<&Fate>| code(fate.map_or(Reason::Interrupted, |fate| fate.reason));
+    columns.one("reason", fates().map(reason))?;
+    let mode = |fate: Option<&Fate>| fate.and_then(|fate| fate.mode).map_or(-1, |mode| mode as i64);
+    columns.one("mode", fates().map(mode))?;
+    columns.one("share", numbers(|fate| fate.share))?;
+    columns.one("omega", numbers(|fate| fate.omega))?;
+    columns.one("time", numbers(|fate| fate.time))?;
+    columns.one("events", fates().map(|fate| fate.map_or(0, |fate| fate.events as i64)))?;
+    columns.numbers("amplitude", dofs, rows(|fate| &fate.amplitude))?;
+    columns.numbers("final", states, rows(|fate| &fate.state))?;
+    Ok(columns.end())
 }
 
 /// How it is found out what becomes of a motion.
@@ -128,9 +72,8 @@ pub fn fates(
     let interrupted = inner
         .iter()
         .any(|fate| fate.as_ref().is_none_or(|fate| fate.reason == Reason::Interrupted));
-    let dofs = model.compliance().dofs();
-    let states = model.states();
-    Ok(Fates { inner, dofs, states, interrupted, seconds: began.elapsed().as_secs_f64() })
+    let columns = columns(py, &inner, model)?;
+    Ok(Fates { columns, interrupted, seconds: began.elapsed().as_secs_f64() })
 }
 
 fn code(reason: Reason) -> u8 {

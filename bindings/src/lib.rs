@@ -1,6 +1,7 @@
 //! Python skin of `stickslip-core`: arrays in, arrays out. No mathematics here.
 
 mod arrays;
+mod columns;
 mod contacts;
 mod design;
 mod fates;
@@ -36,7 +37,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<mistuning::TunedDisk>()?;
     module.add_function(wrap_pyfunction!(mistuning::summits, module)?)?;
     module.add_function(wrap_pyfunction!(mistuning::mistuning_study, module)?)?;
-    module.add_class::<orbits::Orbits>()?;
     module.add_function(wrap_pyfunction!(orbits::exact_response, module)?)?;
     module.add_function(wrap_pyfunction!(orbits::exact_peak, module)?)?;
     module.add_function(wrap_pyfunction!(orbits::orbit_history, module)?)?;

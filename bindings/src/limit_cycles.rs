@@ -1,197 +1,39 @@
 //! Limit cycles: negative damping and settings in, cycles along a branch out.
 
-use crate::arrays::{either, matrix, padded, refused, table, vector, Array2, Array3};
+use crate::arrays::{either, matrix, refused, Array2, Array3};
+use crate::columns::{counters, timings, Columns};
 use crate::problem::Problem;
-use crate::response::{counters, status_code, timings};
 use crate::variation::Varied;
 use crate::watch::{given_up, watched};
-use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
+use numpy::Complex64;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use stickslip_core::balance::{HarmonicChoice, Point};
+use stickslip_core::balance::HarmonicChoice;
 use stickslip_core::model::{NegativeDamping, Variation};
-use stickslip_core::orbit::{self, ChangeKind, Cycle, CycleSettings};
+use stickslip_core::orbit::{self, ChangeKind, CycleSettings};
 use stickslip_core::solve::End;
+use stickslip_core::Model;
 
 /// Limit cycles along a branch.
-#[pyclass(frozen, module = "stickslip._core")]
+#[pyclass(frozen, get_all, module = "stickslip._core")]
 pub struct LimitCycles {
-    inner: orbit::LimitCycles,
-    dofs: usize,
-    contacts: usize,
-    states: usize,
-}
-
-impl LimitCycles {
-    fn cycles(&self) -> &[Cycle] {
-        &self.inner.cycles
-    }
-
-    fn amplitudes<'py>(
-        &self,
-        py: Python<'py>,
-        columns: usize,
-        of: impl Fn(&Point) -> &[Complex64],
-    ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        let cycles = self.cycles().iter();
-        padded(py, columns, cycles.map(|c| (c.response.harmonics, of(&c.response))))
-    }
-
-    /// Rows of numbers, not-a-number where a cycle has none.
-    fn rows<'py>(
-        &self,
-        py: Python<'py>,
-        columns: usize,
-        of: impl Fn(&Cycle) -> Vec<f64>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let filled = |cycle: &Cycle| {
-            let mut row = of(cycle);
-            row.resize(columns, f64::NAN);
-            row
-        };
-        let values = self.cycles().iter().flat_map(filled).collect();
-        table(py, self.cycles().len(), columns, values)
-    }
-}
-
-#[pymethods]
-impl LimitCycles {
-    #[getter]
-    fn value<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.cycles().iter().map(|c| c.value))
-    }
-
-    #[getter]
-    fn ratio<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.cycles().iter().map(|c| c.ratio))
-    }
-
-    #[getter]
-    fn omega<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.cycles().iter().map(|c| c.response.omega))
-    }
-
-    #[getter]
-    fn slipping<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        vector(py, self.cycles().iter().map(|c| c.slipping))
-    }
-
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        vector(py, self.cycles().iter().map(|c| status_code(c.response.status)))
-    }
-
-    #[getter]
-    fn harmonics<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        vector(py, self.cycles().iter().map(|c| c.response.harmonics as i64))
-    }
-
-    #[getter]
-    fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        self.amplitudes(py, self.dofs, |p| &p.displacement)
-    }
-
-    #[getter]
-    fn contact_displacement<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        self.amplitudes(py, self.contacts, |p| &p.contact_displacement)
-    }
-
-    #[getter]
-    fn contact_force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        self.amplitudes(py, self.contacts, |p| &p.contact_force)
-    }
-
-    #[getter]
-    fn error_estimate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.dofs, |c| c.response.error_estimate.clone())
-    }
-
-    #[getter]
-    fn slip_fraction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let share = |c: &Cycle| c.response.contacts.iter().map(|p| p.slip_fraction).collect();
-        self.rows(py, self.contacts, share)
-    }
-
-    #[getter]
-    fn dissipation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let work = |c: &Cycle| c.response.contacts.iter().map(|p| p.dissipation).collect();
-        self.rows(py, self.contacts, work)
-    }
-
-    /// Lowest and highest displacement `(n, dofs, 2)`, not-a-number without exact orbits.
-    #[getter]
-    fn range<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        use numpy::PyArrayMethods as _;
-        let rows = self.rows(py, 2 * self.dofs, |c| c.range.iter().flatten().copied().collect())?;
-        rows.reshape([self.cycles().len(), self.dofs, 2])
-    }
-
-    #[getter]
-    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.states, |c| c.state.clone())
-    }
-
-    #[getter]
-    fn multipliers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<Complex64>>> {
-        let columns = self.states.saturating_sub(1);
-        let filled = |cycle: &Cycle| {
-            let mut row = cycle.multipliers.clone();
-            row.resize(columns, Complex64::new(f64::NAN, f64::NAN));
-            row
-        };
-        let values = self.cycles().iter().flat_map(filled).collect();
-        table(py, self.cycles().len(), columns, values)
-    }
-
-    #[getter]
-    fn neutral<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        vector(py, self.cycles().iter().map(|c| c.neutral as i64))
-    }
-
-    #[getter]
-    fn closed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        vector(py, self.cycles().iter().map(|c| c.closed))
-    }
-
-    /// Value and frequency where the branch turns for good, if it does.
-    #[getter]
-    fn limit(&self) -> Option<(f64, f64)> {
-        self.inner.limit.map(|turn| (turn.value, turn.omega))
-    }
-
-    /// Values and frequencies where the branch turns.
-    #[getter]
-    fn folds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let values: Vec<f64> = self.inner.folds.iter().flat_map(|t| [t.value, t.omega]).collect();
-        table(py, self.inner.folds.len(), 2, values)
-    }
-
-    /// Value, frequency, position of the cycle before, kind, and unstable multipliers before and
-    /// after of every change of stability.
-    #[getter]
-    #[allow(clippy::type_complexity)]
-    fn changes(&self) -> Vec<(f64, f64, usize, &'static str, usize, usize)> {
-        let kind = |kind| match kind {
-            ChangeKind::Fold => "fold",
-            ChangeKind::ComplexPair => "complex pair",
-            ChangeKind::Symmetry => "symmetry",
-            ChangeKind::Grazing => "grazing",
-        };
-        let row = |c: &orbit::Change| {
-            (c.value, c.omega, c.after, kind(c.kind), c.unstable.0, c.unstable.1)
-        };
-        self.inner.changes.iter().map(row).collect()
-    }
-
+    columns: Py<PyDict>,
     /// How either side ended, and at which value.
-    #[getter]
-    fn ends(&self) -> Vec<(&'static str, f64)> {
-        let name = |end| match end {
+    ends: Vec<(&'static str, f64)>,
+    /// r at which the stuck mode loses its damping, and its natural frequency.
+    onset: (f64, f64),
+    phase_dof: usize,
+    jumps: usize,
+    interrupted: bool,
+    timings: Py<PyDict>,
+    counters: Py<PyDict>,
+}
+
+impl LimitCycles {
+    fn new(py: Python<'_>, found: &orbit::LimitCycles, model: &Model) -> PyResult<Self> {
+        let end = |end| match end {
             End::Range => "range",
             End::Condition => "unbounded",
             End::Points => "points",
@@ -199,39 +41,49 @@ impl LimitCycles {
             End::Returned => "returned",
             End::Interrupted => "interrupted",
         };
-        self.inner.ends.iter().zip(self.inner.end_values).map(|(e, v)| (name(*e), v)).collect()
+        Ok(Self {
+            columns: columns(py, found, model)?,
+            ends: found.ends.iter().zip(found.end_values).map(|(e, v)| (end(*e), v)).collect(),
+            onset: (found.onset, found.stuck_omega),
+            phase_dof: found.phase_dof,
+            jumps: found.jumps,
+            interrupted: found.interrupted,
+            timings: timings(py, &found.profile)?,
+            counters: counters(py, &found.profile, 0)?,
+        })
     }
+}
 
-    /// r at which the stuck mode loses its damping, and its natural frequency.
-    #[getter]
-    fn onset(&self) -> (f64, f64) {
-        (self.inner.onset, self.inner.stuck_omega)
-    }
-
-    #[getter]
-    fn phase_dof(&self) -> usize {
-        self.inner.phase_dof
-    }
-
-    #[getter]
-    fn jumps(&self) -> usize {
-        self.inner.jumps
-    }
-
-    #[getter]
-    fn interrupted(&self) -> bool {
-        self.inner.interrupted
-    }
-
-    #[getter]
-    fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        timings(py, &self.inner.profile)
-    }
-
-    #[getter]
-    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        counters(py, &self.inner.profile, 0)
-    }
+fn columns(py: Python<'_>, found: &orbit::LimitCycles, model: &Model) -> PyResult<Py<PyDict>> {
+    let (dofs, contacts) = (model.compliance().dofs(), model.compliance().contacts());
+    let states = model.states();
+    let cycles = || found.cycles.iter();
+    let columns = Columns::new(py);
+    columns.responses(cycles().map(|c| &c.response), dofs, contacts)?;
+    columns.one("value", cycles().map(|c| c.value))?;
+    columns.one("ratio", cycles().map(|c| c.ratio))?;
+    columns.one("slipping", cycles().map(|c| c.slipping))?;
+    columns.one("closed", cycles().map(|c| c.closed))?;
+    columns.ranges(dofs, cycles().map(|c| c.range.as_slice()))?;
+    columns.numbers("state", states, cycles().map(|c| c.state.as_slice()))?;
+    let multipliers = cycles().map(|c| (c.multipliers.as_slice(), c.neutral));
+    columns.multipliers(states.saturating_sub(1), multipliers)?;
+    let turn = found.limit.map_or([f64::NAN; 2], |turn| [turn.value, turn.omega]);
+    columns.one("turn", turn)?;
+    columns.rows("folds", 2, f64::NAN, found.folds.iter().map(|turn| [turn.value, turn.omega]))?;
+    let changes = || found.changes.iter();
+    let kind = |change: &orbit::Change| match change.kind {
+        ChangeKind::Fold => 0_i64,
+        ChangeKind::ComplexPair => 1,
+        ChangeKind::Symmetry => 2,
+        ChangeKind::Grazing => 3,
+    };
+    columns.rows("change", 2, f64::NAN, changes().map(|c| [c.value, c.omega]))?;
+    columns.one("change_after", changes().map(|c| c.after as i64))?;
+    columns.one("change_kind", changes().map(kind))?;
+    let unstable = changes().map(|c| [c.unstable.0 as i64, c.unstable.1 as i64]);
+    columns.rows("change_unstable", 2, 0, unstable)?;
+    Ok(columns.end())
 }
 
 /// Negative damping: one matrix, or complex ones by nodal diameter of a travelling wave.
@@ -316,10 +168,5 @@ pub fn limit_cycles(
         orbit::limit_cycles(&own, &negative, &variation, ratio, &settings, look)
     })?;
     raised.raise_unless_interrupt(py)?;
-    Ok(LimitCycles {
-        inner: inner.ok_or_else(given_up)?.map_err(refused)?,
-        dofs: model.compliance().dofs(),
-        contacts: model.compliance().contacts(),
-        states: model.states(),
-    })
+    LimitCycles::new(py, &inner.ok_or_else(given_up)?.map_err(refused)?, model)
 }

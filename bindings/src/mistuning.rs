@@ -1,8 +1,8 @@
 //! Mistuned disks: the highest blade of one, and of many patterns in parallel threads.
 
 use crate::arrays::{matrix, refused, Array1, Array2};
+use crate::columns::status_code;
 use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
-use crate::response::status_code;
 use crate::settings::{HarmonicSettings, LawEvaluation, PeakSettings};
 use crate::watch::{watched_parts, whole};
 use pyo3::prelude::*;

@@ -1,13 +1,12 @@
 //! Forced response: settings in, curves out, progress and Ctrl-C in between.
 
-use crate::arrays::{
-    either, indices, is_half_wave, padded, refused, series, table, vector, Array1, Array2,
-};
+use crate::arrays::{either, indices, is_half_wave, refused, series, vector, Array1, Array2};
+use crate::columns::{counters, timings, Columns};
 use crate::problem::Problem;
 use crate::settings::BalanceSettings;
 pub use crate::settings::ResidualArgument;
 use crate::watch::{given_up, watched};
-use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
+use numpy::{Complex64, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,7 +15,6 @@ use std::sync::Arc;
 use stickslip_core::balance::{
     self, sweep, sweep_range, ForcedBalance, Kept, Point, PointStatus, Progress, HIGHEST_ORDER,
 };
-use stickslip_core::contact::PointSummary;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::orbit::Rescue;
 use stickslip_core::timing::Profile;
@@ -65,182 +63,44 @@ pub fn swept(
             balance::Solution { points, half_wave, interrupted: true, profile: Profile::default() }
         }
     };
-    Ok(Solution { inner, observed, contacts: model.compliance().contacts() })
+    let points = inner.points.iter().map(AsRef::as_ref);
+    let columns = Columns::new(py);
+    columns.responses(points.clone(), observed, model.compliance().contacts())?;
+    Solution::new(py, columns, points, inner.half_wave, inner.interrupted, &inner.profile)
 }
 
-/// A curve of periodic responses.
-#[pyclass(frozen, module = "stickslip._core")]
+/// A curve of periodic motions.
+#[pyclass(frozen, get_all, module = "stickslip._core")]
 pub struct Solution {
-    inner: stickslip_core::balance::Solution,
-    observed: usize,
-    contacts: usize,
-}
-
-impl Solution {
-    fn points(&self) -> &[Arc<Point>] {
-        &self.inner.points
-    }
-
-    fn amplitudes<'py>(
-        &self,
-        py: Python<'py>,
-        columns: usize,
-        of: impl Fn(&Point) -> &[Complex64],
-    ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        padded(py, columns, self.points().iter().map(|p| (p.harmonics, of(p))))
-    }
-
-    fn rows<'py>(
-        &self,
-        py: Python<'py>,
-        columns: usize,
-        add: impl Fn(&Point, &mut Vec<f64>),
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let mut values = Vec::with_capacity(self.points().len() * columns);
-        self.points().iter().for_each(|point| add(point, &mut values));
-        table(py, self.points().len(), columns, values)
-    }
-}
-
-#[pymethods]
-impl Solution {
-    #[getter]
-    fn omega<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.points().iter().map(|p| p.omega))
-    }
-
-    #[getter]
-    fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        self.amplitudes(py, self.observed, |p| &p.displacement)
-    }
-
-    #[getter]
-    fn contact_displacement<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        self.amplitudes(py, self.contacts, |p| &p.contact_displacement)
-    }
-
-    #[getter]
-    fn contact_force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-        self.amplitudes(py, self.contacts, |p| &p.contact_force)
-    }
-
-    #[getter]
-    fn harmonics<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        vector(py, self.points().iter().map(|p| p.harmonics as i64))
-    }
-
-    #[getter]
-    fn samples<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        vector(py, self.points().iter().map(|p| p.samples.unwrap_or(0) as i64))
-    }
-
-    #[getter]
-    fn half_wave(&self) -> bool {
-        self.inner.half_wave
-    }
-
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        vector(py, self.points().iter().map(|p| status_code(p.status)))
-    }
-
-    #[getter]
-    fn residual<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.points().iter().map(|p| p.residual))
-    }
-
-    #[getter]
-    fn iterations<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        vector(py, self.points().iter().map(|p| p.iterations as i64))
-    }
-
-    #[getter]
-    fn error_estimate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.observed, |p, out| out.extend_from_slice(&p.error_estimate))
-    }
-
-    #[getter]
-    fn slip_fraction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let share = |c: &PointSummary| c.slip_fraction;
-        self.rows(py, self.contacts, |p, out| out.extend(p.contacts.iter().map(share)))
-    }
-
-    #[getter]
-    fn dissipation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let work = |c: &PointSummary| c.dissipation;
-        self.rows(py, self.contacts, |p, out| out.extend(p.contacts.iter().map(work)))
-    }
-
+    columns: Py<PyDict>,
+    half_wave: bool,
     /// Number of points that were computed.
-    #[getter]
-    fn computed(&self) -> usize {
-        let computed = |status: PointStatus| status != PointStatus::NotComputed;
-        self.points().iter().filter(|p| computed(p.status)).count()
-    }
-
-    #[getter]
-    fn interrupted(&self) -> bool {
-        self.inner.interrupted
-    }
-
-    #[getter]
-    fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        timings(py, &self.inner.profile)
-    }
-
-    #[getter]
-    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let iterations = self.points().iter().map(|p| p.iterations).sum();
-        counters(py, &self.inner.profile, iterations)
-    }
+    computed: usize,
+    interrupted: bool,
+    timings: Py<PyDict>,
+    counters: Py<PyDict>,
 }
 
-/// Number of a status, as Python knows it.
-pub fn status_code(status: PointStatus) -> u8 {
-    match status {
-        PointStatus::Converged => 0,
-        PointStatus::Stalled => 1,
-        PointStatus::Singular => 2,
-        PointStatus::NotComputed => 3,
-        PointStatus::HarmonicsLimit => 4,
-        // 5 is an orbit that did not close.
-        PointStatus::SamplesLimit => 6,
-        PointStatus::StepsLimit => 7,
+impl Solution {
+    /// The curve of some points, whose columns are written.
+    pub fn new<'a>(
+        py: Python<'_>,
+        columns: Columns<'_>,
+        points: impl Iterator<Item = &'a Point> + Clone,
+        half_wave: bool,
+        interrupted: bool,
+        profile: &Profile,
+    ) -> PyResult<Self> {
+        let computed = |point: &&Point| point.status != PointStatus::NotComputed;
+        Ok(Self {
+            columns: columns.end(),
+            half_wave,
+            computed: points.clone().filter(computed).count(),
+            interrupted,
+            timings: timings(py, profile)?,
+            counters: counters(py, profile, points.map(|p| p.iterations).sum())?,
+        })
     }
-}
-
-/// Seconds by stage.
-pub fn timings<'py>(py: Python<'py>, profile: &Profile) -> PyResult<Bound<'py, PyDict>> {
-    let timings = PyDict::new(py);
-    for (stage, time) in [
-        ("compliance", profile.compliance),
-        ("law", profile.law),
-        ("linear_solve", profile.linear_solve),
-        ("recovery", profile.recovery),
-        ("total", profile.total),
-    ] {
-        timings.set_item(stage, time.as_secs_f64())?;
-    }
-    Ok(timings)
-}
-
-/// Work by kind.
-pub fn counters<'py>(
-    py: Python<'py>,
-    profile: &Profile,
-    iterations: usize,
-) -> PyResult<Bound<'py, PyDict>> {
-    let counters = PyDict::new(py);
-    counters.set_item("iterations", iterations)?;
-    counters.set_item("evaluations", profile.evaluations)?;
-    counters.set_item("factorisations", profile.factorisations)?;
-    counters.set_item("updates", profile.updates)?;
-    counters.set_item("restarts", profile.restarts)?;
-    counters.set_item("homotopies", profile.homotopies)?;
-    Ok(counters)
 }
 
 /// Harmonic balance over a grid or a range of frequencies.

@@ -1,119 +1,59 @@
 //! Time integration: settings and a start state in, histories out.
 
-use crate::arrays::{indices, refused, table, vector, Array1};
-use crate::orbits::{event_columns, EventColumns};
+use crate::arrays::{indices, refused, Array1};
+use crate::columns::Columns;
 use crate::problem::Problem;
 use crate::watch::{given_up, watched};
-use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict as _, PyDict};
 use std::sync::Arc;
 use stickslip_core::motion::{self, Halt, Scheme, TransientSettings};
+use stickslip_core::Model;
 
 /// A motion from a start state.
-#[pyclass(frozen, module = "stickslip._core")]
+#[pyclass(frozen, get_all, module = "stickslip._core")]
 pub struct History {
-    inner: motion::History,
-    observed: usize,
-    contacts: usize,
-    states: usize,
+    columns: Py<PyDict>,
+    settled: bool,
+    unbounded: bool,
+    interrupted: bool,
+    timings: Py<PyDict>,
+    counters: Py<PyDict>,
 }
 
 impl History {
-    fn rows<'py>(
-        &self,
-        py: Python<'py>,
-        columns: usize,
-        values: &[f64],
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.inner.trace.time.len(), columns, values.to_vec())
-    }
-}
-
-#[pymethods]
-impl History {
-    #[getter]
-    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.inner.trace.time.iter().copied())
-    }
-
-    #[getter]
-    fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.observed, &self.inner.trace.displacement)
-    }
-
-    #[getter]
-    fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.observed, &self.inner.trace.velocity)
-    }
-
-    #[getter]
-    fn contact_displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.contacts, &self.inner.trace.contact_displacement)
-    }
-
-    #[getter]
-    fn force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.contacts, &self.inner.trace.force)
-    }
-
-    #[getter]
-    fn poincare<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let states = &self.inner.poincare;
-        table(py, states.len(), self.states, states.concat())
-    }
-
-    #[getter]
-    fn range<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        use numpy::PyArrayMethods as _;
-        let ranges = &self.inner.range;
-        let periods = ranges.len() / self.observed.max(1);
-        vector(py, ranges.iter().flatten().copied().collect::<Vec<_>>()).reshape([
-            periods,
-            self.observed,
-            2,
-        ])
-    }
-
-    #[getter]
-    fn change<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, self.inner.change.iter().copied())
-    }
-
-    #[getter]
-    fn settled(&self) -> bool {
-        self.inner.settled
-    }
-
-    #[getter]
-    fn unbounded(&self) -> bool {
-        self.inner.halt == Some(Halt::Unbounded)
-    }
-
-    #[getter]
-    fn events<'py>(&self, py: Python<'py>) -> EventColumns<'py> {
-        event_columns(py, &self.inner.events)
-    }
-
-    #[getter]
-    fn interrupted(&self) -> bool {
-        self.inner.interrupted
-    }
-
-    #[getter]
-    fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let timings = PyDict::new(py);
-        timings.set_item("total", self.inner.total.as_secs_f64())?;
-        Ok(timings)
-    }
-
-    #[getter]
-    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let counters = PyDict::new(py);
-        counters.set_item("steps", self.inner.steps)?;
-        counters.set_item("events", self.inner.events_met)?;
-        Ok(counters)
+    fn new(
+        py: Python<'_>,
+        found: motion::History,
+        observed: usize,
+        model: &Model,
+    ) -> PyResult<Self> {
+        let contacts = model.compliance().contacts();
+        let trace = found.trace;
+        let instants = trace.time.len();
+        let columns = Columns::new(py);
+        columns.shaped("displacement", [instants, observed], trace.displacement)?;
+        columns.shaped("velocity", [instants, observed], trace.velocity)?;
+        columns.shaped("contact_force", [instants, contacts], trace.force)?;
+        columns.shaped("contact_displacement", [instants, contacts], trace.contact_displacement)?;
+        columns.one("time", trace.time)?;
+        columns.numbers("poincare", model.states(), found.poincare.iter().map(Vec::as_slice))?;
+        // A period that was cut has no change, and its range means nothing.
+        let periods = found.change.len();
+        let range = found.range.into_iter().take(periods * observed).flatten().collect();
+        columns.shaped("range", [periods, observed, 2], range)?;
+        columns.one("change", found.change)?;
+        columns.events(found.events.iter())?;
+        let counters = [("steps", found.steps), ("events", found.events_met)];
+        Ok(Self {
+            columns: columns.end(),
+            settled: found.settled,
+            unbounded: found.halt == Some(Halt::Unbounded),
+            interrupted: found.interrupted,
+            timings: [("total", found.total.as_secs_f64())].into_py_dict(py)?.unbind(),
+            counters: counters.into_py_dict(py)?.unbind(),
+        })
     }
 }
 
@@ -170,5 +110,5 @@ pub fn transient(
             "transient: the contacts do not settle on stick or slip at one instant; perturb the start state slightly, or use scheme = \"rk4\"",
         ));
     }
-    Ok(History { inner, observed, contacts: model.compliance().contacts(), states: model.states() })
+    History::new(py, inner, observed, model)
 }

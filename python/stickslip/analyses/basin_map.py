@@ -88,7 +88,9 @@ def basin_map(
     prepare(alone)
     with Interruption(progress) as watch:
         fates = fates_of(alone, states, kept, settings.threads or 0, watch)
-        arrays = FateArrays.of(fates, states, [alone.structure.index(dof) for dof in dofs])
+        observed = [alone.structure.index(dof) for dof in dofs]
+        amplitude = fates.columns["amplitude"][:, observed]
+        arrays = FateArrays.of(fates, start=states, amplitude=amplitude)
         result = BasinMap(
             model=alone,
             dofs=dofs,

@@ -25,8 +25,8 @@ from stickslip.model import Model, natural_frequencies
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
 from stickslip.results.diagnostic import Diagnostic, diagnostic, present
-from stickslip.results.fate_arrays import FateArrays, Motion, Reason
-from stickslip.results.motion_class import MotionClass
+from stickslip.results.fate_arrays import Motion, Reason
+from stickslip.results.motion_class import MotionArrays, MotionClass
 from stickslip.settings.motion import ClassifySettings, TransientSettings
 from stickslip.settings.settings import configured
 
@@ -107,18 +107,15 @@ def classify(
     prepare(alone)
     with Interruption(progress) as watch:
         fates = fates_of(alone, first.vector[None], settings, 1, watch)
-        arrays = FateArrays.of(fates, first.vector[None], columns)
-        stopped = fates.interrupted
-        tail, interrupted = _tail(
-            alone, arrays, omega, samples, columns, watch, interrupted=stopped
-        )
+        tail, interrupted = _tail(alone, fates, omega, samples, columns, watch)
+        amplitude = fates.columns["amplitude"][:, columns]
+        arrays = MotionArrays.of(fates, start=first.vector[None], amplitude=amplitude, tail=tail)
         result = MotionClass(
             model=alone,
             dofs=dofs,
             settings=settings,
             arrays=arrays,
             step=2.0 * np.pi / omega / samples,
-            tail=tail,
             interrupted=interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
@@ -216,27 +213,25 @@ def _tail_grid(model: Model, observed: int) -> tuple[float, int]:
 
 def _tail(
     model: Model,
-    arrays: FateArrays,
+    fates: _core.Fates,
     omega: float,
     samples: int,
     columns: list[int],
     watch: Interruption,
-    *,
-    interrupted: bool,
 ) -> tuple[Float, bool]:
     """Return the motion from its last state on, and whether the run was interrupted."""
     from stickslip import _core
 
-    reason = list(Reason)[int(arrays.reason[0])]
+    reason = list(Reason)[int(fates.columns["reason"][0])]
     unknown = reason in (Reason.CONTRADICTION, Reason.INTERRUPTED)
-    if interrupted or unknown or reason.motion in (Motion.UNBOUNDED, Motion.DECAYING):
-        return np.zeros((0, len(columns))), interrupted
+    if fates.interrupted or unknown or reason.motion in (Motion.UNBOUNDED, Motion.DECAYING):
+        return np.zeros((0, len(columns))), fates.interrupted
     observe = np.array(columns, dtype=np.int64)
     history = _core.transient(
         model.problem,
         TransientSettings(omega=omega, periods=TAIL, samples=samples),
-        arrays.final[0],
+        fates.columns["final"][0],
         observe,
         lambda _: watch.heed(),
     )
-    return history.displacement[1:], history.interrupted
+    return history.columns["displacement"][1:], history.interrupted

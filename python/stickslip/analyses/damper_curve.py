@@ -161,14 +161,12 @@ def curve_of(
 ) -> DamperCurve:
     """Return the result that the core's peaks make."""
     arrays, solution = peaks
-    return DamperCurve(
+    return DamperCurve.of(
+        solution,
         model=model,
         dofs=(settings.dof,),
         settings=settings,
         arrays=arrays,
-        interrupted=solution.interrupted,
-        timings=dict(solution.timings),
-        counters=dict(solution.counters),
         diagnostics=damper_assumptions(model, settings, arrays, rigid),
     )
 

@@ -141,7 +141,7 @@ def _solve(
     dofs: tuple[str, ...],
     settings: ExactSettings,
     progress: Progress,
-) -> _core.Orbits:
+) -> _core.Solution:
     from stickslip import _core
 
     try:
@@ -163,19 +163,16 @@ def _result(
     model: Model,
     settings: ExactSettings,
     dofs: tuple[str, ...],
-    solution: _core.Orbits,
+    solution: _core.Solution,
     missing: int,
 ) -> ExactResponse:
-    arrays = OrbitArrays.of_orbits(solution)
-    return ExactResponse(
+    arrays = OrbitArrays.of(solution)
+    return ExactResponse.of(
+        solution,
         model=model,
         settings=settings,
         dofs=dofs,
         arrays=arrays,
-        half_wave=solution.half_wave,
-        interrupted=solution.interrupted,
-        timings=dict(solution.timings),
-        counters=dict(solution.counters),
         diagnostics=orbit_assumptions(
             model,
             settings,

@@ -130,15 +130,12 @@ def _result(
 ) -> ForcedResponse:
     arrays = Arrays.of(solution)
     missing = grid.size - solution.computed if isinstance(grid, np.ndarray) else 0
-    return ForcedResponse(
+    return ForcedResponse.of(
+        solution,
         model=model,
         settings=settings,
         dofs=dofs,
         arrays=arrays,
-        half_wave=solution.half_wave,
-        interrupted=solution.interrupted,
-        timings=dict(solution.timings),
-        counters=dict(solution.counters),
         diagnostics=assumptions_of(
             model,
             settings,

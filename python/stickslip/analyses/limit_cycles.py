@@ -109,15 +109,13 @@ def limit_cycles(
     prepare(model)
     with Interruption(progress) as watch:
         solution = solve(model, matrix, kept, watch, proportional=law)
-        arrays = CycleArrays.of(solution)
-        result = LimitCycles(
+        arrays = CycleArrays.of(solution, negative_damping=matrix)
+        result = LimitCycles.of(
+            solution,
             model=model,
             dofs=model.structure.dofs,
             settings=kept,
             arrays=arrays,
-            negative_damping=matrix,
-            interrupted=solution.interrupted,
-            timings=dict(solution.timings),
             counters={**solution.counters, "jumps": solution.jumps},
             diagnostics=cycle_assumptions(model, kept, arrays, solution),
         )

@@ -130,7 +130,7 @@ def optimal_damper(
         curve = curve_of(model, kept, (DamperArrays.of(peaks), peaks))
         if curve.interrupted:
             raise stopped("optimal damper", f"{curve.values.size} peaks", curve)
-        rows = zip(minima.value, minima.omega, minima.amplitude, strict=True)
+        rows = zip(*(minima.columns[name] for name in LeastPeak._fields), strict=True)
         found = tuple(LeastPeak(*map(float, row)) for row in rows)
         if not found:
             raise ModelError(

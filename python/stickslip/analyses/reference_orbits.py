@@ -107,4 +107,4 @@ def orbits_of(
         raise
     except ValueError as error:
         raise ModelError(str(error)) from error
-    return Orbits(dofs, OrbitArrays.of_orbits(solution), solution.interrupted, problem, columns)
+    return Orbits(dofs, OrbitArrays.of(solution), solution.interrupted, problem, columns)

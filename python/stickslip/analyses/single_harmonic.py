@@ -150,15 +150,12 @@ def _solve(
         interrupted=solution.interrupted,
         single=True,
     )
-    return ForcedResponse(
+    return ForcedResponse.of(
+        solution,
         model=model,
         settings=kept,
         dofs=dofs,
         arrays=arrays,
-        half_wave=solution.half_wave,
-        interrupted=solution.interrupted,
-        timings=dict(solution.timings),
-        counters=dict(solution.counters),
         diagnostics=(
             diagnostic("method", _METHOD),
             *told,

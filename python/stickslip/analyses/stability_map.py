@@ -111,7 +111,7 @@ def stability_map(
                     if solution.interrupted:
                         interrupted = True
                         break
-                    arrays = CycleArrays.of(solution)
+                    arrays = CycleArrays.of(solution, negative_damping=matrix)
                     ratio, omega = arrays.turn
                     rows.append((ratio, omega, _stable_limit(arrays)))
                     if np.isnan(ratio):
@@ -129,9 +129,12 @@ def stability_map(
             dofs=model.structure.dofs,
             settings=MapSettings.of(variation=variation, **branch),
             arrays=MapArrays(
-                value=np.array(values[:done]), limit=limit, omega=omega, stable_limit=stable
+                value=np.array(values[:done]),
+                limit=limit,
+                omega=omega,
+                stable_limit=stable,
+                negative_damping=matrix,
             ),
-            negative_damping=matrix,
             interrupted=interrupted,
             timings={},
             counters={"branches": done},

@@ -170,16 +170,12 @@ def _result(
     start: object,
     history: _core.History,
 ) -> Transient:
-    return Transient(
+    return Transient.of(
+        history,
         model=model,
         settings=settings,
         dofs=dofs,
         arrays=TransientArrays.of(history),
-        settled=history.settled,
-        unbounded=history.unbounded,
-        interrupted=history.interrupted,
-        timings=dict(history.timings),
-        counters=dict(history.counters),
         diagnostics=transient_assumptions(
             model, settings, dofs, start, settled=history.settled, unbounded=history.unbounded
         ),

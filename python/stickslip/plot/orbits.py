@@ -12,8 +12,8 @@ from stickslip.errors import ModelError
 from stickslip.plot.arguments import at, require_solved, result_of
 from stickslip.plot.style import GREY, OmegaUnit, finish, new_axes, omega_scale
 from stickslip.results import ForcedResponse
+from stickslip.results.dataset import point_names
 from stickslip.results.exact_response import ExactResponse
-from stickslip.results.variables import point_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -2,99 +2,117 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+import json
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, Self, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.results.fields import Bool, Code, Columns, Complex, Computed, Float, Int, column
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
-    from stickslip import _core
+    import xarray as xr
 
 __all__ = [
+    "SHARE",
     "Arrays",
     "Bool",
+    "Code",
     "Complex",
     "Float",
     "Int",
     "Measure",
+    "amplitude_in",
     "amplitude_of",
     "constant",
     "mean_forces",
 ]
 
-Bool: TypeAlias = NDArray[np.bool_]
-Complex: TypeAlias = NDArray[np.complex128]
-Float: TypeAlias = NDArray[np.float64]
-Int: TypeAlias = NDArray[np.int64]
 Kind = TypeVar("Kind", bound=np.generic)
 
 Measure: TypeAlias = Literal["half_range", "max", "fundamental"]
 """Half the peak-to-peak range over a period, the largest |x|, or |X_1|."""
 
+SHARE = 1.0 + 1e-6
+"""Largest share of a period: sums of times are rounded."""
 
-@dataclass(frozen=True, eq=False)
-class Arrays:
-    """The numbers of a forced response: n points, n_o observed dofs, n_p contact points.
 
-    Coefficients are those of x(t) = Re sum_k X_k exp(i k omega t), padded with zeros above the
-    harmonics of their own point. At points without any solution they are not-a-number; at points
-    that stalled they are the last iterate, and the last three arrays not-a-number.
+def _samples(dataset: xr.Dataset) -> Int:
+    """Return the samples that the first files name in their settings, unless they were chosen."""
+    settings = json.loads(dataset.attrs["settings"])
+    samples = settings["samples"] if settings.get("evaluation") == "marched" else 0
+    if samples is None:
+        raise KeyError("samples")
+    return np.full(dataset.sizes["omega"], samples, np.int64)
+
+
+def _unknown(dataset: xr.Dataset) -> Float:
+    return np.full_like(dataset["error_estimate"].values, np.nan)
+
+
+class Arrays(Columns):
+    """The numbers of a forced response.
+
+    Coefficients are padded with zeros above the harmonics of their own point. At points without any
+    solution they are not-a-number; at points that stalled they are the last iterate, and
+    `error_estimate`, `sampling_error`, `slip_fraction` and `dissipation` not-a-number.
     """
 
-    omega: Float
-    """(n,) Angular frequency [rad/s]."""
-    harmonics: Int
-    """(n,) Highest harmonic kept."""
-    samples: Int
-    """(n,) Samples per period of marched friction laws; 0 where they are not marched."""
-    status: NDArray[np.uint8]
-    """(n,) Codes of `Status`."""
-    residual: Float
-    """(n,) Residual of the balance equations, relative."""
-    iterations: Int
-    """(n,) Iterations used."""
-    displacement: Complex
-    """(n, H+1, n_o) Displacement of the observed dofs [m]."""
-    contact_displacement: Complex
-    """(n, H+1, n_p) Relative displacement at the contact points [m]."""
-    contact_force: Complex
-    """(n, H+1, n_p) Contact force [N]."""
-    error_estimate: Float
-    """(n, n_o) What the discarded harmonics, and more samples, could still change [m]."""
-    slip_fraction: Float
-    """(n, n_p) Share of the period that the point slips."""
-    dissipation: Float
-    """(n, n_p) Work lost to friction per cycle [J]."""
-
-    def __post_init__(self) -> None:
-        for entry in fields(self):
-            array = np.ascontiguousarray(getattr(self, entry.name))
-            array.flags.writeable = False
-            object.__setattr__(self, entry.name, array)
-
-    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
-        # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        return type(self), tuple(getattr(self, entry.name) for entry in fields(self))
+    omega: Float = column("omega", "rad/s", "angular frequency of the excitation", least=0.0)
+    harmonics: Int = column(
+        "omega", "1", "highest harmonic kept", least=0, file_name="harmonics_kept"
+    )
+    samples: Int = column(
+        "omega",
+        "1",
+        "samples per period of marched friction laws, 0 if not marched",
+        least=0,
+        absent=_samples,
+    )
+    status: Code = column("omega", "1", "how the point ended", codes=Status)
+    residual: Float = column("omega", "1", "relative residual of the balance equations", least=0.0)
+    iterations: Int = column("omega", "1", "iterations of the solver", least=0)
+    displacement: Complex = column(
+        "omega harmonic dof",
+        "m",
+        "harmonics of the displacement, x(t) = Re sum_k X_k exp(i k omega t)",
+    )
+    contact_displacement: Complex = column(
+        "omega harmonic point", "m", "harmonics of the relative displacement at the contacts"
+    )
+    contact_force: Complex = column(
+        "omega harmonic point",
+        "N",
+        "harmonics of the contact force against the relative displacement",
+    )
+    error_estimate: Float = column(
+        "omega dof",
+        "m",
+        "what the discarded harmonics, and more samples, could still change",
+        least=0.0,
+    )
+    sampling_error: Float = column(
+        "omega dof",
+        "m",
+        "part of the error estimate that is due to samples of marched friction laws",
+        least=0.0,
+        absent=_unknown,
+    )
+    slip_fraction: Float = column(
+        "omega point",
+        "1",
+        "share of the period that the contact point slips",
+        least=0.0,
+        most=SHARE,
+    )
+    dissipation: Float = column("omega point", "J", "work lost to friction per cycle")
 
     @classmethod
-    def of(cls, solution: _core.Solution) -> Arrays:
-        """Take over what the core returns, blanking the numbers that mean nothing.
-
-        Parameters
-        ----------
-        solution : _core.Solution
-            What the core returns.
-
-        Returns
-        -------
-        Arrays
-            Copies.
-        """
-        values = {entry.name: getattr(solution, entry.name) for entry in fields(cls)}
+    def of(cls, solution: Computed, **more: NDArray[Any]) -> Self:
+        """Take over what the core returns, blanking the numbers that mean nothing."""
+        values = {**solution.columns, **more}
         # Where nothing was solved the core keeps no harmonic, and zeros would look like motion.
         missing = values["harmonics"] == 0
         for name in ("displacement", "contact_displacement", "contact_force"):
@@ -103,9 +121,9 @@ class Arrays:
                 series = np.pad(series, ((0, 0), (0, 1), (0, 0)))
             series[missing] = complex(np.nan, np.nan)
             values[name] = series
-        for name in ("error_estimate", "slip_fraction", "dissipation"):
+        for name in ("error_estimate", "sampling_error", "slip_fraction", "dissipation"):
             values[name][~_solved(values["status"])] = np.nan
-        return cls(**values)
+        return super().of(solution, **values)
 
     @cached_property
     def solved(self) -> Bool:
@@ -135,6 +153,14 @@ def amplitude_of(coefficients: Complex, measure: Measure) -> Float:
     if finite.any():
         values[finite] = _core.amplitude(np.ascontiguousarray(coefficients[finite]), measure)
     return values
+
+
+def amplitude_in(ranges: Float, measure: Measure) -> Float:
+    """Return the amplitudes, half ranges or largest |x|, of ranges of shape (n, 2)."""
+    low, high = ranges.T
+    if measure == "max":
+        return constant(np.maximum(np.abs(low), np.abs(high)))
+    return constant(0.5 * (high - low))
 
 
 def mean_forces(series: Complex, stiffness: float, slip_force: float) -> Float:
@@ -167,7 +193,7 @@ def mean_forces(series: Complex, stiffness: float, slip_force: float) -> Float:
     return bounds
 
 
-def _solved(status: NDArray[np.uint8]) -> Bool:
+def _solved(status: Code) -> Bool:
     codes = [one.code for one in Status if one.solved]
     return constant(np.isin(status, codes))
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -14,24 +15,10 @@ from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int, constant
-from stickslip.results.fate_arrays import (
-    FATE_VARIABLES,
-    FateArrays,
-    Motion,
-    Reason,
-    require_codes,
-)
-from stickslip.results.result import Result
-from stickslip.results.variables import (
-    attributes,
-    dof_coordinate,
-    names,
-    parts,
-    read,
-    settings_of,
-    state_names,
-    written,
-)
+from stickslip.results.dataset import labels
+from stickslip.results.fate_arrays import FateArrays, Motion, Reason
+from stickslip.results.result import ColumnResult
+from stickslip.settings.motion import BasinSettings
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -40,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip.plot.basins import BasinOptions
-    from stickslip.settings.motion import BasinSettings
 
 __all__ = ["BasinMap", "Outcome"]
 
@@ -58,7 +44,7 @@ class Outcome(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class BasinMap(Result):
+class BasinMap(ColumnResult):
     """What becomes of many starts.
 
     Attributes
@@ -70,6 +56,9 @@ class BasinMap(Result):
     """
 
     kind: ClassVar[str] = "basin_map"
+    title = "What becomes of free motions with dry friction"
+    columns = FateArrays
+    settings_class = BasinSettings
 
     settings: BasinSettings
     arrays: FateArrays
@@ -174,44 +163,17 @@ class BasinMap(Result):
         row = int(np.ravel_multi_index(index, self.shape))
         return State.of_vector(self.model, self.arrays.start[row])
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
-
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add the classes in words, which follow from the reasons.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions start_number, state_entry and dof.
-        """
-        import xarray as xr
-
-        dataset = xr.Dataset(
-            written(FATE_VARIABLES, self.arrays),
-            coords={
-                "dof": dof_coordinate(self),
-                "state_entry": names("state_entry", state_names(self.model), "entry of the state"),
-            },
-            attrs=attributes(self, self.settings, "What becomes of free motions with dry friction"),
-        )
-        if derived:
-            dataset["motion"] = names("start_number", list(self.motion), "class of the motion")
-        return dataset
-
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
         """Return the map that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.settings.motion import BasinSettings
+        found = super().from_dataset(dataset, model)
+        if np.prod(found.shape) != len(found):
+            raise ValueError(f"{len(found)} starts do not fill the axes")
+        return found
 
-        settings = BasinSettings.stored(settings_of(dataset))
-        axes = settings.axes
-        arrays = require_codes(FateArrays(**read(FATE_VARIABLES, dataset)))
-        if axes and np.prod([len(numbers) for _, numbers in axes]) != arrays.reason.size:
-            raise ValueError(f"{arrays.reason.size} starts do not fill the axes")
-        return cls(**parts(dataset, model), settings=settings, arrays=arrays)
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        motion = labels("start_number", list(self.motion), "class of the motion")
+        return {"motion": motion} if derived else {}
 
     def plot(self, **options: Unpack[BasinOptions]) -> Axes:
         """Draw the basins over the two axes; see `stickslip.plot.basins`."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
-from dataclasses import dataclass, fields
+from collections.abc import Hashable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Bool, Float, Int, constant
+from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.fields import Columns, column
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
@@ -22,28 +22,6 @@ __all__ = ["Certificate", "WorstPoint"]
 
 ROUNDING = 1e-9
 """Relative difference that two solvers leave: a smaller one is no error of truncation."""
-
-_NUMBERS = {
-    "indices": (("certified",), "1", "position in the sweep of a point compared with an orbit"),
-    "omega": (("certified",), "rad/s", "angular frequency of that point"),
-    "code": (("certified",), "1", "how the computation of the orbit ended"),
-    "amplitude": (
-        ("certified", "certified_dof"),
-        "m",
-        "half peak-to-peak amplitude of the exact orbit",
-    ),
-    "error": (
-        ("certified", "certified_dof"),
-        "m",
-        "true error of the amplitude: that of the curve less that of the orbit",
-    ),
-    "waveform_error": (
-        ("certified", "certified_dof"),
-        "m",
-        "largest difference between curve and orbit over the period",
-    ),
-    "estimate": (("certified", "certified_dof"), "m", "error estimate of the curve there"),
-}
 
 
 class WorstPoint(NamedTuple):
@@ -63,41 +41,39 @@ class WorstPoint(NamedTuple):
     """Error estimate of the curve there [m]."""
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Certificate:
-    """True errors of a response curve at p of its points, for d degrees of freedom.
+class Certificate(Columns):
+    """True errors of a response curve at some of its points, for the degrees of freedom `dofs`.
 
-    Where no orbit was found, the numbers are not-a-number and `status` says why.
+    Where no orbit was found, the numbers are not-a-number and `status` says why. `tolerance` is
+    what the curve promised, relative to the amplitude; None for fixed harmonics.
     """
 
+    prefix: ClassVar[str] = "certified_"
+
     dofs: tuple[str, ...]
-    """The degrees of freedom compared."""
     tolerance: float | None
-    """What the curve promised, relative to the amplitude; None for fixed harmonics."""
-    indices: Int
-    """(p,) Positions of the points in the curve, ascending."""
-    omega: Float
-    """(p,) Their angular frequencies [rad/s]."""
-    code: NDArray[np.uint8]
-    """(p,) Codes of `Status`, of the orbits."""
-    amplitude: Float
-    """(p, d) Half peak-to-peak amplitude of the exact orbit [m]."""
-    error: Float
-    """(p, d) Amplitude of the curve less that of the orbit [m]; 0 where it is rounding only."""
-    waveform_error: Float
-    """(p, d) Largest difference between the two over the period [m]; not-a-number too where an
-    interruption came before it was looked for."""
-    estimate: Float
-    """(p, d) Error estimate of the curve [m]."""
-
-    def __post_init__(self) -> None:
-        for name in _NUMBERS:
-            array = np.ascontiguousarray(getattr(self, name))
-            array.flags.writeable = False
-            object.__setattr__(self, name, array)
-
-    def __reduce__(self) -> tuple[Callable[..., Certificate], tuple[object, ...]]:
-        return _rebuilt, tuple(getattr(self, entry.name) for entry in fields(self))
+    indices: Int = column(
+        "certified", "1", "position in the sweep of a point compared", least=0, most="omega"
+    )
+    omega: Float = column("certified", "rad/s", "angular frequency of that point", least=0.0)
+    code: Code = column("certified", "1", "how the orbit ended", codes=Status)
+    amplitude: Float = column(
+        "certified certified_dof", "m", "half peak-to-peak amplitude of the exact orbit", least=0.0
+    )
+    error: Float = column(
+        "certified certified_dof",
+        "m",
+        "amplitude of the curve less that of the orbit, 0 where it is rounding only",
+    )
+    waveform_error: Float = column(
+        "certified certified_dof",
+        "m",
+        "largest difference between curve and orbit over the period, where it was looked for",
+        least=0.0,
+    )
+    estimate: Float = column(
+        "certified certified_dof", "m", "error estimate of the curve there", least=0.0
+    )
 
     def __repr__(self) -> str:
         worst = self.worst
@@ -162,16 +138,9 @@ class Certificate:
             raise ModelError(f"certificate: {unknown('dof', dof, self.dofs)}; name it in certify")
         return self.dofs.index(dof)
 
-    def variables(self) -> dict[Hashable, object]:
+    def variables(self, words: Mapping[str, str] = MappingProxyType({})) -> dict[Hashable, Any]:
         """Return the variables that the certificate adds to the dataset of its curve."""
-        variables: dict[Hashable, object] = {
-            f"certified_{name}": (
-                dims,
-                getattr(self, name).copy(),
-                {"units": unit, "long_name": meaning},
-            )
-            for name, (dims, unit, meaning) in _NUMBERS.items()
-        }
+        variables = super().variables(words)
         variables["certified_dof"] = (
             "certified_dof",
             np.array(self.dofs, dtype=np.str_),
@@ -196,13 +165,5 @@ class Certificate:
         if "certified_dof" not in dataset:
             return None
         tolerance = float(dataset["certified_tolerance"].values)
-        return cls(
-            dofs=tuple(map(str, dataset["certified_dof"].values)),
-            tolerance=None if np.isnan(tolerance) else tolerance,
-            **{name: dataset[f"certified_{name}"].values for name in _NUMBERS},
-        )
-
-
-def _rebuilt(*values: object) -> Certificate:
-    named = {entry.name: value for entry, value in zip(fields(Certificate), values, strict=True)}
-    return Certificate(**named)  # type: ignore[arg-type]
+        dofs = tuple(map(str, dataset["certified_dof"].values))
+        return cls.read(dataset, dofs=dofs, tolerance=None if np.isnan(tolerance) else tolerance)

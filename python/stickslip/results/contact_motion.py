@@ -226,46 +226,6 @@ class ContactMotion(Sweep):
         values[~self.arrays.solved] = np.nan
         return constant(values if series.ndim == 3 else np.ascontiguousarray(values[:, 0]))
 
-    def slip_fraction(self, contact: PointRef) -> Float:
-        """Return the share of the period that each contact point slips.
-
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
-
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            From 0, it never slips, to 1.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
-        """
-        return self._select(self.arrays.slip_fraction, contact)
-
-    def dissipation(self, contact: PointRef) -> Float:
-        """Return the work that each contact point loses to friction per cycle.
-
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
-
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            [J].
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
-        """
-        return self._select(self.arrays.dissipation, contact)
-
     def residual_bounds(self, contact: PointRef) -> Float:
         """Return the mean forces that a contact could hold without changing the vibration.
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stickslip.results.arrays import Bool, Complex, Float, Int, constant
-
-if TYPE_CHECKING:
-    from stickslip import _core
+from stickslip.results.arrays import SHARE, Bool, Code, Complex, Float, Int, constant
+from stickslip.results.fields import Columns, Numbers, column
+from stickslip.results.status import Status
 
 __all__ = ["CHANGE_KINDS", "CycleArrays"]
 
@@ -20,97 +18,88 @@ CHANGE_KINDS = ("fold", "complex pair", "symmetry", "grazing")
 """What can happen where stability changes."""
 
 
-@dataclass(frozen=True, eq=False)
-class CycleArrays:
-    """The numbers of n limit cycles, of N degrees of freedom and n_p contact points.
+class CycleArrays(Columns):
+    """The numbers of limit cycles along a branch.
 
-    Coefficients are those of x(t) = Re sum_k X_k exp(i k omega t).
+    What only exact orbits have is not-a-number of other cycles.
     """
 
-    value: Float
-    """(n,) Value of what is followed."""
-    ratio: Float
-    """(n,) Factor r on the negative damping."""
-    omega: Float
-    """(n,) Angular frequency [rad/s]."""
-    slipping: Bool
-    """(n,) Whether the cycle lies beyond the limit, on the slipping side."""
-    status: NDArray[np.uint8]
-    """(n,) Codes of `Status`."""
-    harmonics: Int
-    """(n,) Highest harmonic kept, or reported of exact orbits."""
-    displacement: Complex
-    """(n, H+1, N) Displacement [m]."""
-    contact_displacement: Complex
-    """(n, H+1, n_p) Relative displacement at the contact points [m]."""
-    contact_force: Complex
-    """(n, H+1, n_p) Contact force [N]."""
-    error_estimate: Float
-    """(n, N) What the discarded harmonics could still change [m]; 0 of exact orbits."""
-    slip_fraction: Float
-    """(n, n_p) Share of the period that the point slips."""
-    dissipation: Float
-    """(n, n_p) Work lost to friction per cycle [J]."""
-    range: Float
-    """(n, N, 2) Lowest and highest displacement [m] of exact orbits, not-a-number otherwise."""
-    state: Float
-    """(n, 2 N + n_p) State at t = 0 of exact orbits, not-a-number otherwise."""
-    multipliers: Complex
-    """(n, 2 N + n_p - 1) Floquet multipliers over the period, without that of the phase."""
-    neutral: Int
-    """(n,) How many of them are neutral, exactly 1."""
-    closed: Bool
-    """(n,) Whether they are those of an exact orbit."""
-    turn: Float
-    """(2,) Value and frequency where the branch turns for good; not-a-number if nowhere."""
-    folds: Float
-    """(f, 2) Values and frequencies where it turns."""
-    change: Float
-    """(c, 2) Values and frequencies where its stability changes."""
-    change_after: Int
-    """(c,) Position of the cycle before each change."""
-    change_kind: Int
-    """(c,) Position in `CHANGE_KINDS`."""
-    change_unstable: Int
-    """(c, 2) Multipliers outside the unit circle before and after."""
+    labels: ClassVar[Mapping[str, Sequence[str]]] = {
+        "side": ("low", "high"),
+        "turn_entry": ("value", "omega"),
+    }
 
-    def __post_init__(self) -> None:
-        for entry in fields(self):
-            array = np.ascontiguousarray(getattr(self, entry.name))
-            array.flags.writeable = False
-            object.__setattr__(self, entry.name, array)
-
-    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
-        # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        return type(self), tuple(getattr(self, entry.name) for entry in fields(self))
-
-    @classmethod
-    def of(cls, solution: _core.LimitCycles) -> Self:
-        """Take over what the core returns.
-
-        Parameters
-        ----------
-        solution : _core.LimitCycles
-            What the core returns.
-
-        Returns
-        -------
-        CycleArrays
-            Copies.
-        """
-        changes = solution.changes
-        kinds = [CHANGE_KINDS.index(kind) for *_, kind, _, _ in changes]
-        extra = {
-            "turn": np.array(solution.limit or (np.nan, np.nan)),
-            "change": np.array([one[:2] for one in changes]).reshape(-1, 2),
-            "change_after": np.array([one[2] for one in changes], dtype=np.int64),
-            "change_kind": np.array(kinds, dtype=np.int64),
-            "change_unstable": np.array([one[4:] for one in changes], dtype=np.int64).reshape(
-                -1, 2
-            ),
-        }
-        names = [entry.name for entry in fields(cls) if entry.name not in extra]
-        return cls(**{name: np.array(getattr(solution, name)) for name in names}, **extra)
+    value: Float = column("cycle", "{unit}", "{followed} that is followed")
+    ratio: Float = column("cycle", "1", "factor r on the negative damping")
+    omega: Float = column("cycle", "rad/s", "angular frequency of the limit cycle", least=0.0)
+    slipping: Bool = column("cycle", "1", "whether it lies on the slipping side")
+    status: Code = column("cycle", "1", "how the point ended", codes=Status)
+    harmonics: Int = column(
+        "cycle",
+        "1",
+        "highest harmonic kept, or reported of exact orbits",
+        least=0,
+        file_name="harmonics_kept",
+    )
+    displacement: Complex = column(
+        "cycle harmonic dof",
+        "m",
+        "harmonics of the displacement, x(t) = Re sum_k X_k exp(i k omega t)",
+    )
+    contact_displacement: Complex = column(
+        "cycle harmonic point", "m", "harmonics of the relative displacement at the contacts"
+    )
+    contact_force: Complex = column(
+        "cycle harmonic point",
+        "N",
+        "harmonics of the contact force against the relative displacement",
+    )
+    error_estimate: Float = column(
+        "cycle dof",
+        "m",
+        "what the discarded harmonics could still change, 0 of exact orbits",
+        least=0.0,
+    )
+    slip_fraction: Float = column(
+        "cycle point", "1", "share of the period that the contact slips", least=0.0, most=SHARE
+    )
+    dissipation: Float = column("cycle point", "J", "friction work per cycle")
+    range: Float = column("cycle dof side", "m", "lowest and highest displacement of exact orbits")
+    state: Float = column(
+        "cycle state_entry", "1", "state at t = 0 of exact orbits (x in m, v in m/s, f in N)"
+    )
+    multipliers: Complex = column(
+        "cycle multiplier", "1", "Floquet multipliers over the period, without that of the phase"
+    )
+    neutral: Int = column("cycle", "1", "how many multipliers are neutral, exactly 1", least=0)
+    closed: Bool = column("cycle", "1", "whether multipliers are of an exact orbit")
+    turn: Float = column(
+        "turn_entry", "1", "value and omega where the branch turns for good, if it does"
+    )
+    folds: Float = column("fold turn_entry", "1", "value and omega where it turns")
+    change: Float = column(
+        "change_of_stability turn_entry", "1", "value and omega where its stability changes"
+    )
+    change_after: Int = column(
+        "change_of_stability",
+        "1",
+        "position of the cycle before the change",
+        least=0,
+        most="cycle",
+    )
+    change_kind: Int = column("change_of_stability", "1", "what happens there", codes=CHANGE_KINDS)
+    change_unstable: Int = column(
+        "change_of_stability side",
+        "1",
+        "multipliers outside the unit circle before and after",
+        least=0,
+    )
+    negative_damping: Numbers = column(
+        "diameter row column",
+        "kg/s",
+        "C_neg of the damping C + r C_neg; of a tuned disk by nodal diameter",
+        optional=True,
+    )
 
     @property
     def limit(self) -> tuple[float, float] | None:

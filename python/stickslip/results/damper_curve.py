@@ -3,27 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.arrays import Bool, Float, Int, constant
-from stickslip.results.result import Result
+from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.fields import Columns, Shown, column
+from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
-from stickslip.results.variables import (
-    Variable,
-    attributes,
-    dof_coordinate,
-    parts,
-    read,
-    settings_of,
-    written,
-)
+from stickslip.settings.peaks import DamperSettings
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -31,9 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip._core import Peaks
     from stickslip.plot.damper import DamperOptions
-    from stickslip.settings.peaks import DamperSettings
 
 __all__ = ["DamperArrays", "DamperCurve", "LeastPeak"]
 
@@ -49,40 +39,23 @@ class LeastPeak(NamedTuple):
     """Its amplitude [m]."""
 
 
-@dataclass(frozen=True, eq=False)
-class DamperArrays:
-    """The numbers of a damper curve, of n values each."""
+class DamperArrays(Columns):
+    """The numbers of a damper curve."""
 
-    value: Float
-    """(n,) Value of the parameter."""
-    omega: Float
-    """(n,) Angular frequency of the peak [rad/s]."""
-    amplitude: Float
-    """(n,) Its amplitude [m]."""
-    sensitivity: Float
-    """(n,) Derivative of the amplitude in the parameter."""
-    error_estimate: Float
-    """(n,) What the discarded harmonics could still change in the amplitude [m]."""
-    harmonics: Int
-    """(n,) Highest harmonic kept."""
-    at_edge: Bool
-    """(n,) Whether the peak lies at an end of the range of frequencies."""
-    status: NDArray[np.uint8]
-    """(n,) Codes of `Status`."""
-
-    def __post_init__(self) -> None:
-        for entry in fields(self):
-            array = np.ascontiguousarray(getattr(self, entry.name))
-            object.__setattr__(self, entry.name, constant(array))
-
-    def __reduce__(self) -> tuple[type[DamperArrays], tuple[object, ...]]:
-        # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        return DamperArrays, tuple(getattr(self, entry.name) for entry in fields(self))
-
-    @classmethod
-    def of(cls, peaks: Peaks) -> DamperArrays:
-        """Take over what the core returns."""
-        return cls(**{entry.name: np.array(getattr(peaks, entry.name)) for entry in fields(cls)})
+    value: Float = column("value", "{unit}", "{varied}")
+    omega: Float = column("value", "rad/s", "angular frequency of the peak", least=0.0)
+    amplitude: Float = column("value", "m", "amplitude of the peak", least=0.0)
+    sensitivity: Float = column(
+        "value", "m{per_unit}", "derivative of the amplitude in the parameter"
+    )
+    error_estimate: Float = column(
+        "value", "m", "what the discarded harmonics could still change in the amplitude", least=0.0
+    )
+    harmonics: Int = column(
+        "value", "1", "highest harmonic kept", least=0, file_name="harmonics_kept"
+    )
+    at_edge: Bool = column("value", "1", "whether the peak lies at an end of the range")
+    status: Code = column("value", "1", "how the value ended", codes=Status)
 
     @cached_property
     def solved(self) -> Bool:
@@ -90,23 +63,8 @@ class DamperArrays:
         return constant(np.isfinite(self.amplitude))
 
 
-_VARIABLES: Mapping[str, Variable] = {
-    "omega": Variable("omega", ("value",), "rad/s", "angular frequency of the peak"),
-    "amplitude": Variable("amplitude", ("value",), "m", "amplitude of the peak"),
-    "sensitivity": Variable(
-        "sensitivity", ("value",), "m", "derivative of the amplitude in the parameter"
-    ),
-    "error_estimate": Variable(
-        "error_estimate", ("value",), "m", "what the discarded harmonics could still change"
-    ),
-    "harmonics_kept": Variable("harmonics", ("value",), "1", "highest harmonic kept"),
-    "at_edge": Variable("at_edge", ("value",), "1", "whether the peak lies at an end of the range"),
-    "status": Variable("status", ("value",), "1", "how the value ended"),
-}
-
-
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class DamperCurve(Result):
+class DamperCurve(ColumnResult):
     """Peak amplitude and frequency along a parameter of the contacts, or the level of the forces.
 
     Attributes
@@ -118,6 +76,9 @@ class DamperCurve(Result):
     """
 
     kind: ClassVar[str] = "damper_curve"
+    title = "Peak of a structure with dry friction along a parameter"
+    columns = DamperArrays
+    settings_class = DamperSettings
 
     settings: DamperSettings
     arrays: DamperArrays
@@ -136,40 +97,13 @@ class DamperCurve(Result):
         """What was varied: "slip_force", "stiffness" or "level"."""
         return self.settings.variation.parameter
 
-    @property
-    def values(self) -> Float:
-        """Value of the parameter, shape (n,), in the order given."""
-        return self.arrays.value
-
-    @property
-    def omega(self) -> Float:
-        """Angular frequency of the peak, shape (n,) [rad/s]; not-a-number if it was not found."""
-        return self.arrays.omega
-
-    @property
-    def amplitude(self) -> Float:
-        """Amplitude of the peak, shape (n,) [m]; not-a-number if it was not found."""
-        return self.arrays.amplitude
-
-    @property
-    def sensitivity(self) -> Float:
-        """Derivative of the peak's amplitude in the parameter, shape (n,); 0 at infinity."""
-        return self.arrays.sensitivity
-
-    @property
-    def error_estimate(self) -> Float:
-        """What the discarded harmonics could still change in the amplitude, shape (n,) [m]."""
-        return self.arrays.error_estimate
-
-    @property
-    def harmonics(self) -> Int:
-        """Highest harmonic kept, shape (n,)."""
-        return self.arrays.harmonics
-
-    @property
-    def at_edge(self) -> Bool:
-        """Whether the peak lies at an end of the range of frequencies, shape (n,)."""
-        return self.arrays.at_edge
+    values = Shown[Float]("value")
+    omega = Shown[Float]()
+    amplitude = Shown[Float]()
+    sensitivity = Shown[Float]()
+    error_estimate = Shown[Float]()
+    harmonics = Shown[Int]()
+    at_edge = Shown[Bool]()
 
     @cached_property
     def status(self) -> tuple[Status, ...]:
@@ -220,68 +154,19 @@ class DamperCurve(Result):
         """
         return self.settings.variation.apply(self.model, value)
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
-
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add what follows from the other variables: nothing here.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions value and dof.
-        """
-        import xarray as xr
-
-        unit = self.settings.variation.unit
-        meaning = (
-            f"{self.parameter} of the contacts" if unit != "1" else f"factor, {self.parameter}"
-        )
-        dataset = xr.Dataset(
-            written(_VARIABLES, self.arrays),
-            coords={
-                "value": ("value", self.values.copy(), {"units": unit, "long_name": meaning}),
-                "dof": dof_coordinate(self),
-            },
-            attrs=attributes(
-                self, self.settings, "Peak of a structure with dry friction along a parameter"
-            ),
-        )
-        if unit != "1":
-            dataset["sensitivity"].attrs["units"] = f"m/({unit})"
-        return dataset
-
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the curve that a dataset holds.
+        """Return the curve that a dataset holds; see `Result.from_dataset`."""
+        curve = super().from_dataset(dataset, model)
+        curve.settings.variation.varied(model)
+        return curve
 
-        Parameters
-        ----------
-        dataset : xarray.Dataset
-            As `to_dataset` makes it.
-        model : Model
-            What was computed.
-
-        Returns
-        -------
-        DamperCurve
-            Equal to the one that made the dataset, bit by bit.
-
-        Raises
-        ------
-        KeyError, ValueError
-            If the dataset is incomplete, or belongs to another model.
-        """
-        from stickslip.settings.peaks import DamperSettings
-
-        settings = DamperSettings.stored(settings_of(dataset))
-        settings.variation.varied(model)
-        arrays = DamperArrays(value=dataset["value"].values, **read(_VARIABLES, dataset))
-        if arrays.status.max(initial=0) >= len(Status):
-            raise ValueError(f"status {arrays.status.max()} is unknown")
-        return cls(**parts(dataset, model), settings=settings, arrays=arrays)
+    def _words(self) -> Mapping[str, str]:
+        unit = self.settings.variation.unit
+        if unit == "1":
+            return {"unit": unit, "per_unit": "", "varied": f"factor, {self.parameter}"}
+        varied = f"{self.parameter} of the contacts"
+        return {"unit": unit, "per_unit": f"/({unit})", "varied": varied}
 
     def plot(self, **options: Unpack[DamperOptions]) -> Axes:
         """Draw the damper performance curve.

@@ -2,78 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
-from stickslip.model import ContactRef, Model, PointRef
+from stickslip.model import ContactRef, PointRef
 from stickslip.model.state import State
-from stickslip.results.arrays import Complex, Float, Int, Measure, constant
+from stickslip.results.arrays import Float, Measure, amplitude_in, constant
 from stickslip.results.contact_states import ContactStates, states_of
-from stickslip.results.dataset import (
-    CURVE_VARIABLES,
-    curve_arrays,
-    curve_dataset,
-    curve_parts,
-)
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import Events
 from stickslip.results.forced_response import ForcedResponse, key_of
 from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
-from stickslip.results.stability import States, flag_variable, stability_of, truth_of
-from stickslip.results.variables import Variable, names, settings_of, state_names
+from stickslip.results.stability import FloquetStability, flag_variable
+from stickslip.settings.orbits import ExactSettings
 
 if TYPE_CHECKING:
     from typing import Unpack
 
-    import xarray as xr
     from matplotlib.axes import Axes
 
     from stickslip.plot import MultiplierOptions
-    from stickslip.settings.orbits import ExactSettings
 
 __all__ = ["ExactResponse"]
 
-_VARIABLES: Mapping[str, Variable] = CURVE_VARIABLES | {
-    "error_estimate": Variable(
-        "error_estimate", ("omega", "dof"), "m", "what the gap of the orbit could still change"
-    ),
-    "residual": Variable(
-        "residual", ("omega",), "1", "gap of the orbit after a period, relative to the motion"
-    ),
-    "iterations": Variable("iterations", ("omega",), "1", "iterations of shooting"),
-    "harmonics_kept": Variable("harmonics", ("omega",), "1", "highest harmonic reported"),
-    "range": Variable(
-        "range", ("omega", "dof", "side"), "m", "lowest and highest displacement over the period"
-    ),
-    "state": Variable(
-        "state", ("omega", "state_entry"), "1", "state at t = 0 (x in m, v in m/s, f in N)"
-    ),
-    "multipliers": Variable(
-        "multipliers", ("omega", "multiplier"), "1", "Floquet multipliers over the period"
-    ),
-    "neutral": Variable("neutral", ("omega",), "1", "how many multipliers are neutral, exactly 1"),
-    "work": Variable("work", ("omega",), "J", "work of the external forces per period"),
-    "viscous": Variable("viscous", ("omega",), "J", "energy lost to damping per period"),
-    "event_offset": Variable("event_offset", ("boundary",), "1", "first event of each point"),
-    "event_time": Variable("event_time", ("event",), "s", "time of the event in the period"),
-    "event_point": Variable("event_point", ("event",), "1", "contact point, over all contacts"),
-    "event_kind": Variable(
-        "event_kind", ("event",), "1", "0 sticks, 1 slips forward, 2 slips backward"
-    ),
-}
-_TITLE = "Forced response of a structure with dry friction, by exact periodic orbits"
-
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class ExactResponse(ForcedResponse):
+class ExactResponse(ForcedResponse, FloquetStability):
     """Exact periodic orbits over the excitation frequency.
 
     A `ForcedResponse` without truncation: amplitudes are the exact extrema of the orbits, waveforms
@@ -90,47 +51,12 @@ class ExactResponse(ForcedResponse):
     """
 
     kind: ClassVar[str] = "exact_response"
+    title = "Forced response of a structure with dry friction, by exact periodic orbits"
+    columns = OrbitArrays
+    settings_class = ExactSettings
 
     settings: ExactSettings
     arrays: OrbitArrays
-
-    @property
-    def multipliers(self) -> Complex:
-        """Floquet multipliers over the period, shape (n, 2 N + n_p).
-
-        First the neutral ones, then by falling modulus: what a small disturbance is multiplied by
-        in a period. A contact that slips forgets its force, which gives a multiplier of zero.
-        """
-        return self.arrays.multipliers
-
-    @property
-    def neutral(self) -> Int:
-        """How many multipliers are neutral, exactly 1, shape (n,).
-
-        A contact that never slips keeps any small change of its mean force for ever, and the motion
-        around it is the same. A structure that nothing holds stays where it is pushed to, or drifts
-        on where nothing slows it: its vibration is the same too.
-        """
-        return self.arrays.neutral
-
-    @cached_property
-    def stability(self) -> States:
-        """State of each orbit, "stable", "unstable" or "not decided", shape (n,).
-
-        Stable are orbits whose multipliers but the neutral ones lie inside the unit circle. Not
-        decided are points that are not solved, and orbits whose largest multiplier is 1 to
-        rounding, as those of structures without damping whose contacts stick.
-        """
-        return stability_of(self.multipliers, self.neutral, self.arrays.solved)
-
-    @cached_property
-    def stable(self) -> NDArray[np.object_]:
-        """`stability` as True, False or None (not decided) per orbit, shape (n,).
-
-        Of Python's objects: write ``exact.stable == True`` or ``exact.stability == "stable"`` to
-        choose orbits.
-        """
-        return truth_of(self.stability)
 
     @cached_property
     def energy(self) -> Energy:
@@ -211,14 +137,11 @@ class ExactResponse(ForcedResponse):
         """
         key = key_of(dof, measure)
         if key not in self._amplitudes:
-            low, high = self.arrays.range[:, self._column(dof)].T
-            if measure == "half_range":
-                values = 0.5 * (high - low)
-            elif measure == "max":
-                values = np.maximum(np.abs(low), np.abs(high))
+            if measure == "fundamental":
+                values = constant(np.abs(self.coefficients(dof)[:, 1]))
             else:
-                values = np.abs(self.coefficients(dof)[:, 1])
-            self._amplitudes[key] = constant(values)
+                values = amplitude_in(self.arrays.range[:, self._column(dof)], measure)
+            self._amplitudes[key] = values
         return self._amplitudes[key]
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
@@ -300,39 +223,9 @@ class ExactResponse(ForcedResponse):
         peaks = {at: self.peak(dofs[at], measure) for at in rivals.tolist()}
         return max(peaks.items(), key=lambda one: one[1].amplitude)
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
-
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add the amplitude, which follows from the range.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions omega, harmonic, dof, point (of contact), side, state_entry, multiplier,
-            event and boundary (of the events of two points).
-        """
-        dataset = curve_dataset(self, _TITLE, _VARIABLES, derived=derived)
-        dataset["stable"] = flag_variable("omega", self.stability)
-        return dataset.assign_coords(
-            side=names("side", ["lowest", "highest"], "end of the range"),
-            state_entry=names("state_entry", state_names(self.model), "entry of the state"),
-        )
-
-    @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the exact response that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.settings.orbits import ExactSettings
-
-        orbits = OrbitArrays(**curve_arrays(dataset, _VARIABLES))
-        given = curve_parts(dataset, model, orbits)
-        if orbits.state.shape[1] != len(state_names(model)):
-            raise ValueError(
-                f"{orbits.state.shape[1]} entries per state, {len(state_names(model))} in the model"
-            )
-        return cls(settings=ExactSettings.stored(settings_of(dataset)), **given)
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        stable = {"stable": flag_variable("omega", self.stability)}
+        return super()._further_variables(derived=derived) | stable
 
     def plot_multipliers(self, **options: Unpack[MultiplierOptions]) -> Axes:
         """Draw the multipliers in the complex plane, with the unit circle.

@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+from stickslip.results.arrays import SHARE, Code, Float, Int
+from stickslip.results.fields import Columns, column
 
-from stickslip.results.arrays import Float, Int, constant
-from stickslip.results.variables import Variable
-
-if TYPE_CHECKING:
-    from stickslip import _core
-
-__all__ = ["FATE_VARIABLES", "FateArrays", "Motion", "Reason", "require_codes"]
+__all__ = ["FateArrays", "Motion", "Reason"]
 
 
 class Motion(StrEnum):
@@ -122,78 +114,25 @@ _MEANING: Mapping[Reason, tuple[Motion, str]] = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class FateArrays:
-    """What becomes of n starts.
+class FateArrays(Columns):
+    """What becomes of free motions; a state is (x, v, f) of all dofs and contact points."""
 
-    n_o dofs are observed; a state (x, v, f) has s = 2 N + n_p numbers.
-    """
-
-    start: Float
-    """(n, s) States at the start [m, m/s, N]."""
-    reason: NDArray[np.uint8]
-    """(n,) Codes of `Reason`."""
-    mode: Int
-    """(n,) Stuck mode with the most kinetic energy at the end, counted from 0; -1 for none."""
-    share: Float
-    """(n,) Share of the kinetic energy of that mode."""
-    omega: Float
-    """(n,) Angular frequency of settled motions, others not-a-number [rad/s]."""
-    amplitude: Float
-    """(n, n_o) Half the range of displacement at the end [m]; not-a-number if unbounded."""
-    time: Float
-    """(n,) When it was decided [s]."""
-    events: Int
-    """(n,) Events met until then."""
-    final: Float
-    """(n, s) States then."""
-
-    def __post_init__(self) -> None:
-        for entry in fields(self):
-            array = np.ascontiguousarray(getattr(self, entry.name))
-            object.__setattr__(self, entry.name, constant(array))
-
-    def __reduce__(self) -> tuple[type[FateArrays], tuple[object, ...]]:
-        # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        return FateArrays, tuple(getattr(self, entry.name) for entry in fields(self))
-
-    @classmethod
-    def of(cls, fates: _core.Fates, start: Float, columns: list[int]) -> FateArrays:
-        """Take over what the core returns, of the observed dofs alone."""
-        return cls(
-            start=start,
-            reason=fates.reason,
-            mode=fates.mode,
-            share=fates.share,
-            omega=fates.omega,
-            amplitude=fates.amplitude[:, columns],
-            time=fates.time,
-            events=fates.events,
-            final=fates.state,
-        )
-
-
-FATE_VARIABLES: Mapping[str, Variable] = {
-    "start": Variable(
-        "start", ("start_number", "state_entry"), "1", "state at the start (m, m/s, N)"
-    ),
-    "reason": Variable("reason", ("start_number",), "1", "why the motion has its class"),
-    "mode": Variable("mode", ("start_number",), "1", "stuck mode with the most kinetic energy"),
-    "share": Variable("share", ("start_number",), "1", "share of its kinetic energy"),
-    "omega": Variable("omega", ("start_number",), "rad/s", "angular frequency of a settled motion"),
-    "amplitude": Variable(
-        "amplitude", ("start_number", "dof"), "m", "half peak-to-peak amplitude at the end"
-    ),
-    "decided": Variable("time", ("start_number",), "s", "when it was decided"),
-    "events": Variable("events", ("start_number",), "1", "events met until then"),
-    "final": Variable(
-        "final", ("start_number", "state_entry"), "1", "state at the end (m, m/s, N)"
-    ),
-}
-
-
-def require_codes(arrays: FateArrays) -> FateArrays:
-    """Refuse reasons that a file of this version cannot hold."""
-    if arrays.reason.max(initial=0) >= len(Reason):
-        raise ValueError(f"reason {arrays.reason.max()} is unknown")
-    return arrays
+    start: Float = column("start_number state_entry", "1", "state at the start (m, m/s, N)")
+    reason: Code = column("start_number", "1", "why the motion has its class", codes=Reason)
+    mode: Int = column(
+        "start_number",
+        "1",
+        "stuck mode with the most kinetic energy at the end, counted from 0; -1 for none",
+        least=-1,
+        most="row",
+    )
+    share: Float = column("start_number", "1", "share of its kinetic energy", least=0.0, most=SHARE)
+    omega: Float = column(
+        "start_number", "rad/s", "angular frequency of a settled motion", least=0.0
+    )
+    amplitude: Float = column(
+        "start_number dof", "m", "half peak-to-peak amplitude at the end", least=0.0
+    )
+    time: Float = column("start_number", "s", "when it was decided", least=0.0, file_name="decided")
+    events: Int = column("start_number", "1", "events met until then", least=0)
+    final: Float = column("start_number state_entry", "1", "state at the end (m, m/s, N)")

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal, Self, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 
 from stickslip.checks import choice, text
-from stickslip.model import Model, PointRef
-from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
+from stickslip.model import PointRef
+from stickslip.results.arrays import Float, Measure, amplitude_of, constant
 from stickslip.results.blades import BladeMotion
+from stickslip.results.certificate import Certificate
 from stickslip.results.energy import Energy, energy_of
 from stickslip.results.peaks import Peak, Summary, rows, summits
 from stickslip.results.sensitivities import Sensitivities
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip.plot import CurveOptions, Frame, LoopOptions
-    from stickslip.results.certificate import Certificate
 
 __all__ = ["ForcedResponse", "Measure", "Peak", "Summary", "key_of"]
 
@@ -63,6 +63,7 @@ class ForcedResponse(BladeMotion, Sensitivities):
     """
 
     kind: ClassVar[str] = "forced_response"
+    title = "Forced response of a structure with dry friction, by harmonic balance"
 
     half_wave: bool
     certificate: Certificate | None = None
@@ -76,26 +77,6 @@ class ForcedResponse(BladeMotion, Sensitivities):
             f"{type(self).__name__}({omega.size} points from {omega.min():g} to {omega.max():g} "
             f"rad/s ({solved}), {len(self.dofs)} dofs, harmonics={self.settings.harmonics!r})"
         )
-
-    def coefficients(self, dof: str) -> Complex:
-        """Return the harmonics of a displacement, X_k of x(t) = Re sum_k X_k exp(i k omega t).
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
-        Returns
-        -------
-        ndarray of complex128, shape (n, H+1)
-            [m]. At points that did not converge the last iterate, kept for diagnosis.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
-        """
-        return self.arrays.displacement[:, :, self._column(dof)]
 
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
         """Return the amplitude of a displacement over frequency.
@@ -214,27 +195,6 @@ class ForcedResponse(BladeMotion, Sensitivities):
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
         return summits(self, [dofs], measure)[0]
 
-    def error_estimate(self, dof: str) -> Float:
-        """Return what the discarded harmonics, and more samples, could still change.
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m], in a displacement. The discarded harmonics of the contact forces, pushed through
-            the compliance; of a marched evaluation with the error of its samples.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
-        """
-        return self.arrays.error_estimate[:, self._column(dof)]
-
     def summary(self, dofs: Iterable[str] | str | None = None) -> list[Summary]:
         """Return the peaks of degrees of freedom, one row each.
 
@@ -266,29 +226,17 @@ class ForcedResponse(BladeMotion, Sensitivities):
         """
         return energy_of(self)
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
-
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add the amplitude, which follows from the displacement.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions omega, harmonic, dof and point (of contact).
-        """
-        from stickslip.results.dataset import to_dataset
-
-        return to_dataset(self, derived=derived)
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        made = {} if self.certificate is None else self.certificate.variables()
+        if derived:
+            meaning = "half peak-to-peak amplitude of the displacement"
+            values = np.stack([self.amplitude(dof) for dof in self.dofs], axis=1)
+            made["amplitude"] = (("omega", "dof"), values, {"units": "m", "long_name": meaning})
+        return made
 
     @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the forced response that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.results.dataset import from_dataset
-
-        return cls(**from_dataset(dataset, model))
+    def _further_arguments(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        return {"certificate": Certificate.of_dataset(dataset)}
 
     def plot(self, dof: str, **options: Unpack[CurveOptions]) -> Axes:
         """Draw the response curve between its stuck and free limits.

@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import choice, whole_number
 from stickslip.errors import ModelError
-from stickslip.model import Model, PointRef
+from stickslip.model import Model
 from stickslip.model.state import State
-from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
+from stickslip.results.arrays import Float, Measure, amplitude_in, amplitude_of, constant
 from stickslip.results.cycle_arrays import CHANGE_KINDS, CycleArrays
-from stickslip.results.cycle_dataset import cycle_dataset, cycle_parts
-from stickslip.results.result import Result
-from stickslip.results.stability import States, stability_counts, stability_of, truth_of
-from stickslip.results.status import Status
+from stickslip.results.fields import Numbers, Shown
+from stickslip.results.periodic import PeriodicMotions
+from stickslip.results.stability import FloquetStability, flag_variable, stability_counts
+from stickslip.settings.cycles import CycleSettings
 
 if TYPE_CHECKING:
     from typing import Unpack
 
-    import xarray as xr
     from matplotlib.axes import Axes
 
     from stickslip.plot.cycles import CycleOptions
-    from stickslip.settings.cycles import CycleSettings
 
 __all__ = ["Limit", "LimitCycles", "StabilityChange"]
 
@@ -62,7 +61,7 @@ class StabilityChange(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class LimitCycles(Result):
+class LimitCycles(PeriodicMotions, FloquetStability):
     """Limit cycles of a mode, from the sticking to the slipping side of their branch.
 
     Attributes
@@ -71,15 +70,15 @@ class LimitCycles(Result):
         What was followed, and how.
     arrays : CycleArrays
         Every number by its name.
-    negative_damping : ndarray
-        C_neg of the damping C + r C_neg [kg/s], shape (N, N); of a tuned disk (n, N, N).
     """
 
     kind: ClassVar[str] = "limit_cycles"
+    title = "Limit cycles of a structure with dry friction"
+    columns = CycleArrays
+    settings_class = CycleSettings
 
     settings: CycleSettings
     arrays: CycleArrays
-    negative_damping: NDArray[Any]
 
     def __repr__(self) -> str:
         limit = self.limit
@@ -91,62 +90,15 @@ class LimitCycles(Result):
             f"{stability_counts(self.stability)}, {turn})"
         )
 
-    @property
-    def values(self) -> Float:
-        """Value of what is followed, shape (n,): r, or a parameter of contacts."""
-        return self.arrays.value
-
-    @property
-    def ratio(self) -> Float:
-        """Factor r on the negative damping, shape (n,)."""
-        return self.arrays.ratio
-
-    @property
-    def omega(self) -> Float:
-        """Angular frequency, shape (n,) [rad/s]."""
-        return self.arrays.omega
+    values = Shown[Float]("value")
+    ratio = Shown[Float]()
+    omega = Shown[Float]()
+    negative_damping = Shown[Numbers]()
 
     @cached_property
     def branch(self) -> NDArray[np.str_]:
         """Side of the branch, "sticking" or "slipping", shape (n,)."""
         return constant(np.where(self.arrays.slipping, "slipping", "sticking"))
-
-    @property
-    def multipliers(self) -> Complex:
-        """Floquet multipliers over the full period, shape (n, 2 N + n_p - 1).
-
-        The trivial 1 of the phase is left out. First the `neutral` ones, then by falling modulus.
-        Not-a-number where they are not known.
-        """
-        return self.arrays.multipliers
-
-    @property
-    def neutral(self) -> NDArray[np.int64]:
-        """How many multipliers are neutral, exactly 1, shape (n,).
-
-        One for every contact that never slips, which keeps its mean force, and those of a structure
-        that nothing holds, which stays or drifts where it is pushed to. They decide nothing.
-        """
-        return self.arrays.neutral
-
-    @cached_property
-    def stability(self) -> States:
-        """State of each cycle, "stable", "unstable" or "not decided", shape (n,).
-
-        Stable are cycles whose multipliers but the neutral ones lie inside the unit circle. Not
-        decided are cycles without multipliers, as those of travelling waves and with
-        ``stability=False``, and those whose largest multiplier is 1 to rounding.
-        """
-        return stability_of(self.multipliers, self.neutral, self.arrays.known)
-
-    @cached_property
-    def stable(self) -> NDArray[np.object_]:
-        """`stability` as True, False or None (not decided) per cycle, shape (n,).
-
-        Of Python's objects: write ``lco.stable == True`` or ``lco.stability == "stable"`` to choose
-        cycles.
-        """
-        return truth_of(self.stability)
 
     @property
     def limit(self) -> Limit | None:
@@ -177,31 +129,6 @@ class LimitCycles(Result):
             for at, kind, after, (was, now) in rows
         )
 
-    @cached_property
-    def status(self) -> tuple[Status, ...]:
-        """How each point ended; ``status[i].advice`` says what to do about it."""
-        return tuple(Status.from_code(int(code)) for code in self.arrays.status)
-
-    def coefficients(self, dof: str) -> Complex:
-        """Return the harmonics of a displacement.
-
-        Parameters
-        ----------
-        dof : str
-            The degree of freedom.
-
-        Returns
-        -------
-        ndarray of complex128, shape (n, H+1)
-            X_k of x(t) = Re sum_k X_k exp(i k omega t) [m].
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom.
-        """
-        return self.arrays.displacement[:, :, self._column(dof)]
-
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
         """Return the amplitude of a displacement along the branch.
 
@@ -227,26 +154,8 @@ class LimitCycles(Result):
         choice(measure, "measure", get_args(Measure))
         column = self._column(dof)
         if measure != "fundamental" and self.settings.method == "exact":
-            low, high = self.arrays.range[:, column].T
-            return constant(
-                0.5 * (high - low) if measure == "half_range" else np.maximum(high, -low)
-            )
+            return amplitude_in(self.arrays.range[:, column], measure)
         return constant(amplitude_of(self.coefficients(dof), measure))
-
-    def error_estimate(self, dof: str) -> Float:
-        """Return what the discarded harmonics could still change in a displacement.
-
-        Parameters
-        ----------
-        dof : str
-            The degree of freedom.
-
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m]; 0 of exact orbits.
-        """
-        return self.arrays.error_estimate[:, self._column(dof)]
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
         """Return one period of a displacement from its harmonics.
@@ -269,25 +178,6 @@ class LimitCycles(Result):
         count = whole_number(samples, "samples", smallest=1)
         turn = 2j * np.pi * np.outer(np.arange(count) / count, np.arange(series.size))
         return constant((np.exp(turn) @ series).real)
-
-    def slip_fraction(self, contact: PointRef) -> Float:
-        """Return the share of the period that contact points slip.
-
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
-
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            From 0 to 1.
-        """
-        return self._select(self.arrays.slip_fraction, contact)
-
-    def dissipation(self, contact: PointRef) -> Float:
-        """Return the work lost to friction per cycle, as `slip_fraction` [J]."""
-        return self._select(self.arrays.dissipation, contact)
 
     def state(self, index: int) -> State:
         """Return the state at t = 0, from which `stickslip.transient` continues an exact orbit.
@@ -363,25 +253,16 @@ class LimitCycles(Result):
             raise ModelError(f"index: {index}; there are {count} cycles")
         return position
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
+    def _words(self) -> Mapping[str, str]:
+        return {"unit": self.settings.unit, "followed": self.settings.followed}
 
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add the amplitude, which follows from other variables.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions cycle, harmonic, dof, point and multiplier.
-        """
-        return cycle_dataset(self, derived=derived)
-
-    @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the limit cycles in a dataset; see `Result.from_dataset`."""
-        return cls(**cycle_parts(dataset, model))
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        made: dict[Hashable, Any] = {"stable": flag_variable("cycle", self.stability)}
+        if derived:
+            meaning = "half peak-to-peak amplitude of the displacement"
+            values = np.stack([self.amplitude(dof) for dof in self.dofs], axis=1)
+            made["amplitude"] = (("cycle", "dof"), values, {"units": "m", "long_name": meaning})
+        return made
 
     def plot(self, dof: str, **options: Unpack[CycleOptions]) -> Axes:
         """Draw amplitude and frequency along the branch.

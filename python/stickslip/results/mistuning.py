@@ -2,45 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import choice, real_number, unknown
 from stickslip.errors import ModelError
-from stickslip.model import Model
 from stickslip.results.arrays import Float, Int, constant
-from stickslip.results.mistuning_arrays import ALL, VARIABLES, MistuningArrays
-from stickslip.results.result import Result
+from stickslip.results.fields import Shown
+from stickslip.results.mistuning_arrays import ALL, MistuningArrays
+from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
-from stickslip.results.variables import (
-    attributes,
-    coordinate,
-    dof_coordinate,
-    parts,
-    read,
-    settings_of,
-    written,
-)
 from stickslip.results.weibull import Percentile, WeibullFit, empirical_percentile, fit_weibull
+from stickslip.settings.peaks import MistuningSettings
 
 if TYPE_CHECKING:
     from typing import Unpack
 
-    import xarray as xr
     from matplotlib.axes import Axes
 
     from stickslip.plot.mistuning import DistributionOptions, TrendOptions
-    from stickslip.settings.peaks import MistuningSettings
 
 __all__ = ["MistuningStudy"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class MistuningStudy(Result):
+class MistuningStudy(ColumnResult):
     """Amplification factors of many mistuned disks.
 
     The amplification factor of a disk is the highest peak of any blade over that of the tuned disk,
@@ -58,6 +49,9 @@ class MistuningStudy(Result):
     """
 
     kind: ClassVar[str] = "mistuning_study"
+    title = "Amplification factors of mistuned disks"
+    columns = MistuningArrays
+    settings_class = MistuningSettings
 
     settings: MistuningSettings
     arrays: MistuningArrays
@@ -70,15 +64,8 @@ class MistuningStudy(Result):
             f"{d * c * p} disks found, {', '.join(self.dofs)})"
         )
 
-    @property
-    def deviation(self) -> Float:
-        """Standard deviations of the sectors' stiffness, shape (d,)."""
-        return self.arrays.deviation
-
-    @property
-    def coupling_stiffness(self) -> Float:
-        """Stiffnesses of the couplings [N/m], shape (c,)."""
-        return self.arrays.coupling
+    deviation = Shown[Float]()
+    coupling_stiffness = Shown[Float]("coupling")
 
     @property
     def patterns(self) -> Float:
@@ -250,72 +237,10 @@ class MistuningStudy(Result):
 
         return plot.amplification(self, dof, "coupling", **options)
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
-
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add what follows from the other variables: the amplification factors.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions deviation, coupling_stiffness, pattern, dof and sector.
-        """
-        import xarray as xr
-
-        arrays = self.arrays
-        meaning = {"units": "1", "long_name": "standard deviation of the sectors' stiffness"}
-        stiffness = {"units": "N/m", "long_name": "stiffness of the couplings"}
-        numbers = {"units": "1", "long_name": "number of the pattern"}
-        dataset = xr.Dataset(
-            written(VARIABLES, arrays),
-            coords={
-                "deviation": ("deviation", arrays.deviation.copy(), meaning),
-                "coupling_stiffness": ("coupling_stiffness", arrays.coupling.copy(), stiffness),
-                "pattern": ("pattern", np.arange(len(arrays.patterns)), numbers),
-                "dof": dof_coordinate(self),
-            },
-            attrs=attributes(self, self.settings, "Amplification factors of mistuned disks"),
-        )
-        if derived:
-            said = {"units": "1", "long_name": "amplification factor"}
-            dataset["amplification"] = (ALL, arrays.amplification.copy(), said)
-        return dataset
-
-    @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the study that a dataset holds.
-
-        Parameters
-        ----------
-        dataset : xarray.Dataset
-            As `to_dataset` makes it.
-        model : BladedDisk
-            The tuned disk.
-
-        Returns
-        -------
-        MistuningStudy
-            Equal to the one that made the dataset, bit by bit.
-
-        Raises
-        ------
-        KeyError, ValueError
-            If the dataset is incomplete, or belongs to another model.
-        """
-        from stickslip.settings.peaks import MistuningSettings
-
-        arrays = MistuningArrays(
-            deviation=coordinate(dataset, "deviation"),
-            coupling=coordinate(dataset, "coupling_stiffness"),
-            **read(VARIABLES, dataset),
-        )
-        if arrays.status.max(initial=0) >= len(Status):
-            raise ValueError(f"status {arrays.status.max()} is unknown")
-        settings = MistuningSettings.stored(settings_of(dataset))
-        return cls(**parts(dataset, model), settings=settings, arrays=arrays)
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        said = {"units": "1", "long_name": "amplification factor"}
+        factors = (ALL.split(), self.arrays.amplification.copy(), said)
+        return {"amplification": factors} if derived else {}
 
     def _dof(self, dof: str) -> int:
         if dof not in self.dofs:

@@ -2,62 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stickslip.results.arrays import Bool, Float, Int, constant
-from stickslip.results.variables import Variable
+from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.fields import Columns, column
+from stickslip.results.status import Status
 
-__all__ = ["ALL", "VARIABLES", "MistuningArrays"]
+__all__ = ["ALL", "MistuningArrays"]
+
+ALL = "deviation coupling_stiffness pattern dof"
+_TUNED = "coupling_stiffness dof"
+_ESTIMATE = "what the discarded harmonics could still change"
 
 
-@dataclass(frozen=True, eq=False)
-class MistuningArrays:
-    """The numbers of a study of d deviations, c couplings, p patterns and q degrees of freedom."""
+class MistuningArrays(Columns):
+    """The numbers of a mistuning study."""
 
-    deviation: Float
-    """(d,) Standard deviation of the sectors' stiffness."""
-    coupling: Float
-    """(c,) Stiffness of the couplings [N/m]; not-a-number: several, or none."""
-    patterns: Float
-    """(p, n) Deviations of the sectors in units of the standard deviation."""
-    omega: Float
-    """(d, c, p, q) Angular frequency of the highest peak of all blades [rad/s]."""
-    amplitude: Float
-    """(d, c, p, q) Its amplitude [m]."""
-    blade: Int
-    """(d, c, p, q) Its blade, counted from 0; -1 if it was not found."""
-    status: NDArray[np.uint8]
-    """(d, c, p, q) Codes of `Status`."""
-    harmonics: Int
-    """(d, c, p, q) Highest harmonic kept."""
-    error_estimate: Float
-    """(d, c, p, q) What the discarded harmonics could still change in the amplitude [m]."""
-    at_edge: Bool
-    """(d, c, p, q) Whether the peak lies at an end of the range of frequencies."""
-    tuned_omega: Float
-    """(c, q) Angular frequency of the peak of the tuned disk [rad/s]."""
-    tuned_amplitude: Float
-    """(c, q) Its amplitude [m]."""
-    tuned_harmonics: Int
-    """(c, q) Highest harmonic kept."""
-    tuned_error_estimate: Float
-    """(c, q) What the discarded harmonics could still change in it [m]."""
-    tuned_at_edge: Bool
-    """(c, q) Whether it lies at an end of the range of frequencies."""
-
-    def __post_init__(self) -> None:
-        for entry in fields(self):
-            array = np.ascontiguousarray(getattr(self, entry.name))
-            object.__setattr__(self, entry.name, constant(array))
-
-    def __reduce__(self) -> tuple[type[MistuningArrays], tuple[object, ...]]:
-        # Unpickled arrays would be writeable; going through the constructor makes them constant.
-        return MistuningArrays, tuple(getattr(self, entry.name) for entry in fields(self))
+    deviation: Float = column("deviation", "1", "standard deviation of the sectors' stiffness")
+    coupling: Float = column(
+        "coupling_stiffness",
+        "N/m",
+        "stiffness of the couplings; not-a-number: several, or none",
+        least=0.0,
+        file_name="coupling_stiffness",
+    )
+    patterns: Float = column(
+        "pattern sector", "1", "deviation of the sectors in units of the standard deviation"
+    )
+    omega: Float = column(ALL, "rad/s", "angular frequency of the highest peak", least=0.0)
+    amplitude: Float = column(ALL, "m", "amplitude of the highest peak", least=0.0)
+    blade: Int = column(
+        ALL, "1", "blade of the highest peak, -1: not found", least=-1, most="sector"
+    )
+    status: Code = column(ALL, "1", "how the search ended", codes=Status)
+    harmonics: Int = column(ALL, "1", "highest harmonic kept", least=0, file_name="harmonics_kept")
+    error_estimate: Float = column(ALL, "m", _ESTIMATE, least=0.0)
+    at_edge: Bool = column(ALL, "1", "whether the peak lies at an end of the range")
+    tuned_omega: Float = column(_TUNED, "rad/s", "frequency of the tuned peak", least=0.0)
+    tuned_amplitude: Float = column(_TUNED, "m", "amplitude of the tuned peak", least=0.0)
+    tuned_harmonics: Int = column(
+        _TUNED,
+        "1",
+        "highest harmonic kept, of the tuned peak",
+        least=0,
+        file_name="tuned_harmonics_kept",
+    )
+    tuned_error_estimate: Float = column(_TUNED, "m", _ESTIMATE, least=0.0)
+    tuned_at_edge: Bool = column(_TUNED, "1", "whether the tuned peak lies at an end of the range")
 
     @cached_property
     def solved(self) -> Bool:
@@ -68,30 +61,3 @@ class MistuningArrays:
     def amplification(self) -> Float:
         """(d, c, p, q) Amplification factor; not-a-number if the peak was not found."""
         return constant(self.amplitude / self.tuned_amplitude[np.newaxis, :, np.newaxis, :])
-
-
-ALL = ("deviation", "coupling_stiffness", "pattern", "dof")
-TUNED = ("coupling_stiffness", "dof")
-VARIABLES: Mapping[str, Variable] = {
-    "patterns": Variable("patterns", ("pattern", "sector"), "1", "deviation in units of S"),
-    "omega": Variable("omega", ALL, "rad/s", "angular frequency of the highest peak"),
-    "amplitude": Variable("amplitude", ALL, "m", "amplitude of the highest peak"),
-    "blade": Variable("blade", ALL, "1", "blade of the highest peak, -1: not found"),
-    "status": Variable("status", ALL, "1", "how the search ended"),
-    "harmonics_kept": Variable("harmonics", ALL, "1", "highest harmonic kept"),
-    "error_estimate": Variable(
-        "error_estimate", ALL, "m", "what the discarded harmonics could still change"
-    ),
-    "at_edge": Variable("at_edge", ALL, "1", "whether the peak lies at an end of the range"),
-    "tuned_omega": Variable("tuned_omega", TUNED, "rad/s", "frequency of the tuned peak"),
-    "tuned_amplitude": Variable("tuned_amplitude", TUNED, "m", "amplitude of the tuned peak"),
-    "tuned_harmonics_kept": Variable(
-        "tuned_harmonics", TUNED, "1", "highest harmonic kept, of the tuned peak"
-    ),
-    "tuned_error_estimate": Variable(
-        "tuned_error_estimate", TUNED, "m", "what the discarded harmonics could still change"
-    ),
-    "tuned_at_edge": Variable(
-        "tuned_at_edge", TUNED, "1", "whether the tuned peak lies at an end of the range"
-    ),
-}

@@ -4,45 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
 from stickslip.checks import real_number, whole_number
 from stickslip.errors import ModelError
-from stickslip.model import Model
 from stickslip.model.state import State
-from stickslip.results.arrays import Float, constant
-from stickslip.results.fate_arrays import (
-    FATE_VARIABLES,
-    FateArrays,
-    Motion,
-    Reason,
-    require_codes,
-)
-from stickslip.results.result import Result
+from stickslip.results.fate_arrays import FateArrays, Motion, Reason
+from stickslip.results.fields import Float, Shown, column
+from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.spectrum import Spectrum, spectrum_of
-from stickslip.results.variables import (
-    attributes,
-    dof_coordinate,
-    names,
-    parts,
-    read,
-    settings_of,
-    state_names,
-    written,
-)
+from stickslip.settings.motion import ClassifySettings
 
 if TYPE_CHECKING:
     from typing import Unpack
 
-    import xarray as xr
     from matplotlib.axes import Axes
 
     from stickslip.plot.basins import LineOptions
-    from stickslip.settings.motion import ClassifySettings
 
-__all__ = ["Line", "MotionClass"]
+__all__ = ["Line", "MotionArrays", "MotionClass"]
 
 SEGMENTS = 8
 """Windows over which a spectrum is averaged, so that what is noise in one is level in the mean."""
@@ -59,33 +41,42 @@ class Line(NamedTuple):
     """Amplitude of a harmonic motion of the same power [m]."""
 
 
+class MotionArrays(FateArrays):
+    """The numbers of one free motion."""
+
+    tail: Float = column(
+        "time dof",
+        "m",
+        "displacement once the motion was decided; none of one that decays, is unbounded or was "
+        "interrupted",
+    )
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class MotionClass(Result):
+class MotionClass(ColumnResult):
     """What becomes of a free motion from one start.
 
     Attributes
     ----------
     settings : ClassifySettings
         How it was found out.
-    arrays : FateArrays
+    arrays : MotionArrays
         Every number by its name, of one start.
     step : float
         Time between the instants of `tail` [s].
-    tail : ndarray of float64, shape (n, n_o)
-        Displacements of the observed degrees of freedom once it was decided [m]; none of a motion
-        that is unbounded or was interrupted.
     """
 
     kind: ClassVar[str] = "motion_class"
+    title = "What becomes of a free motion with dry friction"
+    columns = MotionArrays
+    settings_class = ClassifySettings
+    attributes: ClassVar[Attributes] = {"interrupted": bool, "step": float}
 
     settings: ClassifySettings
-    arrays: FateArrays
+    arrays: MotionArrays
     step: float
-    tail: Float
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        object.__setattr__(self, "tail", constant(np.ascontiguousarray(self.tail)))
+    tail = Shown[Float]()
 
     def __repr__(self) -> str:
         where = "" if self.mode is None else f" on mode {self.mode}"
@@ -240,51 +231,6 @@ class MotionClass(Result):
             lines.append(Line(where, 2.0 * np.pi * where, float(np.sqrt(2.0 * power))))
         lines.sort(key=lambda line: line.amplitude, reverse=True)
         return [line for line in lines[:count] if line.amplitude >= floor * lines[0].amplitude]
-
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
-
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add what follows from the other variables: nothing here.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions start_number, state_entry, dof and time.
-        """
-        import xarray as xr
-
-        return xr.Dataset(
-            {
-                **written(FATE_VARIABLES, self.arrays),
-                "tail": (
-                    ("time", "dof"),
-                    self.tail.copy(),
-                    {"units": "m", "long_name": "displacement once the motion was decided"},
-                ),
-            },
-            coords={
-                "dof": dof_coordinate(self),
-                "state_entry": names("state_entry", state_names(self.model), "entry of the state"),
-            },
-            attrs=attributes(self, self.settings, "What becomes of a free motion with dry friction")
-            | {"step": self.step},
-        )
-
-    @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the result that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.settings.motion import ClassifySettings
-
-        return cls(
-            **parts(dataset, model),
-            settings=ClassifySettings.stored(settings_of(dataset)),
-            arrays=require_codes(FateArrays(**read(FATE_VARIABLES, dataset))),
-            step=float(dataset.attrs["step"]),
-            tail=dataset["tail"].values,
-        )
 
     def plot(self, dof: str, **options: Unpack[LineOptions]) -> Axes:
         """Draw the spectrum with its lines; see `stickslip.plot.lines`."""

@@ -14,6 +14,7 @@ from stickslip.model.force import force_from_spec
 from stickslip.model.laws import contact_from_spec
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
+from stickslip.results.fields import Columns, Float, column
 from stickslip.results.result import Result
 from stickslip.results.status import Status
 
@@ -26,6 +27,16 @@ if TYPE_CHECKING:
     from stickslip.plot.damper import DamperOptions
 
 __all__ = ["OptimalDamper"]
+
+
+class _Minima(Columns):
+    """The local minima of a peak, the least first."""
+
+    prefix: ClassVar[str] = "minimum_"
+
+    value: Float = column("minimum", "{unit}", "value of the parameter at a minimum")
+    omega: Float = column("minimum", "rad/s", "angular frequency of a minimum", least=0.0)
+    amplitude: Float = column("minimum", "m", "amplitude of a minimum", least=0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -127,14 +138,9 @@ class OptimalDamper(Result):
         """
         dataset = self.curve.to_dataset(derived=derived)
         unit = self.curve.settings.variation.unit
-        for name, units, meaning in (
-            ("value", unit, "value of the parameter at a minimum"),
-            ("omega", "rad/s", "angular frequency of a minimum"),
-            ("amplitude", "m", "amplitude of a minimum"),
-        ):
-            numbers = np.array([getattr(one, name) for one in self.minima])
-            about = {"units": units, "long_name": meaning}
-            dataset[f"minimum_{name}"] = ("minimum", numbers, about)
+        columns = zip(LeastPeak._fields, np.array(self.minima).T, strict=True)
+        minima = _Minima(**dict(columns))
+        dataset = dataset.assign(minima.variables({"unit": unit}))
         bounds = {"units": unit, "long_name": "between which values the least was looked for"}
         dataset["bounds"] = ("bound", np.array(self.bounds), bounds)
         given = self.curve.model
@@ -181,8 +187,9 @@ class OptimalDamper(Result):
             for name, value in dataset.attrs.items()
             if name.startswith(prefix)
         }
-        columns = [dataset[f"minimum_{name}"].values for name in LeastPeak._fields]
-        minima = tuple(LeastPeak(*map(float, row)) for row in zip(*columns, strict=True))
+        columns = _Minima.read(dataset)
+        rows = zip(columns.value, columns.omega, columns.amplitude, strict=True)
+        minima = tuple(LeastPeak(*map(float, row)) for row in rows)
         if not minima:
             raise ValueError("no minimum")
         low, high = map(float, dataset["bounds"].values)

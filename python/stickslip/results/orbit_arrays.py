@@ -2,75 +2,79 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Self
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.results.arrays import Arrays, Complex, Float, Int
+from stickslip.results.arrays import Arrays, Bool, Code, Complex, Float, Int
+from stickslip.results.events import KINDS
+from stickslip.results.fields import Computed, column
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
-    from stickslip import _core
+    import xarray as xr
 
 __all__ = ["OrbitArrays"]
 
 
-@dataclass(frozen=True, eq=False)
 class OrbitArrays(Arrays):
     """The numbers of exact orbits: those of a forced response, and what only orbits have.
 
-    A state is (x, v, f) of all N degrees of freedom and n_p contact points, s = 2 N + n_p numbers.
-    At points without an orbit everything but `omega`, `status`, `residual` and `iterations` is
-    not-a-number, and there are no events.
+    A state is (x, v, f) of all degrees of freedom and contact points. At points without an orbit
+    everything but `omega`, `status`, `residual` and `iterations` is not-a-number, and there are no
+    events.
     """
 
-    range: Float
-    """(n, n_o, 2) Lowest and highest displacement over the period [m]."""
-    state: Float
-    """(n, s) State at t = 0 [m, m/s, N]."""
-    multipliers: Complex
-    """(n, s) Floquet multipliers over the period: the neutral ones, then by falling modulus."""
-    neutral: Int
-    """(n,) How many multipliers are neutral, exactly 1."""
-    work: Float
-    """(n,) Work of the external forces per period [J]."""
-    viscous: Float
-    """(n,) Energy lost to the damping matrix per period [J]."""
-    event_offset: Int
-    """(n+1,) Events of point i are those from event_offset[i] to event_offset[i+1]."""
-    event_time: Float
-    """(E,) Time of each event, from 0 to the period [s]."""
-    event_point: Int
-    """(E,) Contact point of each event, counted over all contacts."""
-    event_kind: NDArray[np.uint8]
-    """(E,) What happens: 0 sticks, 1 slips forward, 2 slips backward."""
+    labels: ClassVar[Mapping[str, Sequence[str]]] = {"side": ("lowest", "highest")}
+
+    harmonics: Int = column(
+        "omega", "1", "highest harmonic reported", least=0, file_name="harmonics_kept"
+    )
+    residual: Float = column(
+        "omega", "1", "gap of the orbit after a period, relative to the motion", least=0.0
+    )
+    iterations: Int = column("omega", "1", "iterations of shooting", least=0)
+    error_estimate: Float = column(
+        "omega dof", "m", "what the gap of the orbit could still change", least=0.0
+    )
+    range: Float = column("omega dof side", "m", "lowest and highest displacement over the period")
+    state: Float = column("omega state_entry", "1", "state at t = 0 (x in m, v in m/s, f in N)")
+    multipliers: Complex = column(
+        "omega multiplier",
+        "1",
+        "Floquet multipliers over the period, the neutral ones first, then by falling modulus",
+    )
+    neutral: Int = column("omega", "1", "how many multipliers are neutral, exactly 1", least=0)
+    work: Float = column("omega", "J", "work of the external forces per period")
+    viscous: Float = column("omega", "J", "energy lost to damping per period")
+    event_offset: Int = column("boundary", "1", "first event of each point", least=0)
+    event_time: Float = column("event", "s", "time of the event in the period", least=0.0)
+    event_point: Int = column(
+        "event", "1", "contact point, over all contacts", least=0, most="point"
+    )
+    event_kind: Code = column("event", "1", "what happens", codes=KINDS)
 
     @classmethod
-    def of_orbits(cls, solution: _core.Orbits) -> Self:
-        """Take over what the core returns, blanking the numbers that mean nothing.
-
-        Parameters
-        ----------
-        solution : _core.Orbits
-            What the core returns.
-
-        Returns
-        -------
-        OrbitArrays
-            Copies.
-        """
-        per_point = [entry.name for entry in fields(cls) if not entry.name.startswith("event")]
-        values: dict[str, Any] = {name: getattr(solution, name) for name in per_point}
-        status = values["status"]
+    def of(cls, solution: Computed, **more: NDArray[Any]) -> Self:
+        """Take over what the core returns, blanking the numbers that mean nothing."""
+        values = {**solution.columns, **more}
+        status, counts = values["status"], values.pop("event_count")
         status[status == Status.STALLED.code] = Status.ORBIT_STALLED.code
         solved = status == Status.CONVERGED.code
+        chosen = np.repeat(solved, counts)
+        for name in ("event_time", "event_point", "event_kind"):
+            values[name] = values[name][chosen]
+        values["event_offset"] = np.append(0, np.cumsum(np.where(solved, counts, 0)))
+        # Orbits are not marched.
+        values["sampling_error"] = np.zeros_like(values["error_estimate"])
         for name in (
             "displacement",
             "contact_displacement",
             "contact_force",
             "error_estimate",
+            "sampling_error",
             "slip_fraction",
             "dissipation",
             "range",
@@ -82,17 +86,19 @@ class OrbitArrays(Arrays):
             blank = complex(np.nan, np.nan) if values[name].dtype.kind == "c" else np.nan
             values[name][~solved] = blank
         values["neutral"][~solved] = 0
-        return cls(**values, **_events(solution, solved))
+        return cls(**{name: values[name] for name in cls.table()})
 
+    @classmethod
+    def read(cls, dataset: xr.Dataset, **more: Any) -> Self:
+        """Return the columns that a dataset holds; see `Columns.read`."""
+        arrays = super().read(dataset, **more)
+        ends, events = arrays.event_offset, arrays.event_time.size
+        divided = ends.size == arrays.omega.size + 1 and ends[0] == 0 and ends[-1] == events
+        if not divided or (np.diff(ends) < 0).any():
+            raise ValueError(f"event_offset does not divide the {events} events")
+        return arrays
 
-def _events(solution: _core.Orbits, solved: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
-    """Return the events of the points that are solved."""
-    offsets, time, point, kind = solution.events
-    counts = np.where(solved, np.diff(offsets), 0)
-    chosen = np.repeat(solved, np.diff(offsets))
-    return {
-        "event_offset": np.concatenate(([0], np.cumsum(counts))).astype(np.int64),
-        "event_time": time[chosen],
-        "event_point": point[chosen],
-        "event_kind": kind[chosen],
-    }
+    @property
+    def known(self) -> Bool:
+        """(n,) Whether the multipliers of a point are known."""
+        return self.solved

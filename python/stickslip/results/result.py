@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from os import PathLike
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,22 +17,27 @@ from numpy.typing import NDArray
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
-from stickslip.results.diagnostic import Diagnostic
+from stickslip.results.dataset import attributes, coordinates, require_fit, settings_of
+from stickslip.results.diagnostic import Diagnostic, from_attributes
+from stickslip.results.fields import Columns
+from stickslip.settings.settings import Settings
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Result"]
+__all__ = ["Attributes", "ColumnResult", "Result"]
 
 Kind = TypeVar("Kind", bound=np.generic)
+Attributes: TypeAlias = Mapping[str, Callable[[Any], object]]
+"""Attributes of a result that are attributes of its dataset, with their types."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Result(ABC):
     """A computed motion: immutable, with what it belongs to and what it took for granted.
 
-    A further kind of result is a subclass with `kind`, `to_dataset` and `from_dataset`, and a line
-    in `stickslip.results.store.KINDS`; `save` and `load` then work.
+    A further kind of result is a subclass of `ColumnResult` and a line in
+    `stickslip.results.store.KINDS`; `to_dataset`, `save` and `load` then work.
 
     Attributes
     ----------
@@ -176,3 +182,86 @@ class Result(ABC):
         number, point = self.locate(contact)
         columns = values[..., self._columns(number, point)]
         return columns if point is None else columns[..., 0]
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class ColumnResult(Result):
+    """A result whose numbers are columns, from which its dataset and its file follow.
+
+    Attributes
+    ----------
+    settings : Settings
+        How it was computed.
+    arrays : Columns
+        Every number by its name.
+    """
+
+    title: ClassVar[str]
+    """What datasets of this kind are called."""
+    columns: ClassVar[type[Columns]]
+    """The columns of this kind."""
+    settings_class: ClassVar[type[Settings]]
+    """The class of its settings."""
+    attributes: ClassVar[Attributes] = {"interrupted": bool}
+
+    settings: Settings
+    arrays: Columns
+
+    @classmethod
+    def of(cls, solution: object, **given: Any) -> Self:
+        """Return a result with the attributes, timings and counters that the core tells."""
+        names = {"timings", "counters", *cls.attributes} - set(given)
+        return cls(**{name: getattr(solution, name) for name in names}, **given)
+
+    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+        """Return everything as an xarray dataset with units on every variable.
+
+        Parameters
+        ----------
+        derived : bool, optional
+            Whether to add what follows from the other variables, as amplitudes.
+
+        Returns
+        -------
+        xarray.Dataset
+            The columns of `arrays` as variables, with names along their dimensions; everything
+            else as attributes, of which `settings`, `diagnostics`, `timings` and `counters` are
+            JSON texts. All numbers are copies.
+        """
+        import xarray as xr
+
+        dataset = xr.Dataset(
+            self.arrays.variables(self._words()) | self._further_variables(derived=derived),
+            attrs=attributes(self),
+        )
+        return dataset.assign_coords(coordinates(self, dataset.sizes))
+
+    @classmethod
+    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+        """Return the result that a dataset holds; see `Result.from_dataset`."""
+        told = dataset.attrs
+        arguments: dict[str, Any] = {name: of(told[name]) for name, of in cls.attributes.items()}
+        return cls(
+            model=model,
+            arrays=cls.columns.read(dataset),
+            dofs=require_fit(dataset, model),
+            settings=settings_of(cls, dataset),
+            timings=json.loads(told["timings"]),
+            counters=json.loads(told["counters"]),
+            diagnostics=from_attributes(told),
+            **arguments,
+            **cls._further_arguments(dataset),
+        )
+
+    def _words(self) -> Mapping[str, str]:
+        """Return the words that units and meanings of columns leave open."""
+        return {}
+
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        """Return the variables that are no columns, with or without those that can be derived."""
+        return {}
+
+    @classmethod
+    def _further_arguments(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return what `_further_variables` wrote and cannot be derived."""
+        return {}

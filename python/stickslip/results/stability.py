@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from stickslip.results.arrays import Bool, Complex, Int, constant
 
 __all__ = [
     "STATES",
+    "FloquetStability",
     "States",
     "flag_variable",
     "stability_counts",
@@ -74,6 +76,54 @@ def truth_of(states: States) -> NDArray[np.object_]:
     values = np.empty(states.shape, dtype=object)
     values[:] = [STATES[name].truth for name in states.tolist()]
     return constant(values)
+
+
+class FloquetStability:
+    """The part of a result that concerns the stability of its motions."""
+
+    arrays: Any
+
+    @property
+    def multipliers(self) -> Complex:
+        """Floquet multipliers over the full period, one row per motion.
+
+        First the `neutral` ones, then by falling modulus: what a small disturbance is multiplied by
+        in a period. A contact that slips forgets its force, which gives a multiplier of zero. Of
+        limit cycles the trivial 1 of the phase is left out. Not-a-number where they are not known.
+        """
+        multipliers: Complex = self.arrays.multipliers
+        return multipliers
+
+    @property
+    def neutral(self) -> Int:
+        """How many multipliers are neutral, exactly 1, per motion. They decide nothing.
+
+        A contact that never slips keeps any small change of its mean force for ever, and the motion
+        around it is the same. A structure that nothing holds stays where it is pushed to, or drifts
+        on where nothing slows it: its vibration is the same too.
+        """
+        neutral: Int = self.arrays.neutral
+        return neutral
+
+    @cached_property
+    def stability(self) -> States:
+        """State of each motion, "stable", "unstable" or "not decided".
+
+        Stable are motions whose multipliers but the neutral ones lie inside the unit circle. Not
+        decided are those without multipliers, as points that are not solved, travelling waves and
+        cycles with ``stability=False``, and those whose largest multiplier is 1 to rounding, as of
+        structures without damping whose contacts stick.
+        """
+        return stability_of(self.multipliers, self.neutral, self.arrays.known)
+
+    @cached_property
+    def stable(self) -> NDArray[np.object_]:
+        """`stability` as True, False or None (not decided) per motion.
+
+        Of Python's objects: write ``result.stable == True`` or ``result.stability == "stable"`` to
+        choose motions.
+        """
+        return truth_of(self.stability)
 
 
 def stability_counts(states: States) -> str:

@@ -15,7 +15,6 @@ from stickslip.checks import brief, file_path, is_file, listed
 from stickslip.errors import ModelError
 from stickslip.files import refusal, require_place, write
 from stickslip.io.hdf5 import require_held, require_own
-from stickslip.results.bounds import require_bounds
 from stickslip.results.seal import SEAL, require_harmless, seal_variable, sealed, sealed_whole
 from stickslip.results.stored_model import model_of, model_variables
 
@@ -111,7 +110,6 @@ def load(path: str | os.PathLike[str]) -> Any:
     dataset = _read(source)
     kind = _required_kind(dataset, source)
     try:
-        require_bounds(dataset)
         return kind.from_dataset(_joined(dataset), model_of(dataset))
     except Exception as error:
         # What a file without a seal holds may lead the code below anywhere, RecursionError and
@@ -220,6 +218,9 @@ def _joined(dataset: xr.Dataset) -> xr.Dataset:
     names = [str(name) for name in dataset.data_vars if str(name).endswith("_real")]
     for name in names:
         real, imag = dataset[name], dataset[name.replace("_real", "_imag")]
+        for part in (real, imag):
+            if part.dtype != np.float64:
+                raise ValueError(f"{part.name} holds {part.dtype.name} instead of float64")
         # Adding 1j * imag would turn an infinite or a negative zero into something else.
         values = np.empty(real.shape, dtype=np.complex128)
         values.real, values.imag = real.values, imag.values

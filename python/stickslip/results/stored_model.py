@@ -13,6 +13,7 @@ from stickslip.model.damping import law_from_spec
 from stickslip.model.force import force_from_spec
 from stickslip.model.laws import contact_from_spec
 from stickslip.model.structure import Structure
+from stickslip.results.fields import Float
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,7 +100,7 @@ def _read_bladed(dataset: xr.Dataset, prefix: str = "") -> BladedDisk:
     settings = _read_texts(dataset, "disk")[0]
     interface = None
     if "interface_stiffness" in dataset:
-        interface = Interface(**{name: dataset[f"interface_{name}"].values for name in _MATRICES})
+        interface = Interface(**{name: _real(dataset, f"interface_{name}") for name in _MATRICES})
     return BladedDisk(
         _structure(dataset),
         settings["sectors"],
@@ -133,7 +134,7 @@ def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
     from stickslip.disk.mistuned import rebuilt
 
     disk = _read_bladed(dataset, "sector_")
-    stacks = [dataset[f"blade_{name}"].values for name in ("mass", "stiffness", "damping")]
+    stacks = [_real(dataset, f"blade_{name}") for name in ("mass", "stiffness", "damping")]
     known = np.zeros(disk.sectors)
     if "blade_proportional" in dataset:  # files of version 0.1 have none
         known = dataset["blade_proportional"].values
@@ -176,13 +177,21 @@ def _structure_variables(structure: Structure) -> dict[Hashable, object]:
 def _structure(dataset: xr.Dataset) -> Structure:
     laws = _read_texts(dataset, "damping_law") if "damping_law" in dataset else []
     return Structure.of_law(
-        dataset["mass"].values,
-        dataset["stiffness"].values,
-        dataset["damping"].values,
+        _real(dataset, "mass"),
+        _real(dataset, "stiffness"),
+        _real(dataset, "damping"),
         list(map(str, dataset["row"].values)),
         law_from_spec(laws[0]) if laws else None,
         "damping_proportional" in dataset or None,
     )
+
+
+def _real(dataset: xr.Dataset, name: str) -> Float:
+    """Return a matrix, or several, of real numbers."""
+    values: Float = dataset[name].values
+    if values.dtype != np.float64:
+        raise ValueError(f"{name} holds {values.dtype.name} instead of float64")
+    return values
 
 
 def _parts(dataset: xr.Dataset, prefix: str = "") -> tuple[list[Any], list[Any]]:

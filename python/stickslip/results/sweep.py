@@ -5,25 +5,26 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Integral
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 
 from stickslip.checks import real_number
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Arrays, Bool, Float, Int, constant
-from stickslip.results.result import Result
+from stickslip.results.fields import Columns, Shown
+from stickslip.results.periodic import PeriodicMotions
+from stickslip.results.result import Attributes
 from stickslip.results.status import Status
-
-if TYPE_CHECKING:
-    from stickslip.settings.balance import ForcedSettings
-    from stickslip.settings.orbits import ExactSettings
+from stickslip.settings.balance import ForcedSettings
+from stickslip.settings.orbits import ExactSettings
+from stickslip.settings.settings import Settings
 
 __all__ = ["Sweep"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Sweep(Result):
+class Sweep(PeriodicMotions):
     """The points of a result.
 
     Attributes
@@ -34,38 +35,18 @@ class Sweep(Result):
         Every number by its name.
     """
 
+    columns: ClassVar[type[Columns]] = Arrays
+    settings_class: ClassVar[type[Settings]] = ForcedSettings
+    attributes: ClassVar[Attributes] = {"interrupted": bool, "half_wave": bool}
+
     settings: ForcedSettings | ExactSettings
     arrays: Arrays
 
-    @property
-    def omega(self) -> Float:
-        """Angular frequency per point, shape (n,) [rad/s], in the order of the sweep."""
-        return self.arrays.omega
-
-    @property
-    def harmonics(self) -> Int:
-        """Highest harmonic kept per point, shape (n,)."""
-        return self.arrays.harmonics
-
-    @property
-    def samples(self) -> Int:
-        """Samples per period of marched friction laws per point, shape (n,); 0 if not marched."""
-        return self.arrays.samples
-
-    @property
-    def residual(self) -> Float:
-        """Relative residual of the balance equations per point, shape (n,)."""
-        return self.arrays.residual
-
-    @property
-    def iterations(self) -> Int:
-        """Iterations used per point, shape (n,)."""
-        return self.arrays.iterations
-
-    @cached_property
-    def status(self) -> tuple[Status, ...]:
-        """How each point ended; ``status[i].advice`` says what to do about it."""
-        return tuple(Status.from_code(int(code)) for code in self.arrays.status)
+    omega = Shown[Float]()
+    harmonics = Shown[Int]()
+    samples = Shown[Int]()
+    residual = Shown[Float]()
+    iterations = Shown[Int]()
 
     @cached_property
     def converged(self) -> Bool:

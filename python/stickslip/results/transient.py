@@ -2,37 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal, Self, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 
 from stickslip.checks import choice, text, whole_number
 from stickslip.errors import ModelError
-from stickslip.model import Model, PointRef
+from stickslip.model import PointRef
 from stickslip.model.state import State
-from stickslip.results.arrays import Float, Measure, constant
+from stickslip.results.arrays import Float, Measure, amplitude_in
 from stickslip.results.events import Events
-from stickslip.results.result import Result
+from stickslip.results.fields import Shown
+from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.spectrum import Spectrum, spectrum_of
 from stickslip.results.transient_arrays import TransientArrays
 from stickslip.results.transient_status import Settled, TransientStatus
+from stickslip.settings.motion import TransientSettings
 
 if TYPE_CHECKING:
     from typing import Unpack
 
-    import xarray as xr
     from matplotlib.axes import Axes
 
     from stickslip.plot import HistoryOptions, PoincareOptions, SpectrumOptions
-    from stickslip.settings.motion import TransientSettings
 
 __all__ = ["Transient"]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Transient(Result):
+class Transient(ColumnResult):
     """Motion under periodic forces from a start state, period after period.
 
     Degrees of freedom are addressed by name, contacts by position or name, and one contact point as
@@ -51,6 +52,10 @@ class Transient(Result):
     """
 
     kind: ClassVar[str] = "transient"
+    title = "Transient motion of a structure with dry friction"
+    columns = TransientArrays
+    settings_class = TransientSettings
+    attributes: ClassVar[Attributes] = {"interrupted": bool, "settled": bool, "unbounded": bool}
 
     settings: TransientSettings
     arrays: TransientArrays
@@ -78,10 +83,7 @@ class Transient(Result):
         """Number of periods computed."""
         return self.arrays.change.size
 
-    @property
-    def time(self) -> Float:
-        """Instants kept, since the start, shape (n,) [s]."""
-        return self.arrays.time
+    time = Shown[Float]()
 
     @property
     def change(self) -> Float:
@@ -219,10 +221,7 @@ class Transient(Result):
             If there is no such degree of freedom or measure, or the former was not observed.
         """
         choice(measure, "measure", ("half_range", "max"))
-        low, high = self.arrays.range[:, self._column(dof)].T
-        if measure == "max":
-            return constant(np.maximum(np.abs(low), np.abs(high)))
-        return constant(0.5 * (high - low))
+        return amplitude_in(self.arrays.range[:, self._column(dof)], measure)
 
     def amplitude(self, dof: str, measure: Measure = "half_range") -> float:
         """Return the amplitude of a displacement in the last period.
@@ -335,30 +334,12 @@ class Transient(Result):
             rows.append(Settled(dof, float(now), float(change)))
         return rows
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
-        """Return everything as an xarray dataset with units on every variable.
-
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add the amplitude of each period, which follows from the range.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions time, dof, point (of contact), section (start and end of each period),
-            period, state_entry, side and event.
-        """
-        from stickslip.results.transient_dataset import to_dataset
-
-        return to_dataset(self, derived=derived)
-
-    @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the transient that a dataset holds; see `Result.from_dataset`."""
-        from stickslip.results.transient_dataset import from_dataset
-
-        return cls(**from_dataset(dataset, model))
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        if not derived:
+            return {}
+        meaning = "half peak-to-peak amplitude in each period"
+        values = np.stack([self.amplitudes(dof) for dof in self.dofs], axis=1)
+        return {"amplitude": (("period", "dof"), values, {"units": "m", "long_name": meaning})}
 
     def plot(self, dof: str, **options: Unpack[HistoryOptions]) -> Axes:
         """Draw a displacement over time; see `stickslip.plot.history`."""

@@ -1,0 +1,195 @@
+//! Columns of a result: NumPy arrays by name, of which Python takes those that it knows.
+
+use numpy::ndarray::IntoDimension;
+use numpy::{Complex64, Element, PyArray1, PyArrayMethods as _};
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict as _, PyDict};
+use stickslip_core::balance::{Point, PointStatus};
+use stickslip_core::contact::PointState;
+use stickslip_core::motion::Event;
+use stickslip_core::timing::Profile;
+
+const MISSING: Complex64 = Complex64::new(f64::NAN, f64::NAN);
+
+/// Columns that are being written.
+pub struct Columns<'py>(Bound<'py, PyDict>);
+
+impl<'py> Columns<'py> {
+    pub fn new(py: Python<'py>) -> Self {
+        Self(PyDict::new(py))
+    }
+
+    pub fn end(self) -> Py<PyDict> {
+        self.0.unbind()
+    }
+
+    /// One entry per row.
+    pub fn one<T: Element>(&self, name: &str, values: impl IntoIterator<Item = T>) -> PyResult<()> {
+        self.0.set_item(name, PyArray1::from_iter(self.0.py(), values))
+    }
+
+    /// An array of any shape.
+    pub fn shaped<T: Element, const N: usize>(
+        &self,
+        name: &str,
+        shape: [usize; N],
+        mut values: Vec<T>,
+    ) -> PyResult<()>
+    where
+        [usize; N]: IntoDimension,
+    {
+        // Python keeps the vector itself, not the room that it grew in.
+        values.shrink_to_fit();
+        self.0.set_item(name, PyArray1::from_vec(self.0.py(), values).reshape(shape)?)
+    }
+
+    /// Rows of `width` entries; rows that end earlier are filled up.
+    pub fn rows<T: Element + Clone, R: IntoIterator<Item = T>>(
+        &self,
+        name: &str,
+        width: usize,
+        missing: T,
+        rows: impl IntoIterator<Item = R>,
+    ) -> PyResult<()> {
+        let (mut count, mut values) = (0, Vec::new());
+        for row in rows {
+            count += 1;
+            values.extend(row);
+            values.resize(count * width, missing.clone());
+        }
+        self.shaped(name, [count, width], values)
+    }
+
+    /// Real numbers, not-a-number where a row has none.
+    pub fn numbers<'a>(
+        &self,
+        name: &str,
+        width: usize,
+        rows: impl IntoIterator<Item = &'a [f64]>,
+    ) -> PyResult<()> {
+        self.rows(name, width, f64::NAN, rows.into_iter().map(|row| row.iter().copied()))
+    }
+
+    /// Lowest and highest values `(rows, width, 2)`.
+    pub fn ranges<'a>(
+        &self,
+        width: usize,
+        rows: impl IntoIterator<Item = &'a [[f64; 2]]>,
+    ) -> PyResult<()> {
+        let (mut count, mut values) = (0, Vec::new());
+        for row in rows {
+            count += 1;
+            values.extend(row.iter().flatten());
+            values.resize(count * width * 2, f64::NAN);
+        }
+        self.shaped("range", [count, width, 2], values)
+    }
+
+    /// Floquet multipliers, of which the neutral ones come first.
+    pub fn multipliers<'a>(
+        &self,
+        width: usize,
+        rows: impl Iterator<Item = (&'a [Complex64], usize)> + Clone,
+    ) -> PyResult<()> {
+        let values = rows.clone().map(|(values, _)| values.iter().copied());
+        self.rows("multipliers", width, MISSING, values)?;
+        self.one("neutral", rows.map(|(_, neutral)| neutral as i64))
+    }
+
+    /// Amplitudes `(points, orders, width)` of points that each have their own highest order,
+    /// padded with zeros to the highest of all.
+    fn amplitudes<'a>(
+        &self,
+        name: &str,
+        width: usize,
+        points: impl ExactSizeIterator<Item = (usize, &'a [Complex64])> + Clone,
+    ) -> PyResult<()> {
+        let count = points.len();
+        let orders = 1 + points.clone().map(|(highest, _)| highest).max().unwrap_or(0);
+        let mut values = Vec::with_capacity(count * orders * width);
+        for (n, (highest, amplitudes)) in points.enumerate() {
+            for order in 0..=highest {
+                values.extend(amplitudes.iter().skip(order).step_by(highest + 1).take(width));
+            }
+            values.resize((n + 1) * orders * width, Complex64::new(0.0, 0.0));
+        }
+        self.shaped(name, [count, orders, width], values)
+    }
+
+    /// What every periodic motion has.
+    pub fn responses<'a>(
+        &self,
+        points: impl ExactSizeIterator<Item = &'a Point> + Clone,
+        observed: usize,
+        contacts: usize,
+    ) -> PyResult<()> {
+        let all = || points.clone();
+        self.one("omega", all().map(|p| p.omega))?;
+        self.one("harmonics", all().map(|p| p.harmonics as i64))?;
+        self.one("samples", all().map(|p| p.samples.unwrap_or(0) as i64))?;
+        self.one("status", all().map(|p| status_code(p.status)))?;
+        self.one("residual", all().map(|p| p.residual))?;
+        self.one("iterations", all().map(|p| p.iterations as i64))?;
+        let series = |of: fn(&Point) -> &[Complex64]| all().map(move |p| (p.harmonics, of(p)));
+        self.amplitudes("displacement", observed, series(|p| &p.displacement))?;
+        self.amplitudes("contact_displacement", contacts, series(|p| &p.contact_displacement))?;
+        self.amplitudes("contact_force", contacts, series(|p| &p.contact_force))?;
+        self.numbers("error_estimate", observed, all().map(|p| p.error_estimate.as_slice()))?;
+        self.numbers("sampling_error", observed, all().map(|p| p.sampling_error.as_slice()))?;
+        let share = all().map(|p| p.contacts.iter().map(|c| c.slip_fraction));
+        self.rows("slip_fraction", contacts, f64::NAN, share)?;
+        let work = all().map(|p| p.contacts.iter().map(|c| c.dissipation));
+        self.rows("dissipation", contacts, f64::NAN, work)
+    }
+
+    /// Events between stick and slip.
+    pub fn events<'a>(&self, events: impl Iterator<Item = &'a Event> + Clone) -> PyResult<()> {
+        let kind = |event: &Event| match event.state {
+            PointState::Stuck => 0_u8,
+            PointState::Forward => 1,
+            PointState::Backward => 2,
+        };
+        self.one("event_time", events.clone().map(|event| event.time))?;
+        self.one("event_point", events.clone().map(|event| event.point as i64))?;
+        self.one("event_kind", events.map(kind))
+    }
+}
+
+/// Number of a status, as Python knows it.
+pub fn status_code(status: PointStatus) -> u8 {
+    match status {
+        PointStatus::Converged => 0,
+        PointStatus::Stalled => 1,
+        PointStatus::Singular => 2,
+        PointStatus::NotComputed => 3,
+        PointStatus::HarmonicsLimit => 4,
+        // 5 is an orbit that did not close.
+        PointStatus::SamplesLimit => 6,
+        PointStatus::StepsLimit => 7,
+    }
+}
+
+/// Seconds by stage.
+pub fn timings(py: Python<'_>, profile: &Profile) -> PyResult<Py<PyDict>> {
+    let stages = [
+        ("compliance", profile.compliance),
+        ("law", profile.law),
+        ("linear_solve", profile.linear_solve),
+        ("recovery", profile.recovery),
+        ("total", profile.total),
+    ];
+    Ok(stages.map(|(stage, time)| (stage, time.as_secs_f64())).into_py_dict(py)?.unbind())
+}
+
+/// Work by kind.
+pub fn counters(py: Python<'_>, profile: &Profile, iterations: usize) -> PyResult<Py<PyDict>> {
+    let counters = [
+        ("iterations", iterations),
+        ("evaluations", profile.evaluations),
+        ("factorisations", profile.factorisations),
+        ("updates", profile.updates),
+        ("restarts", profile.restarts),
+        ("homotopies", profile.homotopies),
+    ];
+    Ok(counters.into_py_dict(py)?.unbind())
+}
