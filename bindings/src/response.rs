@@ -209,6 +209,7 @@ pub fn status_code(status: PointStatus) -> u8 {
         // 5 is an orbit that did not close.
         PointStatus::SamplesLimit => 6,
         PointStatus::StepsLimit => 7,
+        PointStatus::EffortLimit => 8,
     }
 }
 
@@ -240,6 +241,7 @@ pub fn counters<'py>(
     counters.set_item("updates", profile.updates)?;
     counters.set_item("restarts", profile.restarts)?;
     counters.set_item("homotopies", profile.homotopies)?;
+    counters.set_item("orbits", profile.orbits)?;
     Ok(counters)
 }
 
@@ -277,11 +279,10 @@ pub fn forced_response(
     };
     let model = Arc::clone(&problem.model);
     swept(py, progress.as_ref(), observe.len(), &model, move |model, kept, look| {
-        let rescue = Rescue::new(model, settings.residual, look);
-        let fresh_start = |omega: f64, highest: usize| rescue.amplitudes(omega, highest);
+        let orbits = Rescue::new(model, settings.residual, &observe, look);
         let balance = ForcedBalance::new(model, settings, &observe)?
             .watched(look)
-            .rescued(&fresh_start)
+            .rescued(&orbits)
             .keeping(kept);
         match range {
             Some((from, to)) => sweep_range(balance, from, to),

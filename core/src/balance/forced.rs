@@ -7,7 +7,7 @@ use super::scale::{Scale, OF_HARMONICS};
 use super::settings::{Method, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
-use super::{FreshStart, Kept, Progress};
+use super::{ExactOrbits, Kept, Progress};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{broyden, homotopy, newton, norm, Outcome, Report, System as _};
@@ -33,7 +33,7 @@ pub struct ForcedBalance<'a> {
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
-    rescue: &'a FreshStart<'a>,
+    pub(super) rescue: Option<&'a dyn ExactOrbits>,
     share: f64,
     pub(super) profile: Profile,
 }
@@ -80,7 +80,7 @@ impl<'a> ForcedBalance<'a> {
             scale: Scale::default(),
             progress: &|_| true,
             kept: None,
-            rescue: &|_, _| None,
+            rescue: None,
             share: 0.0,
             profile: Profile::default(),
         })
@@ -100,10 +100,11 @@ impl<'a> ForcedBalance<'a> {
         self
     }
 
-    /// Has `rescue` asked for a start where Newton's method fails, before any homotopy.
+    /// Has `rescue` asked for a start where Newton's method fails, before any homotopy, and for the
+    /// answer where automatic harmonics would cost more.
     #[must_use]
-    pub fn rescued(mut self, rescue: &'a FreshStart<'a>) -> Self {
-        self.rescue = rescue;
+    pub fn rescued(mut self, rescue: &'a dyn ExactOrbits) -> Self {
+        self.rescue = Some(rescue);
         self
     }
 
@@ -161,36 +162,66 @@ impl<'a> ForcedBalance<'a> {
     pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
         let mut resolution = self.ladder.first();
         if self.ladder.is_fixed() {
-            return self.solve_with(resolution, omega, start);
+            return self.solve_with(resolution, omega, start, false);
         }
         let mut start = start.cloned();
-        let (mut stalled, mut iterations) = (false, 0);
+        let (mut iterations, mut stalled) = (0, false);
+        let mut below: Option<Point> = None;
         loop {
-            let mut point = self.solve_with(resolution, omega, start.as_ref())?;
+            let mut point = self.solve_with(resolution, omega, start.as_ref(), below.is_some())?;
             iterations += point.iterations;
             point.iterations = iterations;
             let more = match point.status {
                 PointStatus::Converged => match self.judge(&point) {
-                    Verdict::More(more) => {
-                        start = point.unknowns;
-                        more
-                    }
+                    Verdict::Enough => return Ok(point),
                     Verdict::Limit(limit) => {
+                        if let Some(exact) = self.orbit_beyond(&point, limit) {
+                            return Ok(self.ended(exact, resolution, iterations));
+                        }
                         point.status = limit;
                         return Ok(point);
                     }
-                    Verdict::Enough => return Ok(point),
+                    Verdict::More(more) => more,
                 },
                 // One more rung may be what a stalled point lacks; it cures no singular equations.
-                PointStatus::Stalled if !stalled => {
+                PointStatus::Stalled => {
+                    let last = below.as_ref().unwrap_or(&point);
+                    if let Some(exact) = self.orbit_below(last, f64::INFINITY) {
+                        return Ok(self.ended(exact, resolution, iterations));
+                    }
+                    let above = self.ladder.above(resolution).filter(|_| !stalled);
                     stalled = true;
-                    let Some(above) = self.ladder.above(resolution) else { return Ok(point) };
-                    above
+                    match (above.filter(|above| self.is_affordable(*above)), below.take()) {
+                        (Some(above), solved) => {
+                            below = solved;
+                            above
+                        }
+                        (None, Some(mut solved)) => {
+                            solved.status = PointStatus::EffortLimit;
+                            let at = solved.resolution();
+                            return Ok(self.ended(solved, at, iterations));
+                        }
+                        (None, None) => return Ok(point),
+                    }
                 }
                 _ => return Ok(point),
             };
+            if point.is_solved() {
+                if let Some(last) = self.instead_of(more, &point) {
+                    return Ok(self.ended(last, resolution, iterations));
+                }
+                start.clone_from(&point.unknowns);
+                below = Some(point);
+            }
             resolution = more;
         }
+    }
+
+    /// A point that ends the climb; the next one begins with the harmonics at which it ended.
+    fn ended(&mut self, mut point: Point, at: Resolution, iterations: usize) -> Point {
+        self.ladder.stay(at);
+        point.iterations = iterations;
+        point
     }
 
     /// What the errors of a solution ask for.
@@ -211,6 +242,7 @@ impl<'a> ForcedBalance<'a> {
         resolution: Resolution,
         omega: f64,
         start: Option<&Unknowns>,
+        refined: bool,
     ) -> Result<Point, Error> {
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
@@ -221,6 +253,7 @@ impl<'a> ForcedBalance<'a> {
         if self.settings.method != Method::Newton {
             equations.densify();
         }
+        let start = (start, refined);
         let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
         self.add_profile(&equations.profile);
         Ok(solved)
@@ -241,7 +274,7 @@ impl<'a> ForcedBalance<'a> {
         &mut self,
         equations: &mut Condensed<'_>,
         omega: f64,
-        start: Option<&Unknowns>,
+        (start, refined): (Option<&Unknowns>, bool),
         samples: Option<usize>,
     ) -> Result<Point, Error> {
         let contacts = self.model.compliance().contacts();
@@ -264,10 +297,8 @@ impl<'a> ForcedBalance<'a> {
             report = self.iterate(equations, &mut x);
             report.iterations += spent;
         }
-        if has_failed(&report) {
-            self.start_again(equations, omega, &mut x, &mut report);
-        }
-        if has_failed(&report) {
+        let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
+        if has_failed(&report) && self.is_worth_a_homotopy(harmonics.highest(), orbit, refined) {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
         }
@@ -306,16 +337,17 @@ impl<'a> ForcedBalance<'a> {
         if_bounded(report, x, equations)
     }
 
-    /// Newton's method from the start that the rescue offers, if it offers one.
+    /// Newton's method from the exact orbit; whether there is one.
     fn start_again(
         &self,
         equations: &mut Condensed<'_>,
         omega: f64,
         x: &mut Vec<f64>,
         report: &mut Report,
-    ) {
+    ) -> bool {
         let harmonics = equations.harmonics();
-        let Some(amplitudes) = (self.rescue)(omega, harmonics.highest()) else { return };
+        let orbit = self.rescue.and_then(|orbits| orbits.orbit(omega, harmonics.highest()));
+        let Some(amplitudes) = orbit.map(|orbit| orbit.contact_displacement) else { return false };
         let orders = harmonics.highest() + 1;
         let mut trial = vec![0.0; x.len()];
         let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
@@ -327,6 +359,7 @@ impl<'a> ForcedBalance<'a> {
             (report.outcome, report.residual) = (again.outcome, again.residual);
             *x = trial;
         }
+        true
     }
 
     /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact

@@ -319,6 +319,7 @@ def _result(
             half_wave=solution.half_wave,
             missing=missing,
             interrupted=solution.interrupted,
+            orbits=solution.counters["orbits"],
         ),
     )
 
