@@ -48,6 +48,22 @@ pub(crate) struct Memory {
     pub(crate) profile: Profile,
 }
 
+/// A point on its way to enough harmonics and samples.
+#[derive(Default)]
+struct Climb {
+    iterations: usize,
+    /// The last rung that was solved.
+    below: Option<Point>,
+    stalled: bool,
+    from_below: bool,
+}
+
+/// Where a climb goes on.
+enum Way {
+    On(Resolution),
+    End(Box<Point>),
+}
+
 impl<'a> ForcedBalance<'a> {
     /// Prepares the balance; displacements are recovered at the DOFs `observe`.
     ///
@@ -162,65 +178,70 @@ impl<'a> ForcedBalance<'a> {
     pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
         let mut resolution = self.ladder.first();
         if self.ladder.is_fixed() {
-            return self.solve_with(resolution, omega, start, false);
+            return self.solve_with(resolution, omega, start);
         }
         let mut start = start.cloned();
-        let (mut iterations, mut stalled) = (0, false);
-        let mut below: Option<Point> = None;
+        let mut climb = Climb::default();
         loop {
-            let mut point = self.solve_with(resolution, omega, start.as_ref(), below.is_some())?;
-            iterations += point.iterations;
-            point.iterations = iterations;
-            let more = match point.status {
+            let mut point = self.solve_with(resolution, omega, start.as_ref())?;
+            climb.iterations += point.iterations;
+            point.iterations = climb.iterations;
+            resolution = match point.status {
                 PointStatus::Converged => match self.judge(&point) {
                     Verdict::Enough => return Ok(point),
                     Verdict::Limit(limit) => {
-                        if let Some(exact) = self.orbit_beyond(&point, limit) {
-                            return Ok(self.ended(exact, resolution, iterations));
-                        }
+                        let exact = self.orbit_beyond(&point, limit);
                         point.status = limit;
-                        return Ok(point);
+                        return Ok(self.ended(exact.unwrap_or(point), resolution, &climb));
                     }
-                    Verdict::More(more) => more,
+                    Verdict::More(more) => {
+                        if let Some(last) = self.instead_of(more, &point) {
+                            return Ok(self.ended(last, resolution, &climb));
+                        }
+                        start.clone_from(&point.unknowns);
+                        climb.below = Some(point);
+                        more
+                    }
                 },
-                // One more rung may be what a stalled point lacks; it cures no singular equations.
-                PointStatus::Stalled => {
-                    let last = below.as_ref().unwrap_or(&point);
-                    if let Some(exact) = self.orbit_below(last, f64::INFINITY) {
-                        return Ok(self.ended(exact, resolution, iterations));
-                    }
-                    let above = self.ladder.above(resolution).filter(|_| !stalled);
-                    stalled = true;
-                    match (above.filter(|above| self.is_affordable(*above)), below.take()) {
-                        (Some(above), solved) => {
-                            below = solved;
-                            above
-                        }
-                        (None, Some(mut solved)) => {
-                            solved.status = PointStatus::EffortLimit;
-                            let at = solved.resolution();
-                            return Ok(self.ended(solved, at, iterations));
-                        }
-                        (None, None) => return Ok(point),
-                    }
-                }
+                PointStatus::Stalled => match self.past(&point, resolution, &mut climb) {
+                    Way::On(next) => next,
+                    Way::End(last) => return Ok(self.ended(*last, resolution, &climb)),
+                },
                 _ => return Ok(point),
             };
-            if point.is_solved() {
-                if let Some(last) = self.instead_of(more, &point) {
-                    return Ok(self.ended(last, resolution, iterations));
-                }
-                start.clone_from(&point.unknowns);
-                below = Some(point);
+        }
+    }
+
+    /// The way on from a point that stalled: the exact orbit, once a rung more, which may be what it
+    /// lacks, or the rungs below. What is below stands if nothing helps.
+    fn past(&mut self, point: &Point, at: Resolution, climb: &mut Climb) -> Way {
+        let solved = climb.below.as_ref().unwrap_or(point);
+        if let Some(exact) = self.orbit_below(solved, f64::INFINITY) {
+            return Way::End(Box::new(exact));
+        }
+        let easy = self.is_worth_a_homotopy(at.harmonics);
+        if climb.below.is_none() && !easy && !climb.from_below {
+            climb.from_below = true;
+            return Way::On(self.ladder.start_over());
+        }
+        match (self.ladder.above(at).filter(|_| easy && !climb.stalled), &climb.below) {
+            (Some(above), _) => {
+                climb.stalled = true;
+                Way::On(above)
             }
-            resolution = more;
+            (None, Some(below)) => {
+                let status = PointStatus::EffortLimit;
+                Way::End(Box::new(Point { status, ..below.clone() }))
+            }
+            (None, None) => Way::End(Box::new(point.clone())),
         }
     }
 
     /// A point that ends the climb; the next one begins with the harmonics at which it ended.
-    fn ended(&mut self, mut point: Point, at: Resolution, iterations: usize) -> Point {
-        self.ladder.stay(at);
-        point.iterations = iterations;
+    fn ended(&mut self, mut point: Point, at: Resolution, climb: &Climb) -> Point {
+        let dear = point.status == PointStatus::EffortLimit;
+        self.ladder.stay(if dear { point.resolution() } else { at });
+        point.iterations = climb.iterations;
         point
     }
 
@@ -242,7 +263,6 @@ impl<'a> ForcedBalance<'a> {
         resolution: Resolution,
         omega: f64,
         start: Option<&Unknowns>,
-        refined: bool,
     ) -> Result<Point, Error> {
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
@@ -253,7 +273,6 @@ impl<'a> ForcedBalance<'a> {
         if self.settings.method != Method::Newton {
             equations.densify();
         }
-        let start = (start, refined);
         let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
         self.add_profile(&equations.profile);
         Ok(solved)
@@ -274,7 +293,7 @@ impl<'a> ForcedBalance<'a> {
         &mut self,
         equations: &mut Condensed<'_>,
         omega: f64,
-        (start, refined): (Option<&Unknowns>, bool),
+        start: Option<&Unknowns>,
         samples: Option<usize>,
     ) -> Result<Point, Error> {
         let contacts = self.model.compliance().contacts();
@@ -290,7 +309,8 @@ impl<'a> ForcedBalance<'a> {
             |unknowns| unknowns.recast(harmonics),
         );
         let mut report = self.iterate(equations, &mut x);
-        if has_failed(&report) && start.is_some() {
+        let patient = self.is_worth_a_homotopy(harmonics.highest());
+        if has_failed(&report) && start.is_some() && patient {
             // A neighbour in another state of the contacts may mislead.
             let spent = report.iterations;
             x = equations.stuck_response().to_vec();
@@ -298,7 +318,9 @@ impl<'a> ForcedBalance<'a> {
             report.iterations += spent;
         }
         let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
-        if has_failed(&report) && self.is_worth_a_homotopy(harmonics.highest(), orbit, refined) {
+        // Where harmonics are chosen an orbit is the answer.
+        let answered = orbit && self.ladder.only_harmonics_climb();
+        if has_failed(&report) && !answered && patient {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
         }
@@ -346,7 +368,7 @@ impl<'a> ForcedBalance<'a> {
         report: &mut Report,
     ) -> bool {
         let harmonics = equations.harmonics();
-        let orbit = self.rescue.and_then(|orbits| orbits.orbit(omega, harmonics.highest()));
+        let orbit = self.orbit_to_start_from(omega, harmonics.highest());
         let Some(amplitudes) = orbit.map(|orbit| orbit.contact_displacement) else { return false };
         let orders = harmonics.highest() + 1;
         let mut trial = vec![0.0; x.len()];

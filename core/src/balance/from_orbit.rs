@@ -3,7 +3,7 @@
 
 use super::forced::ForcedBalance;
 use super::ladder::Resolution;
-use super::price::{Price, HOMOTOPY, TRIFLE};
+use super::price::{Price, TRIFLE};
 use super::scale::OF_HARMONICS;
 use super::settings::HIGHEST_ORDER;
 use super::solution::{Point, PointStatus};
@@ -12,46 +12,55 @@ use crate::contact::Motion;
 use crate::fourier::Harmonics;
 use faer::c64;
 
+/// Changes of state of a contact per period: two stops, and slip in both directions.
+const USUAL_EVENTS: usize = 4;
+
 impl ForcedBalance<'_> {
     /// The point that ends the climb at a solution for which `more` harmonics would be too dear:
     /// the exact orbit, or the solution as it is.
     pub(super) fn instead_of(&mut self, more: Resolution, solved: &Point) -> Option<Point> {
         let slipping = solved.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
         let price = self.price(slipping);
-        let (balance, affordable) =
-            (price.of(more.harmonics), price.affordable(self.ladder.lowest_order()));
+        let (balance, affordable) = (price.of(more.harmonics), price.affordable());
         if more.harmonics <= solved.harmonics || balance <= TRIFLE {
             return None;
         }
         self.orbit_below(solved, balance.min(affordable)).or_else(|| {
-            (balance > affordable)
-                .then(|| Point { status: PointStatus::EffortLimit, ..solved.clone() })
+            let status = PointStatus::EffortLimit;
+            (balance > affordable).then(|| Point { status, ..solved.clone() })
         })
-    }
-
-    /// Whether equations that Newton's method did not solve are worth a homotopy: automatic harmonics
-    /// have an answer already if there is an `orbit`, and one if a lower rung was `refined`.
-    pub(super) fn is_worth_a_homotopy(&self, order: usize, orbit: bool, refined: bool) -> bool {
-        let price = self.price(self.model.compliance().contacts());
-        let dear = HOMOTOPY * price.of(order) > price.affordable(self.ladder.lowest_order());
-        !(self.ladder.only_harmonics_climb() && (orbit || refined && dear))
-    }
-
-    /// Whether equations in which every contact may slip cost no more than a point may.
-    pub(super) fn is_affordable(&self, at: Resolution) -> bool {
-        let price = self.price(self.model.compliance().contacts());
-        price.of(at.harmonics) <= price.affordable(self.ladder.lowest_order())
-    }
-
-    fn price(&self, slipping: usize) -> Price<'_> {
-        Price { model: self.model, half_wave: self.half_wave(), slipping }
     }
 
     /// The exact orbit where automatic harmonics have come to their limit.
     pub(super) fn orbit_beyond(&mut self, solved: &Point, limit: PointStatus) -> Option<Point> {
-        let lowest = self.ladder.lowest_order();
-        let most = self.price(solved.contacts.len()).affordable(lowest);
+        let most = self.price(solved.contacts.len()).affordable();
         (limit == PointStatus::HarmonicsLimit).then(|| self.orbit_below(solved, most)).flatten()
+    }
+
+    /// Whether harmonics up to `order` are worth a homotopy: where they are chosen, a solution of fewer
+    /// or an exact orbit may be had for less.
+    pub(super) fn is_worth_a_homotopy(&self, order: usize) -> bool {
+        let price = self.price(self.model.compliance().contacts());
+        !self.ladder.only_harmonics_climb() || price.allows_homotopy(order)
+    }
+
+    /// The exact orbit with harmonics up to `order` as a start, if it is affordable where harmonics
+    /// are chosen.
+    pub(super) fn orbit_to_start_from(&self, omega: f64, order: usize) -> Option<Point> {
+        let contacts = self.model.compliance().contacts();
+        let orbits = self.rescue?;
+        if self.ladder.only_harmonics_climb() {
+            let price = orbits.price(omega, USUAL_EVENTS * contacts, order)?;
+            if price > self.price(contacts).affordable() {
+                return None;
+            }
+        }
+        orbits.orbit(omega, order)
+    }
+
+    fn price(&self, slipping: usize) -> Price<'_> {
+        let lowest = self.ladder.lowest_order();
+        Price { model: self.model, half_wave: self.half_wave(), slipping, lowest }
     }
 
     /// The exact orbit, if it costs less than `most` operations with the events of a solution.

@@ -183,6 +183,12 @@ impl Ladder {
         self.orders[self.lowest.min(self.orders.len() - 1)]
     }
 
+    /// As [`Ladder::first`], from the lowest rung on.
+    pub(super) fn start_over(&mut self) -> Resolution {
+        self.rung.order = self.lowest;
+        self.first()
+    }
+
     fn position(&self, at: Resolution) -> usize {
         self.orders.iter().position(|&order| order == at.harmonics).unwrap_or(0)
     }
