@@ -63,7 +63,8 @@ _BASES = {
 }
 _DIRECT = (
     "The damping matrix couples the modes, and the complex modes miss a direct solution by more "
-    "than 1e-8, as where two of them nearly coincide: every point costs a factorisation of the "
+    "than 1e-8, as where two of them nearly coincide, or a dof of hardly any mass makes one much "
+    "faster than the others: every point costs a factorisation of the "
     "whole dynamic stiffness per harmonic, and takes longer than modes would. Where the damping "
     "follows a law, give that, Rayleigh or ModalDamping, instead of its matrix."
 )
