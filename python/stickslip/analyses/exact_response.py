@@ -16,7 +16,6 @@ from stickslip.analyses.arguments import (
     grid_of,
     observed_dofs,
     prepare,
-    refusal,
     require_held,
     require_model,
     require_progress,
@@ -34,6 +33,7 @@ from stickslip.checks import whole_number
 from stickslip.errors import Interrupted, ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
+from stickslip.model.model import refusal
 from stickslip.results.arrays import Float
 from stickslip.results.exact_response import ExactResponse
 from stickslip.results.orbit_arrays import OrbitArrays

@@ -12,7 +12,6 @@ from stickslip.analyses.arguments import (
     Progress,
     Span,
     prepare,
-    refusal,
     require_model,
     require_progress,
     require_time,
@@ -27,6 +26,7 @@ from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import is_proportional, negative_matrix
+from stickslip.model.model import refusal
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.limit_cycles import LimitCycles
 

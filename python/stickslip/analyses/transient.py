@@ -13,7 +13,6 @@ from stickslip.analyses.arguments import (
     Progress,
     observed_dofs,
     prepare,
-    refusal,
     require_model,
     require_progress,
     require_time,
@@ -24,6 +23,7 @@ from stickslip.checks import brief, choice, real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
+from stickslip.model.model import refusal
 from stickslip.model.state import State
 from stickslip.results.transient import Transient
 from stickslip.results.transient_arrays import TransientArrays

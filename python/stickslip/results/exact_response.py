@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, Model, PointRef
+from stickslip.model.model import refusal
 from stickslip.model.state import State
 from stickslip.results.arrays import Complex, Float, Int, Measure, constant
 from stickslip.results.contact_states import ContactStates, states_of
@@ -397,5 +398,5 @@ class ExactResponse(ForcedResponse):
                     count,
                 )[part]
             except ValueError as error:
-                raise ModelError(str(error)) from error
+                raise refusal(error, model) from error
         return constant(np.ascontiguousarray(motion[:, places]))

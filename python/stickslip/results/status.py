@@ -110,9 +110,9 @@ _ADVICE = {
         "light dofs statically, or balance harmonics."
     ),
     Status.EFFORT_LIMIT: (
-        "Given up early: the next harmonics, and an exact orbit, would have cost far more than those "
+        "Given up early: more harmonics, and an exact orbit, would have cost far more than those "
         "that are kept, as where omega is low or contacts are nearly rigid. Read error_estimate; "
-        "raise tolerance, name in observe only the dofs that matter, give a number of harmonics, or "
-        "condense light or nearly rigid dofs statically."
+        "raise tolerance, name in observe only the dofs that matter, give a number of harmonics, "
+        "or condense light or nearly rigid dofs statically."
     ),
 }
