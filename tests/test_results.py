@@ -290,7 +290,7 @@ def test_status():
     assert {status for status in ss.Status if status.solved} == solved
     for status in ss.Status:
         assert status.advice.count(". ") == 1
-    for code in (8, -1):
+    for code in (9, -1):
         with pytest.raises(ss.ModelError, match=f"status {code} is unknown"):
             ss.Status.from_code(code)
 

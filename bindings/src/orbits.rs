@@ -221,6 +221,13 @@ impl Orbits {
     }
 }
 
+/// Sectors, shift, wrap, sign and parts.
+type RotationArgument = (usize, usize, f64, f64, usize);
+
+fn rotation_of((sectors, shift, wrap, sign, parts): RotationArgument) -> Rotation {
+    Rotation { sectors, shift, wrap, sign, parts }
+}
+
 /// Exact periodic orbits over a grid of frequencies.
 #[pyfunction]
 #[pyo3(signature = (problem, omega, observe, harmonics, residual, max_iterations, progress, rotation=None))]
@@ -234,16 +241,10 @@ pub fn exact_response(
     residual: ResidualArgument,
     max_iterations: usize,
     progress: Option<Py<PyAny>>,
-    rotation: Option<(usize, usize, f64, f64, usize)>,
+    rotation: Option<RotationArgument>,
 ) -> PyResult<Orbits> {
     let settings = OrbitSettings { harmonics, residual: residual.parse()?, max_iterations };
-    let rotation = rotation.map(|(sectors, shift, wrap, sign, parts)| Rotation {
-        sectors,
-        shift,
-        wrap,
-        sign,
-        parts,
-    });
+    let rotation = rotation.map(rotation_of);
     let observe = indices(&observe)?;
     let grid = omega.as_array().to_vec();
     let observed = observe.len();
@@ -274,6 +275,7 @@ pub fn exact_response(
 
 /// Frequency and exact amplitude at the true maximum of one DOF in a bracket.
 #[pyfunction]
+#[pyo3(signature = (problem, omega_lo, omega_hi, omega_guess, dof, measure, residual, max_iterations, rotation=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn exact_peak(
     py: Python<'_>,
@@ -285,14 +287,21 @@ pub fn exact_peak(
     measure: &str,
     residual: ResidualArgument,
     max_iterations: usize,
+    rotation: Option<RotationArgument>,
 ) -> PyResult<(f64, f64)> {
     let residual = residual.parse()?;
     let settings = OrbitSettings { residual, max_iterations, ..OrbitSettings::default() };
     let measure: Measure = measure.parse().map_err(refused)?;
     let bracket = [omega_lo, omega_guess, omega_hi];
     let model = Arc::clone(&problem.model);
-    whole(py, move |look| orbit_peak(&model, settings, dof, measure, bracket, look))?
-        .map_err(refused)
+    let rotation = rotation.map(rotation_of);
+    whole(py, move |look| {
+        let observe = [dof];
+        PeriodicOrbits::new(&model, settings, &observe)
+            .and_then(|orbits| orbits.rotating(rotation))
+            .and_then(|orbits| orbit_peak(orbits.watched(look), measure, bracket))
+    })?
+    .map_err(refused)
 }
 
 type OrbitHistory<'py> = (

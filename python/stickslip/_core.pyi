@@ -28,6 +28,7 @@ class Problem:
         forces: Sequence[tuple[int, Complex]],
         proportional: bool,
     ) -> None: ...
+    def half_wave(self, residual: Residual) -> bool: ...
     @staticmethod
     def travelling_wave(
         mass: tuple[Float, Float],
@@ -213,6 +214,7 @@ def exact_peak(
     measure: str,
     residual: Residual,
     max_iterations: int,
+    rotation: tuple[int, int, float, float, int] | None = None,
 ) -> tuple[float, float]: ...
 def orbit_history(
     problem: Problem, omega: float, state: Float, observe: NDArray[np.int64], samples: int

@@ -19,7 +19,6 @@ from stickslip.analyses.arguments import (
     require_held,
     require_model,
     require_progress,
-    require_time,
 )
 from stickslip.analyses.assumptions import orbit_assumptions
 from stickslip.analyses.forced_response import (
@@ -30,6 +29,7 @@ from stickslip.analyses.forced_response import (
 )
 from stickslip.analyses.memory import require_memory
 from stickslip.checks import whole_number
+from stickslip.disk.wave_ring import Rotation, moving
 from stickslip.errors import Interrupted, ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
@@ -101,6 +101,11 @@ def exact_response(
     after a period is found by shooting with the analytic derivative of the flow. There is no
     truncation and nothing to choose.
 
+    Of a tuned `BladedDisk` the orbit is that of all sectors that its travelling wave tells apart,
+    sought on the part of a period after which they have changed their roles; the result shows
+    sector 0, and others by `sector`. What breaks the symmetry of the wave is not followed: its
+    multipliers are not-a-number, and its stability is not decided. `disk.mistuned(0)` has them.
+
     Parameters
     ----------
     model : Model
@@ -145,7 +150,6 @@ def exact_response(
     (Springer, 2004).
     """
     require_model(model)
-    require_time(model)
     grid = grid_of(omega)
     settings = ExactSettings(
         harmonics=harmonics,
@@ -164,11 +168,16 @@ def exact_response(
             grid = _frequencies(model, settings, dofs, watch)
             share = _later(watch)
         orders = settings.fixed_harmonics or REPORTED_HARMONICS
-        points = sum(contact.points for contact in model.contacts)
-        state = 2 * len(model.structure) + points
+        moved = moving(model, half_wave=model.problem.half_wave(settings.residual))
+        sectors = 1 if moved[1] is None else moved[1].sectors
+        points = sectors * sum(contact.points for contact in model.contacts)
+        state = 2 * sectors * len(model.structure) + points
         require_memory(grid.size, orders, len(dofs), points, extra=3 * state + 2 * len(dofs) + 16)
-        solution = _solve(model, grid, dofs, settings, share)
-        result = _result(model, settings, dofs, solution, grid.size - solution.computed)
+        solution = _solve(model, moved, grid, dofs, settings, share)
+        arrays = OrbitArrays.of_orbits(solution)
+        if moved[1] is not None:
+            arrays = arrays.of_sector(points // sectors, sectors)
+        result = _result(model, settings, dofs, solution, arrays, grid.size - solution.computed)
         if result.interrupted:
             raise stopped("exact response", f"{solution.computed} of {grid.size} points", result)
         return watch.completed(result, "exact response")
@@ -202,6 +211,7 @@ def _later(watch: Interruption) -> Progress:
 
 def _solve(
     model: Model,
+    moved: tuple[_core.Problem, Rotation | None],
     grid: Float,
     dofs: tuple[str, ...],
     settings: ExactSettings,
@@ -211,13 +221,14 @@ def _solve(
 
     try:
         return _core.exact_response(
-            model.problem,
+            moved[0],
             grid,
             np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
             settings.fixed_harmonics or REPORTED_HARMONICS,
             settings.residual,
             settings.max_iterations,
             progress,
+            moved[1],
         )
     except ModelError:
         raise
@@ -230,9 +241,9 @@ def _result(
     settings: ExactSettings,
     dofs: tuple[str, ...],
     solution: _core.Orbits,
+    arrays: OrbitArrays,
     missing: int,
 ) -> ExactResponse:
-    arrays = OrbitArrays.of_orbits(solution)
     return ExactResponse(
         model=model,
         settings=settings,

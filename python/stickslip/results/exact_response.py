@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
 
@@ -38,7 +38,9 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
+    from stickslip import _core
     from stickslip.analyses.exact_response import ExactSettings
+    from stickslip.disk.wave_ring import Rotation
     from stickslip.plot import MultiplierOptions
 
 __all__ = ["ExactResponse"]
@@ -121,9 +123,11 @@ class ExactResponse(ForcedResponse):
 
         Stable are orbits whose multipliers but the neutral ones lie inside the unit circle. Not
         decided are points that are not solved, and orbits whose largest multiplier is 1 to
-        rounding, as those of structures without damping whose contacts stick.
+        rounding, as those of structures without damping whose contacts stick; and travelling waves
+        of tuned disks, whose multipliers are not known.
         """
-        return stability_of(self.multipliers, self.neutral, self.arrays.solved)
+        known = self.arrays.solved & ~np.isnan(self.multipliers).any(axis=1)
+        return stability_of(self.multipliers, self.neutral, known)
 
     @cached_property
     def stable(self) -> NDArray[np.object_]:
@@ -140,6 +144,21 @@ class ExactResponse(ForcedResponse):
         arrays = self.arrays
         friction = np.where(arrays.solved, arrays.dissipation.sum(axis=1), np.nan)
         return Energy(arrays.work, arrays.viscous, constant(friction), apparent_work(self))
+
+    @cached_property
+    def _moving(self) -> tuple[_core.Problem, Rotation | None]:
+        from stickslip.disk.wave_ring import moving
+
+        return moving(self.model, half_wave=self.half_wave)
+
+    def sector(self, number: int) -> Self:
+        """Return the motion of another sector of a tuned disk; see `ForcedResponse.sector`."""
+        seen = super().sector(number)
+        disk, rotation = self._tuned_disk(), self._moving[1]
+        if seen is self or rotation is None:
+            return seen
+        share = (disk.engine_order * number % disk.sectors) / disk.sectors
+        return replace(seen, arrays=seen.arrays.turned(rotation, number, share))
 
     def events(self, index: int) -> Events:
         """Return when contact points begin to stick and to slip, over one period.
@@ -189,6 +208,11 @@ class ExactResponse(ForcedResponse):
         status = self.status[position]
         if not status.solved:
             raise ModelError(f"index: {index} has no state ({status}). {status.advice}")
+        if self._moving[1] is not None:
+            raise ModelError(
+                "state: the orbit of a tuned disk is one of several sectors; take it of "
+                "exact_response(disk.mistuned(0))"
+            )
         return State.of_vector(self.model, self.arrays.state[position])
 
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
@@ -320,7 +344,7 @@ class ExactResponse(ForcedResponse):
         dataset["stable"] = flag_variable("omega", self.stability)
         return dataset.assign_coords(
             side=names("side", ["lowest", "highest"], "end of the range"),
-            state_entry=names("state_entry", state_names(self.model), "entry of the state"),
+            state_entry=names("state_entry", self._state_names(), "entry of the state"),
         )
 
     @classmethod
@@ -330,11 +354,25 @@ class ExactResponse(ForcedResponse):
 
         orbits = OrbitArrays(**curve_arrays(dataset, _VARIABLES))
         given = curve_parts(dataset, model, orbits)
-        if orbits.state.shape[1] != len(state_names(model)):
-            raise ValueError(
-                f"{orbits.state.shape[1]} entries per state, {len(state_names(model))} in the model"
-            )
-        return cls(settings=ExactSettings(**curve_settings(dataset)), **given)
+        read = cls(settings=ExactSettings(**curve_settings(dataset)), **given)
+        entries = len(read._state_names())
+        if orbits.state.shape[1] != entries:
+            raise ValueError(f"{orbits.state.shape[1]} entries per state, {entries} in the model")
+        return read
+
+    def _state_names(self) -> list[str]:
+        """Return a name for every entry of a state; of a wave, with the sectors in front."""
+        own, rotation = state_names(self.model), self._moving[1]
+        if rotation is None:
+            return own
+        moved = len(self.model.structure)
+        parts = own[:moved], own[moved : 2 * moved], own[2 * moved :]
+        return [
+            f"{name[0]} {sector}.{name[2:]}"
+            for part in parts
+            for sector in range(rotation.sectors)
+            for name in part
+        ]
 
     def plot_multipliers(self, **options: Unpack[MultiplierOptions]) -> Axes:
         """Draw the multipliers in the complex plane, with the unit circle.
@@ -391,7 +429,7 @@ class ExactResponse(ForcedResponse):
             observed = [model.structure.index(dof) for dof in self.dofs]
             try:
                 motion = _core.orbit_history(
-                    model.problem,
+                    self._moving[0],
                     float(arrays.omega[position]),
                     arrays.state[position],
                     np.array(observed, dtype=np.int64),
@@ -399,4 +437,4 @@ class ExactResponse(ForcedResponse):
                 )[part]
             except ValueError as error:
                 raise refusal(error, model) from error
-        return constant(np.ascontiguousarray(motion[:, places]))
+        return constant(np.ascontiguousarray(motion[:, :columns][:, places]))

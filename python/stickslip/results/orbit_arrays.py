@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -13,6 +13,7 @@ from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip import _core
+    from stickslip.disk.wave_ring import Rotation
 
 __all__ = ["OrbitArrays"]
 
@@ -83,6 +84,73 @@ class OrbitArrays(Arrays):
             values[name][~solved] = blank
         values["neutral"][~solved] = 0
         return cls(**values, **_events(solution, solved))
+
+
+    def of_sector(self, points: int, sectors: int) -> Self:
+        """Return what belongs to sector 0 of some equal ones, with the state of all of them.
+
+        Parameters
+        ----------
+        points : int
+            Number of contact points of a sector.
+        sectors : int
+            How many sectors there are.
+
+        Returns
+        -------
+        OrbitArrays
+            Without the contact points of the other sectors; work and losses are those of one.
+        """
+        own = self.event_point < points
+        return replace(
+            self,
+            contact_displacement=self.contact_displacement[..., :points],
+            contact_force=self.contact_force[..., :points],
+            slip_fraction=self.slip_fraction[:, :points],
+            dissipation=self.dissipation[:, :points],
+            work=self.work / sectors,
+            viscous=self.viscous / sectors,
+            event_offset=np.concatenate(([0], np.cumsum(own)))[self.event_offset],
+            event_time=self.event_time[own],
+            event_point=self.event_point[own],
+            event_kind=self.event_kind[own],
+        )
+
+    def turned(self, rotation: Rotation, number: int, share: float) -> Self:
+        """Return the orbits seen from another sector, with series that are turned already.
+
+        Parameters
+        ----------
+        rotation : Rotation
+            The symmetry of the wave.
+        number : int
+            The sector.
+        share : float
+            By which part of the period it is ahead.
+
+        Returns
+        -------
+        OrbitArrays
+            States and events of that sector.
+        """
+        places = np.arange(rotation.sectors) + number
+        factors = rotation.wrap ** (places // rotation.sectors)
+        per_point = self.contact_force.shape[2] * rotation.sectors
+        moved = (self.state.shape[1] - per_point) // 2
+        parts = np.split(self.state, [moved, 2 * moved], axis=1)
+        blocks = [part.reshape(len(part), rotation.sectors, -1) for part in parts]
+        ahead = [block[:, places % rotation.sectors] * factors[:, None] for block in blocks]
+        period = 2.0 * np.pi / self.omega
+        point = np.repeat(np.arange(self.omega.size), np.diff(self.event_offset))
+        time = (self.event_time - share * period[point]) % period[point]
+        order = np.lexsort((time, point))
+        return replace(
+            self,
+            state=np.concatenate([block.reshape(len(block), -1) for block in ahead], axis=1),
+            event_time=time[order],
+            event_point=self.event_point[order],
+            event_kind=self.event_kind[order],
+        )
 
 
 def _events(solution: _core.Orbits, solved: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
