@@ -48,7 +48,7 @@ def test_the_wave_is_the_orbit_of_all_sectors(sectors, order, forces, tmp_path):
     assert wave.stability.tolist() == ["not decided"] * 2
     energy, total = wave.energy, whole.energy
     np.testing.assert_allclose(sectors * energy.friction, total.friction, rtol=1e-7)
-    np.testing.assert_allclose(sectors * energy.forces, total.forces, rtol=1e-7)
+    np.testing.assert_allclose(sectors * energy.work, total.work, rtol=1e-7)
     with pytest.raises(ss.ModelError, match=r"exact_response\(disk.mistuned\(0\)\)"):
         wave.state(0)
     wave.save(tmp_path / "wave.nc")
@@ -74,12 +74,12 @@ def test_the_wave_is_the_orbit_of_all_sectors(sectors, order, forces, tmp_path):
                 )
                 events, every = one.events(index), whole.events(index)
                 contact = whole.model.contact_index(f"{number}.ground")
-                there = every.point == contact
+                there = every.number == contact
                 np.testing.assert_allclose(
-                    events.time[events.point == 0], every.time[there], rtol=0, atol=1e-8
+                    events.time[events.number == 0], every.time[there], rtol=0, atol=1e-8
                 )
                 np.testing.assert_array_equal(
-                    events.kind[events.point == 0], every.kind[there]
+                    events.code[events.number == 0], every.code[there]
                 )
 
 
