@@ -78,9 +78,7 @@ def test_the_wave_is_the_orbit_of_all_sectors(sectors, order, forces, tmp_path):
                 np.testing.assert_allclose(
                     events.time[events.number == 0], every.time[there], rtol=0, atol=1e-8
                 )
-                np.testing.assert_array_equal(
-                    events.code[events.number == 0], every.code[there]
-                )
+                np.testing.assert_array_equal(events.code[events.number == 0], every.code[there])
 
 
 def test_a_range_and_a_study_take_tuned_disks():

@@ -7,7 +7,7 @@ import stickslip as ss
 
 
 def nearly_rigid(seed: int) -> tuple[ss.Model, np.ndarray]:
-    """Random chain of 2 to 8 dofs with contacts up to 3e4 times its stiffness, far below resonance."""
+    """Random chain with contacts up to 3e4 times its stiffness, far below resonance."""
     rng = np.random.default_rng([1212, seed])
     size = int(rng.integers(2, 9))
     count = int(rng.integers(1, min(size, 4) + 1))

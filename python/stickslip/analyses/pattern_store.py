@@ -250,12 +250,12 @@ class PatternStore:
             raise sqlite3.DatabaseError(str(said).splitlines()[-1])
         return version
 
-    def _execute(self, statement: str, *values: object) -> sqlite3.Cursor:
+    def _execute(self, statement: str) -> sqlite3.Cursor:
         """Execute a statement as soon as no other program holds the file."""
         end = monotonic() + _PATIENCE
         while True:
             try:
-                return self._base.execute(statement, *values)
+                return self._base.execute(statement)
             except sqlite3.OperationalError as error:
                 held = error.sqlite_errorcode & 0xFF in _HELD
                 if not held or monotonic() > end:

@@ -85,7 +85,6 @@ class OrbitArrays(Arrays):
         values["neutral"][~solved] = 0
         return cls(**values, **_events(solution, solved))
 
-
     def of_sector(self, points: int, sectors: int) -> Self:
         """Return what belongs to sector 0 of some equal ones, with the state of all of them.
 
