@@ -292,7 +292,7 @@ def run(*changes, tail=""):
             "follow; write 'ss.z'",
         ),
         (
-            [(PLAIN, 'kind = "exact"\nomega = [110.0]')],
+            [(PLAIN, 'kind = "transient"\nomega = 110.0\nperiods = 2')],
             DISK,
             "compute all sectors, mistuning = {deviation = 0.0} in [disk]",
         ),
