@@ -1,6 +1,7 @@
 """Exact orbits: published numbers, the interface of a curve, and what only orbits have."""
 
 import copy
+import dataclasses
 import pickle
 
 import numpy as np
@@ -349,3 +350,11 @@ def test_forces_on_several_harmonics_do_their_work():
     assert np.abs(exact.energy.imbalance).max() < 1e-8
     balance = ss.forced_response(model, exact.omega, 61)
     np.testing.assert_allclose(balance.energy.work, exact.energy.work, rtol=1e-4)
+
+
+def test_an_orbit_too_fast_to_follow_names_the_dof():
+    exact = ss.exact_response(snecma_beam(25.0), [170.0])
+    arrays = dataclasses.replace(exact.arrays, omega=np.array([1e-300]))
+    slow = dataclasses.replace(exact, arrays=arrays)
+    with pytest.raises(ss.ModelError, match=r"mass of dof '\w+': .* too fast to follow in time"):
+        slow.waveform("tip", 0)

@@ -1,5 +1,6 @@
 """No peak that the forced response of the same model refutes, and none where nothing bounds it."""
 
+import re
 import warnings
 from itertools import combinations
 
@@ -173,3 +174,5 @@ def test_tables_show_what_nothing_bounds(tmp_path):
     frf.save(tmp_path / "chain.nc")
     shown = CliRunner().invoke(app, ["show", str(tmp_path / "chain.nc")])
     assert "inf: neither damping nor friction bounds" in shown.output
+    # An error of a peak without bounds means nothing.
+    assert re.search(r"^a .* inf +- +3 ", shown.output, re.MULTILINE)

@@ -292,7 +292,7 @@ def run(*changes, tail=""):
             "follow; write 'ss.z'",
         ),
         (
-            [(PLAIN, 'kind = "exact"\nomega = [110.0]')],
+            [(PLAIN, 'kind = "transient"\nomega = 110.0\nperiods = 2')],
             DISK,
             "compute all sectors, mistuning = {deviation = 0.0} in [disk]",
         ),
@@ -349,6 +349,6 @@ def test_all_kinds_are_listed():
 
 def test_remedies_for_python_stay():
     with pytest.raises(ss.ModelError, match=r"give all sectors, disk.mistuned\(0\)") as refusal:
-        ss.exact_response(disk("ps.z"), [100.0])
+        ss.transient(disk("ps.z"), omega=100.0, periods=2)
     again = pickle.loads(pickle.dumps(refusal.value))
     assert (str(again), again.study) == (str(refusal.value), refusal.value.study)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.analyses import pattern_store
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 
 PATTERNS = 250
@@ -206,3 +207,28 @@ def test_every_bit_comes_back(tmp_path):
     assert np.isnan(found[1][2].amplitude)
     assert all(key.deviation == 0.07 and np.isnan(key.coupling) for key, *_ in found)
     assert {points for *_, points in found} == {21}
+
+
+def test_ctrl_c_is_heard_while_another_program_holds_the_store(tmp_path, monkeypatch):
+    store = tmp_path / "study.db"
+    small(store, patterns=1)
+    looks = 0
+
+    def look():
+        nonlocal looks
+        looks += 1
+        if looks == 3:
+            raise KeyboardInterrupt
+
+    with closing(sqlite3.connect(store, isolation_level=None)) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        with pytest.raises(KeyboardInterrupt):
+            PatternStore(store, {}, look)
+        monkeypatch.setattr(pattern_store, "_PATIENCE", 0.1)
+        with pytest.raises(ss.ModelError, match=r"locked.*see that no other program holds it"):
+            small(store, patterns=1)
+        monkeypatch.setattr(pattern_store, "_PATIENCE", 30.0)
+        monkeypatch.setattr(
+            pattern_store, "sleep", lambda _: other.in_transaction and other.execute("COMMIT")
+        )
+        assert small(store, patterns=2).counters["disks"] == 2

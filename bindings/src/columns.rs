@@ -166,6 +166,7 @@ pub fn status_code(status: PointStatus) -> u8 {
         // 5 is an orbit that did not close.
         PointStatus::SamplesLimit => 6,
         PointStatus::StepsLimit => 7,
+        PointStatus::EffortLimit => 8,
     }
 }
 
@@ -190,6 +191,7 @@ pub fn counters(py: Python<'_>, profile: &Profile, iterations: usize) -> PyResul
         ("updates", profile.updates),
         ("restarts", profile.restarts),
         ("homotopies", profile.homotopies),
+        ("orbits", profile.orbits),
     ];
     Ok(counters.into_py_dict(py)?.unbind())
 }

@@ -16,6 +16,13 @@ use stickslip_core::motion::{transient, Scheme, TransientSettings};
 use stickslip_core::orbit::{orbit_peak, orbit_sweep, OrbitSettings, PeriodicOrbits, Rotation};
 use stickslip_core::timing::Profile;
 
+/// Sectors, shift, wrap, sign and parts.
+type RotationArgument = (usize, usize, f64, f64, usize);
+
+fn rotation_of((sectors, shift, wrap, sign, parts): RotationArgument) -> Rotation {
+    Rotation { sectors, shift, wrap, sign, parts }
+}
+
 /// Exact periodic orbits over a grid of frequencies.
 #[pyfunction]
 #[pyo3(signature = (problem, omega, observe, harmonics, settings, progress, rotation=None))]
@@ -28,16 +35,10 @@ pub fn exact_response(
     harmonics: usize,
     settings: SteadySettings,
     progress: Option<Py<PyAny>>,
-    rotation: Option<(usize, usize, f64, f64, usize)>,
+    rotation: Option<RotationArgument>,
 ) -> PyResult<Solution> {
     let settings = OrbitSettings { harmonics, ..settings.parse()? };
-    let rotation = rotation.map(|(sectors, shift, wrap, sign, parts)| Rotation {
-        sectors,
-        shift,
-        wrap,
-        sign,
-        parts,
-    });
+    let rotation = rotation.map(rotation_of);
     let observe = indices(&observe)?;
     let grid = omega.as_array().to_vec();
     let observed = observe.len();
@@ -81,6 +82,7 @@ pub fn exact_response(
 /// Frequency and exact amplitude at the true maximum of one DOF; `bracket` holds the lowest, the
 /// likely and the highest frequency.
 #[pyfunction]
+#[pyo3(signature = (problem, bracket, dof, measure, settings, rotation=None))]
 pub fn exact_peak(
     py: Python<'_>,
     problem: &Problem,
@@ -88,12 +90,19 @@ pub fn exact_peak(
     dof: usize,
     measure: &str,
     settings: SteadySettings,
+    rotation: Option<RotationArgument>,
 ) -> PyResult<(f64, f64)> {
     let settings = settings.parse()?;
     let measure: Measure = measure.parse().map_err(refused)?;
     let model = Arc::clone(&problem.model);
-    whole(py, move |look| orbit_peak(&model, settings, dof, measure, bracket, look))?
-        .map_err(refused)
+    let rotation = rotation.map(rotation_of);
+    whole(py, move |look| {
+        let observe = [dof];
+        PeriodicOrbits::new(&model, settings, &observe)
+            .and_then(|orbits| orbits.rotating(rotation))
+            .and_then(|orbits| orbit_peak(orbits.watched(look), measure, bracket))
+    })?
+    .map_err(refused)
 }
 
 type OrbitHistory<'py> = (

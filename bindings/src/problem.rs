@@ -1,6 +1,7 @@
 //! The problem: structure, contacts and loads in numbers.
 
 use crate::arrays::{matrices, matrix, refused, vector, Array1, Array2, Array3};
+use crate::settings::ResidualArgument;
 use crate::watch::whole;
 use numpy::{Complex64, PyArray1};
 use pyo3::prelude::*;
@@ -26,6 +27,11 @@ pub struct Problem {
 
 #[pymethods]
 impl Problem {
+    /// Whether x(t + T/2) = -x(t) in the steady motion.
+    fn half_wave(&self, residual: ResidualArgument) -> PyResult<bool> {
+        Ok(self.model.is_symmetric() && residual.parse()?.is_symmetric())
+    }
+
     /// Builds the problem from matrices, contacts `(law, rows, parameters)` and forces
     /// `(harmonic, amplitude per DOF)`; `proportional` says that a law made the damping, one that
     /// couples none of the modes without contacts.

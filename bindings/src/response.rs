@@ -125,11 +125,10 @@ pub fn forced_response(
     };
     let model = Arc::clone(&problem.model);
     swept(py, progress.as_ref(), observe.len(), &model, move |model, kept, look| {
-        let rescue = Rescue::new(model, settings.residual, look);
-        let fresh_start = |omega: f64, highest: usize| rescue.amplitudes(omega, highest);
+        let orbits = Rescue::new(model, settings.residual, &observe, look);
         let balance = ForcedBalance::new(model, settings, &observe)?
             .watched(look)
-            .rescued(&fresh_start)
+            .rescued(&orbits)
             .keeping(kept);
         match range {
             Some((from, to)) => sweep_range(balance, from, to),

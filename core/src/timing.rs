@@ -25,6 +25,8 @@ pub struct Profile {
     pub restarts: usize,
     /// Points that needed homotopy after the chosen method had failed.
     pub homotopies: usize,
+    /// Points of a balance whose harmonics are those of the exact orbit.
+    pub orbits: usize,
 }
 
 impl Profile {

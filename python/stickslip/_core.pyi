@@ -34,6 +34,7 @@ class Problem:
         forces: Sequence[tuple[int, Complex]],
         proportional: bool,
     ) -> None: ...
+    def half_wave(self, residual: Residual) -> bool: ...
     @staticmethod
     def travelling_wave(
         mass: tuple[Float, Float],
@@ -153,6 +154,7 @@ def exact_peak(
     dof: int,
     measure: str,
     settings: SteadySettings,
+    rotation: tuple[int, int, float, float, int] | None = None,
 ) -> tuple[float, float]: ...
 def orbit_history(
     problem: Problem, omega: float, state: Float, observe: NDArray[np.int64], samples: int

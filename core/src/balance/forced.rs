@@ -7,7 +7,7 @@ use super::scale::{Scale, OF_HARMONICS};
 use super::settings::{Method, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
-use super::{FreshStart, Kept, Progress};
+use super::{ExactOrbits, Kept, Progress};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{broyden, homotopy, newton, norm, Outcome, Report, System as _};
@@ -33,7 +33,7 @@ pub struct ForcedBalance<'a> {
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
-    rescue: &'a FreshStart<'a>,
+    pub(super) rescue: Option<&'a dyn ExactOrbits>,
     share: f64,
     pub(super) profile: Profile,
 }
@@ -46,6 +46,22 @@ pub(crate) struct Memory {
     rung: Rung,
     half_wave: bool,
     pub(crate) profile: Profile,
+}
+
+/// A point on its way to enough harmonics and samples.
+#[derive(Default)]
+struct Climb {
+    iterations: usize,
+    /// The last rung that was solved.
+    below: Option<Point>,
+    stalled: bool,
+    from_below: bool,
+}
+
+/// Where a climb goes on.
+enum Way {
+    On(Resolution),
+    End(Box<Point>),
 }
 
 impl<'a> ForcedBalance<'a> {
@@ -80,7 +96,7 @@ impl<'a> ForcedBalance<'a> {
             scale: Scale::default(),
             progress: &|_| true,
             kept: None,
-            rescue: &|_, _| None,
+            rescue: None,
             share: 0.0,
             profile: Profile::default(),
         })
@@ -100,10 +116,11 @@ impl<'a> ForcedBalance<'a> {
         self
     }
 
-    /// Has `rescue` asked for a start where Newton's method fails, before any homotopy.
+    /// Has `rescue` asked for a start where Newton's method fails, before any homotopy, and for the
+    /// answer where automatic harmonics would cost more.
     #[must_use]
-    pub fn rescued(mut self, rescue: &'a FreshStart<'a>) -> Self {
-        self.rescue = rescue;
+    pub fn rescued(mut self, rescue: &'a dyn ExactOrbits) -> Self {
+        self.rescue = Some(rescue);
         self
     }
 
@@ -164,33 +181,68 @@ impl<'a> ForcedBalance<'a> {
             return self.solve_with(resolution, omega, start);
         }
         let mut start = start.cloned();
-        let (mut stalled, mut iterations) = (false, 0);
+        let mut climb = Climb::default();
         loop {
             let mut point = self.solve_with(resolution, omega, start.as_ref())?;
-            iterations += point.iterations;
-            point.iterations = iterations;
-            let more = match point.status {
+            climb.iterations += point.iterations;
+            point.iterations = climb.iterations;
+            resolution = match point.status {
                 PointStatus::Converged => match self.judge(&point) {
+                    Verdict::Enough => return Ok(point),
+                    Verdict::Limit(limit) => {
+                        let exact = self.orbit_beyond(&point, limit);
+                        point.status = limit;
+                        return Ok(self.ended(exact.unwrap_or(point), resolution, &climb));
+                    }
                     Verdict::More(more) => {
-                        start = point.unknowns;
+                        if let Some(last) = self.instead_of(more, &point) {
+                            return Ok(self.ended(last, resolution, &climb));
+                        }
+                        start.clone_from(&point.unknowns);
+                        climb.below = Some(point);
                         more
                     }
-                    Verdict::Limit(limit) => {
-                        point.status = limit;
-                        return Ok(point);
-                    }
-                    Verdict::Enough => return Ok(point),
                 },
-                // One more rung may be what a stalled point lacks; it cures no singular equations.
-                PointStatus::Stalled if !stalled => {
-                    stalled = true;
-                    let Some(above) = self.ladder.above(resolution) else { return Ok(point) };
-                    above
-                }
+                PointStatus::Stalled => match self.past(&point, resolution, &mut climb) {
+                    Way::On(next) => next,
+                    Way::End(last) => return Ok(self.ended(*last, resolution, &climb)),
+                },
                 _ => return Ok(point),
             };
-            resolution = more;
         }
+    }
+
+    /// The way on from a point that stalled: the exact orbit, once a rung more, which may be what it
+    /// lacks, or the rungs below. What is below stands if nothing helps.
+    fn past(&mut self, point: &Point, at: Resolution, climb: &mut Climb) -> Way {
+        let solved = climb.below.as_ref().unwrap_or(point);
+        if let Some(exact) = self.orbit_below(solved, f64::INFINITY) {
+            return Way::End(Box::new(exact));
+        }
+        let easy = self.is_worth_a_homotopy(at.harmonics);
+        if climb.below.is_none() && !easy && !climb.from_below {
+            climb.from_below = true;
+            return Way::On(self.ladder.start_over());
+        }
+        match (self.ladder.above(at).filter(|_| easy && !climb.stalled), &climb.below) {
+            (Some(above), _) => {
+                climb.stalled = true;
+                Way::On(above)
+            }
+            (None, Some(below)) => {
+                let status = PointStatus::EffortLimit;
+                Way::End(Box::new(Point { status, ..below.clone() }))
+            }
+            (None, None) => Way::End(Box::new(point.clone())),
+        }
+    }
+
+    /// A point that ends the climb; the next one begins with the harmonics at which it ended.
+    fn ended(&mut self, mut point: Point, at: Resolution, climb: &Climb) -> Point {
+        let dear = point.status == PointStatus::EffortLimit;
+        self.ladder.stay(if dear { point.resolution() } else { at });
+        point.iterations = climb.iterations;
+        point
     }
 
     /// What the errors of a solution ask for.
@@ -257,17 +309,18 @@ impl<'a> ForcedBalance<'a> {
             |unknowns| unknowns.recast(harmonics),
         );
         let mut report = self.iterate(equations, &mut x);
-        if has_failed(&report) && start.is_some() {
+        let patient = self.is_worth_a_homotopy(harmonics.highest());
+        if has_failed(&report) && start.is_some() && patient {
             // A neighbour in another state of the contacts may mislead.
             let spent = report.iterations;
             x = equations.stuck_response().to_vec();
             report = self.iterate(equations, &mut x);
             report.iterations += spent;
         }
-        if has_failed(&report) {
-            self.start_again(equations, omega, &mut x, &mut report);
-        }
-        if has_failed(&report) {
+        let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
+        // Where harmonics are chosen an orbit is the answer.
+        let answered = orbit && self.ladder.only_harmonics_climb();
+        if has_failed(&report) && !answered && patient {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
         }
@@ -306,16 +359,17 @@ impl<'a> ForcedBalance<'a> {
         if_bounded(report, x, equations)
     }
 
-    /// Newton's method from the start that the rescue offers, if it offers one.
+    /// Newton's method from the exact orbit; whether there is one.
     fn start_again(
         &self,
         equations: &mut Condensed<'_>,
         omega: f64,
         x: &mut Vec<f64>,
         report: &mut Report,
-    ) {
+    ) -> bool {
         let harmonics = equations.harmonics();
-        let Some(amplitudes) = (self.rescue)(omega, harmonics.highest()) else { return };
+        let orbit = self.orbit_to_start_from(omega, harmonics.highest());
+        let Some(amplitudes) = orbit.map(|orbit| orbit.contact_displacement) else { return false };
         let orders = harmonics.highest() + 1;
         let mut trial = vec![0.0; x.len()];
         let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
@@ -327,6 +381,7 @@ impl<'a> ForcedBalance<'a> {
             (report.outcome, report.residual) = (again.outcome, again.residual);
             *x = trial;
         }
+        true
     }
 
     /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact

@@ -162,6 +162,33 @@ impl Ladder {
         Some(self.allowed(harmonics, samples)).filter(|above| *above != at)
     }
 
+    /// Has the next point begin with the harmonics of this one.
+    pub(super) fn stay(&mut self, at: Resolution) {
+        self.rung.order = self.position(at);
+    }
+
+    /// Whether harmonics are chosen, for laws that are evaluated as they are.
+    pub(super) fn only_harmonics_climb(&self) -> bool {
+        self.settings.harmonics == HarmonicChoice::Auto
+            && self.settings.evaluation == Evaluation::Direct
+    }
+
+    /// Orders that may be chosen from this one on.
+    pub(super) fn orders_from(&self, order: usize) -> impl Iterator<Item = usize> + '_ {
+        self.orders.iter().copied().filter(move |&one| one >= order)
+    }
+
+    /// Lowest order with which a point may begin.
+    pub(super) fn lowest_order(&self) -> usize {
+        self.orders[self.lowest.min(self.orders.len() - 1)]
+    }
+
+    /// As [`Ladder::first`], from the lowest rung on.
+    pub(super) fn start_over(&mut self) -> Resolution {
+        self.rung.order = self.lowest;
+        self.first()
+    }
+
     fn position(&self, at: Resolution) -> usize {
         self.orders.iter().position(|&order| order == at.harmonics).unwrap_or(0)
     }

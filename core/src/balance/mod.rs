@@ -8,12 +8,14 @@ mod cycle_point;
 mod cycle_start;
 mod evaluation;
 mod forced;
+mod from_orbit;
 mod jacobian;
 mod ladder;
 mod limit_cycle;
 mod linear;
 mod linearised;
 mod peak;
+mod price;
 mod recovery;
 mod ring_newton;
 mod ring_series;
@@ -41,9 +43,15 @@ pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
 pub use unknowns::Unknowns;
 
-/// Amplitudes of the contact displacements, point after point, from which a balance up to a
-/// harmonic may start at a frequency [rad/s] at which Newton's method has failed.
-pub type FreshStart<'a> = dyn Fn(f64, usize) -> Option<Vec<faer::c64>> + 'a;
+/// Exact orbits that a balance may turn to.
+pub trait ExactOrbits {
+    /// The orbit at a frequency [rad/s] with its harmonics up to `highest`, if there is one.
+    fn orbit(&self, omega: f64, highest: usize) -> Option<Point>;
+
+    /// Floating-point operations that it takes if contacts change their states `events` times per
+    /// period; `None` if there is no such orbit.
+    fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64>;
+}
 
 /// Where a sweep puts its points as they are solved, for one who does not wait for its end.
 pub type Kept<T> = std::sync::Mutex<Vec<std::sync::Arc<T>>>;

@@ -22,6 +22,9 @@ pub enum PointStatus {
     HarmonicsLimit,
     /// Solved, but automatic samples reached their limit above their share of the tolerance.
     SamplesLimit,
+    /// Solved, but more harmonics, or an exact orbit, would have cost far more than the tolerance is
+    /// worth.
+    EffortLimit,
     /// An exact orbit was not found within the steps of the flow that it is granted.
     StepsLimit,
 }
@@ -30,7 +33,7 @@ impl PointStatus {
     /// Whether the balance equations hold.
     #[must_use]
     pub fn is_solved(self) -> bool {
-        matches!(self, Self::Converged | Self::HarmonicsLimit | Self::SamplesLimit)
+        !matches!(self, Self::Stalled | Self::Singular | Self::NotComputed | Self::StepsLimit)
     }
 }
 

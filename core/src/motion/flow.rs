@@ -132,8 +132,13 @@ impl<'a> Flow<'a> {
     /// Grants a number of steps in all.
     #[must_use]
     pub fn granted(mut self, steps: usize) -> Self {
-        self.granted = steps;
+        self.grant(steps);
         self
+    }
+
+    /// As [`Flow::granted`].
+    pub(crate) fn grant(&mut self, steps: usize) {
+        self.granted = steps;
     }
 
     /// Whether all steps that were granted are taken.

@@ -201,7 +201,7 @@ impl ModalSystem {
     }
 
     /// Fastest rate in a motion excited at `omega` [1/s].
-    pub(super) fn rate(&self, omega: f64) -> f64 {
+    pub(crate) fn rate(&self, omega: f64) -> f64 {
         let highest = self.loads.iter().map(|(order, _)| *order).max().unwrap_or(1).max(1);
         self.rate.max(omega * highest as f64)
     }
@@ -295,6 +295,11 @@ impl ModalSystem {
                 }
             }
         }
+    }
+
+    /// Whether each mode is damped by itself.
+    pub(crate) fn is_diagonally_damped(&self) -> bool {
+        matches!(self.damping, Damping::Diagonal(_))
     }
 
     /// Squared natural frequencies of the free structure [rad²/s²].

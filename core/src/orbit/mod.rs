@@ -6,6 +6,7 @@ mod cycle_survey;
 mod cycles;
 mod limit_cycle;
 mod periodic;
+mod price;
 mod quadrature;
 mod rescue;
 mod residual;

@@ -4,7 +4,7 @@ use super::quadrature::Quadrature;
 use super::residual::shifted;
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
-use super::shooting::Shooting;
+use super::shooting::{Shooting, STEPS};
 use super::start::start_of;
 use super::survey::Survey;
 use crate::balance::{ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings};
@@ -65,6 +65,8 @@ pub struct PeriodicOrbits<'a> {
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
     share: f64,
+    /// Steps of the flow that an orbit is granted.
+    granted: usize,
     /// Steps of the flow, transition matrices and time.
     pub(super) profile: Profile,
 }
@@ -97,8 +99,24 @@ impl<'a> PeriodicOrbits<'a> {
             progress: &|_| true,
             kept: None,
             share: 0.0,
+            granted: STEPS,
             profile: Profile::default(),
         })
+    }
+
+    /// Grants an orbit fewer steps of the flow.
+    #[must_use]
+    pub(super) fn granted(mut self, steps: usize) -> Self {
+        self.granted = self.granted.min(steps);
+        self
+    }
+
+    pub(super) fn model(&self) -> &Model {
+        self.model
+    }
+
+    pub(super) fn system(&self) -> &ModalSystem {
+        &self.system
     }
 
     /// Seeks orbits of a symmetry in space and time; their multipliers stay unknown, as what breaks
@@ -172,6 +190,7 @@ impl<'a> PeriodicOrbits<'a> {
         let interrupted = || !progress(share);
         let system = Arc::clone(&self.system);
         let mut shooting = Shooting::new(&system, omega, self.half_wave, Some(&interrupted));
+        shooting.grant(self.granted);
         if let Some(rotation) = self.rotation {
             shooting.rotate(rotation, &system);
         }

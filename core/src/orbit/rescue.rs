@@ -1,43 +1,73 @@
-//! Starts for a harmonic balance that Newton's method fails to solve: the harmonics of the exact
-//! orbit, which a passive system always has.
+//! Exact orbits for a harmonic balance: a start where Newton's method fails, and the answer where
+//! more harmonics would cost more. A passive system always has one.
 
 use super::periodic::PeriodicOrbits;
 use super::settings::OrbitSettings;
-use crate::balance::{PointStatus, Progress};
+use crate::balance::{ExactOrbits, Point, PointStatus, Progress};
 use crate::contact::Residual;
 use crate::model::Model;
-use faer::c64;
+use crate::motion::State;
 use std::cell::RefCell;
+
+/// Operations that the steps of one search may take: some tens of seconds.
+const PATIENCE: f64 = 4e10;
 
 /// Finds exact orbits on demand.
 pub struct Rescue<'a> {
     model: &'a Model,
     residual: Residual,
+    observe: &'a [usize],
     progress: &'a Progress<'a>,
-    /// Prepared when it is first needed; `None` inside if there is nothing to prepare.
+    /// Prepared when they are first needed; `None` inside if there is nothing to prepare.
     orbits: RefCell<Option<Option<PeriodicOrbits<'a>>>>,
+    /// Frequency and start of the last orbit: it may be asked for again with more harmonics.
+    last: RefCell<Option<(f64, State)>>,
 }
 
 impl<'a> Rescue<'a> {
-    /// Orbits of a model under the residual assumed by its balance; `progress` may end a search.
+    /// Orbits of a model, with the DOFs `observe`, under the residual assumed by its balance;
+    /// `progress` may end a search.
     #[must_use]
-    pub fn new(model: &'a Model, residual: Residual, progress: &'a Progress<'a>) -> Self {
-        Self { model, residual, progress, orbits: RefCell::new(None) }
+    pub fn new(
+        model: &'a Model,
+        residual: Residual,
+        observe: &'a [usize],
+        progress: &'a Progress<'a>,
+    ) -> Self {
+        Self {
+            model,
+            residual,
+            observe,
+            progress,
+            orbits: RefCell::new(None),
+            last: RefCell::new(None),
+        }
     }
 
-    /// Amplitudes U_0, U_1, … up to `highest` of all contact displacements of the orbit at `omega`
-    /// [rad/s], point after point; `None` if none is found.
-    pub fn amplitudes(&self, omega: f64, highest: usize) -> Option<Vec<c64>> {
+    fn with<T>(&self, work: impl FnOnce(&mut PeriodicOrbits<'a>) -> Option<T>) -> Option<T> {
         let mut prepared = self.orbits.borrow_mut();
         let orbits = prepared.get_or_insert_with(|| {
             let settings = OrbitSettings { residual: self.residual, ..OrbitSettings::default() };
-            let orbits = PeriodicOrbits::new(self.model, settings, &[]).ok()?;
-            Some(orbits.watched(self.progress))
+            let orbits = PeriodicOrbits::new(self.model, settings, self.observe).ok()?;
+            let steps = orbits.steps_for(PATIENCE);
+            Some(orbits.watched(self.progress).granted(steps))
         });
-        let orbits = orbits.as_mut()?;
-        orbits.report_up_to(highest);
-        let orbit = orbits.solve(omega, None).ok()?;
-        (orbit.response.status == PointStatus::Converged)
-            .then_some(orbit.response.contact_displacement)
+        work(orbits.as_mut()?)
+    }
+}
+
+impl ExactOrbits for Rescue<'_> {
+    fn orbit(&self, omega: f64, highest: usize) -> Option<Point> {
+        self.with(|orbits| {
+            orbits.report_up_to(highest);
+            let last = self.last.take().filter(|(known, _)| *known == omega);
+            let found = orbits.solve(omega, last.as_ref().map(|(_, start)| start)).ok()?;
+            self.last.replace(found.start().cloned().map(|start| (omega, start)));
+            (found.response.status == PointStatus::Converged).then_some(found.response)
+        })
+    }
+
+    fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64> {
+        self.with(|orbits| orbits.price(omega, events, highest))
     }
 }

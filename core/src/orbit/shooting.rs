@@ -13,7 +13,7 @@ const SINGULAR: f64 = 1e-13;
 
 /// Steps of the flow that an orbit is granted: some thousand periods of a motion of a hundred modes, or
 /// minutes of one of many more. What needs more has hardly any mass somewhere, or no orbit.
-const STEPS: usize = 1 << 22;
+pub(super) const STEPS: usize = 1 << 22;
 
 /// The closing condition of a periodic orbit at one frequency, in the coordinates of
 /// [`Transition`].
@@ -83,6 +83,11 @@ impl<'a> Shooting<'a> {
             derivative: None,
             matrices: 0,
         }
+    }
+
+    /// Grants the flow another number of steps.
+    pub(super) fn grant(&mut self, steps: usize) {
+        self.flow.grant(steps);
     }
 
     /// Confines the flow to the part of a period after which sectors have changed their roles.

@@ -1,10 +1,8 @@
 //! Exact orbits over frequency, and their true maximum.
 
 use super::periodic::{Orbit, PeriodicOrbits};
-use super::settings::OrbitSettings;
-use crate::balance::{brent, check_frequency, keep, PointStatus, Progress};
+use crate::balance::{brent, check_frequency, keep, PointStatus};
 use crate::fourier::Measure;
-use crate::model::Model;
 use crate::motion::State;
 use crate::timing::Profile;
 use crate::Error;
@@ -100,21 +98,16 @@ fn predict(points: &[Arc<Orbit>], omega: f64) -> Option<State> {
 /// # Errors
 /// As [`orbit_sweep`]; a bracket that is not ordered.
 pub fn orbit_peak(
-    model: &Model,
-    settings: OrbitSettings,
-    dof: usize,
+    mut orbits: PeriodicOrbits<'_>,
     measure: Measure,
     [low, guess, high]: [f64; 3],
-    progress: &Progress<'_>,
 ) -> Result<(f64, f64), Error> {
     check_frequency("peak: lower bound", low)?;
     check_frequency("peak: upper bound", high)?;
     if !(low <= guess && guess <= high) {
         return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
     }
-    let observe = [dof];
-    let settings = OrbitSettings { harmonics: 1, ..settings };
-    let mut orbits = PeriodicOrbits::new(model, settings, &observe)?.watched(progress);
+    orbits.report_up_to(1);
     let mut start: Option<(f64, State)> = None;
     let mut height = |omega: f64| -> Result<f64, Error> {
         let near = start.as_ref().filter(|(at, _)| (omega - at).abs() <= NEIGHBOUR * omega);

@@ -21,6 +21,11 @@ pub(super) const FREE_FLOOR: f64 = 1e-8;
 /// Distance to an undamped resonance, relative to the squared frequency, that is refused.
 const RESONANCE: f64 = 1e-9;
 
+/// Natural frequencies below this share of the highest are those of rigid-body modes.
+const SLOWEST: f64 = 1e-9;
+/// Where complex modes are compared, relative to a natural frequency: beside the resonance.
+const BESIDE: f64 = 0.8;
+
 /// Which modes carry the compliance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModalBase {
@@ -164,17 +169,21 @@ impl ModalCompliance {
         }))
     }
 
-    /// Compares complex modes with a direct solution: eigenvectors of a nearly defective problem
-    /// lose digits, and then the direct form must serve.
+    /// Compares complex modes with a direct solution, at low frequencies too: eigenvectors of a nearly
+    /// defective problem lose digits, and so do slow poles beside a very fast one. Then the direct
+    /// form must serve.
     pub(super) fn reproduces(&self, direct: impl FnOnce() -> DirectCompliance) -> bool {
         if self.base != ModalBase::Complex {
             return true;
         }
         let direct = direct();
-        let highest = self.stuck_frequencies.last().copied().unwrap_or(1.0).max(1.0);
+        let natural = &self.stuck_frequencies;
+        let highest = natural.last().copied().unwrap_or(1.0).max(1.0);
+        let slow = natural.iter().copied().filter(|w| *w > SLOWEST * highest);
+        let (first, middle) = (slow.clone().next(), slow.clone().nth(slow.count() / 2));
+        let low = [first, middle].into_iter().flatten().map(|w| BESIDE * w);
         let (mut ours, mut theirs) = (Receptance::default(), Receptance::default());
-        [0.013, 0.11, 0.7].iter().all(|share| {
-            let omega = share * highest;
+        [0.013, 0.11, 0.7].into_iter().map(|share| share * highest).chain(low).all(|omega| {
             if self.receptance(1, omega, &mut ours).is_err()
                 || direct.receptance(1, omega, &mut theirs).is_err()
             {

@@ -22,7 +22,6 @@ __all__ = [
     "observed_dofs",
     "physical_dofs",
     "prepare",
-    "refusal",
     "require_forced",
     "require_held",
     "require_model",
@@ -44,21 +43,6 @@ def require_model(model: object) -> None:
 def prepare(model: Model) -> None:
     """Decompose a model while Ctrl-C still ends an analysis at any line: nothing is lost yet."""
     _ = model.problem
-
-
-def refusal(error: ValueError, model: Model) -> ModelError:
-    """Return what the core refuses of a model, with the names that the core does not know."""
-    from stickslip import _core
-
-    if not isinstance(error, _core.TooFastError):
-        return ModelError(str(error))
-    dof, ratio, omega = error.args
-    mass = model.structure.mass[dof, dof]
-    return ModelError(
-        f"mass of dof {brief(model.structure.dofs[dof])}: with {mass:.3g} kg it moves "
-        f"{ratio:.2g} times faster than omega = {omega:.6g} rad/s, too fast to follow in time; "
-        "condense this dof statically, or balance harmonics with forced_response"
-    )
 
 
 def require_time(model: Model) -> None:

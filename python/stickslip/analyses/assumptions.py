@@ -62,7 +62,8 @@ _BASES = {
 }
 _DIRECT = (
     "The damping matrix couples the modes, and the complex modes miss a direct solution by more "
-    "than 1e-8, as where two of them nearly coincide: every point costs a factorisation of the "
+    "than 1e-8, as where two of them nearly coincide, or a dof of hardly any mass makes one much "
+    "faster than the others: every point costs a factorisation of the "
     "whole dynamic stiffness per harmonic, and takes longer than modes would. Where the damping "
     "follows a law, give that, Rayleigh or ModalDamping, instead of its matrix."
 )
@@ -78,6 +79,7 @@ def assumptions_of(
     missing: int = 0,
     interrupted: bool = False,
     single: bool = False,
+    orbits: int = 0,
 ) -> tuple[Diagnostic, ...]:
     """Say what a forced response took for granted.
 
@@ -99,6 +101,8 @@ def assumptions_of(
         Whether the run was stopped before its end.
     single : bool, optional
         Whether the method knows one harmonic only, and says so itself.
+    orbits : int, optional
+        Number of points whose harmonics are those of exact orbits.
 
     Returns
     -------
@@ -114,6 +118,7 @@ def assumptions_of(
                 _base(model),
                 direct_assumption(model),
                 _frequencies(settings, arrays, missing, interrupted=interrupted),
+                _orbits(orbits),
                 _observed(model, dofs),
                 damping_assumption(model.structure.damping),
                 _truncation(dofs, arrays, _OTHER_METHOD if single else "keep more harmonics there"),
@@ -370,6 +375,17 @@ def _observed(model: Model, dofs: tuple[str, ...]) -> Diagnostic | None:
         f"Only {len(dofs)} of {total} dofs are kept in the result: {listed}.",
         kept=len(dofs),
         total=total,
+    )
+
+
+def _orbits(count: int) -> Diagnostic | None:
+    if not count:
+        return None
+    return diagnostic(
+        "exact-orbits",
+        f"{count} {'point takes its' if count == 1 else 'points take their'} harmonics from the "
+        "exact orbit, which costs less than a balance of as many.",
+        points=count,
     )
 
 

@@ -12,7 +12,6 @@ from stickslip.analyses.arguments import (
     Progress,
     observed_dofs,
     prepare,
-    refusal,
     require_model,
     require_progress,
     require_time,
@@ -22,6 +21,7 @@ from stickslip.checks import brief
 from stickslip.errors import Interrupted, ModelError
 from stickslip.interruption import Interruption
 from stickslip.model import Model, natural_frequencies
+from stickslip.model.model import refusal
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
 from stickslip.results.diagnostic import Diagnostic, diagnostic, present

@@ -144,5 +144,6 @@ def _result(
             half_wave=solution.half_wave,
             missing=missing,
             interrupted=solution.interrupted,
+            orbits=solution.counters["orbits"],
         ),
     )

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.analyses.arguments import (
     Progress,
     prepare,
-    refusal,
     require_model,
     require_progress,
     require_time,
@@ -24,6 +23,7 @@ from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import is_proportional, negative_matrix
+from stickslip.model.model import refusal
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.limit_cycles import LimitCycles
 from stickslip.settings.cycles import LOWEST_RATIO, BranchSettings, CycleKeys, CycleSettings

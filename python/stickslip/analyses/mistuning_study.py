@@ -133,7 +133,7 @@ def mistuning_study(
             complete = work.run(pool, watch, None)
         else:
             identity = identity_of(disk, kept, names, rows, given=coupling_stiffness is not None)
-            with PatternStore(store, identity) as kept_rows:
+            with PatternStore(store, identity, watch.heed) as kept_rows:
                 work.recall(kept_rows)
                 complete = work.run(pool, watch, kept_rows)
         result = work.result(time.perf_counter() - start, interrupted=not complete)

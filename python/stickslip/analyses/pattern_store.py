@@ -12,6 +12,7 @@ import math
 import sqlite3
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
+from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -22,7 +23,7 @@ from stickslip.errors import ModelError
 from stickslip.files import require_place
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 __all__ = ["Identity", "Key", "PatternStore", "Row", "digest"]
 
@@ -81,6 +82,11 @@ _KINDS = (
 )
 """Of the columns but the digest."""
 
+# Seconds to wait for a file that another program holds, and between two looks.
+_PATIENCE = 30.0
+_PAUSE = 0.05
+_HELD = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
+
 _REMEDIES = {
     sqlite3.SQLITE_FULL: "make room there",
     sqlite3.SQLITE_IOERR: "make room there, or check the disk",
@@ -103,6 +109,8 @@ class PatternStore:
         The file; it is made if there is none.
     identity : mapping
         What makes the study; a file of another one is refused.
+    look : callable, optional
+        Called several times per second while another program holds the file; it may raise.
 
     Raises
     ------
@@ -111,14 +119,17 @@ class PatternStore:
         written.
     """
 
-    def __init__(self, path: object, identity: Identity) -> None:
+    def __init__(
+        self, path: object, identity: Identity, look: Callable[[], None] = lambda: None
+    ) -> None:
+        self._look = look
         self.path = file_path(path, "store")
         is_file(self.path)
         require_place(self.path)
         given = {name: json.dumps(value) for name, value in identity.items()}
         self._key = hashlib.blake2b(json.dumps(sorted(given.items())).encode()).digest()
         with self._named():
-            self._base = sqlite3.connect(self.path, isolation_level=None, timeout=30.0)
+            self._base = sqlite3.connect(self.path, isolation_level=None, timeout=0.0)
         try:
             # Text that is none is shown, and differs from what is expected.
             self._base.text_factory = lambda text: text.decode(errors="replace")
@@ -143,7 +154,7 @@ class PatternStore:
             If a row was changed since it was stored.
         """
         with self._named():
-            found = self._base.execute("SELECT * FROM summit").fetchall()
+            found = self._execute("SELECT * FROM summit").fetchall()
         for *values, mark in found:
             if mark != self._digest(values):
                 raise self.damaged(values[0], values[2], "its digest differs")
@@ -187,24 +198,24 @@ class PatternStore:
         return hashlib.blake2b(row, digest_size=16, key=self._key).hexdigest()
 
     def _open(self, identity: Mapping[str, str]) -> None:
-        self._base.execute("PRAGMA synchronous = NORMAL")
+        self._execute("PRAGMA synchronous = NORMAL")
         with self._transaction():
-            if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
+            if not self._execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
                 for statement in sorted(_TABLES[FORMAT]):
-                    self._base.execute(statement)
-                self._base.execute(f"PRAGMA application_id = {_APPLICATION}")
-                self._base.execute(f"PRAGMA user_version = {FORMAT}")
+                    self._execute(statement)
+                self._execute(f"PRAGMA application_id = {_APPLICATION}")
+                self._execute(f"PRAGMA user_version = {FORMAT}")
                 self._base.executemany("INSERT INTO identity VALUES (?, ?)", identity.items())
                 return
         version = self._required_format()
-        self._require_same(dict(self._base.execute("SELECT name, value FROM identity")), identity)
+        self._require_same(dict(self._execute("SELECT name, value FROM identity")), identity)
         if version < FORMAT:
             self._add_digests()
 
     def _add_digests(self) -> None:
         """Bring a store of the first format, whose rows have no digest, to this one."""
         with self._transaction():
-            found = self._base.execute("SELECT * FROM summit").fetchall()
+            found = self._execute("SELECT * FROM summit").fetchall()
             for values in found:
                 kinds = zip(values, _KINDS, strict=True)
                 if not all(isinstance(value, kind) for value, kind in kinds):
@@ -213,43 +224,57 @@ class PatternStore:
                     float.fromhex(values[1])
                 except (ValueError, OverflowError):
                     raise self.damaged(values[0], values[2], "its coupling is no number") from None
-            self._base.execute("DROP TABLE summit")
+            self._execute("DROP TABLE summit")
             for statement in _TABLES[FORMAT] - _TABLES[1]:
-                self._base.execute(statement)
+                self._execute(statement)
             self._insert(found)
-            self._base.execute(f"PRAGMA user_version = {FORMAT}")
+            self._execute(f"PRAGMA user_version = {FORMAT}")
 
     def _required_format(self) -> int:
-        if self._base.execute("PRAGMA application_id").fetchone()[0] != _APPLICATION:
+        if self._execute("PRAGMA application_id").fetchone()[0] != _APPLICATION:
             raise ModelError(
                 f"{self.path}: is no store of a mistuning study; give another name, nothing was "
                 "changed"
             )
-        version: int = self._base.execute("PRAGMA user_version").fetchone()[0]
+        version: int = self._execute("PRAGMA user_version").fetchone()[0]
         if version not in _TABLES:
             raise ModelError(
                 f"{self.path}: a store of format {version}, this version of stickslip reads format "
                 f"1 to {FORMAT}; upgrade stickslip, or give another store"
             )
-        there = {row[0] for row in self._base.execute("SELECT sql FROM sqlite_master")}
+        there = {row[0] for row in self._execute("SELECT sql FROM sqlite_master")}
         if there != _TABLES[version]:
             raise sqlite3.DatabaseError("its tables are not those of a store")
-        said = self._base.execute("PRAGMA quick_check").fetchone()[0]
+        said = self._execute("PRAGMA quick_check").fetchone()[0]
         if said != "ok":
             raise sqlite3.DatabaseError(str(said).splitlines()[-1])
         return version
 
+    def _execute(self, statement: str) -> sqlite3.Cursor:
+        """Execute a statement as soon as no other program holds the file."""
+        end = monotonic() + _PATIENCE
+        while True:
+            try:
+                return self._base.execute(statement)
+            except sqlite3.OperationalError as error:
+                held = error.sqlite_errorcode & 0xFF in _HELD
+                if not held or monotonic() > end:
+                    raise
+            # SQLite's own waiting would be deaf to signals.
+            self._look()
+            sleep(_PAUSE)
+
     @contextmanager
     def _transaction(self) -> Iterator[None]:
         """Let all of it be done, or nothing."""
-        self._base.execute("BEGIN IMMEDIATE")
+        self._execute("BEGIN IMMEDIATE")
         try:
             yield
-            self._base.execute("COMMIT")
+            self._execute("COMMIT")
         except BaseException:
             # A disk that refuses a write may have ended the transaction already.
             if self._base.in_transaction:
-                self._base.execute("ROLLBACK")
+                self._execute("ROLLBACK")
             raise
 
     def _require_same(self, there: Mapping[str, str], here: Mapping[str, str]) -> None:

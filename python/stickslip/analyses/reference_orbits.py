@@ -9,9 +9,9 @@ import numpy as np
 
 from stickslip.analyses.arguments import Progress, require_held
 from stickslip.analyses.memory import require_memory
-from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.wave_ring import rotation_of, wave_ring
+from stickslip.disk.wave_ring import moving
 from stickslip.errors import ModelError
+from stickslip.model.model import refusal
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
 from stickslip.results.orbit_arrays import OrbitArrays
@@ -83,11 +83,7 @@ def orbits_of(
 
     model = result.model
     require_held(model, result.settings.residual)
-    rotation = None
-    problem = model.problem
-    if isinstance(model, BladedDisk):
-        rotation = rotation_of(model, half_wave=result.half_wave)
-        problem = wave_ring(model, rotation)
+    problem, rotation = moving(model, half_wave=result.half_wave)
     sectors = 1 if rotation is None else rotation.sectors
     points = sectors * sum(contact.points for contact in model.contacts)
     state = 2 * sectors * len(model.structure) + points
@@ -106,5 +102,5 @@ def orbits_of(
     except ModelError:
         raise
     except ValueError as error:
-        raise ModelError(str(error)) from error
+        raise refusal(error, model) from error
     return Orbits(dofs, OrbitArrays.of(solution), solution.interrupted, problem, columns)

@@ -12,7 +12,6 @@ from stickslip.analyses.arguments import (
     Progress,
     observed_dofs,
     prepare,
-    refusal,
     require_model,
     require_progress,
     require_time,
@@ -23,6 +22,7 @@ from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
+from stickslip.model.model import refusal
 from stickslip.model.state import State
 from stickslip.results.transient import Transient
 from stickslip.results.transient_arrays import TransientArrays

@@ -17,11 +17,12 @@ from stickslip.checks import Matrix
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.cyclic import Blocks
 from stickslip.errors import ModelError
+from stickslip.model import Model
 
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["Rotation", "rotation_of", "wave_ring"]
+__all__ = ["Rotation", "moving", "rotation_of", "wave_ring"]
 
 
 class Rotation(NamedTuple):
@@ -65,6 +66,32 @@ def rotation_of(disk: BladedDisk, *, half_wave: bool) -> Rotation:
         return Rotation(sectors // 2, ahead, -1.0, 1.0, sectors)
     shift = ahead * ((1 - sectors) // 2) % sectors
     return Rotation(sectors, shift, 1.0, -1.0, 2 * sectors)
+
+
+def moving(model: Model, *, half_wave: bool) -> tuple[_core.Problem, Rotation | None]:
+    """Return a model as the compiled core follows it in time.
+
+    Parameters
+    ----------
+    model : Model
+        The model; of a tuned disk the sectors that its wave tells apart are followed.
+    half_wave : bool
+        Whether x(t + T/2) = -x(t).
+
+    Returns
+    -------
+    (Problem, Rotation or None)
+        The problem, and the symmetry of the wave if there is one.
+
+    Raises
+    ------
+    ModelError
+        If the forces on a disk make no single travelling wave, or the core refuses the numbers.
+    """
+    if not isinstance(model, BladedDisk):
+        return model.problem, None
+    rotation = rotation_of(model, half_wave=half_wave)
+    return wave_ring(model, rotation), rotation
 
 
 def wave_ring(disk: BladedDisk, rotation: Rotation) -> _core.Problem:

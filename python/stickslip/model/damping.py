@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.checks import Matrix, brief, members, real_number
 from stickslip.errors import ModelError
@@ -28,6 +29,9 @@ __all__ = [
 
 
 _ROUNDING = 1e-13
+# Ratio of stiffness over mass between dofs from which their order decides how many digits slow
+# modes keep.
+_GRADED = 1e6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,7 +175,9 @@ class ModalDamping:
         held = stiffness
         if self.stuck:
             held = held_stiffness(Structure(mass, stiffness, dofs=dofs), self.stuck)
-        squares, modes = eigh(held, mass)
+        order = _graded(held, mass)
+        squares, modes = eigh(held[np.ix_(order, order)], mass[np.ix_(order, order)])
+        modes = modes[np.argsort(order)]
         if squares[0] < -1e-8 * np.abs(squares).max():
             raise ModelError(
                 f"damping: the lowest mode has omega^2 = {squares[0]:.6g} < 0, a ratio means "
@@ -183,6 +189,14 @@ class ModalDamping:
         with np.errstate(over="ignore", invalid="ignore"):
             damping = (shapes * (2.0 * ratios * omega)) @ shapes.T
         return _finite(np.asarray(damping, dtype=np.float64), self)
+
+
+def _graded(stiffness: Matrix, mass: Matrix) -> NDArray[np.intp]:
+    """Return the order of dofs in which their modes keep their digits: the lightest first."""
+    rates = np.abs(np.diag(stiffness)) / np.diag(mass)
+    if not rates.max() > _GRADED * rates.min():
+        return np.arange(len(mass))
+    return np.argsort(-rates, kind="stable")
 
 
 def held_stiffness(structure: Structure, contacts: Iterable[Contact]) -> Matrix:

@@ -24,7 +24,7 @@ from stickslip.model.structure import Structure
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["ContactRef", "Model", "PointRef", "listed_items", "natural_frequencies"]
+__all__ = ["ContactRef", "Model", "PointRef", "listed_items", "natural_frequencies", "refusal"]
 
 _Item = TypeVar("_Item")
 
@@ -363,6 +363,23 @@ def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
             taken[contact.name] = number
     free = {law: _free_names(law, taken.keys()) for law in {contact.law for contact in contacts}}
     return tuple(contact.named(contact.name or next(free[contact.law])) for contact in contacts)
+
+
+def refusal(error: ValueError, model: Model) -> ModelError:
+    """Return what the core refuses of a model, with the names that the core does not know."""
+    from stickslip import _core
+
+    if not isinstance(error, _core.TooFastError):
+        return ModelError(str(error))
+    dof, ratio, omega = error.args
+    # A travelling wave is computed on several sectors.
+    dof %= len(model.structure)
+    mass = model.structure.mass[dof, dof]
+    return ModelError(
+        f"mass of dof {brief(model.structure.dofs[dof])}: with {mass:.3g} kg it moves "
+        f"{ratio:.2g} times faster than omega = {omega:.6g} rad/s, too fast to follow in time; "
+        "condense this dof statically, or balance harmonics with forced_response"
+    )
 
 
 def _free_names(law: str, taken: Set[str]) -> Iterator[str]:

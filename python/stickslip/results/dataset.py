@@ -66,7 +66,7 @@ def settings_of(kind: type[ColumnResult], dataset: xr.Dataset) -> Settings:
     return kind.settings_class.stored(values)
 
 
-def require_fit(dataset: xr.Dataset, model: Model) -> tuple[str, ...]:
+def require_fit(dataset: xr.Dataset, model: Model, states: Sequence[str]) -> tuple[str, ...]:
     """Return the observed degrees of freedom of a dataset, if its sizes are those of a model.
 
     Raises
@@ -76,7 +76,7 @@ def require_fit(dataset: xr.Dataset, model: Model) -> tuple[str, ...]:
     """
     for dimension, noun, names in (
         ("point", "contact points in the arrays", point_names(model)),
-        ("state_entry", "entries per state", state_names(model)),
+        ("state_entry", "entries per state", states),
     ):
         size = dataset.sizes.get(dimension, len(names))
         if size != len(names):
@@ -87,7 +87,9 @@ def require_fit(dataset: xr.Dataset, model: Model) -> tuple[str, ...]:
     return dofs
 
 
-def coordinates(result: ColumnResult, sizes: Mapping[Hashable, int]) -> dict[str, Any]:
+def coordinates(
+    result: ColumnResult, sizes: Mapping[Hashable, int], states: Sequence[str]
+) -> dict[str, Any]:
     """Return the names along the dimensions of a dataset."""
     model = result.model
     made: dict[str, Any] = {"dof": labels("dof", result.dofs, "observed degree of freedom")}
@@ -104,7 +106,7 @@ def coordinates(result: ColumnResult, sizes: Mapping[Hashable, int]) -> dict[str
         made["point"] = labels("point", point_names(model), "contact point")
         made["contact"] = labels("point", owners, "contact of the point")
     if "state_entry" in sizes:
-        made["state_entry"] = labels("state_entry", state_names(model), "entry of the state")
+        made["state_entry"] = labels("state_entry", states, "entry of the state")
     for dimension, names in result.arrays.labels.items():
         made[dimension] = labels(dimension, names, _LABELLED[dimension])
     return made

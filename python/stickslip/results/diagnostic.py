@@ -40,6 +40,7 @@ SEVERITIES: Mapping[str, Severity] = MappingProxyType(
         "half-wave": _NOTE,
         "modal-base": _NOTE,
         "direct-solution": _NOTE,
+        "exact-orbits": _NOTE,
         "frequencies": _NOTE,
         "observed-dofs": _NOTE,
         "tolerances-missed": _NOTE,

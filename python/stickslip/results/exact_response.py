@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
+from stickslip.model.model import Model, refusal
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Measure, amplitude_in, constant
 from stickslip.results.contact_states import ContactStates, states_of
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from stickslip import _core
+    from stickslip.disk.wave_ring import Rotation
     from stickslip.plot import MultiplierOptions
 
 __all__ = ["ExactResponse"]
@@ -64,6 +67,22 @@ class ExactResponse(ForcedResponse, FloquetStability):
         arrays = self.arrays
         friction = np.where(arrays.solved, arrays.dissipation.sum(axis=1), np.nan)
         return Energy(arrays.work, arrays.viscous, constant(friction), apparent_work(self))
+
+    @cached_property
+    def _moving(self) -> tuple[_core.Problem, Rotation | None]:
+        from stickslip.disk.wave_ring import moving
+
+        return moving(self.model, half_wave=self.half_wave)
+
+    def sector(self, number: int) -> Self:
+        """Return the motion of another sector of a tuned disk; see `ForcedResponse.sector`."""
+        seen = super().sector(number)
+        disk, rotation = self._tuned_disk(), self._moving[1]
+        if seen is self or rotation is None:
+            return seen
+        share = (disk.engine_order * number % disk.sectors) / disk.sectors
+        turned = seen.arrays.turned(rotation, number, share, len(disk.structure))
+        return replace(seen, arrays=turned)
 
     def events(self, index: int) -> Events:
         """Return when contact points begin to stick and to slip, over one period.
@@ -113,6 +132,11 @@ class ExactResponse(ForcedResponse, FloquetStability):
         status = self.status[position]
         if not status.solved:
             raise ModelError(f"index: {index} has no state ({status}). {status.advice}")
+        if self._moving[1] is not None:
+            raise ModelError(
+                "state: the orbit of a tuned disk is one of several sectors; take it of "
+                "exact_response(disk.mistuned(0))"
+            )
         return State.of_vector(self.model, self.arrays.state[position])
 
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
@@ -227,6 +251,25 @@ class ExactResponse(ForcedResponse, FloquetStability):
         stable = {"stable": flag_variable("omega", self.stability)}
         return super()._further_variables(derived=derived) | stable
 
+    @classmethod
+    def _states(cls, model: Model, *, half_wave: bool) -> list[str]:
+        """Return a name for every entry of a state; of a wave, with the sectors in front."""
+        from stickslip.disk.wave_ring import moving
+
+        own, rotation = super()._states(model, half_wave=half_wave), None
+        if model.travels:
+            _, rotation = moving(model, half_wave=half_wave)
+        if rotation is None:
+            return own
+        moved = len(model.structure)
+        parts = own[:moved], own[moved : 2 * moved], own[2 * moved :]
+        return [
+            f"{name[0]} {sector}.{name[2:]}"
+            for part in parts
+            for sector in range(rotation.sectors)
+            for name in part
+        ]
+
     def plot_multipliers(self, **options: Unpack[MultiplierOptions]) -> Axes:
         """Draw the multipliers in the complex plane, with the unit circle.
 
@@ -282,12 +325,12 @@ class ExactResponse(ForcedResponse, FloquetStability):
             observed = [model.structure.index(dof) for dof in self.dofs]
             try:
                 motion = _core.orbit_history(
-                    model.problem,
+                    self._moving[0],
                     float(arrays.omega[position]),
                     arrays.state[position],
                     np.array(observed, dtype=np.int64),
                     count,
                 )[part]
             except ValueError as error:
-                raise ModelError(str(error)) from error
-        return constant(np.ascontiguousarray(motion[:, places]))
+                raise refusal(error, model) from error
+        return constant(np.ascontiguousarray(motion[:, :columns][:, places]))

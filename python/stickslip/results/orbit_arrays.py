@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -15,6 +16,8 @@ from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from stickslip.disk.wave_ring import Rotation
 
 __all__ = ["OrbitArrays"]
 
@@ -100,5 +103,72 @@ class OrbitArrays(Arrays):
 
     @property
     def known(self) -> Bool:
-        """(n,) Whether the multipliers of a point are known."""
-        return self.solved
+        """(n,) Whether the multipliers of a point are known: not those of travelling waves."""
+        return self.solved & ~np.isnan(self.multipliers).any(axis=1)
+
+    def of_sector(self, points: int, sectors: int) -> Self:
+        """Return what belongs to sector 0 of some equal ones, with the state of all of them.
+
+        Parameters
+        ----------
+        points : int
+            Number of contact points of a sector.
+        sectors : int
+            How many sectors there are.
+
+        Returns
+        -------
+        OrbitArrays
+            Without the contact points of the other sectors; work and losses are those of one.
+        """
+        own = self.event_point < points
+        return replace(
+            self,
+            contact_displacement=self.contact_displacement[..., :points],
+            contact_force=self.contact_force[..., :points],
+            slip_fraction=self.slip_fraction[:, :points],
+            dissipation=self.dissipation[:, :points],
+            work=self.work / sectors,
+            viscous=self.viscous / sectors,
+            event_offset=np.concatenate(([0], np.cumsum(own)))[self.event_offset],
+            event_time=self.event_time[own],
+            event_point=self.event_point[own],
+            event_kind=self.event_kind[own],
+        )
+
+    def turned(self, rotation: Rotation, number: int, share: float, dofs: int) -> Self:
+        """Return the orbits seen from another sector, with series that are turned already.
+
+        Parameters
+        ----------
+        rotation : Rotation
+            The symmetry of the wave.
+        number : int
+            The sector.
+        share : float
+            By which part of the period it is ahead.
+        dofs : int
+            Number of degrees of freedom of a sector.
+
+        Returns
+        -------
+        OrbitArrays
+            States and events of that sector.
+        """
+        places = np.arange(rotation.sectors) + number
+        factors = rotation.wrap ** (places // rotation.sectors)
+        moved = rotation.sectors * dofs
+        parts = np.split(self.state, [moved, 2 * moved], axis=1)
+        blocks = [part.reshape(len(part), rotation.sectors, -1) for part in parts]
+        ahead = [block[:, places % rotation.sectors] * factors[:, None] for block in blocks]
+        period = 2.0 * np.pi / self.omega
+        point = np.repeat(np.arange(self.omega.size), np.diff(self.event_offset))
+        time = (self.event_time - share * period[point]) % period[point]
+        order = np.lexsort((time, point))
+        return replace(
+            self,
+            state=np.concatenate([block.reshape(len(block), -1) for block in ahead], axis=1),
+            event_time=time[order],
+            event_point=self.event_point[order],
+            event_kind=self.event_kind[order],
+        )

@@ -11,6 +11,7 @@ import numpy as np
 
 from stickslip.checks import brief
 from stickslip.errors import ModelError
+from stickslip.model.model import refusal
 from stickslip.results.arrays import Bool, Float, Int, Measure
 from stickslip.results.status import Status
 
@@ -279,15 +280,18 @@ def of_orbits(
 ) -> tuple[float, float]:
     """Return frequency and amplitude of the maximum inside a bracket, by exact orbits."""
     from stickslip import _core
+    from stickslip.disk.wave_ring import moving
 
     low, high, guess = bracket
+    problem, rotation = moving(result.model, half_wave=result.half_wave)
     try:
         return _core.exact_peak(
-            result.model.problem,
+            problem,
             (low, guess, high),
             result.model.structure.index(dof),
             measure,
             result.settings,
+            rotation,
         )
     except ValueError as error:
-        raise ModelError(f"peak of {dof!r}: {error}") from error
+        raise ModelError(f"peak of {dof!r}: {refusal(error, result.model)}") from error

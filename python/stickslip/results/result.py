@@ -17,7 +17,13 @@ from numpy.typing import NDArray
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
-from stickslip.results.dataset import attributes, coordinates, require_fit, settings_of
+from stickslip.results.dataset import (
+    attributes,
+    coordinates,
+    require_fit,
+    settings_of,
+    state_names,
+)
 from stickslip.results.diagnostic import Diagnostic, from_attributes
 from stickslip.results.fields import Columns
 from stickslip.settings.settings import Settings
@@ -234,17 +240,20 @@ class ColumnResult(Result):
             self.arrays.variables(self._words()) | self._further_variables(derived=derived),
             attrs=attributes(self),
         )
-        return dataset.assign_coords(coordinates(self, dataset.sizes))
+        half_wave = bool(getattr(self, "half_wave", False))
+        states = self._states(self.model, half_wave=half_wave)
+        return dataset.assign_coords(coordinates(self, dataset.sizes, states))
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
         """Return the result that a dataset holds; see `Result.from_dataset`."""
         told = dataset.attrs
+        states = cls._states(model, half_wave=bool(told.get("half_wave", False)))
         arguments: dict[str, Any] = {name: of(told[name]) for name, of in cls.attributes.items()}
         return cls(
             model=model,
             arrays=cls.columns.read(dataset),
-            dofs=require_fit(dataset, model),
+            dofs=require_fit(dataset, model, states),
             settings=settings_of(cls, dataset),
             timings=json.loads(told["timings"]),
             counters=json.loads(told["counters"]),
@@ -252,6 +261,11 @@ class ColumnResult(Result):
             **arguments,
             **cls._further_arguments(dataset),
         )
+
+    @classmethod
+    def _states(cls, model: Model, *, half_wave: bool) -> list[str]:
+        """Return a name for every entry of a state."""
+        return state_names(model)
 
     def _words(self) -> Mapping[str, str]:
         """Return the words that units and meanings of columns leave open."""

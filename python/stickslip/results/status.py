@@ -23,6 +23,7 @@ class Status(StrEnum):
     ORBIT_STALLED = "orbit stalled"
     SAMPLES_LIMIT = "samples limit"
     STEPS_LIMIT = "steps limit"
+    EFFORT_LIMIT = "effort limit"
 
     @classmethod
     def from_code(cls, code: int) -> Status:
@@ -32,7 +33,7 @@ class Status(StrEnum):
         ----------
         code : int
             0 converged, 1 stalled, 2 singular, 3 not computed, 4 harmonics limit,
-            5 orbit stalled, 6 samples limit, 7 steps limit.
+            5 orbit stalled, 6 samples limit, 7 steps limit, 8 effort limit.
 
         Raises
         ------
@@ -52,11 +53,11 @@ class Status(StrEnum):
     def solved(self) -> bool:
         """Whether the balance equations hold at this point.
 
-        True for `CONVERGED`, and for `HARMONICS_LIMIT` and `SAMPLES_LIMIT`: there the equations are
-        solved for the harmonics that were kept and the samples that were taken, only more of them
-        would be needed for the tolerance.
+        True for `CONVERGED`, and for `HARMONICS_LIMIT`, `SAMPLES_LIMIT` and `EFFORT_LIMIT`: there
+        the equations are solved for the harmonics that were kept and the samples that were taken,
+        only more of them would be needed for the tolerance.
         """
-        return self in (Status.CONVERGED, Status.HARMONICS_LIMIT, Status.SAMPLES_LIMIT)
+        return self in _SOLVED
 
     @property
     def advice(self) -> str:
@@ -65,6 +66,12 @@ class Status(StrEnum):
 
 
 _MEMBERS = tuple(Status)
+_SOLVED = (
+    Status.CONVERGED,
+    Status.HARMONICS_LIMIT,
+    Status.SAMPLES_LIMIT,
+    Status.EFFORT_LIMIT,
+)
 
 _ADVICE = {
     Status.CONVERGED: (
@@ -101,5 +108,11 @@ _ADVICE = {
         "The orbit was not found within the steps that it is granted: the motion does not settle, "
         "or some of it is much faster than omega. See with transient whether it settles, condense "
         "light dofs statically, or balance harmonics."
+    ),
+    Status.EFFORT_LIMIT: (
+        "Given up early: more harmonics, and an exact orbit, would have cost far more than those "
+        "that are kept, as where omega is low or contacts are nearly rigid. Read error_estimate; "
+        "raise tolerance, name in observe only the dofs that matter, give a number of harmonics, "
+        "or condense light or nearly rigid dofs statically."
     ),
 }

@@ -90,7 +90,7 @@ def _peak(result: ForcedResponse, row: Summary, length: float) -> tuple[str, ...
         f"{row.omega:#.6g}{mark}",
         f"{row.omega / (2 * pi):#.6g}",
         f"{row.amplitude / length:.4e}",
-        f"{row.error_estimate / length:.0e}",
+        "-" if row.amplitude == inf else f"{row.error_estimate / length:.0e}",
         "exact" if isinstance(result, ExactResponse) else f"{row.harmonics}",
     )
 
@@ -180,11 +180,14 @@ def _orbit_rows(result: ExactResponse) -> list[tuple[str, str]]:
         return []
     moving = np.arange(result.multipliers.shape[1]) >= result.neutral[:, None]
     size = np.where(moving, np.abs(result.multipliers), 0.0)[solved].max()
+    largest = (
+        "multipliers of a wave unknown" if np.isnan(size) else f"largest multiplier {size:.4g}"
+    )
     return [
         ("events", f"{counts.min()} to {counts.max()} per period"),
         (
             "stability",
-            f"{stability_counts(result.stability[solved])}, largest multiplier {size:.4g}",
+            f"{stability_counts(result.stability[solved])}, {largest}",
         ),
     ]
 

@@ -1,0 +1,63 @@
+//! What a balance costs, in floating-point operations: by it automatic harmonics are given up for
+//! an exact orbit, or for good.
+//!
+//! The price follows from the model and the solution below, not from the clock or from the work
+//! already done: the same point is solved in the same way everywhere.
+
+use crate::model::Model;
+
+/// Newton iterations with a new Jacobian that one more rung usually takes.
+const ITERATIONS: f64 = 10.0;
+/// What an operation of a factorisation counts among those of scalars: it works in blocks.
+const IN_BLOCKS: f64 = 0.2;
+/// Operations of a law and its tangent, line searches included, over the square of the slots.
+const PER_LAW: f64 = 40.0;
+/// Operations that nobody waits for, about a hundredth of a second: below them harmonics climb.
+pub(super) const TRIFLE: f64 = 1e7;
+/// Operations that a point may ask for at once, some seconds, …
+const AFFORDABLE: f64 = 5e9;
+/// … or this multiple of the lowest rung, if already that is much: four times its harmonics.
+const MULTIPLE: f64 = 64.0;
+/// A homotopy takes as much as so many rungs: it must be affordable, …
+const HOMOTOPY: f64 = 200.0;
+/// … or belong to less than twice the harmonics of the lowest rung.
+const TWICE: f64 = 8.0;
+
+/// Price of the balance equations of a model with some slipping points.
+pub(super) struct Price<'a> {
+    pub(super) model: &'a Model,
+    pub(super) half_wave: bool,
+    pub(super) slipping: usize,
+    /// Lowest order with which a point begins.
+    pub(super) lowest: usize,
+}
+
+impl Price<'_> {
+    /// Operations of a solution with harmonics up to `order`.
+    pub(super) fn of(&self, order: usize) -> f64 {
+        let slots = if self.half_wave { order + 1 } else { 2 * order + 1 } as f64;
+        let cube = |points: usize| (points as f64 * slots).powi(3);
+        let factors = match self.model.compliance().ring() {
+            // Contacts are eliminated inside their sectors, then sectors from neighbour to neighbour.
+            Some(ring) => {
+                let layout = ring.layout();
+                let (own, between) = (layout.contacts, layout.between.len());
+                let inside = 3.0 * cube(own - between);
+                ring.sectors() as f64 * (inside + 20.0 * cube(layout.ports() - own + 2 * between))
+            }
+            None => 2.0 / 3.0 * cube(self.slipping),
+        };
+        let laws = PER_LAW * self.slipping as f64 * slots.powi(2);
+        ITERATIONS * (IN_BLOCKS * factors + laws)
+    }
+
+    /// Operations that a point may ask for.
+    pub(super) fn affordable(&self) -> f64 {
+        AFFORDABLE.max(MULTIPLE * self.of(self.lowest))
+    }
+
+    /// Whether a homotopy to harmonics up to `order` is affordable.
+    pub(super) fn allows_homotopy(&self, order: usize) -> bool {
+        self.of(order) <= (AFFORDABLE / HOMOTOPY).max(TWICE * self.of(self.lowest))
+    }
+}

@@ -1,0 +1,59 @@
+//! What an exact orbit costs, in floating-point operations, before it is sought.
+//!
+//! The price follows from the model, the frequency and the number of events that a balance expects,
+//! not from the clock: the same point is solved in the same way everywhere.
+
+use super::periodic::PeriodicOrbits;
+use crate::motion::ModalSystem;
+use std::f64::consts::TAU;
+
+/// Length of a usual step of the flow, in units of the fastest rate.
+const REACH: f64 = 9.0;
+/// Powers of a step, and operations per power beside the products of modes and contacts.
+const POWERS: f64 = 33.0;
+const PER_MODE: f64 = 10.0;
+/// Passes along the orbit until shooting has converged.
+const PASSES: f64 = 10.0;
+/// Products of matrices per transition between two events, beside the squarings.
+const PRODUCTS: f64 = 8.0;
+/// Operations of eigenvalues over the third power of the size.
+const EIGENVALUES: f64 = 25.0;
+/// Nodes of a quadrature per step, and operations per node and harmonic.
+const NODES: f64 = 20.0;
+const PER_HARMONIC: f64 = 2.0;
+
+impl PeriodicOrbits<'_> {
+    /// Operations of a cold orbit at `omega` [rad/s] with `events` changes of contact states per
+    /// period, whose harmonics are reported up to `highest`; `None` if its motion is too fast to be
+    /// followed.
+    pub(super) fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64> {
+        let system = self.system();
+        system.check_pace(self.model(), omega, super::periodic::FASTEST).ok()?;
+        let share = if self.half_wave() { 0.5 } else { 1.0 };
+        let turn = share * TAU * system.rate(omega) / omega;
+        let events = share * events as f64;
+        let steps = turn / REACH + events;
+        let size = (2 * system.modes() + system.strains()) as f64;
+        let cube = size.powi(3);
+        let squarings = (turn / (events + 1.0)).log2().max(0.0);
+        let transition = (events + 1.0) * 2.0 * cube * (PRODUCTS + squarings);
+        let nodes = NODES * steps + share * TAU * highest as f64;
+        let rows = (system.modes() + system.points()) as f64;
+        let survey = nodes * rows * PER_HARMONIC * share * highest as f64;
+        let pass = steps * step_price(system) + transition + cube;
+        Some(PASSES * pass + EIGENVALUES * cube + survey)
+    }
+
+    /// Steps of the flow that `operations` pay for.
+    pub(super) fn steps_for(&self, operations: f64) -> usize {
+        (operations / step_price(self.system())) as usize
+    }
+}
+
+/// Operations of a step of the flow.
+fn step_price(system: &ModalSystem) -> f64 {
+    let (modes, points) = (system.modes() as f64, system.points() as f64);
+    let damping = if system.is_diagonally_damped() { PER_MODE } else { PER_MODE + 2.0 * modes };
+    // Modes give displacements and take forces; every point looks for its next event among all.
+    POWERS * (4.0 * modes * points + damping * modes + 4.0 * points * points)
+}
