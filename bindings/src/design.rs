@@ -86,6 +86,7 @@ impl Peaks {
             ("law", profile.law),
             ("linear_solve", profile.linear_solve),
             ("recovery", profile.recovery),
+            ("estimate", profile.estimate),
             ("total", profile.total),
         ] {
             timings.set_item(stage, time.as_secs_f64())?;

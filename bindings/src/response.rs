@@ -220,6 +220,7 @@ pub fn timings<'py>(py: Python<'py>, profile: &Profile) -> PyResult<Bound<'py, P
         ("law", profile.law),
         ("linear_solve", profile.linear_solve),
         ("recovery", profile.recovery),
+        ("estimate", profile.estimate),
         ("total", profile.total),
     ] {
         timings.set_item(stage, time.as_secs_f64())?;

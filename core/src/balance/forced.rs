@@ -282,11 +282,13 @@ impl<'a> ForcedBalance<'a> {
         let start = std::time::Instant::now();
         let mut point = self.recover(equations, omega, &x, status)?;
         point.samples = samples;
+        self.profile.recovery += start.elapsed();
         // Without an observed DOF there is nothing whose error could be estimated.
         if status == PointStatus::Converged && !self.observe.is_empty() {
+            let start = std::time::Instant::now();
             self.estimate(equations, &x, &mut point)?;
+            self.profile.estimate += start.elapsed();
         }
-        self.profile.recovery += start.elapsed();
         point.residual = report.residual;
         point.iterations = report.iterations;
         point.unknowns = Some(Unknowns { harmonics: harmonics.clone(), values: x });

@@ -38,6 +38,7 @@ _STAGES = {
     "law": "law (force, tangent)",
     "linear_solve": "linear solve",
     "recovery": "recovery",
+    "estimate": "error estimate",
 }
 _PLAIN_WIDTH = 10_000
 _PATIENCE = 0.5
