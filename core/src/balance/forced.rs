@@ -113,6 +113,12 @@ impl<'a> ForcedBalance<'a> {
         (self.progress)(share)
     }
 
+    /// Whether the analysis is to end.
+    pub(super) fn interruption(&self) -> impl Fn() -> bool + 'a {
+        let (progress, share) = (self.progress, self.share);
+        move || !progress(share)
+    }
+
     /// Takes over what another balance of the same contacts has learnt.
     #[must_use]
     pub(crate) fn remembering(mut self, memory: Memory) -> Self {
@@ -214,8 +220,7 @@ impl<'a> ForcedBalance<'a> {
     ) -> Result<Point, Error> {
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
-        let (progress, share) = (self.progress, self.share);
-        let interrupted = || !progress(share);
+        let interrupted = self.interruption();
         let mut equations = Condensed::new(&model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
         if self.settings.method != Method::Newton {
@@ -286,8 +291,11 @@ impl<'a> ForcedBalance<'a> {
         // Without an observed DOF there is nothing whose error could be estimated.
         if status == PointStatus::Converged && !self.observe.is_empty() {
             let start = std::time::Instant::now();
-            self.estimate(equations, &x, &mut point)?;
+            let estimated = self.estimate(equations, &x, &mut point)?;
             self.profile.estimate += start.elapsed();
+            if !estimated {
+                return Ok(self.not_computed(omega));
+            }
         }
         point.residual = report.residual;
         point.iterations = report.iterations;

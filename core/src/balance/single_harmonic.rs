@@ -118,8 +118,11 @@ impl<'a> Equations<'a> {
         balance.profile.recovery += start.elapsed();
         if estimate {
             let start = std::time::Instant::now();
-            balance.estimate_truncation(&self.harmonics, &x, None, &mut point)?;
+            let done = balance.estimate_truncation(&self.harmonics, &x, None, &mut point)?;
             balance.profile.estimate += start.elapsed();
+            if !done {
+                return Ok(balance.not_computed(omega));
+            }
         }
         point.unknowns = Some(Unknowns { harmonics: self.harmonics.clone(), values: x });
         Ok(point)

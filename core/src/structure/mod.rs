@@ -97,6 +97,10 @@ pub trait Compliance: Send + Sync {
         out: &mut [c64],
     ) -> Result<(), Error>;
 
+    /// About the time that one harmonic takes, its receptance and the displacements of `observed`
+    /// DOFs, on a common processor [ns].
+    fn effort(&self, observed: usize) -> f64;
+
     /// Whether a frequency costs a factorisation per harmonic, of the whole or of a part.
     fn is_direct(&self) -> bool {
         false
