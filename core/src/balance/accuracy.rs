@@ -30,32 +30,53 @@ const FARTHEST: (usize, usize) = (2, 14);
 /// … and only as far as its effort stays below that of the solution, though at least so far.
 const LEAST: usize = 2;
 
-/// Newton steps that a solution takes at least where contacts slip, and the most of the estimate.
-const STEPS: [f64; 2] = [4.0, 2.0];
+/// Newton steps that the solution of a point with slip takes: four to seven, the last ones without a
+/// tangent of their own.
+const OF_SOLUTION: f64 = 5.0;
 
-/// Part of the unknowns that decides what is worth a second step: the force that the first one
-/// leaves unexplained.
-const UNEXPLAINED: f64 = 0.1;
+/// Share of the first step, contact by contact, that its end may leave unexplained: more is worth a
+/// second step.
+const UNEXPLAINED: f64 = 0.02;
 
-/// Highest harmonic of the extended balance at a frequency. It follows from the model and the
-/// solution and not from the way to it: all methods and starts estimate alike.
-pub(super) fn extended_order(
-    kept: &Harmonics,
-    omega: f64,
-    model: &Model,
-    slipping: usize,
-    observed: usize,
-) -> usize {
-    let highest = kept.highest();
-    let reach = PAST_LAST_MODE * model.compliance().highest_frequency() / omega;
-    let beyond = highest + (SHARE * highest as f64) as usize;
-    let farthest = FARTHEST.0 * highest + FARTHEST.1;
-    let wanted = (reach.min(farthest as f64) as usize).max(beyond);
-    let effort = Effort { model, half_wave: kept.half_wave(), slipping, observed };
-    let solution = effort.of(highest, STEPS[0]);
-    let affordable = |order: &usize| effort.of(*order, STEPS[1]) <= solution;
-    let candidates = (highest + LEAST..=wanted).step_by(LEAST);
-    candidates.take_while(affordable).last().unwrap_or(highest + LEAST)
+/// The extended balance of a solution. It follows from the model and the solution and not from the
+/// way to it: all methods and starts estimate alike.
+pub(super) struct Extension {
+    /// Its highest harmonic.
+    pub(super) highest: usize,
+    /// Whether a second step can be afforded.
+    second_step: bool,
+}
+
+impl Extension {
+    /// The extended balance at a frequency.
+    pub(super) fn new(
+        kept: &Harmonics,
+        omega: f64,
+        model: &Model,
+        slipping: usize,
+        observed: usize,
+    ) -> Self {
+        let highest = kept.highest();
+        let reach = PAST_LAST_MODE * model.compliance().highest_frequency() / omega;
+        let beyond = highest + (SHARE * highest as f64) as usize;
+        let farthest = FARTHEST.0 * highest + FARTHEST.1;
+        let wanted = (reach.min(farthest as f64) as usize).max(beyond);
+        let effort = Effort { model, half_wave: kept.half_wave(), slipping, observed };
+        // The compliances of the kept harmonics are known; all are recovered, after each step.
+        let known = effort.orders(highest, [1.0, 0.0]);
+        let solution = effort.orders(highest, [1.0, 1.0]) + OF_SOLUTION * effort.step(highest);
+        let affordable = |order: &usize| {
+            effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order) <= solution
+        };
+        let candidates = (highest + LEAST..=wanted).step_by(LEAST);
+        let farthest = candidates.take_while(affordable).last();
+        Self { highest: farthest.unwrap_or(highest + LEAST), second_step: farthest.is_some() }
+    }
+
+    /// Not beyond a harmonic.
+    pub(super) fn within(self, resolved: usize) -> Self {
+        Self { highest: self.highest.min(resolved), ..self }
+    }
 }
 
 /// About the time of a balance on a common processor [ns]; its ratios count.
@@ -67,10 +88,16 @@ struct Effort<'a> {
 }
 
 impl Effort<'_> {
-    /// Of some Newton steps in the harmonics up to `highest`, with compliances and recovery.
-    fn of(&self, highest: usize, steps: f64) -> f64 {
-        let orders = if self.half_wave { highest.div_ceil(2) } else { highest + 1 };
-        let slots = (if self.half_wave { 2 * orders } else { 2 * highest + 1 }) as f64;
+    /// Of so many evaluations of compliances and recoveries of displacements up to an order.
+    fn orders(&self, highest: usize, [evaluations, recoveries]: [f64; 2]) -> f64 {
+        let count = if self.half_wave { highest.div_ceil(2) } else { highest + 1 };
+        let [receptance, displacement] = self.model.compliance().effort(self.observed);
+        count as f64 * (evaluations * receptance + recoveries * displacement)
+    }
+
+    /// Of a Newton step in the harmonics up to `highest`.
+    fn step(&self, highest: usize) -> f64 {
+        let slots = if self.half_wave { 2 * highest.div_ceil(2) } else { 2 * highest + 1 } as f64;
         let compliance = self.model.compliance();
         let (contacts, slipping) = (compliance.contacts() as f64, self.slipping as f64);
         // Every law looks for turning points; one that slips integrates and fills its tangent.
@@ -83,7 +110,7 @@ impl Effort<'_> {
             }
             None => 1e3 + 100.0 * slipping * slots + 0.06 * (slipping * slots).powi(3),
         };
-        orders as f64 * compliance.effort(self.observed) + steps * (laws + linear)
+        laws + linear
     }
 }
 
@@ -99,6 +126,7 @@ pub(super) fn errors(
     observe: &[usize],
     point: &Point,
     solved: Option<&Condensed<'_>>,
+    extension: &Extension,
     interrupted: &dyn Fn() -> bool,
 ) -> Result<Option<Vec<f64>>, Error> {
     let infinite = Ok(Some(vec![f64::INFINITY; observe.len()]));
@@ -124,15 +152,14 @@ pub(super) fn errors(
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let changes = changes(&extended, &x, &slip_load, observe, point)?;
         errors.iter_mut().zip(changes).for_each(|(error, change)| *error = error.max(change));
-        if last {
+        if last || !extension.second_step {
             break;
         }
         let size = extended.relative_size(&step, &x);
-        extended.value(&x, &mut defect);
+        extended.residual(&x, &mut defect);
         if extended.relative_size(&defect, &x) <= UNEXPLAINED * size {
             break;
         }
-        extended.residual(&x, &mut defect);
     }
     Ok(Some(errors))
 }

@@ -1,6 +1,6 @@
 //! What a solution of the condensed equations means: displacements, forces, slip and errors.
 
-use super::accuracy::{errors, extended_order};
+use super::accuracy::{errors, Extension};
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::sampling::{finer_than, sampling_errors};
@@ -95,16 +95,26 @@ impl ForcedBalance<'_> {
         let climb = self.ladder.samples_climb();
         let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
         let observed = self.observe.len();
-        let order = extended_order(harmonics, point.omega, self.model, slipping, observed);
-        let order = order.min(resolved);
+        let extension = Extension::new(harmonics, point.omega, self.model, slipping, observed);
+        let extension = extension.within(resolved);
+        let order = extension.highest;
         let least = if climb { (2 * (order + 1)).next_power_of_two() } else { 0 };
         let model = self.evaluated(point.samples.map(|samples| samples.max(least)))?;
         let table = self.table(order);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
         let ask = self.interruption();
-        let errors =
-            errors(&model, &table, residual, &solution, self.observe, point, solved, &ask)?;
+        let errors = errors(
+            &model,
+            &table,
+            residual,
+            &solution,
+            self.observe,
+            point,
+            solved,
+            &extension,
+            &ask,
+        )?;
         let done = errors.is_some();
         point.error_estimate = errors.unwrap_or_else(|| vec![f64::NAN; observed]);
         Ok(done)

@@ -336,12 +336,12 @@ impl Compliance for ModalCompliance {
         Ok(())
     }
 
-    fn effort(&self, observed: usize) -> f64 {
+    fn effort(&self, observed: usize) -> [f64; 2] {
         let (modes, contacts) = (self.right.ncols() as f64, self.contacts() as f64);
-        let sums = modes * (40.0 + 1.5 * (contacts * contacts + contacts + observed as f64));
         // A factorisation and as many solutions as there are contacts.
         let restraint = if self.restraint.is_some() { contacts.powi(3) } else { 0.0 };
-        sums + restraint
+        let displacement = modes * (20.0 + 1.5 * (contacts + observed as f64));
+        [modes * (20.0 + 1.5 * contacts * contacts) + restraint, displacement]
     }
 
     fn stuck_frequencies(&self) -> &[f64] {
