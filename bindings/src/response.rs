@@ -252,6 +252,7 @@ pub fn forced_response(
     problem: &Problem,
     omega: Frequencies<'_>,
     observe: Array1<'_, i64>,
+    driving: Array1<'_, i64>,
     harmonics: Option<usize>,
     tolerance: f64,
     residual: ResidualArgument,
@@ -267,7 +268,7 @@ pub fn forced_response(
     let settings =
         settings(harmonics, tolerance, &residual, method, max_harmonics, max_iterations)?;
     let settings = March::applied(march, max_samples, settings)?;
-    let observe = indices(&observe)?;
+    let (observe, driving) = (indices(&observe)?, indices(&driving)?);
     let grid = match &omega {
         Frequencies::Grid(grid) => grid.as_array().to_vec(),
         Frequencies::Range(_) => Vec::new(),
@@ -283,6 +284,7 @@ pub fn forced_response(
         let balance = ForcedBalance::new(model, settings, &observe)?
             .watched(look)
             .rescued(&fresh_start)
+            .driven_by(&driving)
             .keeping(kept);
         match range {
             Some((from, to)) => sweep_range(balance, from, to),

@@ -97,6 +97,7 @@ def forced_response(
     problem: Problem,
     omega: Float | tuple[float, float],
     observe: NDArray[np.int64],
+    driving: NDArray[np.int64],
     harmonics: int | None,
     tolerance: float,
     residual: Residual,

@@ -32,7 +32,7 @@ const LEAST: usize = 2;
 
 /// Newton steps that the solution of a point with slip takes: four to seven, the last ones without a
 /// tangent of their own.
-const OF_SOLUTION: f64 = 5.0;
+const OF_SOLUTION: f64 = 6.0;
 
 /// Share of the first step, contact by contact, that its end may leave unexplained: more is worth a
 /// second step.

@@ -93,6 +93,14 @@ impl<'a> ForcedBalance<'a> {
         self
     }
 
+    /// Has automatic harmonics, samples and steps follow some of the observed DOFs alone, given by
+    /// their positions in `observe`.
+    #[must_use]
+    pub fn driven_by(mut self, driving: &[usize]) -> Self {
+        self.scale = Scale::of(driving);
+        self
+    }
+
     /// Has a sweep put its points into `kept` as they are solved, too.
     #[must_use]
     pub fn keeping(mut self, kept: &'a Kept<Point>) -> Self {

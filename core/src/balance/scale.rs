@@ -16,9 +16,21 @@ const NOISE: f64 = 1e-6;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scale {
     largest: Vec<f64>,
+    /// Positions of the observed DOFs whose errors count; all of them if there are none.
+    driving: Vec<usize>,
 }
 
 impl Scale {
+    /// Lets the errors of some of the observed DOFs alone count.
+    pub(super) fn of(driving: &[usize]) -> Self {
+        Self { driving: driving.to_vec(), ..Self::default() }
+    }
+
+    /// Whether the error of the observed DOF at a position counts.
+    pub(super) fn counts(&self, dof: usize) -> bool {
+        self.driving.is_empty() || self.driving.contains(&dof)
+    }
+
     /// Takes a solved point into account.
     pub(super) fn include(&mut self, point: &Point) {
         let sizes = sizes(point);
@@ -28,7 +40,7 @@ impl Scale {
         }
     }
 
-    /// Largest of the errors of the DOFs of `point`, each relative to its size or to the share
+    /// Largest of the errors of the DOFs of `point` that count, each relative to its size or to the share
     /// `floor` of its largest one; infinite if one is not a number.
     pub(super) fn relative(
         &self,
@@ -39,7 +51,8 @@ impl Scale {
         let sizes = sizes(point);
         let overall = self.largest.iter().chain(&sizes).copied().fold(0.0, f64::max);
         let mut worst = 0.0_f64;
-        for (dof, (error, size)) in errors.zip(&sizes).enumerate() {
+        let counted = errors.zip(&sizes).enumerate().filter(|(dof, _)| self.counts(*dof));
+        for (dof, (error, size)) in counted {
             let own = self.largest.get(dof).copied().unwrap_or(0.0);
             let reference = size.max(floor * own).max(NOISE * overall).max(f64::MIN_POSITIVE);
             let relative = error / reference;

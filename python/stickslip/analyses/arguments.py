@@ -19,7 +19,9 @@ __all__ = [
     "Progress",
     "Residual",
     "Span",
+    "driving_dofs",
     "grid_of",
+    "loaded_dofs",
     "observed_dofs",
     "physical_dofs",
     "prepare",
@@ -151,6 +153,23 @@ def physical_dofs(model: Model) -> tuple[str, ...]:
     """
     dofs = model.structure.dofs
     return tuple(dof for dof in dofs if not _MODAL.fullmatch(dof)) or dofs
+
+
+def loaded_dofs(model: Model) -> tuple[str, ...]:
+    """Return the degrees of freedom with a force or a contact, each once."""
+    loaded = [force.dof for force in model.forces]
+    touching = [dof for contact in model.contacts for dof in contact.dofs if dof]
+    return tuple(dict.fromkeys((*loaded, *touching)))
+
+
+def driving_dofs(model: Model, dofs: tuple[str, ...], observe: object) -> NDArray[np.int64]:
+    """Return the positions among `dofs` of those that automatic harmonics and steps follow.
+
+    All that were named; where none were, those with a force or a contact, if one is observed.
+    """
+    loaded = set(loaded_dofs(model)) if observe is None else set()
+    driving = [position for position, dof in enumerate(dofs) if dof in loaded]
+    return np.array(driving, dtype=np.int64)
 
 
 def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:

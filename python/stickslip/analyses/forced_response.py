@@ -13,6 +13,7 @@ from stickslip.analyses.arguments import (
     RESIDUALS,
     Residual,
     Span,
+    driving_dofs,
     grid_of,
     observed_dofs,
     prepare,
@@ -241,6 +242,7 @@ def forced_response(
         span=grid if isinstance(grid, tuple) else None,
     )
     dofs = observed_dofs(observe, model)
+    driving = driving_dofs(model, dofs, observe)
     require_progress(progress)
     if not isinstance(grid, tuple):
         kept = settings.fixed_harmonics or max(
@@ -254,7 +256,7 @@ def forced_response(
     require_held(model, settings.residual)
     prepare(model)
     with Interruption(progress) as watch:
-        solution = _solve(model, grid, dofs, settings, watch)
+        solution = _solve(model, grid, dofs, driving, settings, watch)
         result = _result(model, settings, dofs, solution, grid)
         if result.interrupted:
             of_all = f" of {grid.size}" if isinstance(grid, np.ndarray) else ""
@@ -266,6 +268,7 @@ def _solve(
     model: Model,
     grid: NDArray[np.float64] | Span,
     dofs: tuple[str, ...],
+    driving: NDArray[np.int64],
     settings: Settings,
     progress: Callable[[float], None] | None,
 ) -> _core.Solution:
@@ -276,6 +279,7 @@ def _solve(
             model.problem,
             grid,
             np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
+            driving,
             settings.fixed_harmonics,
             settings.tolerance,
             settings.residual,
