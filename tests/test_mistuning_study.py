@@ -137,7 +137,8 @@ def test_the_disks_are_those_of_mistuned(damping):
     pattern = mistuning_pattern(4, 0.1, seed=5)
     made = family(disk).mistuned(pattern)
     grid, observe = np.array([180.0, 220.0]), np.arange(12)
-    settings = (3, 1e-3, "centred", "newton", "exact", None, 255, 16384, 50, None)
+    driving = np.array([], dtype=np.int64)
+    settings = (driving, 3, 1e-3, "centred", "newton", "exact", None, 255, 16384, 50, None)
     mine = _core.forced_response(made, grid, observe, *settings).displacement
     theirs = _core.forced_response(disk.mistuned(pattern).problem, grid, observe, *settings)
     gap = np.abs(mine - theirs.displacement).max()

@@ -100,7 +100,7 @@ def test_arrays_of_another_kind_are_refused_in_one_line(matrix):
 @pytest.mark.parametrize("omega", [[1.0], np.array([1]), np.ones((1, 1)), None, "1 rad/s"])
 def test_frequencies_of_another_kind_are_refused_in_one_line(omega):
     problem = _core.Problem(UNIT, UNIT, UNIT, [], [], False)
-    rest = (3, 1e-3, "centred", "newton", "exact", None, 63, 4096, 50, None)
+    rest = (np.arange(0), 3, 1e-3, "centred", "newton", "exact", None, 63, 4096, 50, None)
     with pytest.raises(TypeError, match=r"expected \(from, to\) or an array") as one:
         _core.forced_response(problem, omega, np.array([0]), *rest)
     assert "\n" not in str(one.value)

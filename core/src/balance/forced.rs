@@ -94,10 +94,10 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// Has automatic harmonics, samples and steps follow some of the observed DOFs alone, given by
-    /// their positions in `observe`.
+    /// their positions in `observe`; of all if there is none.
     #[must_use]
     pub fn driven_by(mut self, driving: &[usize]) -> Self {
-        self.scale = Scale::of(driving);
+        self.scale = Scale::of(driving, self.observe.len());
         self
     }
 

@@ -16,19 +16,23 @@ const NOISE: f64 = 1e-6;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scale {
     largest: Vec<f64>,
-    /// Positions of the observed DOFs whose errors count; all of them if there are none.
-    driving: Vec<usize>,
+    /// Whether the error of each observed DOF counts; empty if those of all do.
+    driving: Vec<bool>,
 }
 
 impl Scale {
-    /// Lets the errors of some of the observed DOFs alone count.
-    pub(super) fn of(driving: &[usize]) -> Self {
-        Self { driving: driving.to_vec(), ..Self::default() }
+    /// Lets the errors of some observed DOFs alone count; of all if no position is given.
+    pub(super) fn of(driving: &[usize], observed: usize) -> Self {
+        if driving.is_empty() {
+            return Self::default();
+        }
+        let driving = (0..observed).map(|position| driving.contains(&position)).collect();
+        Self { driving, ..Self::default() }
     }
 
     /// Whether the error of the observed DOF at a position counts.
     pub(super) fn counts(&self, dof: usize) -> bool {
-        self.driving.is_empty() || self.driving.contains(&dof)
+        self.driving.get(dof).copied().unwrap_or(true)
     }
 
     /// Takes a solved point into account.
@@ -49,7 +53,9 @@ impl Scale {
         errors: impl Iterator<Item = f64>,
     ) -> f64 {
         let sizes = sizes(point);
-        let overall = self.largest.iter().chain(&sizes).copied().fold(0.0, f64::max);
+        let known = self.largest.iter().enumerate().chain(sizes.iter().enumerate());
+        let counted = known.filter(|(dof, _)| self.counts(*dof));
+        let overall = counted.map(|(_, size)| *size).fold(0.0, f64::max);
         let mut worst = 0.0_f64;
         let counted = errors.zip(&sizes).enumerate().filter(|(dof, _)| self.counts(*dof));
         for (dof, (error, size)) in counted {

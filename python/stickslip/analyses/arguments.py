@@ -162,13 +162,21 @@ def loaded_dofs(model: Model) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*loaded, *touching)))
 
 
-def driving_dofs(model: Model, dofs: tuple[str, ...], observe: object) -> NDArray[np.int64]:
+def driving_dofs(
+    model: Model,
+    dofs: tuple[str, ...],
+    observe: Iterable[str] | str | None,
+    outputs: Iterable[str] | str,
+) -> NDArray[np.int64]:
     """Return the positions among `dofs` of those that automatic harmonics and steps follow.
 
-    All that were named; where none were, those with a force or a contact, if one is observed.
+    All, if they were named; else the outputs and those with a force or a contact. None are all.
     """
-    loaded = set(loaded_dofs(model)) if observe is None else set()
-    driving = [position for position, dof in enumerate(dofs) if dof in loaded]
+    named = {outputs} if isinstance(outputs, str) else set(outputs)
+    for name in sorted(named - set(dofs)):
+        raise ModelError(f"outputs: {unknown('dof', name, dofs)}")
+    followed = named | set(loaded_dofs(model)) if observe is None else set()
+    driving = [position for position, dof in enumerate(dofs) if dof in followed]
     return np.array(driving, dtype=np.int64)
 
 

@@ -158,6 +158,7 @@ def forced_response(
     evaluation: str = "exact",
     samples: int | Literal["auto"] = "auto",
     observe: Iterable[str] | str | None = None,
+    outputs: Iterable[str] | str = (),
     progress: Callable[[float], None] | None = None,
     max_harmonics: int = MAX_HARMONICS,
     max_samples: int = MAX_SAMPLES,
@@ -197,7 +198,10 @@ def forced_response(
         point the power of two whose sampling error stays below a quarter of `tolerance`.
     observe : iterable of str, optional
         Degrees of freedom whose motion is kept. Default: all but modal coordinates
-        ("mode-1", ...).
+        ("mode-1", ...). Automatic harmonics, samples and steps follow those that are named, or
+        else those with a force or a contact; `error_estimate` says how accurate the others are.
+    outputs : iterable of str, optional
+        Without `observe`: degrees of freedom that the automatic choices follow as well.
     progress : callable, optional
         Called about ten times per second with the fraction of the work that is done.
     max_harmonics : int, optional
@@ -242,7 +246,7 @@ def forced_response(
         span=grid if isinstance(grid, tuple) else None,
     )
     dofs = observed_dofs(observe, model)
-    driving = driving_dofs(model, dofs, observe)
+    driving = driving_dofs(model, dofs, observe, outputs)
     require_progress(progress)
     if not isinstance(grid, tuple):
         kept = settings.fixed_harmonics or max(

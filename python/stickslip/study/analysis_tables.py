@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-from pydantic import Field, Tag, WithJsonSchema, model_validator
+from pydantic import Field, PrivateAttr, Tag, WithJsonSchema, model_validator
 
 from stickslip.analyses.forced_response import (
     EVALUATIONS,
@@ -72,6 +72,14 @@ class BalanceTable(AnalysisEntries):
         default=MAX_ITERATIONS, description="Iterations per point before it counts as stalled."
     )
 
+    _shown: tuple[str, ...] = PrivateAttr(default=())
+
+    def showing(self, dofs: Sequence[str]) -> Self:
+        """Return the same analysis with the DOFs that the study shows, which must be accurate."""
+        table = self.model_copy()
+        table._shown = tuple(dofs)
+        return table
+
     @model_validator(mode="after")
     def _require_settings(self) -> Self:
         # what the analysis would refuse is refused while the file is read, before any computing
@@ -102,6 +110,7 @@ class BalanceTable(AnalysisEntries):
             evaluation=self.evaluation,
             samples=self.samples,
             observe=self.observe,
+            outputs=self._shown,
             progress=progress,
             max_harmonics=self.max_harmonics,
             max_samples=self.max_samples,
