@@ -140,5 +140,5 @@ def test_loaded_and_named_dofs_drive_automatic_harmonics_and_steps() -> None:
     outputs = ss.forced_response(model, [1600.0, 1650.0], outputs=dofs)
     assert (all_named.harmonics == outputs.harmonics).all()
     assert outputs.harmonics.max() > default.harmonics.max()
-    with pytest.raises(ss.ModelError, match="outputs: unknown dof 'tpi'; did you mean 'tip'?"):
+    with pytest.raises(ss.ModelError, match=r"outputs: unknown dof 'tpi'; did you mean 'tip'\?"):
         ss.forced_response(model, [1600.0], outputs="tpi")

@@ -38,6 +38,10 @@ const OF_SOLUTION: f64 = 6.0;
 /// second step.
 const UNEXPLAINED: f64 = 0.02;
 
+/// The change after the second step counts up to this multiple of that after the first: where it is
+/// still larger, the second one overshoots.
+const TRUSTED: f64 = 10.0;
+
 /// The extended balance of a solution. It follows from the model and the solution and not from the
 /// way to it: all methods and starts estimate alike.
 pub(super) struct Extension {
@@ -151,7 +155,9 @@ pub(super) fn errors(
         extended.add_tangent_product(&step, &mut slip_load);
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let changes = changes(&extended, &x, &slip_load, observe, point)?;
-        errors.iter_mut().zip(changes).for_each(|(error, change)| *error = error.max(change));
+        errors.iter_mut().zip(changes).for_each(|(error, change)| {
+            *error = if last { error.max(change.min(TRUSTED * *error)) } else { change };
+        });
         if last || !extension.second_step {
             break;
         }
