@@ -40,15 +40,9 @@ def mixed(seed: int) -> tuple[ss.Model, np.ndarray]:
     return model, np.sort(np.exp(rng.uniform(*ends, 10)))
 
 
-# Of 160 systems these four have a degree of freedom whose error is above 5 estimates: contacts that
-# stick in the truncated solution slip in the true one, which one Newton step does not foresee.
-MISJUDGED = [
-    pytest.param(seed, marks=pytest.mark.xfail(strict=True, reason="slip that no tangent foresees"))
-    for seed in (22, 26, 40, 59)
-]
-
-
-@pytest.mark.parametrize("seed", [1, 2, 3, 5, *MISJUDGED])
+# In 22, 26, 40 and 59 contacts that stick in the truncated solution slip in the true one, which one
+# Newton step does not foresee; in 59 the harmonic 11 resonates besides.
+@pytest.mark.parametrize("seed", [1, 2, 3, 5, 22, 26, 40, 59])
 def test_no_error_is_far_above_its_estimate(seed: int) -> None:
     model, omega = mixed(seed)
     exact = ss.exact_response(model, omega)
@@ -64,9 +58,13 @@ def exact_size(exact: ss.ExactResponse):
     return lambda dof: np.nanmax(exact.amplitude(dof))
 
 
-@pytest.mark.parametrize("seed", [1, 2, 22, 59])
-def test_automatic_harmonics_keep_the_tolerance(seed: int) -> None:
+# In 252 estimates were small where more harmonics change the state of a contact.
+@pytest.mark.parametrize(
+    ("seed", "points"), [(seed, slice(None)) for seed in (1, 2, 22, 59)] + [(252, slice(1, 4))]
+)
+def test_automatic_harmonics_keep_the_tolerance(seed: int, points: slice) -> None:
     model, omega = mixed(seed)
+    omega = omega[points]
     exact = ss.exact_response(model, omega)
     frf = ss.forced_response(model, omega)
     for dof in frf.dofs:
@@ -83,3 +81,64 @@ def test_modal_coordinates_are_observed_if_they_are_named() -> None:
     assert frf.harmonics.max() < 60
     named = ss.forced_response(blade, [1600.0], 3, observe=["mode-2"])
     assert named.dofs == ("mode-2",)
+
+
+def many_contacts(slipping: int) -> ss.Model:
+    """A chain of 48 masses, each with a contact to ground, few of which slip."""
+    springs = 1e4 * np.random.default_rng(0).uniform(0.8, 1.2, 49)
+    off = np.diag(springs[1:-1], 1)
+    stiffness = np.diag(springs[:-1] + springs[1:]) - off - off.T
+    names = [f"x{i}" for i in range(48)]
+    chain = ss.Structure(np.eye(48), stiffness, ss.ModalDamping(5e-3), names)
+    contacts = [
+        ss.Jenkins(name, stiffness=1e4, slip_force=0.3 if i < slipping else 1e3)
+        for i, name in enumerate(names)
+    ]
+    return ss.Model(chain, contacts, [ss.Force("x0", 1.0)])
+
+
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_estimates_with_few_slipping_contacts_are_right_within_their_effort(harmonics: int) -> None:
+    model, omega = many_contacts(2), np.linspace(120.0, 200.0, 9)
+    frf = ss.forced_response(model, omega, harmonics)
+    fine = ss.forced_response(model, omega, 41)
+    assert frf.slip_fraction(0).min() > 0.1
+    for dof in ("x0", "x1", "x5"):
+        error = np.abs(frf.coefficients(dof)[:, 1] - fine.coefficients(dof)[:, 1])
+        assert (error <= 5.0 * frf.error_estimate(dof) + 1e-9 * fine.amplitude(dof)).all()
+    assert set(frf.timings) >= {"recovery", "estimate"}
+
+
+def test_estimates_do_not_depend_on_the_way_to_the_solution() -> None:
+    model, omega = many_contacts(2), [130.0, 150.0, 180.0]
+    newton = ss.forced_response(model, omega, 3)
+    others = (
+        ss.forced_response(model, omega, 3, method="broyden"),
+        ss.forced_response(model, omega[::-1], 3),
+    )
+    for other, order in zip(others, ([0, 1, 2], [2, 1, 0]), strict=True):
+        np.testing.assert_allclose(
+            other.error_estimate("x5")[order], newton.error_estimate("x5"), rtol=1e-5
+        )
+
+
+def test_loaded_and_named_dofs_drive_automatic_harmonics_and_steps() -> None:
+    blade = ss.reference.turbine_blade()
+    structure = blade.structure
+    # Modal coordinates under names that do not tell them.
+    dofs = ["damper", "tip", *(f"q{i}" for i in range(1, 17))]
+    renamed = ss.Structure(structure.mass, structure.stiffness, structure.damping, dofs)
+    model = ss.Model(renamed, blade.contacts, [ss.Force("tip", 0.05)])
+    span = (1508.0, 1747.0)
+    default = ss.forced_response(model, span)
+    assert default.dofs == tuple(dofs)
+    named = ss.forced_response(model, span, observe=["damper", "tip"])
+    # The effort of an estimate, and so its reach, depends a little on how much is observed.
+    assert default.omega.size <= 1.1 * named.omega.size
+    assert default.harmonics.sum() <= 1.1 * named.harmonics.sum()
+    all_named = ss.forced_response(model, [1600.0, 1650.0], observe=dofs)
+    outputs = ss.forced_response(model, [1600.0, 1650.0], outputs=dofs)
+    assert (all_named.harmonics == outputs.harmonics).all()
+    assert outputs.harmonics.max() > default.harmonics.max()
+    with pytest.raises(ss.ModelError, match=r"outputs: unknown dof 'tpi'; did you mean 'tip'\?"):
+        ss.forced_response(model, [1600.0], outputs="tpi")

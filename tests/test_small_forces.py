@@ -102,7 +102,9 @@ def test_arrays_of_another_kind_are_refused_in_one_line(matrix):
 def test_frequencies_of_another_kind_are_refused_in_one_line(omega):
     problem = _core.Problem(UNIT, UNIT, UNIT, [], [], False)
     with pytest.raises(TypeError, match=r"expected \(from, to\) or an array") as one:
-        _core.forced_response(problem, omega, np.array([0]), BalanceSettings.of(), None)
+        _core.forced_response(
+            problem, omega, np.array([0]), np.arange(0), BalanceSettings.of(), None
+        )
     assert "\n" not in str(one.value)
 
 

@@ -177,6 +177,7 @@ pub fn timings(py: Python<'_>, profile: &Profile) -> PyResult<Py<PyDict>> {
         ("law", profile.law),
         ("linear_solve", profile.linear_solve),
         ("recovery", profile.recovery),
+        ("estimate", profile.estimate),
         ("total", profile.total),
     ];
     Ok(stages.map(|(stage, time)| (stage, time.as_secs_f64())).into_py_dict(py)?.unbind())

@@ -110,11 +110,12 @@ pub fn forced_response(
     problem: &Problem,
     omega: Frequencies<'_>,
     observe: Array1<'_, i64>,
+    driving: Array1<'_, i64>,
     settings: BalanceSettings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Solution> {
     let settings = settings.parse()?;
-    let observe = indices(&observe)?;
+    let (observe, driving) = (indices(&observe)?, indices(&driving)?);
     let grid = match &omega {
         Frequencies::Grid(grid) => grid.as_array().to_vec(),
         Frequencies::Range(_) => Vec::new(),
@@ -129,6 +130,7 @@ pub fn forced_response(
         let balance = ForcedBalance::new(model, settings, &observe)?
             .watched(look)
             .rescued(&orbits)
+            .driven_by(&driving)
             .keeping(kept);
         match range {
             Some((from, to)) => sweep_range(balance, from, to),

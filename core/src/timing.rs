@@ -11,8 +11,10 @@ pub struct Profile {
     pub law: Duration,
     /// Assembly and solution of the linear systems.
     pub linear_solve: Duration,
-    /// Displacements of the observed DOFs and their error estimates.
+    /// Displacements of the observed DOFs.
     pub recovery: Duration,
+    /// Their error estimates.
+    pub estimate: Duration,
     /// Everything, from the first to the last point.
     pub total: Duration,
     /// Evaluations of all contact laws.

@@ -5,7 +5,10 @@
 mod common;
 
 use common::{snecma_beam, System};
-use stickslip_core::balance::{sweep, ForcedBalance, HarmonicChoice, Point, Settings, Solution};
+use std::cell::Cell;
+use stickslip_core::balance::{
+    sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings, Solution,
+};
 
 fn fixed(highest: usize) -> Settings {
     Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
@@ -57,5 +60,29 @@ fn error_estimates_match_true_errors_in_size() {
             assert!(median > 0.7 && median < 4.0, "{case}");
             assert!(low < 0.1, "{case}");
         }
+    }
+}
+
+#[test]
+fn an_analysis_can_be_ended_while_it_estimates() {
+    let model = snecma_beam(20.313).model();
+    let asked = Cell::new(0);
+    let solved = |observe: &[usize], last: usize| {
+        asked.set(0);
+        let progress = |_: f64| {
+            asked.set(asked.get() + 1);
+            asked.get() < last
+        };
+        let mut balance = ForcedBalance::new(&model, fixed(7), observe).unwrap().watched(&progress);
+        balance.solve(200.0, None).unwrap().status
+    };
+    // Without an observed DOF there is no estimate: what is asked beyond is asked by it.
+    assert_eq!(solved(&[], usize::MAX), PointStatus::Converged);
+    let of_solution = asked.get();
+    assert_eq!(solved(&[1], usize::MAX), PointStatus::Converged);
+    let of_both = asked.get();
+    assert!(of_both > of_solution);
+    for last in of_solution + 1..=of_both {
+        assert_eq!(solved(&[1], last), PointStatus::NotComputed);
     }
 }

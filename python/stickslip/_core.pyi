@@ -76,6 +76,7 @@ def forced_response(
     problem: Problem,
     omega: Float | tuple[float, float],
     observe: NDArray[np.int64],
+    driving: NDArray[np.int64],
     settings: BalanceSettings,
     progress: Progress,
 ) -> Solution: ...

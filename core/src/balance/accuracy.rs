@@ -1,10 +1,15 @@
 //! How wrong a truncated balance is: what its discarded harmonics would still change.
 //!
-//! The friction force of the solution has harmonics above H that the balance ignores. One Newton
-//! step of the balance extended by them says what they would do: pushed through the compliance
-//! they move the contacts, which changes the friction force at all harmonics, which moves the
-//! contacts again. The change between two values of H, in contrast, says nothing, for the error
-//! stays on a plateau until Hω passes the highest stuck natural frequency.
+//! The friction force of the solution has harmonics above H that the balance ignores. A Newton step
+//! of the balance extended by them says what they would do: pushed through the compliance they move
+//! the contacts, which changes the friction force at all harmonics, which moves the contacts again.
+//! The change between two values of H, in contrast, says nothing, for the error stays on a plateau
+//! until Hω passes the highest stuck natural frequency.
+//!
+//! No tangent foresees that contacts begin to slip or to stick. Where the force at the motion that
+//! the first step leads to is not the one that it expects, a second step follows, with the tangent
+//! there, and the larger change counts. A second step with the first tangent overshoots ten times
+//! and more at nearly rigid contacts.
 
 use super::condensed::Condensed;
 use super::solution::Point;
@@ -16,41 +21,106 @@ use crate::solve::System as _;
 use crate::Error;
 use faer::c64;
 
-/// The extended balance reaches at least this far beyond the kept harmonics, …
-const MARGIN: usize = 4;
-/// … by half of them, …
-const SHARE: f64 = 0.5;
-/// … and past the highest stuck natural frequency by this factor, …
+/// The extended balance reaches past the highest stuck natural frequency by this factor, …
 const PAST_LAST_MODE: f64 = 1.2;
-/// … as far as its Newton system stays below this many unknowns of slipping contacts: it must not
-/// cost more than the solution did, …
-const UNKNOWNS: usize = 128;
-/// … and below this multiple of them for all contacts, for which compliances are evaluated and
-/// sectors eliminated.
-const OF_ALL: usize = 4;
+/// … at least so far beyond the kept harmonics, as a share of them, …
+const SHARE: f64 = 0.5;
+/// … but not beyond this multiple of them and so many more: what follows is small, …
+const FARTHEST: (usize, usize) = (2, 14);
+/// … and only as far as its effort stays below that of the solution, though at least so far.
+const LEAST: usize = 2;
 
-/// Highest harmonic of the extended balance at a frequency.
-pub(super) fn extended_order(
-    kept: &Harmonics,
-    omega: f64,
-    model: &Model,
+/// Newton steps that the solution of a point with slip takes: four to seven, the last ones without a
+/// tangent of their own.
+const OF_SOLUTION: f64 = 6.0;
+
+/// Share of the first step, contact by contact, that its end may leave unexplained: more is worth a
+/// second step.
+const UNEXPLAINED: f64 = 0.02;
+
+/// The change after the second step counts up to this multiple of that after the first: where it is
+/// still larger, the second one overshoots.
+const TRUSTED: f64 = 10.0;
+
+/// The extended balance of a solution. It follows from the model and the solution and not from the
+/// way to it: all methods and starts estimate alike.
+pub(super) struct Extension {
+    /// Its highest harmonic.
+    pub(super) highest: usize,
+    /// Whether a second step can be afforded.
+    second_step: bool,
+}
+
+impl Extension {
+    /// The extended balance at a frequency.
+    pub(super) fn new(
+        kept: &Harmonics,
+        omega: f64,
+        model: &Model,
+        slipping: usize,
+        observed: usize,
+    ) -> Self {
+        let highest = kept.highest();
+        let reach = PAST_LAST_MODE * model.compliance().highest_frequency() / omega;
+        let beyond = highest + (SHARE * highest as f64) as usize;
+        let farthest = FARTHEST.0 * highest + FARTHEST.1;
+        let wanted = (reach.min(farthest as f64) as usize).max(beyond);
+        let effort = Effort { model, half_wave: kept.half_wave(), slipping, observed };
+        // The compliances of the kept harmonics are known; all are recovered, after each step.
+        let known = effort.orders(highest, [1.0, 0.0]);
+        let solution = effort.orders(highest, [1.0, 1.0]) + OF_SOLUTION * effort.step(highest);
+        let affordable = |order: &usize| {
+            effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order) <= solution
+        };
+        let candidates = (highest + LEAST..=wanted).step_by(LEAST);
+        let farthest = candidates.take_while(affordable).last();
+        Self { highest: farthest.unwrap_or(highest + LEAST), second_step: farthest.is_some() }
+    }
+
+    /// Not beyond a harmonic.
+    pub(super) fn within(self, resolved: usize) -> Self {
+        Self { highest: self.highest.min(resolved), ..self }
+    }
+}
+
+/// About the time of a balance on a common processor [ns]; its ratios count.
+struct Effort<'a> {
+    model: &'a Model,
+    half_wave: bool,
     slipping: usize,
-) -> usize {
-    let last_mode = model.compliance().highest_frequency();
-    let per_order = if kept.half_wave() { 1 } else { 2 };
-    let contacts = model.compliance().contacts().max(1);
-    let unknowns = (UNKNOWNS / slipping.max(1)).min(OF_ALL * UNKNOWNS / contacts);
-    let affordable = unknowns / per_order;
-    let reach = (PAST_LAST_MODE * last_mode / omega).min(UNKNOWNS as f64) as usize;
-    let beyond = kept.highest() + (SHARE * kept.highest() as f64) as usize;
-    let wanted = reach.max(beyond).min(affordable);
-    // Steps of four keep the number of sample tables small along a curve.
-    wanted.max(kept.highest() + MARGIN).next_multiple_of(4)
+    observed: usize,
+}
+
+impl Effort<'_> {
+    /// Of so many evaluations of compliances and recoveries of displacements up to an order.
+    fn orders(&self, highest: usize, [evaluations, recoveries]: [f64; 2]) -> f64 {
+        let count = if self.half_wave { highest.div_ceil(2) } else { highest + 1 };
+        let [receptance, displacement] = self.model.compliance().effort(self.observed);
+        count as f64 * (evaluations * receptance + recoveries * displacement)
+    }
+
+    /// Of a Newton step in the harmonics up to `highest`.
+    fn step(&self, highest: usize) -> f64 {
+        let slots = if self.half_wave { 2 * highest.div_ceil(2) } else { 2 * highest + 1 } as f64;
+        let compliance = self.model.compliance();
+        let (contacts, slipping) = (compliance.contacts() as f64, self.slipping as f64);
+        // Every law looks for turning points; one that slips integrates and fills its tangent.
+        let laws = contacts * (600.0 + 40.0 * slots)
+            + slipping * (600.0 + 80.0 * slots + 2.5 * slots.powi(2));
+        let linear = match compliance.ring() {
+            Some(ring) => {
+                let ports = ring.layout().ports() as f64;
+                ring.sectors() as f64 * (1e3 + 0.4 * (ports * slots).powi(3))
+            }
+            None => 1e3 + 100.0 * slipping * slots + 0.06 * (slipping * slots).powi(3),
+        };
+        laws + linear
+    }
 }
 
 /// Sum over all harmonics of the change that the extended balance would bring to each observed
 /// DOF [m]; infinite where a discarded harmonic meets a resonance that nothing damps. `solved` are
-/// the equations that were solved, if they are at hand.
+/// the equations that were solved, if they are at hand. Nothing if the analysis is to end.
 #[allow(clippy::too_many_arguments)]
 pub(super) fn errors(
     model: &Model,
@@ -60,34 +130,65 @@ pub(super) fn errors(
     observe: &[usize],
     point: &Point,
     solved: Option<&Condensed<'_>>,
-) -> Result<Vec<f64>, Error> {
-    let mut errors = vec![0.0; observe.len()];
-    let infinite = vec![f64::INFINITY; observe.len()];
+    extension: &Extension,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<Option<Vec<f64>>, Error> {
+    let infinite = Ok(Some(vec![f64::INFINITY; observe.len()]));
     let mut extended = Condensed::new(model, table, residual, false);
+    extended.watch(interrupted);
     if extended.set_omega_beside(point.omega, solved).is_err() {
-        return Ok(infinite);
+        return infinite;
     }
-    let harmonics = table.harmonics();
-    let mut corrected = solution.recast(harmonics);
-    let (mut defect, mut step) = (vec![0.0; corrected.len()], vec![0.0; corrected.len()]);
-    extended.residual(&corrected, &mut defect);
-    if !extended.solve(&defect, &mut step) {
-        return Ok(infinite);
+    let mut x = solution.recast(table.harmonics());
+    let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    extended.residual(&x, &mut defect);
+    let mut errors = vec![0.0_f64; observe.len()];
+    for last in [false, true] {
+        if extended.interrupted() {
+            return Ok(None);
+        }
+        if !extended.solve(&defect, &mut step) {
+            return infinite;
+        }
+        step.iter_mut().for_each(|s| *s = -*s);
+        let mut slip_load = extended.slip_load();
+        extended.add_tangent_product(&step, &mut slip_load);
+        x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+        let changes = changes(&extended, &x, &slip_load, observe, point)?;
+        errors.iter_mut().zip(changes).for_each(|(error, change)| {
+            *error = if last { error.max(change.min(TRUSTED * *error)) } else { change };
+        });
+        if last || !extension.second_step {
+            break;
+        }
+        let size = extended.relative_size(&step, &x);
+        extended.residual(&x, &mut defect);
+        if extended.relative_size(&defect, &x) <= UNEXPLAINED * size {
+            break;
+        }
     }
-    step.iter_mut().for_each(|s| *s = -*s);
-    let mut slip_load = extended.slip_load();
-    extended.add_tangent_product(&step, &mut slip_load);
-    corrected.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+    Ok(Some(errors))
+}
+
+/// Sum over all harmonics of how far each observed DOF is from a point in the extended balance.
+fn changes(
+    extended: &Condensed<'_>,
+    x: &[f64],
+    slip_load: &[f64],
+    observe: &[usize],
+    point: &Point,
+) -> Result<Vec<f64>, Error> {
+    let mut sums = vec![0.0; observe.len()];
     let orders = point.harmonics + 1;
-    extended.displacements(&corrected, &slip_load, observe, |order, observed, _, _| {
-        for (dof, error) in errors.iter_mut().enumerate() {
+    extended.displacements(x, slip_load, observe, |order, observed, _, _| {
+        for (dof, sum) in sums.iter_mut().enumerate() {
             let before = if order < orders {
                 point.displacement[dof * orders + order]
             } else {
                 c64::new(0.0, 0.0)
             };
-            *error += (observed[dof] - before).norm();
+            *sum += (observed[dof] - before).norm();
         }
     })?;
-    Ok(errors)
+    Ok(sums)
 }

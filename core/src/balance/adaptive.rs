@@ -112,10 +112,10 @@ fn stops(
     let orders = first.harmonics + 1;
     let rises = |reach: &Vec<f64>| {
         let sizes = first.displacement.chunks_exact(orders);
-        let mut observed = balance.observe.iter().zip(sizes);
-        observed.any(|(&dof, series)| {
+        let mut observed = balance.observe.iter().zip(sizes).enumerate();
+        observed.any(|(position, (&dof, series))| {
             let size = series[1..].iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();
-            reach[dof] > size
+            balance.scale.counts(position) && reach[dof] > size
         })
     };
     let counts = |one: &&Resonance| one.forced || one.reach.as_ref().is_none_or(rises);

@@ -109,6 +109,14 @@ impl<'a> ForcedBalance<'a> {
         self
     }
 
+    /// Has automatic harmonics, samples and steps follow some of the observed DOFs alone, given by
+    /// their positions in `observe`; of all if there is none.
+    #[must_use]
+    pub fn driven_by(mut self, driving: &[usize]) -> Self {
+        self.scale = Scale::of(driving, self.observe.len());
+        self
+    }
+
     /// Has a sweep put its points into `kept` as they are solved, too.
     #[must_use]
     pub fn keeping(mut self, kept: &'a Kept<Point>) -> Self {
@@ -128,6 +136,12 @@ impl<'a> ForcedBalance<'a> {
     pub(crate) fn report(&mut self, share: f64) -> bool {
         self.share = share;
         (self.progress)(share)
+    }
+
+    /// Whether the analysis is to end.
+    pub(super) fn interruption(&self) -> impl Fn() -> bool + 'a {
+        let (progress, share) = (self.progress, self.share);
+        move || !progress(share)
     }
 
     /// Takes over what another balance of the same contacts has learnt.
@@ -266,8 +280,7 @@ impl<'a> ForcedBalance<'a> {
     ) -> Result<Point, Error> {
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
-        let (progress, share) = (self.progress, self.share);
-        let interrupted = || !progress(share);
+        let interrupted = self.interruption();
         let mut equations = Condensed::new(&model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
         if self.settings.method != Method::Newton {
@@ -335,11 +348,16 @@ impl<'a> ForcedBalance<'a> {
         let start = std::time::Instant::now();
         let mut point = self.recover(equations, omega, &x, status)?;
         point.samples = samples;
+        self.profile.recovery += start.elapsed();
         // Without an observed DOF there is nothing whose error could be estimated.
         if status == PointStatus::Converged && !self.observe.is_empty() {
-            self.estimate(equations, &x, &mut point)?;
+            let start = std::time::Instant::now();
+            let estimated = self.estimate(equations, &x, &mut point)?;
+            self.profile.estimate += start.elapsed();
+            if !estimated {
+                return Ok(self.not_computed(omega));
+            }
         }
-        self.profile.recovery += start.elapsed();
         point.residual = report.residual;
         point.iterations = report.iterations;
         point.unknowns = Some(Unknowns { harmonics: harmonics.clone(), values: x });

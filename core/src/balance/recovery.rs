@@ -1,6 +1,6 @@
 //! What a solution of the condensed equations means: displacements, forces, slip and errors.
 
-use super::accuracy::{errors, extended_order};
+use super::accuracy::{errors, Extension};
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::sampling::{finer_than, sampling_errors};
@@ -55,15 +55,16 @@ impl ForcedBalance<'_> {
         Ok(point)
     }
 
-    /// Writes the error estimate of a solution `x` of these equations.
+    /// Writes the error estimate of a solution `x` of these equations; `false` if the analysis is to
+    /// end.
     pub(super) fn estimate(
         &mut self,
         equations: &mut Condensed<'_>,
         x: &[f64],
         point: &mut Point,
-    ) -> Result<(), Error> {
-        self.estimate_truncation(equations.harmonics(), x, Some(&*equations), point)?;
-        let Some(samples) = point.samples else { return Ok(()) };
+    ) -> Result<bool, Error> {
+        let done = self.estimate_truncation(equations.harmonics(), x, Some(&*equations), point)?;
+        let Some(samples) = point.samples.filter(|_| done) else { return Ok(done) };
         if self.settings.method != Method::Newton {
             // Broyden's method leaves no tangent at the solution.
             equations.residual(x, &mut vec![0.0; x.len()]);
@@ -72,35 +73,50 @@ impl ForcedBalance<'_> {
         point.sampling_error = sampling_errors(equations, &finer, x, self.observe, point)?;
         let errors = point.error_estimate.iter_mut().zip(&point.sampling_error);
         errors.for_each(|(error, sampling)| *error += sampling);
-        Ok(())
+        Ok(true)
     }
 
     /// Writes what the discarded harmonics could change in a solution `x`, of these equations if
-    /// they are at hand.
+    /// they are at hand; `false` if the analysis is to end.
     pub(super) fn estimate_truncation(
         &mut self,
         harmonics: &Harmonics,
         x: &[f64],
         solved: Option<&Condensed<'_>>,
         point: &mut Point,
-    ) -> Result<(), Error> {
+    ) -> Result<bool, Error> {
         point.error_estimate = vec![0.0; self.observe.len()];
         point.sampling_error = vec![0.0; self.observe.len()];
         let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
         if slipping == 0 {
-            return Ok(());
+            return Ok(true);
         }
         // Few samples, as long as nobody insists on them, must not hide harmonics.
         let climb = self.ladder.samples_climb();
         let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
-        let order = extended_order(harmonics, point.omega, self.model, slipping).min(resolved);
+        let observed = self.observe.len();
+        let extension = Extension::new(harmonics, point.omega, self.model, slipping, observed);
+        let extension = extension.within(resolved);
+        let order = extension.highest;
         let least = if climb { (2 * (order + 1)).next_power_of_two() } else { 0 };
         let model = self.evaluated(point.samples.map(|samples| samples.max(least)))?;
         let table = self.table(order);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
-        point.error_estimate =
-            errors(&model, &table, residual, &solution, self.observe, point, solved)?;
-        Ok(())
+        let ask = self.interruption();
+        let errors = errors(
+            &model,
+            &table,
+            residual,
+            &solution,
+            self.observe,
+            point,
+            solved,
+            &extension,
+            &ask,
+        )?;
+        let done = errors.is_some();
+        point.error_estimate = errors.unwrap_or_else(|| vec![f64::NAN; observed]);
+        Ok(done)
     }
 }

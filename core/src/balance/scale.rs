@@ -16,9 +16,25 @@ const NOISE: f64 = 1e-6;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scale {
     largest: Vec<f64>,
+    /// Whether the error of each observed DOF counts; empty if those of all do.
+    driving: Vec<bool>,
 }
 
 impl Scale {
+    /// Lets the errors of some observed DOFs alone count; of all if no position is given.
+    pub(super) fn of(driving: &[usize], observed: usize) -> Self {
+        if driving.is_empty() {
+            return Self::default();
+        }
+        let driving = (0..observed).map(|position| driving.contains(&position)).collect();
+        Self { driving, ..Self::default() }
+    }
+
+    /// Whether the error of the observed DOF at a position counts.
+    pub(super) fn counts(&self, dof: usize) -> bool {
+        self.driving.get(dof).copied().unwrap_or(true)
+    }
+
     /// Takes a solved point into account.
     pub(super) fn include(&mut self, point: &Point) {
         let sizes = sizes(point);
@@ -28,7 +44,7 @@ impl Scale {
         }
     }
 
-    /// Largest of the errors of the DOFs of `point`, each relative to its size or to the share
+    /// Largest of the errors of the DOFs of `point` that count, each relative to its size or to the share
     /// `floor` of its largest one; infinite if one is not a number.
     pub(super) fn relative(
         &self,
@@ -37,9 +53,12 @@ impl Scale {
         errors: impl Iterator<Item = f64>,
     ) -> f64 {
         let sizes = sizes(point);
-        let overall = self.largest.iter().chain(&sizes).copied().fold(0.0, f64::max);
+        let known = self.largest.iter().enumerate().chain(sizes.iter().enumerate());
+        let counted = known.filter(|(dof, _)| self.counts(*dof));
+        let overall = counted.map(|(_, size)| *size).fold(0.0, f64::max);
         let mut worst = 0.0_f64;
-        for (dof, (error, size)) in errors.zip(&sizes).enumerate() {
+        let counted = errors.zip(&sizes).enumerate().filter(|(dof, _)| self.counts(*dof));
+        for (dof, (error, size)) in counted {
             let own = self.largest.get(dof).copied().unwrap_or(0.0);
             let reference = size.max(floor * own).max(NOISE * overall).max(f64::MIN_POSITIVE);
             let relative = error / reference;

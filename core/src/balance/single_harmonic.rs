@@ -115,11 +115,16 @@ impl<'a> Equations<'a> {
         self.residual(&x, &mut residual);
         let mut point = self.recover(balance, omega, &x)?;
         (point.residual, point.iterations) = (report.residual, report.iterations);
+        balance.profile.recovery += start.elapsed();
         if estimate {
-            balance.estimate_truncation(&self.harmonics, &x, None, &mut point)?;
+            let start = std::time::Instant::now();
+            let done = balance.estimate_truncation(&self.harmonics, &x, None, &mut point)?;
+            balance.profile.estimate += start.elapsed();
+            if !done {
+                return Ok(balance.not_computed(omega));
+            }
         }
         point.unknowns = Some(Unknowns { harmonics: self.harmonics.clone(), values: x });
-        balance.profile.recovery += start.elapsed();
         Ok(point)
     }
 

@@ -298,6 +298,12 @@ impl Compliance for CyclicCompliance {
         self.forced.clone()
     }
 
+    fn effort(&self, observed: usize) -> [f64; 2] {
+        // All nodal diameters are much alike; this one has been decomposed.
+        let harmonic = self.forced.first().copied().unwrap_or(1);
+        self.wave(harmonic).map_or([0.0; 2], |wave| wave.effort(observed))
+    }
+
     fn is_direct(&self) -> bool {
         let made = self.waves.iter().filter_map(OnceLock::get);
         made.flatten().any(|wave| wave.is_direct())

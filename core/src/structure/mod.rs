@@ -97,6 +97,10 @@ pub trait Compliance: Send + Sync {
         out: &mut [c64],
     ) -> Result<(), Error>;
 
+    /// About the times that the receptance of one harmonic and the displacements of `observed` DOFs
+    /// take on a common processor [ns].
+    fn effort(&self, observed: usize) -> [f64; 2];
+
     /// Whether a frequency costs a factorisation per harmonic, of the whole or of a part.
     fn is_direct(&self) -> bool {
         false

@@ -345,6 +345,14 @@ impl Compliance for ModalCompliance {
         Ok(())
     }
 
+    fn effort(&self, observed: usize) -> [f64; 2] {
+        let (modes, contacts) = (self.right.ncols() as f64, self.contacts() as f64);
+        // A factorisation and as many solutions as there are contacts.
+        let restraint = if self.restraint.is_some() { contacts.powi(3) } else { 0.0 };
+        let displacement = modes * (20.0 + 1.5 * (contacts + observed as f64));
+        [modes * (20.0 + 1.5 * contacts * contacts) + restraint, displacement]
+    }
+
     fn stuck_frequencies(&self) -> &[f64] {
         &self.stuck_frequencies
     }
@@ -386,8 +394,9 @@ impl ModalCompliance {
                 excitation += self.contact_left[(i, j)] * force;
             }
             let coordinate = weight(j) * excitation;
+            let shape = self.right.col(j);
             for (x, &dof) in out.iter_mut().zip(observe) {
-                *x += self.right[(dof, j)] * coordinate;
+                *x += shape[dof] * coordinate;
             }
         }
     }

@@ -90,6 +90,16 @@ impl Compliance for Ring {
         self.sectors.len() * self.layout.dofs
     }
 
+    fn effort(&self, observed: usize) -> [f64; 2] {
+        let interface = (2 * self.layout.interface.len()) as f64;
+        let each = observed.div_ceil(self.sectors.len());
+        self.sectors.iter().fold([0.0; 2], |[receptance, displacement], sector| {
+            let own = sector.effort(each);
+            // Each is eliminated from the ring, with two neighbours beside it.
+            [receptance + own[0] + 1e3 + 0.5 * interface.powi(3), displacement + own[1] + 1e3]
+        })
+    }
+
     fn is_direct(&self) -> bool {
         self.sectors.iter().any(|sector| sector.is_direct())
     }

@@ -18,7 +18,9 @@ from stickslip.settings.entries import Residual, Span, span_of
 
 __all__ = [
     "Progress",
+    "driving_dofs",
     "grid_of",
+    "loaded_dofs",
     "observed_dofs",
     "physical_dofs",
     "prepare",
@@ -96,6 +98,31 @@ def physical_dofs(model: Model) -> tuple[str, ...]:
     """
     dofs = model.structure.dofs
     return tuple(dof for dof in dofs if not _MODAL.fullmatch(dof)) or dofs
+
+
+def loaded_dofs(model: Model) -> tuple[str, ...]:
+    """Return the degrees of freedom with a force or a contact, each once."""
+    loaded = [force.dof for force in model.forces]
+    touching = [dof for contact in model.contacts for dof in contact.dofs if dof]
+    return tuple(dict.fromkeys((*loaded, *touching)))
+
+
+def driving_dofs(
+    model: Model,
+    dofs: tuple[str, ...],
+    observe: Iterable[str] | str | None,
+    outputs: Iterable[str] | str,
+) -> NDArray[np.int64]:
+    """Return the positions among `dofs` of those that automatic harmonics and steps follow.
+
+    All, if they were named; else the outputs and those with a force or a contact. None are all.
+    """
+    named = {outputs} if isinstance(outputs, str) else set(outputs)
+    for name in sorted(named - set(dofs)):
+        raise ModelError(f"outputs: {unknown('dof', name, dofs)}")
+    followed = named | set(loaded_dofs(model)) if observe is None else set()
+    driving = [position for position, dof in enumerate(dofs) if dof in followed]
+    return np.array(driving, dtype=np.int64)
 
 
 def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.analyses.arguments import (
     Progress,
+    driving_dofs,
     grid_of,
     observed_dofs,
     prepare,
@@ -42,6 +43,7 @@ def forced_response(
     settings: BalanceSettings,
     *,
     observe: Iterable[str] | str | None = None,
+    outputs: Iterable[str] | str = (),
     progress: Progress = None,
 ) -> ForcedResponse:
     """Steady response over excitation frequency, by harmonic balance.
@@ -55,6 +57,12 @@ def forced_response(
         Angular frequencies [rad/s], swept in the order given. A tuple of two numbers is a range
         from the first to the second, upwards or downwards, in which the frequencies are chosen to
         `tolerance`; write ``[one, two]`` or an array for a grid of two.
+    observe : iterable of str, optional
+        Degrees of freedom whose motion is kept. Default: all but modal coordinates
+        ("mode-1", ...). Automatic harmonics, samples and steps follow those that are named, or
+        else those with a force or a contact; `error_estimate` says how accurate the others are.
+    outputs : iterable of str, optional
+        Without `observe`: degrees of freedom that the automatic choices follow as well.
 
     Returns
     -------
@@ -79,6 +87,7 @@ def forced_response(
     grid = grid_of(omega)
     kept = ForcedSettings.of(**dict(settings), span=grid if isinstance(grid, tuple) else None)
     dofs = observed_dofs(observe, model)
+    driving = driving_dofs(model, dofs, observe, outputs)
     require_progress(progress)
     if not isinstance(grid, tuple):
         orders = settings.fixed_harmonics or max(
@@ -90,7 +99,7 @@ def forced_response(
     require_held(model, settings.residual)
     prepare(model)
     with Interruption(progress) as watch:
-        solution = _solve(model, grid, dofs, kept, watch)
+        solution = _solve(model, grid, dofs, driving, kept, watch)
         result = _result(model, kept, dofs, solution, grid)
         if result.interrupted:
             of_all = f" of {grid.size}" if isinstance(grid, np.ndarray) else ""
@@ -102,6 +111,7 @@ def _solve(
     model: Model,
     grid: NDArray[np.float64] | Span,
     dofs: tuple[str, ...],
+    driving: NDArray[np.int64],
     settings: ForcedSettings,
     progress: Progress,
 ) -> _core.Solution:
@@ -112,6 +122,7 @@ def _solve(
             model.problem,
             grid,
             np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
+            driving,
             settings,
             progress,
         )

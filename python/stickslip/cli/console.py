@@ -38,9 +38,12 @@ _STAGES = {
     "law": "law (force, tangent)",
     "linear_solve": "linear solve",
     "recovery": "recovery",
+    "estimate": "error estimate",
 }
 _PLAIN_WIDTH = 10_000
 _PATIENCE = 0.5
+_LONG = 5.0
+_TELLING = 0.01
 _NARROW = 80
 
 
@@ -96,6 +99,8 @@ def complain(kind: str, text: str) -> None:
 def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | None]:
     """Show a bar on standard error while something is computed that takes longer than a moment.
 
+    Where no one watches, one line says how long the rest of long work will take.
+
     Parameters
     ----------
     title : str
@@ -106,10 +111,13 @@ def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | 
     Yields
     ------
     callable or None
-        To be called with the fraction done; None where there is no terminal to show it on.
+        To be called with the fraction done; None where nothing is to be shown.
     """
-    if not (wanted and sys.stdout.isatty() and sys.stderr.isatty()):
+    if not wanted:
         yield None
+        return
+    if not (sys.stdout.isatty() and sys.stderr.isatty()):
+        yield _forecast(title)
         return
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
     from rich.progress import TimeElapsedColumn as Elapsed
@@ -137,6 +145,25 @@ def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | 
         yield advance
     finally:
         bar.stop()
+
+
+def _forecast(title: str) -> Callable[[float], None]:
+    """Return what says once, from the speed so far, how long the rest will take if it is long."""
+    begin = time.perf_counter()
+    said = False
+
+    def advance(fraction: float) -> None:
+        nonlocal said
+        spent = time.perf_counter() - begin
+        # a first point says little of a whole curve
+        if said or spent < _LONG or fraction < _TELLING:
+            return
+        said = True
+        left = spent * (1.0 - fraction) / fraction
+        if left > _LONG:
+            complain("note", f"{title}: about {left:.2g} s left ({fraction:.0%} in {spent:.2g} s)")
+
+    return advance
 
 
 def grid(rows: Iterable[tuple[str, str]]) -> None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from stickslip.analyses.certify import certify
 from stickslip.analyses.exact_response import exact_response
@@ -38,11 +38,24 @@ class ForcedResponseTable(BalanceSettings, CurveEntries):
 
     kind: Literal["forced-response"] = Field(default="forced-response", description="The analysis.")
 
+    _shown: tuple[str, ...] = PrivateAttr(default=())
+
+    def showing(self, dofs: Sequence[str]) -> Self:
+        """Return the same analysis with the DOFs that the study shows, which must be accurate."""
+        table = self.model_copy()
+        table._shown = tuple(dofs)
+        return table
+
     def run(self, model: Model, progress: Progress) -> ForcedResponse:
         """Compute one curve."""
-        settings = self.part(BalanceSettings)
-        omega = omegas(self.omega)
-        return forced_response(model, omega, observe=self.observe, progress=progress, **settings)
+        return forced_response(
+            model,
+            omegas(self.omega),
+            observe=self.observe,
+            outputs=self._shown,
+            progress=progress,
+            **self.part(BalanceSettings),
+        )
 
 
 class CertifyTable(CertifySettings, ForcedResponseTable):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
-from stickslip.analyses.arguments import physical_dofs
+from stickslip.analyses.arguments import loaded_dofs, physical_dofs
 from stickslip.checks import brief, file_path, is_file, is_reserved, unknown, vanished
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.arguments import NEXT, stranger
@@ -21,6 +21,7 @@ from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Structure
 from stickslip.settings.refusal import refusal
 from stickslip.study.analysis_entries import level_name
+from stickslip.study.analysis_tables import ForcedResponseTable
 from stickslip.study.limit_cycles_table import with_matrices
 from stickslip.study.matrices import damping_of, matrix_of, named, neighbour
 from stickslip.study.tables import ForceTable, StudyTables
@@ -193,9 +194,12 @@ class Study:
             Ctrl-C; carries the part of the current curve that was done.
         """
         cases = self.cases
+        analysis = self.tables.analysis
+        if isinstance(analysis, ForcedResponseTable):
+            analysis = analysis.showing(self.tables.output.dofs or ())
         for number, case in enumerate(cases):
             with named(self.source):
-                result = self.tables.analysis.run(case.model, _part(progress, number, len(cases)))
+                result = analysis.run(case.model, _part(progress, number, len(cases)))
             yield result
 
 
@@ -214,9 +218,7 @@ def notable_dofs(model: Model, observed: Sequence[str]) -> tuple[str, ...]:
     tuple of str
         Up to four that carry a force or a contact, in this order, or else the first ones.
     """
-    loaded = [force.dof for force in model.forces]
-    touching = [dof for contact in model.contacts for dof in contact.dofs if dof]
-    notable = [dof for dof in dict.fromkeys((*loaded, *touching)) if dof in observed]
+    notable = [dof for dof in loaded_dofs(model) if dof in observed]
     return tuple(notable or observed)[:_SHOWN_DOFS]
 
 
