@@ -173,3 +173,11 @@ def test_tables_show_what_nothing_bounds(tmp_path):
     frf.save(tmp_path / "chain.nc")
     shown = CliRunner().invoke(app, ["show", str(tmp_path / "chain.nc")])
     assert "inf: neither damping nor friction bounds" in shown.output
+
+
+@pytest.mark.parametrize("seed", [125, 170, 196])
+def test_no_value_of_its_curve_lies_below_an_optimum(seed):
+    generator = np.random.default_rng(seed)
+    model, dof = random_model(generator)
+    best = ss.optimal_damper(model, dof=dof, harmonics=1)
+    assert best.amplitude <= np.nanmin(best.curve.amplitude) * (1 + 1e-8)

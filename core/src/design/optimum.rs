@@ -91,6 +91,15 @@ pub fn optimum(
         let share = CURVE_SHARE + (1.0 - CURVE_SHARE) * index as f64 / brackets.len() as f64;
         minima.push(refine(&mut follower, *bracket, &mut trials, share)?);
     }
+    // A response that is highest where a contact is about to slip turns its slope at once: what lies
+    // lower than every minimum that slopes show is closed in on by height.
+    while let Some(lowest) = lowest(&trials) {
+        let known = minima.iter().map(|one| one.height).fold(f64::INFINITY, f64::min);
+        if follower.interrupted || trials[lowest].height >= known * (1.0 - GAIN) {
+            break;
+        }
+        minima.push(descend(&mut follower, lowest, &mut trials)?);
+    }
     minima.sort_by(|a, b| a.height.total_cmp(&b.height));
     // With automatic harmonics or samples both sides of a dent are known to the tolerance only.
     let depth = if settings.is_automatic() { 2.0 * settings.tolerance } else { 0.0 };
@@ -147,6 +156,38 @@ fn prominent(minima: Vec<Trial>, trials: &[Trial], depth: f64) -> Vec<Trial> {
         }
     }
     kept
+}
+
+/// Position of the lowest trial.
+fn lowest(trials: &[Trial]) -> Option<usize> {
+    (0..trials.len()).min_by(|&a, &b| trials[a].height.total_cmp(&trials[b].height))
+}
+
+/// Closes in on the minimum around the lowest trial by halving the intervals beside it.
+fn descend(
+    follower: &mut Follower<'_>,
+    mut at: usize,
+    trials: &mut Vec<Trial>,
+) -> Result<Trial, Error> {
+    for _ in 0..60 {
+        let value = trials[at].peak.value;
+        let beside = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
+        let ends = beside.filter_map(|i| trials.get(i)).map(|end| end.peak.value);
+        let wide = |end: &f64| (end - value).abs() > SHORTEST * value;
+        let middles: Vec<f64> = ends.filter(wide).map(|end| 0.5 * (value + end)).collect();
+        if middles.is_empty() || follower.interrupted {
+            break;
+        }
+        let before = trials.len();
+        for middle in middles {
+            insert(trials, try_value(follower, middle, 1.0)?);
+        }
+        if trials.len() == before {
+            break;
+        }
+        at = lowest(trials).unwrap_or(at);
+    }
+    Ok(trials[at])
 }
 
 /// Closes in on the minimum between a falling and a rising end. Cubics find a smooth minimum and

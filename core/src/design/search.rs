@@ -31,10 +31,16 @@ const MOST_FAILURES: usize = 40;
 const DOUBT: f64 = 1e-6;
 /// Distance at which an undamped resonance is passed, relative to the frequency.
 const ASIDE: f64 = 1e-8;
-/// Resonances closer than this share of a bandwidth to a point are seen from there.
-const SEEN: f64 = 0.5;
+/// Resonances closer than this share of a bandwidth to a point are seen from there, …
+const SEEN: f64 = 0.1;
+/// … and what others overlay if there are points on both sides within this share.
+const AROUND: f64 = 0.75;
 /// What a resonance may exceed the height by that its load and friction can give it.
 const SHARE: f64 = 2.0;
+/// Resonances up to this many times as high as the samples beside them are overlaid by others.
+const OVERLAID: f64 = 10.0;
+/// Gain in height, relative, that a parabola must not promise.
+const BROAD: f64 = 1e-4;
 /// Gain in height, relative, that the shortest interval must not promise.
 const UNRESOLVED: f64 = 1e-3;
 
@@ -172,7 +178,8 @@ impl<'a, 'b> Search<'a, 'b> {
             more = self.approach(&look.candidates, &mut open, seeds)?;
             let most_points = self.aim.most_points.max(2 * self.samples.len());
             while self.samples.len() < most_points && !self.is_interrupted() {
-                let Some((interval, share)) = self.most_promising() else { break };
+                let next = self.most_promising().or_else(|| self.most_suspicious());
+                let Some((interval, share)) = next else { break };
                 self.split(interval, share)?;
             }
             if self.is_interrupted() {
@@ -221,11 +228,36 @@ impl<'a, 'b> Search<'a, 'b> {
             if self.is_interrupted() {
                 return Ok(false);
             }
-            match sample {
-                Some(sample) => self.insert(sample, vec![UNSEEN; self.dofs.len()]),
-                None => self.close(at, reach),
+            let Some(sample) = sample else {
+                self.close(at, reach);
+                continue;
+            };
+            let overlaid = self.is_overlaid(&candidates[next]);
+            self.insert(sample, vec![UNSEEN; self.dofs.len()]);
+            for aside in if overlaid { &[-0.5, 0.5][..] } else { &[] } {
+                let omega = (at + aside * bandwidth).clamp(self.aim.span.0, self.aim.span.1);
+                if let Some(sample) = self.solve(omega, None)? {
+                    self.insert(sample, vec![UNSEEN; self.dofs.len()]);
+                }
             }
         }
+    }
+
+    /// Whether others show as much at a resonance as it does by itself: together they are highest
+    /// beside it, and the interpolant, of a resonance alone, does not see that from afar.
+    fn is_overlaid(&self, candidate: &Candidate) -> bool {
+        candidate.reach.iter().enumerate().any(|(group, reach)| {
+            (0.0..OVERLAID * self.beside_height(candidate.at, group)).contains(reach)
+        })
+    }
+
+    /// The highest of a group at the samples on either side.
+    fn beside_height(&self, at: f64, group: usize) -> f64 {
+        let after = self.samples.partition_point(|sample| sample.at < at);
+        let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
+        let around = around.filter_map(|i| self.samples.get(i));
+        let heights = around.flat_map(|sample| &sample.knots[self.curves(group)]);
+        heights.map(|knot| knot.height).fold(0.0, f64::max)
     }
 
     /// Whether a resonance that no point has seen may be higher than what has been found.
@@ -233,13 +265,15 @@ impl<'a, 'b> Search<'a, 'b> {
         let after = self.samples.partition_point(|sample| sample.at < candidate.at);
         let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
         let around: Vec<&Sample> = around.filter_map(|i| self.samples.get(i)).collect();
-        let near = (SEEN * candidate.bandwidth).max(2.0 * ASIDE * candidate.at);
-        if around.iter().any(|sample| (sample.at - candidate.at).abs() <= near) {
+        let within = |share: f64| {
+            let near = (share * candidate.bandwidth).max(2.0 * ASIDE * candidate.at);
+            around.iter().filter(|sample| (sample.at - candidate.at).abs() <= near).count()
+        };
+        if within(SEEN) > 0 && (within(AROUND) == around.len() || !self.is_overlaid(candidate)) {
             return false;
         }
         candidate.reach.iter().enumerate().any(|(group, reach)| {
-            let heights = around.iter().flat_map(|sample| &sample.knots[self.curves(group)]);
-            let beside = heights.map(|knot| knot.height).fold(0.0, f64::max);
+            let beside = self.beside_height(candidate.at, group);
             *reach > 0.0 && beside + SHARE * reach > self.height(group) * (1.0 + self.aim.gain)
         })
     }
@@ -258,7 +292,9 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Adds a sample, with the errors allowed for on both sides of it.
     fn insert(&mut self, sample: Sample, errors: Vec<f64>) {
         let after = self.samples.partition_point(|other| other.at < sample.at);
-        if self.samples.get(after).is_some_and(|other| other.at == sample.at) {
+        let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
+        let mut around = around.filter_map(|i| self.samples.get(i));
+        if around.any(|other| (other.at - sample.at).abs() <= SHORTEST * sample.at) {
             return;
         }
         self.samples.insert(after, sample);
@@ -355,10 +391,36 @@ impl<'a, 'b> Search<'a, 'b> {
         best.0
     }
 
+    /// The interval into which a curve rises from an end, if it may hold the highest point as a
+    /// parabola: friction cuts resonances off that broadly, and 1/A² does not see it.
+    fn most_suspicious(&self) -> Option<(usize, f64)> {
+        let mut best = (None, 1.0 + BROAD);
+        for group in 0..self.aim.groups.len() {
+            let reference = self.height(group);
+            for (i, pair) in self.samples.windows(2).enumerate() {
+                if reference == 0.0 || self.gaps[i].closed || is_shortest(pair) {
+                    continue;
+                }
+                for curve in self.curves(group) {
+                    let (share, height) =
+                        Interpolant::cap(pair[0].knots[curve], pair[1].knots[curve]);
+                    if height / reference > best.1 {
+                        best = (Some((i, share)), height / reference);
+                    }
+                }
+            }
+        }
+        best.0
+    }
+
     /// Solves inside an interval.
     fn split(&mut self, interval: usize, share: f64) -> Result<(), Error> {
         let gap = self.gaps[interval].clone();
-        let Some(sample) = self.inside(interval, gap.stride(share))? else {
+        let ends = [&self.samples[interval], &self.samples[interval + 1]].map(|sample| sample.at);
+        // What is too short to be split would keep an error that nothing has measured.
+        let least = (2.0 * SHORTEST * ends[1] / (ends[1] - ends[0])).min(0.5);
+        let share = gap.stride(share).clamp(least, 1.0 - least);
+        let Some(sample) = self.inside(interval, share)? else {
             // Nothing more is asked of an interval whose inside cannot be solved.
             self.gaps[interval].closed = true;
             return Ok(());
