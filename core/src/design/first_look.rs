@@ -24,6 +24,13 @@ pub(super) struct Candidate {
     pub(super) reach: Vec<f64>,
 }
 
+impl Candidate {
+    /// How high any group may be.
+    pub(super) fn highest(&self) -> f64 {
+        self.reach.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 /// The first look at a range.
 #[derive(Debug, Clone)]
 pub(super) struct FirstLook {

@@ -86,8 +86,7 @@ impl Interpolant {
     }
 
     /// Share of the interval at which the height has its maximum between the ends, if it has one.
-    #[cfg(test)]
-    fn top(&self) -> Option<f64> {
+    pub(super) fn top(&self) -> Option<f64> {
         self.top_from(0)
     }
 
