@@ -13,8 +13,8 @@ const CAUTION: f64 = 4.0;
 /// Share of what was allowed for that remains at least, however well a point agrees: one may agree
 /// by chance.
 const CHANCE: f64 = 1e-2;
-/// Errors up to which the interpolant alone says how high a curve may be.
-const CONFIRMED: f64 = 1e-2;
+/// Gain in height, relative, that a tangent must not promise.
+const BROAD: f64 = 1e-4;
 /// Splits in a row that may leave more than half of an interval.
 const IDLE: u32 = 1;
 /// Shortest interval that is split, relative to the frequency.
@@ -191,18 +191,13 @@ impl Envelope {
         let errors = if is_shortest(ends) { vec![0.0; errors.len()] } else { errors };
         let promise = |group: usize| {
             let reference = self.height(group);
-            let promise = |i: usize| {
-                let promise = Interpolant::new(left[i], right[i], reference).promise(errors[i]);
-                // Friction cuts resonances off more broadly than 1/A² can tell.
-                let cap = Interpolant::cap(left[i], right[i]);
-                if errors[i] > CONFIRMED && cap.1 > promise.1 {
-                    cap
-                } else {
-                    promise
-                }
-            };
-            let curves = self.groups[group].clone().filter(|_| reference > 0.0).map(promise);
-            curves.fold((0.5, 0.0), |best, one| if one.1 > best.1 { one } else { best })
+            let promises = self.groups[group].clone().filter(|_| reference > 0.0).flat_map(|i| {
+                let tangent = Interpolant::tangent(left[i], right[i]);
+                let tangent = (tangent.1 > (1.0 + BROAD) * reference).then_some(tangent);
+                let cubic = Interpolant::new(left[i], right[i], reference).promise(errors[i]);
+                tangent.into_iter().chain([cubic])
+            });
+            promises.fold((0.5, 0.0), |best, one| if one.1 > best.1 { one } else { best })
         };
         let promises = (0..self.groups.len()).map(promise).collect();
         Gap { errors, promises, idle, closed: false }

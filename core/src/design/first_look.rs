@@ -9,7 +9,7 @@ use crate::Error;
 /// known.
 const INTERVALS: [usize; 2] = [8, 24];
 /// Length of an even interval that no resonance slips through, in bandwidths of the narrowest.
-const BANDWIDTHS: f64 = 2.0;
+const BANDWIDTHS: f64 = 3.0;
 /// Maxima from this share of the highest are looked at again in the next response.
 const RIVAL: f64 = 0.7;
 

@@ -42,22 +42,20 @@ impl Interpolant {
         Self { cubics, reference }
     }
 
-    /// Share of the top of a parabola that leaves either end with its slope and meets the other, if it
-    /// rises from there, and the height of that slope at the top, twice as far up.
-    pub(super) fn cap(left: Knot, right: Knot) -> (f64, f64) {
-        let width = right.at - left.at;
-        let from = |near: Knot, far: Knot, rise: f64| {
-            let bend = near.height + rise - far.height;
-            let share = 0.5 * rise / bend;
-            let inside = rise > 0.0 && bend > 0.0 && share < 1.0;
-            if inside {
-                (share, near.height + share * rise)
+    /// Where and how high a curve may be that keeps the slope with which it leaves an end for half the
+    /// interval: what friction cuts off is broader than a resonance, or has a kink, and then the top
+    /// of a parabola through both ends is the better place to look.
+    pub(super) fn tangent(left: Knot, right: Knot) -> (f64, f64) {
+        let from = |near: Knot, far: Knot| {
+            let rise = (far.at - near.at) * near.slope;
+            let share = 0.5 * rise / (near.height + rise - far.height);
+            if rise > 0.0 && (0.0..1.0).contains(&share) {
+                (share, near.height + 0.5 * rise)
             } else {
                 (0.5, 0.0)
             }
         };
-        let one = from(left, right, width * left.slope);
-        let (share, height) = from(right, left, -width * right.slope);
+        let (one, (share, height)) = (from(left, right), from(right, left));
         if one.1 >= height {
             one
         } else {
@@ -149,7 +147,7 @@ mod tests {
         let left = knot(139.7759545558, 4.207571e-9, 6.667e-9);
         let right = knot(140.3784662742, 1.840719e-3, -1.199e-1);
         assert!(Interpolant::new(left, right, right.height).promise(0.0).1 > right.height);
-        let (share, height) = Interpolant::cap(left, right);
+        let (share, height) = Interpolant::tangent(left, right);
         assert!(share > 0.5 && share < 1.0 && height > right.height);
     }
 }

@@ -25,7 +25,7 @@ const ASIDE: f64 = 1e-8;
 /// Distance at which a resonance is looked at from the side, in bandwidths.
 const FLANK: f64 = 0.5;
 /// Resonances closer than this share of a bandwidth to a point are seen from there, …
-const SEEN: f64 = 0.1;
+const SEEN: f64 = 0.5;
 /// … and what others overlay if there are points on both sides within this share.
 const AROUND: f64 = 0.75;
 /// What a resonance may exceed the height by that its load and friction can give it.
