@@ -19,8 +19,8 @@ const BROAD: f64 = 1e-4;
 const IDLE: u32 = 1;
 /// Shortest interval that is split, relative to the frequency.
 const SHORTEST: f64 = 1e-9;
-/// Share of a height that is rounding.
-const ROUNDING: f64 = 1e-12;
+/// Share of a height that solutions leave open.
+const LEFT_OPEN: f64 = 1e-10;
 
 /// What is known of an interval between two samples.
 #[derive(Debug, Clone)]
@@ -68,9 +68,9 @@ impl Envelope {
         heights.map(|knot| knot.height).fold(0.0, f64::max)
     }
 
-    /// Sample and curve of the highest point of a group, the flattest of those that rounding parts.
+    /// Sample and curve of the highest point of a group, the flattest of those that are equal.
     pub(super) fn top(&self, group: usize) -> Option<(usize, usize)> {
-        let least = self.height(group) * (1.0 - ROUNDING);
+        let least = self.height(group) * (1.0 - LEFT_OPEN);
         let all = self.samples.iter().enumerate().flat_map(|(at, sample)| {
             let knots = self.groups[group].clone().zip(&sample.knots[self.groups[group].clone()]);
             knots.map(move |(curve, knot)| ((at, curve), knot))

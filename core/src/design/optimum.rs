@@ -202,13 +202,15 @@ fn refine(
     for step in 0..60 {
         let width = b.peak.value - a.peak.value;
         let best = if a.height <= b.height { a } else { b };
-        // Where the curve is convex no point of the bracket lies below these.
         let crossing = (b.height - a.height - b.slope * width) / (a.slope - b.slope);
+        // Where the curve is convex no point of the bracket lies below these.
+        let convex = (0.0..=width).contains(&crossing);
         let floor = (a.height + a.slope * crossing).max(best.height - best.slope.abs() * width);
-        if best.height - floor <= GAIN * best.height || width <= SHORTEST * b.peak.value {
+        let closed = convex && best.height - floor <= GAIN * best.height;
+        if closed || width <= SHORTEST * b.peak.value {
             break;
         }
-        let halve = width > 0.5 * earlier[1];
+        let halve = !convex || width > 0.5 * earlier[1];
         earlier = [width, earlier[0]];
         let shift = if halve {
             0.5 * width
