@@ -21,6 +21,12 @@ const SHORTEST: f64 = 1e-7;
 const CURVE_SHARE: f64 = 0.7;
 /// Times that a curve which turns unseen between two values is halved there.
 const HALVINGS: usize = 4;
+/// Times that the least peak is looked for afresh, …
+const CONFIRMATIONS: usize = 5;
+/// … by how much, relative, what is found then refutes it, …
+const REFUTED: f64 = 1e-6;
+/// … and values how near to it, relative, are refuted with it.
+const NEAR: f64 = 0.1;
 
 /// The least peak, and how it was found.
 #[derive(Debug, Clone)]
@@ -75,6 +81,36 @@ pub fn optimum(
             insert(&mut trials, try_value(&mut follower, value, CURVE_SHARE)?);
         }
     }
+    let mut minima = local_minima(&mut follower, &mut trials, (low, high))?;
+    for _ in 0..CONFIRMATIONS {
+        // What searches that start from each other have missed, one that starts afresh may see.
+        let Some(least) = minima.first().copied().filter(|_| !follower.interrupted) else { break };
+        follower.forget();
+        let Some(again) = try_value(&mut follower, least.peak.value, 1.0)? else { break };
+        if again.height <= least.height * (1.0 + REFUTED) {
+            break;
+        }
+        let near = |trial: &Trial| (trial.peak.value / least.peak.value - 1.0).abs() < NEAR;
+        trials.retain(|trial| !near(trial));
+        insert(&mut trials, Some(again));
+        minima = local_minima(&mut follower, &mut trials, (low, high))?;
+    }
+    // With automatic harmonics or samples both sides of a dent are known to the tolerance only.
+    let depth = if settings.is_automatic() { 2.0 * settings.tolerance } else { 0.0 };
+    let minima = prominent(minima, &trials, depth);
+    let missing = std::mem::take(&mut follower.missing);
+    let mut peaks: Vec<Peak> = trials.iter().map(|trial| trial.peak).chain(missing).collect();
+    peaks.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let minima = minima.into_iter().map(|trial| trial.peak).collect();
+    Ok(Optimum { minima, curve: follower.finish(peaks, start) })
+}
+
+/// The minima that the trials show, closed in on, the least first.
+fn local_minima(
+    follower: &mut Follower<'_>,
+    trials: &mut Vec<Trial>,
+    (low, high): (f64, f64),
+) -> Result<Vec<Trial>, Error> {
     let brackets: Vec<[Trial; 2]> = trials
         .windows(2)
         .filter(|ends| ends[0].slope < 0.0 && ends[1].slope > 0.0)
@@ -89,26 +125,19 @@ pub fn optimum(
     }
     for (index, bracket) in brackets.iter().enumerate() {
         let share = CURVE_SHARE + (1.0 - CURVE_SHARE) * index as f64 / brackets.len() as f64;
-        minima.push(refine(&mut follower, *bracket, &mut trials, share)?);
+        minima.push(refine(follower, *bracket, trials, share)?);
     }
     // A response that is highest where a contact is about to slip turns its slope at once: what lies
     // lower than every minimum that slopes show is closed in on by height.
-    while let Some(lowest) = lowest(&trials) {
+    while let Some(lowest) = lowest(trials) {
         let known = minima.iter().map(|one| one.height).fold(f64::INFINITY, f64::min);
         if follower.interrupted || trials[lowest].height >= known * (1.0 - GAIN) {
             break;
         }
-        minima.push(descend(&mut follower, lowest, &mut trials)?);
+        minima.push(descend(follower, lowest, trials)?);
     }
     minima.sort_by(|a, b| a.height.total_cmp(&b.height));
-    // With automatic harmonics or samples both sides of a dent are known to the tolerance only.
-    let depth = if settings.is_automatic() { 2.0 * settings.tolerance } else { 0.0 };
-    let minima = prominent(minima, &trials, depth);
-    let missing = std::mem::take(&mut follower.missing);
-    let mut peaks: Vec<Peak> = trials.iter().map(|trial| trial.peak).chain(missing).collect();
-    peaks.sort_by(|a, b| a.value.total_cmp(&b.value));
-    let minima = minima.into_iter().map(|trial| trial.peak).collect();
-    Ok(Optimum { minima, curve: follower.finish(peaks, start) })
+    Ok(minima)
 }
 
 /// The peak at a value, if it is found.
