@@ -1,7 +1,9 @@
 """No peak that the forced response of the same model refutes, and none where nothing bounds it."""
 
+import json
 import warnings
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -173,6 +175,75 @@ def test_tables_show_what_nothing_bounds(tmp_path):
     frf.save(tmp_path / "chain.nc")
     shown = CliRunner().invoke(app, ["show", str(tmp_path / "chain.nc")])
     assert "inf: neither damping nor friction bounds" in shown.output
+
+
+# ------------------------------------------------------------------- systems that were missed
+
+MISSED = json.loads((Path(__file__).parent / "data" / "missed-peaks.json").read_text())
+
+
+def built(case):
+    damping = case["damping"]
+    if "ratio" in damping:
+        law = ss.ModalDamping(damping["ratio"])
+    else:
+        law = ss.Rayleigh(*damping["rayleigh"]) if "rayleigh" in damping else damping["matrix"]
+    names = [f"q{i}" for i in range(len(case["mass"]))]
+    structure = ss.Structure(case["mass"], case["stiffness"], law, names)
+    contacts = [
+        ss.Jenkins(*dofs, stiffness=stiffness, slip_force=slip_force, name=f"c{i}")
+        for i, (dofs, stiffness, slip_force) in enumerate(case["contacts"])
+    ]
+    forces = [ss.Force(dof, amplitude, phase=phase) for dof, amplitude, phase in case["forces"]]
+    keywords = {key: case[key] for key in ("dof", "harmonics")} | {"omega": tuple(case["omega"])}
+    return ss.Model(structure, contacts, forces), keywords
+
+
+def assert_no_grid_is_higher(amplitude, model, dof, harmonics, omega):
+    assert amplitude >= (1 - 1e-3) * highest(model, dof, omega, harmonics)
+
+
+@pytest.mark.parametrize("case", MISSED["curves"], ids=lambda case: case["about"])
+def test_a_missed_peak_of_a_curve_is_found(case):
+    model, keywords = built(case)
+    curve = ss.damper_curve(model, **{case["parameter"]: case["values"]}, **keywords)
+    for value, amplitude in zip(case["values"], curve.amplitude, strict=True):
+        assert_no_grid_is_higher(amplitude, curve.model_at(value), **keywords)
+
+
+@pytest.mark.parametrize("case", MISSED["optima"], ids=lambda case: case["about"])
+def test_a_missed_optimum_is_found(case):
+    model, keywords = built(case)
+    best = ss.optimal_damper(model, parameter=case["parameter"], **keywords)
+    assert_no_grid_is_higher(best.amplitude, best.model, **keywords)
+    assert best.amplitude <= np.nanmin(best.curve.amplitude) * (1 + 1e-8)
+    # Another look along the parameter finds none better.
+    values = np.geomspace(*best.bounds, 90)
+    curve = ss.damper_curve(model, **{case["parameter"]: values}, **keywords)
+    lowest = curve.model_at(values[np.nanargmin(curve.amplitude)])
+    peak = highest(lowest, keywords["dof"], keywords["omega"], keywords["harmonics"])
+    assert best.amplitude <= (1 + 1e-3) * peak
+
+
+def test_a_peak_of_a_disk_between_two_flanks_is_found():
+    blade = ss.Structure(
+        np.diag([1.0, 0.8]), [[1.2e5, -6e4], [-6e4, 6e4]], ss.ModalDamping(6e-4), ["root", "tip"]
+    )
+    disk = ss.BladedDisk(
+        blade,
+        sectors=8,
+        couplings=[ss.Coupling("root", stiffness=2e3)],
+        contacts=[
+            ss.Jenkins("tip", stiffness=2e4, slip_force=1.0),
+            ss.Jenkins("root", "next.root", stiffness=4e3, slip_force=1.0, name="neighbour"),
+        ],
+        forces=[ss.Force("tip", 1.0)],
+        engine_order=2,
+    )
+    values = np.geomspace(0.05, 20.0, 12)
+    curve = ss.damper_curve(disk, dof="tip", harmonics=3, slip_force=values)
+    for value, amplitude in zip(values, curve.amplitude, strict=True):
+        assert_no_grid_is_higher(amplitude, curve.model_at(value), "tip", 3, curve.settings.span)
 
 
 @pytest.mark.parametrize("seed", [125, 170, 196])
