@@ -28,15 +28,20 @@ def states(model):
 
 
 def highest(model, dof, span, harmonics):
-    """The highest point of a grid that is fine around every natural frequency of every state."""
+    """The highest point of a grid that is fine around all natural frequencies, and its maxima."""
     near = np.r_[0.0, np.geomspace(1e-5, 0.05, 25)]
     natural = np.concatenate([states(model) / order for order in range(1, harmonics + 1, 2)])
     grid = np.concatenate(
         [np.linspace(*span, 200), *(f * (1.0 + s * near) for f in natural for s in (-1.0, 1.0))]
     )
     grid = np.unique(grid[(grid >= span[0]) & (grid <= span[1])])
-    response = ss.forced_response(model, grid, harmonics, observe=[dof])
-    return np.nanmax(response.amplitude(dof))
+    height = ss.forced_response(model, grid, harmonics, observe=[dof]).amplitude(dof)
+    tops = 1 + np.flatnonzero((height[1:-1] >= height[:-2]) & (height[1:-1] >= height[2:]))
+    finer = [np.linspace(grid[i - 1], grid[i + 1], 25) for i in tops[np.argsort(-height[tops])][:3]]
+    if finer:
+        closer = ss.forced_response(model, np.unique(finer), harmonics, observe=[dof])
+        height = np.r_[height, closer.amplitude(dof)]
+    return np.nanmax(height)
 
 
 def test_a_resonance_in_a_gap_of_even_points_is_found():
@@ -226,24 +231,27 @@ def test_a_missed_optimum_is_found(case):
 
 
 def test_a_peak_of_a_disk_between_two_flanks_is_found():
-    blade = ss.Structure(
-        np.diag([1.0, 0.8]), [[1.2e5, -6e4], [-6e4, 6e4]], ss.ModalDamping(6e-4), ["root", "tip"]
-    )
+    stiffness = [[278011.83, -18295.446, 0.0], [-18295.446, 290793.19, -272497.74]]
+    stiffness.append([0.0, -272497.74, 272497.74])
+    mass = np.diag([0.54829293, 1.3859777, 0.75477227])
+    blade = ss.Structure(mass, stiffness, ss.ModalDamping(5.9744389e-4), ["root", "mid", "tip"])
+    values = [0.463494, 0.466331]
     disk = ss.BladedDisk(
         blade,
-        sectors=8,
-        couplings=[ss.Coupling("root", stiffness=2e3)],
+        sectors=6,
+        couplings=[ss.Coupling("root", stiffness=14483.861)],
         contacts=[
-            ss.Jenkins("tip", stiffness=2e4, slip_force=1.0),
-            ss.Jenkins("root", "next.root", stiffness=4e3, slip_force=1.0, name="neighbour"),
+            ss.Jenkins("root", stiffness=1728.4755, slip_force=1.0),
+            ss.Jenkins("root", "next.root", stiffness=499368.76, slip_force=1.0, name="next"),
         ],
-        forces=[ss.Force("tip", 1.0)],
-        engine_order=2,
+        forces=[ss.Force("root", 1.0)],
+        engine_order=3,
     )
-    values = np.geomspace(0.05, 20.0, 12)
-    curve = ss.damper_curve(disk, dof="tip", harmonics=3, slip_force=values)
+    span = (73.44, 2225.14)
+    curve = ss.damper_curve(disk, dof="mid", harmonics=3, omega=span, slip_force=values)
     for value, amplitude in zip(values, curve.amplitude, strict=True):
-        assert_no_grid_is_higher(amplitude, curve.model_at(value), "tip", 3, curve.settings.span)
+        fine = ss.forced_response(curve.model_at(value), np.linspace(90.0, 93.0, 3000), 3)
+        assert amplitude >= (1 - 1e-3) * fine.amplitude("mid").max()
 
 
 @pytest.mark.parametrize("seed", [125, 170, 196])
