@@ -1,8 +1,10 @@
 """No peak that the forced response of the same model refutes, and none where nothing bounds it."""
 
+import json
 import re
 import warnings
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,15 +29,20 @@ def states(model):
 
 
 def highest(model, dof, span, harmonics):
-    """The highest point of a grid that is fine around every natural frequency of every state."""
+    """The highest point of a grid that is fine around all natural frequencies, and its maxima."""
     near = np.r_[0.0, np.geomspace(1e-5, 0.05, 25)]
     natural = np.concatenate([states(model) / order for order in range(1, harmonics + 1, 2)])
     grid = np.concatenate(
         [np.linspace(*span, 200), *(f * (1.0 + s * near) for f in natural for s in (-1.0, 1.0))]
     )
     grid = np.unique(grid[(grid >= span[0]) & (grid <= span[1])])
-    response = ss.forced_response(model, grid, harmonics, observe=[dof])
-    return np.nanmax(response.amplitude(dof))
+    height = ss.forced_response(model, grid, harmonics, observe=[dof]).amplitude(dof)
+    tops = 1 + np.flatnonzero((height[1:-1] >= height[:-2]) & (height[1:-1] >= height[2:]))
+    finer = [np.linspace(grid[i - 1], grid[i + 1], 25) for i in tops[np.argsort(-height[tops])][:3]]
+    if finer:
+        closer = ss.forced_response(model, np.unique(finer), harmonics, observe=[dof])
+        height = np.r_[height, closer.amplitude(dof)]
+    return np.nanmax(height)
 
 
 def test_a_resonance_in_a_gap_of_even_points_is_found():
@@ -176,3 +183,83 @@ def test_tables_show_what_nothing_bounds(tmp_path):
     assert "inf: neither damping nor friction bounds" in shown.output
     # An error of a peak without bounds means nothing.
     assert re.search(r"^a .* inf +- +3 ", shown.output, re.MULTILINE)
+
+
+# ------------------------------------------------------------------- systems that were missed
+
+MISSED = json.loads((Path(__file__).parent / "data" / "missed-peaks.json").read_text())
+
+
+def built(case):
+    damping = case["damping"]
+    if "ratio" in damping:
+        law = ss.ModalDamping(damping["ratio"])
+    else:
+        law = ss.Rayleigh(*damping["rayleigh"]) if "rayleigh" in damping else damping["matrix"]
+    names = [f"q{i}" for i in range(len(case["mass"]))]
+    structure = ss.Structure(case["mass"], case["stiffness"], law, names)
+    contacts = [
+        ss.Jenkins(*dofs, stiffness=stiffness, slip_force=slip_force, name=f"c{i}")
+        for i, (dofs, stiffness, slip_force) in enumerate(case["contacts"])
+    ]
+    forces = [ss.Force(dof, amplitude, phase=phase) for dof, amplitude, phase in case["forces"]]
+    keywords = {key: case[key] for key in ("dof", "harmonics")} | {"omega": tuple(case["omega"])}
+    return ss.Model(structure, contacts, forces), keywords
+
+
+def assert_no_grid_is_higher(amplitude, model, dof, harmonics, omega):
+    assert amplitude >= (1 - 1e-3) * highest(model, dof, omega, harmonics)
+
+
+@pytest.mark.parametrize("case", MISSED["curves"], ids=lambda case: case["about"])
+def test_a_missed_peak_of_a_curve_is_found(case):
+    model, keywords = built(case)
+    curve = ss.damper_curve(model, **{case["parameter"]: case["values"]}, **keywords)
+    for value, amplitude in zip(case["values"], curve.amplitude, strict=True):
+        assert_no_grid_is_higher(amplitude, curve.model_at(value), **keywords)
+
+
+@pytest.mark.parametrize("case", MISSED["optima"], ids=lambda case: case["about"])
+def test_a_missed_optimum_is_found(case):
+    model, keywords = built(case)
+    best = ss.optimal_damper(model, parameter=case["parameter"], **keywords)
+    assert_no_grid_is_higher(best.amplitude, best.model, **keywords)
+    assert best.amplitude <= np.nanmin(best.curve.amplitude) * (1 + 1e-8)
+    # Another look along the parameter finds none better.
+    values = np.geomspace(*best.bounds, 90)
+    curve = ss.damper_curve(model, **{case["parameter"]: values}, **keywords)
+    lowest = curve.model_at(values[np.nanargmin(curve.amplitude)])
+    peak = highest(lowest, keywords["dof"], keywords["omega"], keywords["harmonics"])
+    assert best.amplitude <= (1 + 1e-3) * peak
+
+
+def test_a_peak_of_a_disk_between_two_flanks_is_found():
+    stiffness = [[278011.83, -18295.446, 0.0], [-18295.446, 290793.19, -272497.74]]
+    stiffness.append([0.0, -272497.74, 272497.74])
+    mass = np.diag([0.54829293, 1.3859777, 0.75477227])
+    blade = ss.Structure(mass, stiffness, ss.ModalDamping(5.9744389e-4), ["root", "mid", "tip"])
+    values = [0.463494, 0.466331]
+    disk = ss.BladedDisk(
+        blade,
+        sectors=6,
+        couplings=[ss.Coupling("root", stiffness=14483.861)],
+        contacts=[
+            ss.Jenkins("root", stiffness=1728.4755, slip_force=1.0),
+            ss.Jenkins("root", "next.root", stiffness=499368.76, slip_force=1.0, name="next"),
+        ],
+        forces=[ss.Force("root", 1.0)],
+        engine_order=3,
+    )
+    span = (73.44, 2225.14)
+    curve = ss.damper_curve(disk, dof="mid", harmonics=3, omega=span, slip_force=values)
+    for value, amplitude in zip(values, curve.amplitude, strict=True):
+        fine = ss.forced_response(curve.model_at(value), np.linspace(90.0, 93.0, 3000), 3)
+        assert amplitude >= (1 - 1e-3) * fine.amplitude("mid").max()
+
+
+@pytest.mark.parametrize("seed", [125, 170, 196])
+def test_no_value_of_its_curve_lies_below_an_optimum(seed):
+    generator = np.random.default_rng(seed)
+    model, dof = random_model(generator)
+    best = ss.optimal_damper(model, dof=dof, harmonics=1)
+    assert best.amplitude <= np.nanmin(best.curve.amplitude) * (1 + 1e-8)

@@ -134,6 +134,11 @@ impl<'a> Follower<'a> {
         }
     }
 
+    /// The next search starts from no other.
+    pub(super) fn forget(&mut self) {
+        self.climb.seeds.clear();
+    }
+
     /// The peak at one value of the parameter.
     pub(super) fn peak(&mut self, value: f64, share: f64) -> Result<Peak, Error> {
         self.interrupted = self.interrupted || !(self.climb.progress)(share);

@@ -9,7 +9,7 @@ use crate::Error;
 /// known.
 const INTERVALS: [usize; 2] = [8, 24];
 /// Length of an even interval that no resonance slips through, in bandwidths of the narrowest.
-const BANDWIDTHS: f64 = 2.0;
+const BANDWIDTHS: f64 = 3.0;
 /// Maxima from this share of the highest are looked at again in the next response.
 const RIVAL: f64 = 0.7;
 
@@ -22,6 +22,13 @@ pub(super) struct Candidate {
     pub(super) bandwidth: f64,
     /// How high it may be, group by group.
     pub(super) reach: Vec<f64>,
+}
+
+impl Candidate {
+    /// How high any group may be.
+    pub(super) fn highest(&self) -> f64 {
+        self.reach.iter().copied().fold(0.0, f64::max)
+    }
 }
 
 /// The first look at a range.

@@ -19,8 +19,9 @@ const LOOKS: usize = 32;
 /// The cubic of 1/A² between two points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interpolant {
-    /// Coefficients of `t⁰ … t³`, t from 0 to 1.
-    cubic: [f64; 4],
+    /// Coefficients of `t⁰ … t³`, t from 0 to 1, and the same from the right end: near a narrow
+    /// resonance at one end those of the other cancel.
+    cubics: [[f64; 4]; 2],
     reference: f64,
 }
 
@@ -34,13 +35,49 @@ impl Interpolant {
             (value, -2.0 * width * knot.slope / reference * value / height)
         };
         let ((g, dg), (h, dh)) = (inverse(left), inverse(right));
-        let cubic = [g, dg, 3.0 * (h - g) - 2.0 * dg - dh, 2.0 * (g - h) + dg + dh];
-        Self { cubic, reference }
+        let cubic = |[g, dg]: [f64; 2], [h, dh]: [f64; 2]| {
+            [g, dg, 3.0 * (h - g) - 2.0 * dg - dh, 2.0 * (g - h) + dg + dh]
+        };
+        let cubics = [cubic([g, dg], [h, dh]), cubic([h, -dh], [g, -dg])];
+        Self { cubics, reference }
+    }
+
+    /// Where and how high a curve may be that keeps the slope with which it leaves an end for half the
+    /// interval, or, if it rises from both ends, for twice of it: what friction cuts off is broader
+    /// than a resonance, or has a kink, and then the top of a parabola through both ends is the better
+    /// place to look.
+    pub(super) fn tangent(left: Knot, right: Knot) -> (f64, f64) {
+        let rises = |near: Knot, far: Knot| (far.at - near.at) * near.slope;
+        let part = if rises(left, right).min(rises(right, left)) > 0.0 { 2.0 } else { 0.5 };
+        let from = |near: Knot, far: Knot| {
+            let rise = rises(near, far);
+            let share = 0.5 * rise / (near.height + rise - far.height);
+            if rise > 0.0 && (0.0..1.0).contains(&share) {
+                (share, near.height + part * rise)
+            } else {
+                (0.5, 0.0)
+            }
+        };
+        let (one, (share, height)) = (from(left, right), from(right, left));
+        if one.1 >= height {
+            one
+        } else {
+            (1.0 - share, height)
+        }
     }
 
     /// Height at the share `t` of the interval; infinite where the cubic has no sense.
     pub(super) fn height(&self, t: f64) -> f64 {
-        let [a, b, c, d] = self.cubic;
+        if t <= 0.5 {
+            self.height_from(0, t)
+        } else {
+            self.height_from(1, 1.0 - t)
+        }
+    }
+
+    /// Height at a distance from the left or the right end.
+    fn height_from(&self, end: usize, t: f64) -> f64 {
+        let [a, b, c, d] = self.cubics[end];
         let value = a + t * (b + t * (c + t * d));
         if value > 0.0 {
             self.reference / value.sqrt()
@@ -51,8 +88,14 @@ impl Interpolant {
 
     /// Share of the interval at which the height has its maximum between the ends, if it has one.
     pub(super) fn top(&self) -> Option<f64> {
-        let [_, b, c, d] = self.cubic;
-        // The minimum of the cubic: the root of b + 2 c t + 3 d t² at which it rises.
+        self.top_from(0)
+    }
+
+    /// Its distance from the left or the right end.
+    fn top_from(&self, end: usize) -> Option<f64> {
+        let [_, b, c, d] = self.cubics[end];
+        // The minimum of the cubic: the root of b + 2 c t + 3 d t² at which it rises away from the
+        // maximum; seen from the other end the same root.
         let discriminant = c * c - 3.0 * b * d;
         if discriminant < 0.0 {
             return None;
@@ -65,12 +108,14 @@ impl Interpolant {
     /// Share and height of the largest value that the curve may have between its ends if the
     /// interpolant errs by the share `error` at most, in the middle.
     pub(super) fn promise(&self, error: f64) -> (f64, f64) {
-        let optimistic =
-            |t: f64| (t, self.height(t) * (1.0 + 16.0 * error * (t * (1.0 - t)).powi(2)));
-        (1..LOOKS)
-            .map(|i| i as f64 / LOOKS as f64)
-            .chain(self.top())
-            .map(optimistic)
+        let most = |t: f64| 1.0 + 16.0 * error * (t * (1.0 - t)).powi(2);
+        let even = (1..LOOKS).map(|i| i as f64 / LOOKS as f64).map(|t| (t, self.height(t)));
+        let left = self.top_from(0).filter(|t| *t <= 0.5).map(|t| (t, self.height_from(0, t)));
+        let right = self.top_from(1).filter(|t| *t < 0.5);
+        let right = right.map(|t| (1.0 - t, self.height_from(1, t)));
+        even.chain(left)
+            .chain(right)
+            .map(|(t, height)| (t, height * most(t)))
             .fold((0.5, 0.0), |best, look| if look.1 > best.1 { look } else { best })
     }
 }
@@ -97,5 +142,15 @@ mod tests {
         let (a, b) = if middle.slope > 0.0 { (middle, right) } else { (left, middle) };
         let t = Interpolant::new(a, b, a.height).top().unwrap();
         assert!((a.at + t * (b.at - a.at) - natural).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_rise_from_the_far_higher_end_is_seen() {
+        let knot = |at: f64, height: f64, slope: f64| Knot { at, height, slope };
+        let left = knot(139.7759545558, 4.207571e-9, 6.667e-9);
+        let right = knot(140.3784662742, 1.840719e-3, -1.199e-1);
+        assert!(Interpolant::new(left, right, right.height).promise(0.0).1 > right.height);
+        let (share, height) = Interpolant::tangent(left, right);
+        assert!(share > 0.5 && share < 1.0 && height > right.height);
     }
 }

@@ -2,6 +2,7 @@
 //! parameter that makes it least, and the highest peaks of disks whose sectors deviate.
 
 mod curve;
+mod envelope;
 mod first_look;
 mod interpolant;
 mod member;

@@ -21,6 +21,12 @@ const SHORTEST: f64 = 1e-7;
 const CURVE_SHARE: f64 = 0.7;
 /// Times that a curve which turns unseen between two values is halved there.
 const HALVINGS: usize = 4;
+/// Times that the least peak is looked for afresh, …
+const CONFIRMATIONS: usize = 5;
+/// … by how much, relative, what is found then refutes it, …
+const REFUTED: f64 = 1e-6;
+/// … and values how near to it, relative, are refuted with it.
+const NEAR: f64 = 0.1;
 
 /// The least peak, and how it was found.
 #[derive(Debug, Clone)]
@@ -75,6 +81,36 @@ pub fn optimum(
             insert(&mut trials, try_value(&mut follower, value, CURVE_SHARE)?);
         }
     }
+    let mut minima = local_minima(&mut follower, &mut trials, (low, high))?;
+    for _ in 0..CONFIRMATIONS {
+        // What searches that start from each other have missed, one that starts afresh may see.
+        let Some(least) = minima.first().copied().filter(|_| !follower.interrupted) else { break };
+        follower.forget();
+        let Some(again) = try_value(&mut follower, least.peak.value, 1.0)? else { break };
+        if again.height <= least.height * (1.0 + REFUTED) {
+            break;
+        }
+        let near = |trial: &Trial| (trial.peak.value / least.peak.value - 1.0).abs() < NEAR;
+        trials.retain(|trial| !near(trial));
+        insert(&mut trials, Some(again));
+        minima = local_minima(&mut follower, &mut trials, (low, high))?;
+    }
+    // With automatic harmonics or samples both sides of a dent are known to the tolerance only.
+    let depth = if settings.is_automatic() { 2.0 * settings.tolerance } else { 0.0 };
+    let minima = prominent(minima, &trials, depth);
+    let missing = std::mem::take(&mut follower.missing);
+    let mut peaks: Vec<Peak> = trials.iter().map(|trial| trial.peak).chain(missing).collect();
+    peaks.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let minima = minima.into_iter().map(|trial| trial.peak).collect();
+    Ok(Optimum { minima, curve: follower.finish(peaks, start) })
+}
+
+/// The minima that the trials show, closed in on, the least first.
+fn local_minima(
+    follower: &mut Follower<'_>,
+    trials: &mut Vec<Trial>,
+    (low, high): (f64, f64),
+) -> Result<Vec<Trial>, Error> {
     let brackets: Vec<[Trial; 2]> = trials
         .windows(2)
         .filter(|ends| ends[0].slope < 0.0 && ends[1].slope > 0.0)
@@ -89,17 +125,19 @@ pub fn optimum(
     }
     for (index, bracket) in brackets.iter().enumerate() {
         let share = CURVE_SHARE + (1.0 - CURVE_SHARE) * index as f64 / brackets.len() as f64;
-        minima.push(refine(&mut follower, *bracket, &mut trials, share)?);
+        minima.push(refine(follower, *bracket, trials, share)?);
+    }
+    // A response that is highest where a contact is about to slip turns its slope at once: what lies
+    // lower than every minimum that slopes show is closed in on by height.
+    while let Some(lowest) = lowest(trials) {
+        let known = minima.iter().map(|one| one.height).fold(f64::INFINITY, f64::min);
+        if follower.interrupted || trials[lowest].height >= known * (1.0 - GAIN) {
+            break;
+        }
+        minima.push(descend(follower, lowest, trials)?);
     }
     minima.sort_by(|a, b| a.height.total_cmp(&b.height));
-    // With automatic harmonics or samples both sides of a dent are known to the tolerance only.
-    let depth = if settings.is_automatic() { 2.0 * settings.tolerance } else { 0.0 };
-    let minima = prominent(minima, &trials, depth);
-    let missing = std::mem::take(&mut follower.missing);
-    let mut peaks: Vec<Peak> = trials.iter().map(|trial| trial.peak).chain(missing).collect();
-    peaks.sort_by(|a, b| a.value.total_cmp(&b.value));
-    let minima = minima.into_iter().map(|trial| trial.peak).collect();
-    Ok(Optimum { minima, curve: follower.finish(peaks, start) })
+    Ok(minima)
 }
 
 /// The peak at a value, if it is found.
@@ -149,6 +187,38 @@ fn prominent(minima: Vec<Trial>, trials: &[Trial], depth: f64) -> Vec<Trial> {
     kept
 }
 
+/// Position of the lowest trial.
+fn lowest(trials: &[Trial]) -> Option<usize> {
+    (0..trials.len()).min_by(|&a, &b| trials[a].height.total_cmp(&trials[b].height))
+}
+
+/// Closes in on the minimum around the lowest trial by halving the intervals beside it.
+fn descend(
+    follower: &mut Follower<'_>,
+    mut at: usize,
+    trials: &mut Vec<Trial>,
+) -> Result<Trial, Error> {
+    for _ in 0..60 {
+        let value = trials[at].peak.value;
+        let beside = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
+        let ends = beside.filter_map(|i| trials.get(i)).map(|end| end.peak.value);
+        let wide = |end: &f64| (end - value).abs() > SHORTEST * value;
+        let middles: Vec<f64> = ends.filter(wide).map(|end| 0.5 * (value + end)).collect();
+        if middles.is_empty() || follower.interrupted {
+            break;
+        }
+        let before = trials.len();
+        for middle in middles {
+            insert(trials, try_value(follower, middle, 1.0)?);
+        }
+        if trials.len() == before {
+            break;
+        }
+        at = lowest(trials).unwrap_or(at);
+    }
+    Ok(trials[at])
+}
+
 /// Closes in on the minimum between a falling and a rising end. Cubics find a smooth minimum and
 /// the crossing of the tangents finds a kink, in turns; halving guards both.
 fn refine(
@@ -161,13 +231,15 @@ fn refine(
     for step in 0..60 {
         let width = b.peak.value - a.peak.value;
         let best = if a.height <= b.height { a } else { b };
-        // Where the curve is convex no point of the bracket lies below these.
         let crossing = (b.height - a.height - b.slope * width) / (a.slope - b.slope);
+        // Where the curve is convex no point of the bracket lies below these.
+        let convex = (0.0..=width).contains(&crossing);
         let floor = (a.height + a.slope * crossing).max(best.height - best.slope.abs() * width);
-        if best.height - floor <= GAIN * best.height || width <= SHORTEST * b.peak.value {
+        let closed = convex && best.height - floor <= GAIN * best.height;
+        if closed || width <= SHORTEST * b.peak.value {
             break;
         }
-        let halve = width > 0.5 * earlier[1];
+        let halve = !convex || width > 0.5 * earlier[1];
         earlier = [width, earlier[0]];
         let shift = if halve {
             0.5 * width

@@ -2,41 +2,43 @@
 //! and of whichever DOF of a group.
 //!
 //! Every resonance is looked at that load and friction can make the highest. Every point is solved
-//! with the exact slopes of all DOFs. Between two points an [`Interpolant`] says how high each curve
+//! with the exact slopes of all DOFs. Between two points the [`Envelope`] says how high each curve
 //! may be; the interval that promises most is split next, until none promises more than what has
 //! been found. Jumps between rival maxima, and between the blades of a disk, are seen, because none
 //! is followed by itself.
 
+use super::envelope::{is_shortest, Envelope, Gap};
 use super::first_look::{Candidate, FirstLook};
-use super::interpolant::{Interpolant, Knot};
+use super::interpolant::Knot;
 use super::samples::{predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
 use crate::contact::Residual;
 use crate::fourier::Measure;
 use crate::Error;
-use std::ops::Range;
 
-/// Share by which an interpolant of that look may err: it may hide a maximum this much higher.
-const UNSEEN: f64 = 0.5;
-/// The error of an interpolant falls with the fourth power of its width; this times as much is
-/// allowed for.
-const CAUTION: f64 = 4.0;
-/// Splits in a row that may leave more than half of an interval.
-const IDLE: u32 = 1;
-/// Shortest interval that is split, relative to the frequency.
-const SHORTEST: f64 = 1e-9;
 /// Points without a solution after which an interval is closed without another attempt.
 const MOST_FAILURES: usize = 40;
 /// Gain in height, relative, that an interval without a solution must not promise.
 const DOUBT: f64 = 1e-6;
 /// Distance at which an undamped resonance is passed, relative to the frequency.
 const ASIDE: f64 = 1e-8;
-/// Resonances closer than this share of a bandwidth to a point are seen from there.
+/// Distance at which a resonance is looked at from the side, in bandwidths.
+const FLANK: f64 = 0.5;
+/// Resonances closer than this share of a bandwidth to a point are seen from there, …
 const SEEN: f64 = 0.5;
+/// … and what others overlay if there are points on both sides within this share.
+const AROUND: f64 = 0.75;
 /// What a resonance may exceed the height by that its load and friction can give it.
 const SHARE: f64 = 2.0;
+/// Resonances up to this many times as high as the samples beside them are overlaid by others.
+const OVERLAID: f64 = 10.0;
 /// Gain in height, relative, that the shortest interval must not promise.
 const UNRESOLVED: f64 = 1e-3;
+/// Steps that bring a top to where its slope vanishes, …
+const STEPS: usize = 3;
+/// … and the gain in height, relative, that needs none: the frequency errs by the root of it, in
+/// bandwidths.
+const FLAT: f64 = 1e-20;
 
 /// What is looked for.
 #[derive(Debug, Clone)]
@@ -51,34 +53,6 @@ pub(super) struct Aim {
     pub(super) gain: f64,
     /// Points after which a search ends in any case.
     pub(super) most_points: usize,
-}
-
-/// What is known of an interval between two samples.
-#[derive(Debug, Clone)]
-struct Gap {
-    /// Errors allowed for in the interpolants of all DOFs.
-    errors: Vec<f64>,
-    /// Where and how high the curves of each group may be.
-    promises: Vec<(f64, f64)>,
-    /// Splits in a row that have left more than half of it.
-    idle: u32,
-    /// Whether its inside could not be solved.
-    closed: bool,
-}
-
-impl Gap {
-    /// The share at which it is split: where asked for, or, when that keeps creeping along from an
-    /// end, between that and the whole. A resonance that slip has cut off misleads its flanks.
-    fn stride(&self, share: f64) -> f64 {
-        if self.idle <= IDLE {
-            return share;
-        }
-        if share <= 0.5 {
-            share.sqrt().min(0.5)
-        } else {
-            1.0 - (1.0 - share).sqrt().min(0.5)
-        }
-    }
 }
 
 /// The highest point of a group.
@@ -122,9 +96,7 @@ pub(super) struct Search<'a, 'b> {
     aim: &'b Aim,
     dofs: Vec<usize>,
     balance: &'b mut ForcedBalance<'a>,
-    samples: Vec<Sample>,
-    /// What is known of the intervals between them.
-    gaps: Vec<Gap>,
+    envelope: Envelope,
     /// Points without a solution.
     failures: usize,
     /// How the last of them ended.
@@ -138,8 +110,8 @@ impl<'a, 'b> Search<'a, 'b> {
         balance: &'b mut ForcedBalance<'a>,
     ) -> Self {
         let dofs = aim.groups.concat();
-        let (samples, gaps) = (Vec::new(), Vec::new());
-        Self { residual, aim, dofs, balance, samples, gaps, failures: 0, failure: None }
+        let envelope = Envelope::new(aim.groups.iter().map(Vec::len));
+        Self { residual, aim, dofs, balance, envelope, failures: 0, failure: None }
     }
 
     /// Finds the highest points from a first look and the samples of a similar response; `None` if
@@ -155,250 +127,144 @@ impl<'a, 'b> Search<'a, 'b> {
         let unbounded = |at: &Option<f64>| at.map(Doubt::unbounded);
         if look.unbounded.iter().all(Option::is_some) {
             let tops = look.unbounded.iter().filter_map(unbounded).map(Err).collect();
-            return Ok(Some(Found { samples: self.samples, tops }));
+            return Ok(Some(Found { samples: Vec::new(), tops }));
         }
         for &omega in &look.omega {
-            let start = self.beside(seeds, omega);
-            if let Some(sample) = self.solve(omega, start)? {
-                self.insert(sample, vec![UNSEEN; self.dofs.len()]);
-            }
-            if self.is_interrupted() {
-                return Ok(None);
-            }
+            self.look(omega, seeds)?;
         }
-        let mut open = vec![true; look.candidates.len()];
-        let mut more = true;
-        while more {
-            more = self.approach(&look.candidates, &mut open, seeds)?;
-            let most_points = self.aim.most_points.max(2 * self.samples.len());
-            while self.samples.len() < most_points && !self.is_interrupted() {
-                let Some((interval, share)) = self.most_promising() else { break };
-                self.split(interval, share)?;
+        let mut open: Vec<&Candidate> = look.candidates.iter().collect();
+        open.sort_by(|a, b| b.highest().total_cmp(&a.highest()));
+        let mut splits = 0;
+        while !self.is_interrupted() {
+            let heights: Vec<f64> =
+                (0..look.unbounded.len()).map(|i| self.envelope.height(i)).collect();
+            if let Some(next) = open.iter().position(|one| self.may_lead(one, &heights)) {
+                self.approach(open.remove(next), seeds)?;
+                continue;
             }
-            if self.is_interrupted() {
-                return Ok(None);
+            let next = self.envelope.most_promising(self.aim.gain);
+            let Some((interval, share)) = next.filter(|_| splits < self.aim.most_points) else {
+                break;
+            };
+            match self.inside(interval, share)? {
+                Some(sample) => self.envelope.split(interval, sample),
+                None => self.envelope.close(interval),
             }
+            splits += 1;
         }
-        let mut tops = Vec::with_capacity(self.aim.groups.len());
-        for (group, at) in look.unbounded.iter().enumerate() {
-            let Some((sample, curve)) = self.top(group) else { return Ok(None) };
-            let doubt = unbounded(at).or_else(|| self.doubt(group));
-            tops.push(doubt.map_or(Ok(Top { sample, curve }), Err));
+        let groups = look.unbounded.iter().enumerate();
+        let doubts = groups.map(|(group, at)| unbounded(at).or_else(|| self.doubt(group)));
+        let doubts: Vec<Option<Doubt>> = doubts.collect();
+        for (group, _) in doubts.iter().enumerate().filter(|(_, doubt)| doubt.is_none()) {
+            self.polish(group)?;
         }
-        Ok(Some(Found { samples: self.samples, tops }))
+        if self.is_interrupted() {
+            return Ok(None);
+        }
+        let top = |group| self.envelope.top(group).map(|(sample, curve)| Top { sample, curve });
+        let tops: Option<Vec<Top>> = (0..doubts.len()).map(top).collect();
+        Ok(tops.map(|tops| {
+            let tops = tops.into_iter().zip(doubts).map(|(top, doubt)| doubt.map_or(Ok(top), Err));
+            Found { tops: tops.collect(), samples: self.envelope.samples }
+        }))
     }
 
     fn is_interrupted(&self) -> bool {
         self.failure == Some(PointStatus::NotComputed)
     }
 
-    /// Looks at the resonances that may be the highest, those that promise most first; whether there
-    /// were any.
-    fn approach(
-        &mut self,
-        candidates: &[Candidate],
-        open: &mut [bool],
-        seeds: &[Sample],
-    ) -> Result<bool, Error> {
-        let mut looked = false;
-        loop {
-            let promising = |&i: &usize| open[i] && self.may_lead(&candidates[i]);
-            let reach = |i: usize| candidates[i].reach.iter().copied().fold(0.0, f64::max);
-            let next = (0..candidates.len()).filter(promising);
-            let Some(next) = next.reduce(|a, b| if reach(b) > reach(a) { b } else { a }) else {
-                return Ok(looked);
-            };
-            (open[next], looked) = (false, true);
-            let Candidate { at, bandwidth, ref reach } = candidates[next];
-            let mut sample = None;
-            for aside in [0.0, -0.5, 0.5] {
-                let omega = (at + aside * bandwidth).clamp(self.aim.span.0, self.aim.span.1);
-                if sample.is_none() && !self.is_interrupted() && self.failures <= MOST_FAILURES {
-                    let start = self.beside(seeds, omega);
-                    sample = self.solve(omega, start)?;
-                }
-            }
-            if self.is_interrupted() {
-                return Ok(false);
-            }
-            match sample {
-                Some(sample) => self.insert(sample, vec![UNSEEN; self.dofs.len()]),
-                None => self.close(at, reach),
-            }
+    /// Solves at a frequency of which nothing is known, starting from a similar response; whether
+    /// that succeeded.
+    fn look(&mut self, omega: f64, seeds: &[Sample]) -> Result<bool, Error> {
+        if self.is_interrupted() || self.failures > MOST_FAILURES {
+            return Ok(false);
         }
+        let start = self.beside(seeds, omega);
+        let sample = self.solve(omega, start)?;
+        let solved = sample.is_some();
+        sample.into_iter().for_each(|sample| self.envelope.insert(sample));
+        Ok(solved)
     }
 
-    /// Whether a resonance that no point has seen may be higher than what has been found.
-    fn may_lead(&self, candidate: &Candidate) -> bool {
-        let after = self.samples.partition_point(|sample| sample.at < candidate.at);
-        let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
-        let around: Vec<&Sample> = around.filter_map(|i| self.samples.get(i)).collect();
-        let near = (SEEN * candidate.bandwidth).max(2.0 * ASIDE * candidate.at);
-        if around.iter().any(|sample| (sample.at - candidate.at).abs() <= near) {
-            return false;
+    /// Looks at a resonance, or beside it if it cannot be solved there; and on both sides if others
+    /// show as much there as it does by itself: together they are highest beside it, and the
+    /// interpolant, of a resonance alone, does not see that from afar.
+    fn approach(&mut self, candidate: &Candidate, seeds: &[Sample]) -> Result<(), Error> {
+        let overlaid = self.is_overlaid(candidate);
+        let mut solved = false;
+        for aside in [0.0, -FLANK, FLANK] {
+            let omega = candidate.at + aside * candidate.bandwidth;
+            let wanted = !solved || overlaid;
+            let omega = omega.clamp(self.aim.span.0, self.aim.span.1);
+            solved |= wanted && self.look(omega, seeds)?;
         }
+        if !solved {
+            self.envelope.leave(candidate.at, &candidate.reach);
+        }
+        Ok(())
+    }
+
+    /// Whether others show as much at a resonance as it does by itself.
+    fn is_overlaid(&self, candidate: &Candidate) -> bool {
         candidate.reach.iter().enumerate().any(|(group, reach)| {
-            let heights = around.iter().flat_map(|sample| &sample.knots[self.curves(group)]);
-            let beside = heights.map(|knot| knot.height).fold(0.0, f64::max);
-            *reach > 0.0 && beside + SHARE * reach > self.height(group) * (1.0 + self.aim.gain)
+            (0.0..OVERLAID * self.envelope.beside(candidate.at, group)).contains(reach)
         })
     }
 
-    /// Leaves the interval around an unsolved resonance to doubt.
-    fn close(&mut self, at: f64, reach: &[f64]) {
-        let after = self.samples.partition_point(|sample| sample.at < at);
-        if let Some(gap) = after.checked_sub(1).and_then(|interval| self.gaps.get_mut(interval)) {
-            gap.closed = true;
-            for (promise, reach) in gap.promises.iter_mut().zip(reach) {
-                promise.1 = promise.1.max(*reach);
-            }
+    /// Whether a resonance that no point has seen may be higher than what has been found.
+    fn may_lead(&self, candidate: &Candidate, heights: &[f64]) -> bool {
+        let around = self.envelope.around(candidate.at);
+        let within = |share: f64| {
+            let near = (share * candidate.bandwidth).max(2.0 * ASIDE * candidate.at);
+            around.clone().filter(|sample| (sample.at - candidate.at).abs() <= near).count()
+        };
+        let surrounded = || within(AROUND) == around.clone().count();
+        if within(SEEN) > 0 && (surrounded() || !self.is_overlaid(candidate)) {
+            return false;
         }
-    }
-
-    /// Adds a sample, with the errors allowed for on both sides of it.
-    fn insert(&mut self, sample: Sample, errors: Vec<f64>) {
-        let after = self.samples.partition_point(|other| other.at < sample.at);
-        if self.samples.get(after).is_some_and(|other| other.at == sample.at) {
-            return;
-        }
-        self.samples.insert(after, sample);
-        let last = self.samples.len() - 1;
-        let parts: Vec<Gap> = [after.checked_sub(1), (after < last).then_some(after)]
-            .into_iter()
-            .flatten()
-            .map(|interval| self.gap(interval, errors.clone(), 0))
-            .collect();
-        let first = after.saturating_sub(1);
-        let replaced = usize::from(after > 0 && after < last);
-        self.gaps.splice(first..first + replaced, parts);
-    }
-
-    /// Positions of the DOFs of a group among all.
-    fn curves(&self, group: usize) -> Range<usize> {
-        let first = self.aim.groups[..group].iter().map(Vec::len).sum();
-        first..first + self.aim.groups[group].len()
-    }
-
-    /// Sample and DOF of the highest point of a group.
-    fn top(&self, group: usize) -> Option<(usize, usize)> {
-        let curves = self.curves(group);
-        let all = self.samples.iter().enumerate().flat_map(|(at, sample)| {
-            let knots = curves.clone().zip(&sample.knots[curves.clone()]);
-            knots.map(move |(curve, knot)| (at, curve, knot.height))
-        });
-        all.max_by(|a, b| a.2.total_cmp(&b.2)).map(|(at, curve, _)| (at, curve))
-    }
-
-    fn height(&self, group: usize) -> f64 {
-        self.top(group).map_or(0.0, |(at, curve)| self.samples[at].knots[curve].height)
+        candidate.reach.iter().zip(heights).enumerate().any(|(group, (reach, height))| {
+            let beside = self.envelope.beside(candidate.at, group);
+            *reach > 0.0 && beside + SHARE * reach > height * (1.0 + self.aim.gain)
+        })
     }
 
     /// Why the highest point may lie in a part of the range that could not be solved, that too many
     /// points have left open, or in which the response grows beyond all resolution.
     fn doubt(&self, group: usize) -> Option<Doubt> {
-        let (first, last) = (self.samples.first()?, self.samples.last()?);
+        let samples = &self.envelope.samples;
+        let (first, last) = (samples.first()?, samples.last()?);
         let (low, high) = self.aim.span;
-        let least = self.height(group) * (1.0 + DOUBT);
+        let height = self.envelope.height(group);
+        let beyond = |gain: f64| {
+            let promising = move |gap: &Gap| gap.promises[group].1 > height * (1.0 + gain);
+            self.envelope.intervals().filter(move |(gap, _)| promising(gap))
+        };
         let ends = first.at > low * (1.0 + 2.0 * ASIDE) || last.at < high;
-        let promising = |gap: &&Gap| gap.promises[group].1 > least;
-        if ends || self.gaps.iter().filter(promising).any(|gap| gap.closed) {
+        if ends || beyond(DOUBT).any(|(gap, _)| gap.closed) {
             return Some(Doubt::unsolved(self.failure.unwrap_or(PointStatus::Stalled)));
         }
-        for (gap, pair) in self.gaps.iter().zip(self.samples.windows(2)) {
-            let short = is_shortest(pair);
-            if short && gap.promises[group].1 > self.height(group) * (1.0 + UNRESOLVED) {
-                return Some(Doubt::unbounded(pair[0].at));
-            }
-            if !short && promising(&gap) {
-                return Some(Doubt::unsolved(PointStatus::Stalled));
-            }
+        if let Some((_, ends)) = beyond(UNRESOLVED).find(|(_, ends)| is_shortest(ends)) {
+            return Some(Doubt::unbounded(ends[0].at));
         }
-        None
+        let open = beyond(DOUBT).any(|(_, ends)| !is_shortest(ends));
+        open.then(|| Doubt::unsolved(PointStatus::Stalled))
     }
 
-    /// An interval between two samples, with what it promises.
-    fn gap(&self, interval: usize, errors: Vec<f64>, idle: u32) -> Gap {
-        let (left, right) = (&self.samples[interval].knots, &self.samples[interval + 1].knots);
-        let promises = (0..self.aim.groups.len())
-            .map(|group| {
-                let reference = self.height(group);
-                if reference == 0.0 {
-                    return (0.5, 0.0);
-                }
-                self.curves(group)
-                    .map(|i| Interpolant::new(left[i], right[i], reference).promise(errors[i]))
-                    .fold((0.5, 0.0), |best, one| if one.1 > best.1 { one } else { best })
-            })
-            .collect();
-        Gap { errors, promises, idle, closed: false }
-    }
-
-    /// The interval that may hold the highest point, and where to look in it.
-    fn most_promising(&self) -> Option<(usize, f64)> {
-        let mut best = (None, 1.0 + self.aim.gain);
-        for group in 0..self.aim.groups.len() {
-            let reference = self.height(group);
-            if reference == 0.0 {
-                continue;
-            }
-            for (i, pair) in self.samples.windows(2).enumerate() {
-                let gap = &self.gaps[i];
-                if gap.closed || is_shortest(pair) {
-                    continue;
-                }
-                let (share, promise) = gap.promises[group];
-                if promise / reference > best.1 {
-                    best = (Some((i, share)), promise / reference);
-                }
-            }
+    /// Moves the top of a group to where its slope vanishes.
+    fn polish(&mut self, group: usize) -> Result<(), Error> {
+        for _ in 0..STEPS {
+            let Some((interval, share)) = self.envelope.stationary(group, FLAT) else { break };
+            let [left, right] = [interval, interval + 1].map(|i| self.envelope.samples[i].at);
+            let sample = self.solve(left + share * (right - left), None)?;
+            let Some(sample) = sample.filter(|one| left < one.at && one.at < right) else { break };
+            self.envelope.split(interval, sample);
         }
-        best.0
-    }
-
-    /// Solves inside an interval.
-    fn split(&mut self, interval: usize, share: f64) -> Result<(), Error> {
-        let gap = self.gaps[interval].clone();
-        let Some(sample) = self.inside(interval, gap.stride(share))? else {
-            // Nothing more is asked of an interval whose inside cannot be solved.
-            self.gaps[interval].closed = true;
-            return Ok(());
-        };
-        let (left, right) = (&self.samples[interval], &self.samples[interval + 1]);
-        let share = (sample.at - left.at) / (right.at - left.at);
-        let bump = 16.0 * (share * (1.0 - share)).powi(2);
-        let missed = |i: usize| {
-            let (left, right, knot) = (left.knots[i], right.knots[i], sample.knots[i]);
-            let reference = left.height.max(right.height).max(knot.height);
-            let expected = Interpolant::new(left, right, reference).height(share);
-            (expected / knot.height - 1.0).abs().min(1.0) / bump
-        };
-        let missed: Vec<f64> = (0..self.dofs.len()).map(missed).collect();
-        let inside = (0.1..0.9).contains(&share);
-        let errors = |part: f64| {
-            let allowed = |(error, before): (&f64, &f64)| {
-                let allowed = CAUTION * error * part.powi(4);
-                // Close to an end the error is small wherever the middle may be.
-                if inside {
-                    allowed.min(1.0)
-                } else {
-                    allowed.min(*before)
-                }
-            };
-            missed.iter().zip(&gap.errors).map(allowed).collect::<Vec<f64>>()
-        };
-        let parts = [share, 1.0 - share].map(errors);
-        self.samples.insert(interval + 1, sample);
-        let [before, after] = parts;
-        let idle = |part: f64| if part > 0.5 { gap.idle + 1 } else { 0 };
-        let before = self.gap(interval, before, idle(share));
-        let after = self.gap(interval + 1, after, idle(1.0 - share));
-        self.gaps.splice(interval..=interval, [before, after]);
         Ok(())
     }
 
     /// A point inside an interval: at the share asked for, or halfway from there to an end.
     fn inside(&mut self, interval: usize, share: f64) -> Result<Option<Sample>, Error> {
-        let (left, right) = (self.samples[interval].at, self.samples[interval + 1].at);
+        let [left, right] = [interval, interval + 1].map(|i| self.envelope.samples[i].at);
         for share in [share, 0.5 * share, 0.5 * (1.0 + share)] {
             let solved = self.solve(left + share * (right - left), None)?;
             let sample = solved.filter(|sample| left < sample.at && sample.at < right);
@@ -412,13 +278,9 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Solves at one frequency: from `start` or the samples around it, from the stuck response,
     /// or from either neighbour as it is.
     fn solve(&mut self, omega: f64, start: Option<Unknowns>) -> Result<Option<Sample>, Error> {
-        let after = self.samples.partition_point(|sample| sample.at < omega);
-        let start = start.or_else(|| predicted(&self.samples, omega));
-        let neighbours = [after.checked_sub(1), Some(after)].into_iter().flatten();
-        let neighbours: Vec<_> = neighbours
-            .filter_map(|i| self.samples.get(i))
-            .map(|sample| Some(sample.unknowns.clone()))
-            .collect();
+        let start = start.or_else(|| predicted(&self.envelope.samples, omega));
+        let around = self.envelope.around(omega);
+        let neighbours: Vec<_> = around.map(|sample| Some(sample.unknowns.clone())).collect();
         for start in start.map(Some).into_iter().chain([None]).chain(neighbours) {
             let sample = self.attempt(omega, start.as_ref())?;
             if sample.is_some() || self.is_interrupted() {
@@ -463,7 +325,8 @@ impl<'a, 'b> Search<'a, 'b> {
     fn beside(&self, seeds: &[Sample], omega: f64) -> Option<Unknowns> {
         let mut start = predicted(seeds, omega)?;
         let distance = |sample: &Sample| (sample.at - omega).abs();
-        let nearest = self.samples.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let nearest =
+            self.envelope.samples.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         if let Some(near) = nearest {
             let similar = predicted(seeds, near.at)?.recast(near.unknowns.harmonics());
             let harmonics = near.unknowns.harmonics().clone();
@@ -474,9 +337,4 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         Some(start)
     }
-}
-
-/// Whether an interval is too short to be split.
-fn is_shortest(ends: &[Sample]) -> bool {
-    ends[1].at - ends[0].at <= SHORTEST * ends[1].at
 }

@@ -45,11 +45,13 @@ pub struct Resonance {
 #[derive(Debug)]
 struct State {
     poles: Poles,
-    /// Effect of a unit force at every contact point on every pole, and what the point shows of it;
-    /// none of points that stick.
+    /// Effect of a unit force at every contact point on every pole, none of points that stick, and
+    /// what the point shows of it.
     contacts: Vec<Vec<[f64; 2]>>,
+    /// Which points slip.
+    slips: Vec<bool>,
     /// Whether all points that can slip do.
-    slips: bool,
+    all: bool,
 }
 
 /// The states of a model per nodal diameter, found when they are first needed.
@@ -110,37 +112,17 @@ impl Model {
                 continue;
             };
             let load = self.load(harmonic);
-            let size = load.iter().map(|p| p.norm_sqr()).sum::<f64>().sqrt();
             // A slipping contact bears a square wave at most.
             let share = 4.0 / PI * (lowest as f64 / order).min(1.0);
+            let bearing = Bearing { load: &load, limits: &limits, stiffness: &stiffness, share };
             for state in states {
-                let poles = &state.poles;
-                let highest = poles.values.iter().map(|s| s.norm()).fold(0.0, f64::max);
-                for (j, pole) in poles.values.iter().enumerate() {
-                    let left = poles.left.row(j);
-                    let driven = (0..load.len()).map(|i| left[i] * load[i]).sum::<c64>().norm();
-                    let driven = if driven > NOISE * left.norm_l2() * size { driven } else { 0.0 };
-                    let points = || state.contacts[j].iter().zip(&limits).zip(&stiffness);
-                    let friction: f64 = points()
-                        .filter(|(([effect, _], _), _)| *effect > 0.0)
-                        .map(|(([effect, _], limit), _)| share * effect * limit)
-                        .sum();
+                let highest = state.poles.values.iter().map(|s| s.norm()).fold(0.0, f64::max);
+                for (j, pole) in state.poles.values.iter().enumerate() {
+                    let driven = bearing.driven(state, j);
                     let decay = pole.re.abs();
                     let damped = decay > UNDAMPED * highest;
-                    let right = poles.right.col(j);
-                    let (height, shown) = ((driven + friction) / decay, NOISE * right.norm_l2());
-                    let seen = |i: usize| match right[i].norm() {
-                        seen if seen > shown && driven + friction > 0.0 => seen * height,
-                        _ => 0.0,
-                    };
-                    let moved = shift(driven, decay, &|| {
-                        points().map(|((&[effect, seen], &limit), &stiffness)| SlippingPoint {
-                            effect,
-                            seen,
-                            limit,
-                            stiffness,
-                        })
-                    });
+                    let reach = bearing.reach_beyond(states, state, j);
+                    let moved = shift(driven, decay, &|| bearing.points(state, j));
                     for omega in [Some(pole.im), moved.map(|by| pole.im + by)] {
                         let Some(omega) = omega.map(|w| w / order).filter(|&w| inside(w)) else {
                             continue;
@@ -148,8 +130,8 @@ impl Model {
                         found.push(Resonance {
                             omega,
                             bandwidth: 2.0 * decay / order,
-                            reach: Some((0..right.nrows()).map(seen).collect()),
-                            unbounded: !damped && state.slips && driven > friction,
+                            reach: Some(reach.clone()),
+                            unbounded: !damped && state.all && driven > bearing.friction(state, j),
                             forced: is_forced,
                         });
                     }
@@ -212,11 +194,11 @@ impl Model {
         let effect = |j: usize, i: usize| {
             let noise = NOISE * poles.left.row(j).norm_l2() * rows.row(i).norm_l2();
             let size = effects[(j, i)].norm();
-            let counts = slips[i] && size > noise;
-            if counts {
-                [size, shown[(i, j)].norm()]
-            } else {
-                [0.0, 0.0]
+            let counts = size > noise;
+            match (counts, slips[i]) {
+                (true, true) => [size, shown[(i, j)].norm()],
+                (true, false) => [0.0, shown[(i, j)].norm()],
+                (false, _) => [0.0, 0.0],
             }
         };
         let contacts = (0..poles.values.len())
@@ -224,7 +206,92 @@ impl Model {
             .collect();
         let limits = self.laws.iter().flat_map(|law| law.limits());
         let all = limits.zip(slips).all(|(limit, slips)| *slips || limit.is_infinite());
-        Ok(State { poles, contacts, slips: all })
+        Ok(State { poles, contacts, slips: slips.to_vec(), all })
+    }
+}
+
+/// What drives and what slows a resonance at one harmonic.
+struct Bearing<'a> {
+    load: &'a [c64],
+    limits: &'a [f64],
+    stiffness: &'a [f64],
+    /// Most of a slip limit that a friction force has in this harmonic.
+    share: f64,
+}
+
+impl Bearing<'_> {
+    /// Effect of the load on a pole.
+    fn driven(&self, state: &State, j: usize) -> f64 {
+        let left = state.poles.left.row(j);
+        let size = self.load.iter().map(|p| p.norm_sqr()).sum::<f64>().sqrt();
+        let driven = (0..self.load.len()).map(|i| left[i] * self.load[i]).sum::<c64>().norm();
+        if driven > NOISE * left.norm_l2() * size {
+            driven
+        } else {
+            0.0
+        }
+    }
+
+    /// Most that the friction of all slipping points does to a pole.
+    fn friction(&self, state: &State, j: usize) -> f64 {
+        let points = state.contacts[j].iter().zip(self.limits);
+        let slipping = points.filter(|([effect, _], _)| *effect > 0.0);
+        slipping.map(|([effect, _], limit)| self.share * effect * limit).sum()
+    }
+
+    /// The points of a pole.
+    fn points<'s>(
+        &'s self,
+        state: &'s State,
+        j: usize,
+    ) -> impl Iterator<Item = SlippingPoint> + 's {
+        let points = state.contacts[j].iter().zip(self.limits).zip(self.stiffness);
+        points.map(|((&[effect, seen], &limit), &stiffness)| SlippingPoint {
+            effect,
+            seen,
+            limit,
+            stiffness,
+        })
+    }
+
+    /// Displacement of every DOF that load and friction can cause in a state.
+    fn reach(&self, state: &State, j: usize) -> Vec<f64> {
+        let cause = self.driven(state, j) + self.friction(state, j);
+        let right = state.poles.right.col(j);
+        let (height, shown) = (cause / state.poles.values[j].re.abs(), NOISE * right.norm_l2());
+        let seen = |i: usize| match right[i].norm() {
+            seen if seen > shown && cause > 0.0 => seen * height,
+            _ => 0.0,
+        };
+        (0..right.nrows()).map(seen).collect()
+    }
+
+    /// The same, with that of the resonances on either side in the state in which those points slip,
+    /// too, that could not stick: what these uncouple may resonate by itself.
+    fn reach_beyond(&self, states: &[State], state: &State, j: usize) -> Vec<f64> {
+        let mut reach = self.reach(state, j);
+        let pole = state.poles.values[j];
+        let cause = self.driven(state, j) + self.friction(state, j);
+        let height = if cause > 0.0 { cause / pole.re.abs() } else { 0.0 };
+        let tears = |point: &SlippingPoint| point.stiffness * point.seen * height > point.limit;
+        let torn: Vec<bool> = self.points(state, j).map(|point| tears(&point)).collect();
+        let slips: Vec<bool> = torn.iter().zip(&state.slips).map(|(a, b)| *a || *b).collect();
+        if slips == state.slips {
+            return reach;
+        }
+        let beyond = states.iter().find(|other| other.slips == slips);
+        let Some(beyond) = beyond.or_else(|| states.iter().find(|other| other.all)) else {
+            return reach;
+        };
+        let values = &beyond.poles.values;
+        let below = (0..values.len()).filter(|&i| values[i].im <= pole.im);
+        let above = (0..values.len()).filter(|&i| values[i].im > pole.im);
+        let by_frequency = |a: &usize, b: &usize| values[*a].im.total_cmp(&values[*b].im);
+        for i in [below.max_by(by_frequency), above.min_by(by_frequency)].into_iter().flatten() {
+            let other = self.reach(beyond, i);
+            reach.iter_mut().zip(other).for_each(|(reach, other)| *reach = reach.max(other));
+        }
+        reach
     }
 }
 

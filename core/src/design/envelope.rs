@@ -1,0 +1,224 @@
+//! What solved points and their slopes say of the curves between them: how high each may be.
+
+use super::interpolant::Interpolant;
+use super::samples::Sample;
+use std::ops::Range;
+
+/// Share by which an interpolant that no point has confirmed may err: it may hide a maximum this
+/// much higher.
+const UNSEEN: f64 = 0.5;
+/// The error of an interpolant falls with the fourth power of its width; this times as much is
+/// allowed for.
+const CAUTION: f64 = 4.0;
+/// Share of what was allowed for that remains at least, however well a point agrees: one may agree
+/// by chance.
+const CHANCE: f64 = 1e-2;
+/// Gain in height, relative, that a tangent must not promise.
+const BROAD: f64 = 1e-4;
+/// Splits in a row that may leave more than half of an interval.
+const IDLE: u32 = 1;
+/// Shortest interval that is split, relative to the frequency.
+const SHORTEST: f64 = 1e-9;
+/// Share of a height that solutions leave open.
+const LEFT_OPEN: f64 = 1e-10;
+
+/// What is known of an interval between two samples.
+#[derive(Debug, Clone)]
+pub(super) struct Gap {
+    /// Errors allowed for in the interpolants of all curves.
+    errors: Vec<f64>,
+    /// Where and how high the curves of each group may be.
+    pub(super) promises: Vec<(f64, f64)>,
+    /// Splits in a row that have left more than half of it.
+    idle: u32,
+    /// Whether its inside could not be solved.
+    pub(super) closed: bool,
+}
+
+/// Samples in order, and what is known of the intervals between them.
+#[derive(Debug)]
+pub(super) struct Envelope {
+    /// Curves, group by group.
+    groups: Vec<Range<usize>>,
+    pub(super) samples: Vec<Sample>,
+    gaps: Vec<Gap>,
+}
+
+impl Envelope {
+    /// Of groups of so many curves, without samples.
+    pub(super) fn new(sizes: impl Iterator<Item = usize>) -> Self {
+        let mut last = 0;
+        let groups = sizes.map(|size| {
+            last += size;
+            last - size..last
+        });
+        Self { groups: groups.collect(), samples: Vec::new(), gaps: Vec::new() }
+    }
+
+    /// The samples on either side of a frequency.
+    pub(super) fn around(&self, at: f64) -> impl Iterator<Item = &Sample> + Clone {
+        let after = self.samples.partition_point(|sample| sample.at < at);
+        self.samples[after.saturating_sub(1)..(after + 1).min(self.samples.len())].iter()
+    }
+
+    /// The highest of a group at the samples on either side.
+    pub(super) fn beside(&self, at: f64, group: usize) -> f64 {
+        let curves = &self.groups[group];
+        let heights = self.around(at).flat_map(|sample| &sample.knots[curves.clone()]);
+        heights.map(|knot| knot.height).fold(0.0, f64::max)
+    }
+
+    /// Sample and curve of the highest point of a group, the flattest of those that are equal.
+    pub(super) fn top(&self, group: usize) -> Option<(usize, usize)> {
+        let least = self.height(group) * (1.0 - LEFT_OPEN);
+        let all = self.samples.iter().enumerate().flat_map(|(at, sample)| {
+            let knots = self.groups[group].clone().zip(&sample.knots[self.groups[group].clone()]);
+            knots.map(move |(curve, knot)| ((at, curve), knot))
+        });
+        let highest = all.filter(|(_, knot)| knot.height >= least);
+        highest.min_by(|a, b| a.1.slope.abs().total_cmp(&b.1.slope.abs())).map(|(top, _)| top)
+    }
+
+    /// Height of the highest point of a group.
+    pub(super) fn height(&self, group: usize) -> f64 {
+        let knots = self.samples.iter().flat_map(|one| &one.knots[self.groups[group].clone()]);
+        knots.map(|knot| knot.height).fold(0.0, f64::max)
+    }
+
+    /// The intervals with their ends.
+    pub(super) fn intervals(&self) -> impl Iterator<Item = (&Gap, &[Sample])> {
+        self.gaps.iter().zip(self.samples.windows(2))
+    }
+
+    /// The interval whose promise exceeds the highest point of its group most, by the share `gain`
+    /// at least, and where to look in it.
+    pub(super) fn most_promising(&self, gain: f64) -> Option<(usize, f64)> {
+        let mut best = (None, 1.0 + gain);
+        for group in 0..self.groups.len() {
+            let reference = self.height(group);
+            for (i, (gap, ends)) in self.intervals().enumerate() {
+                let (share, promise) = gap.promises[group];
+                if !gap.closed && !is_shortest(ends) && promise > best.1 * reference {
+                    best = (Some((i, share)), promise / reference);
+                }
+            }
+        }
+        best.0.map(|(interval, share)| (interval, self.stride(interval, share)))
+    }
+
+    /// The share at which an interval is split: where asked for, or, when that keeps creeping along
+    /// from an end, between that and the whole. A resonance that slip has cut off misleads its flanks.
+    fn stride(&self, interval: usize, share: f64) -> f64 {
+        let share = match self.gaps[interval].idle <= IDLE {
+            true => share,
+            false if share <= 0.5 => share.sqrt().min(0.5),
+            false => 1.0 - (1.0 - share).sqrt().min(0.5),
+        };
+        let [left, right] = [interval, interval + 1].map(|i| self.samples[i].at);
+        // What is too short to be split would keep an error that nothing has measured.
+        let least = (2.0 * SHORTEST * right / (right - left)).min(0.5);
+        share.clamp(least, 1.0 - least)
+    }
+
+    /// Nothing more is asked of an interval whose inside cannot be solved.
+    pub(super) fn close(&mut self, interval: usize) {
+        self.gaps[interval].closed = true;
+    }
+
+    /// Leaves the interval around an unsolved resonance to doubt.
+    pub(super) fn leave(&mut self, at: f64, reach: &[f64]) {
+        let after = self.samples.partition_point(|sample| sample.at < at);
+        if let Some(gap) = after.checked_sub(1).and_then(|interval| self.gaps.get_mut(interval)) {
+            gap.closed = true;
+            for (promise, reach) in gap.promises.iter_mut().zip(reach) {
+                promise.1 = promise.1.max(*reach);
+            }
+        }
+    }
+
+    /// Adds a sample; nothing is known of the intervals beside it.
+    pub(super) fn insert(&mut self, sample: Sample) {
+        if self.around(sample.at).any(|other| (other.at - sample.at).abs() <= SHORTEST * sample.at)
+        {
+            return;
+        }
+        let errors = vec![UNSEEN; sample.knots.len()];
+        let after = self.samples.partition_point(|other| other.at < sample.at);
+        self.samples.insert(after, sample);
+        let (first, last) = (after.saturating_sub(1), (after + 1).min(self.samples.len() - 1));
+        let parts: Vec<Gap> = (first..last).map(|i| self.gap(i, errors.clone(), 0)).collect();
+        let replaced = parts.len().saturating_sub(1);
+        self.gaps.splice(first..first + replaced, parts);
+    }
+
+    /// Adds a sample inside an interval, which tells how much its interpolants err.
+    pub(super) fn split(&mut self, interval: usize, sample: Sample) {
+        let (left, right) = (&self.samples[interval], &self.samples[interval + 1]);
+        let share = (sample.at - left.at) / (right.at - left.at);
+        let bump = 16.0 * (share * (1.0 - share)).powi(2);
+        let missed = |i: usize| {
+            let (left, right, knot) = (left.knots[i], right.knots[i], sample.knots[i]);
+            let reference = left.height.max(right.height).max(knot.height);
+            let expected = Interpolant::new(left, right, reference).height(share);
+            (expected / knot.height - 1.0).abs().min(1.0) / bump
+        };
+        let gap = &self.gaps[interval];
+        // Close to an end the error is small wherever the middle may be.
+        let inside = (0.1..0.9).contains(&share);
+        let measured = gap.errors.iter().enumerate().map(|(i, &before)| {
+            let most = if inside { 1.0 } else { before };
+            (missed(i).max(CHANCE * before), most)
+        });
+        let measured: Vec<(f64, f64)> = measured.collect();
+        let errors = |part: f64| -> Vec<f64> {
+            let allowed = |(error, most): &(f64, f64)| (CAUTION * error * part.powi(4)).min(*most);
+            measured.iter().map(allowed).collect()
+        };
+        let idle = |part: f64| if part > 0.5 { gap.idle + 1 } else { 0 };
+        let parts = [share, 1.0 - share].map(|part| (errors(part), idle(part)));
+        self.samples.insert(interval + 1, sample);
+        let [before, after] = parts;
+        let before = self.gap(interval, before.0, before.1);
+        let after = self.gap(interval + 1, after.0, after.1);
+        self.gaps.splice(interval..=interval, [before, after]);
+    }
+
+    /// An interval between two samples, with what it promises.
+    fn gap(&self, interval: usize, errors: Vec<f64>, idle: u32) -> Gap {
+        let ends = &self.samples[interval..interval + 2];
+        let (left, right) = (&ends[0].knots, &ends[1].knots);
+        // Of what is too short to be split the interpolant says all that can be known.
+        let errors = if is_shortest(ends) { vec![0.0; errors.len()] } else { errors };
+        let promise = |group: usize| {
+            let reference = self.height(group);
+            let promises = self.groups[group].clone().filter(|_| reference > 0.0).flat_map(|i| {
+                let tangent = Interpolant::tangent(left[i], right[i]);
+                let tangent = (tangent.1 > (1.0 + BROAD) * reference).then_some(tangent);
+                let cubic = Interpolant::new(left[i], right[i], reference).promise(errors[i]);
+                tangent.into_iter().chain([cubic])
+            });
+            promises.fold((0.5, 0.0), |best, one| if one.1 > best.1 { one } else { best })
+        };
+        let promises = (0..self.groups.len()).map(promise).collect();
+        Gap { errors, promises, idle, closed: false }
+    }
+
+    /// Where the slope of the top of a group vanishes, as the interval and the share of it, if more
+    /// than the share `gain` in height is to be won there.
+    pub(super) fn stationary(&self, group: usize, gain: f64) -> Option<(usize, f64)> {
+        let (top, curve) = self.top(group)?;
+        let knot = self.samples[top].knots[curve];
+        let rises = knot.slope > 0.0;
+        let other = if rises { top + 1 } else { top.checked_sub(1)? };
+        let uphill = self.samples.get(other)?.knots[curve];
+        let share = Interpolant::new(knot, uphill, knot.height).top()?;
+        let won = 0.5 * (share * (uphill.at - knot.at) * knot.slope).abs();
+        let place = if rises { (top, share) } else { (other, 1.0 - share) };
+        (won > gain * knot.height).then_some(place)
+    }
+}
+
+/// Whether an interval is too short to be split.
+pub(super) fn is_shortest(ends: &[Sample]) -> bool {
+    ends[1].at - ends[0].at <= SHORTEST * ends[1].at
+}
