@@ -6,7 +6,7 @@ use crate::settings::{evaluated, ResidualArgument};
 use numpy::{Complex64, PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use stickslip_core::contact::{FrictionLaw, Motion};
+use stickslip_core::contact::{ContactLaw, Motion};
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
 /// Hands the law of a contact and its motion to `work`, for displacements `(points, H+1)`.
@@ -16,7 +16,7 @@ fn along<R>(
     displacement: &Array2<'_, Complex64>,
     residual: &ResidualArgument,
     march: Option<usize>,
-    work: impl FnOnce(&dyn FrictionLaw, Motion<'_>) -> R,
+    work: impl FnOnce(&dyn ContactLaw, Motion<'_>) -> R,
 ) -> PyResult<R> {
     let model = evaluated(&problem.model, march).map_err(refused)?;
     let Some(law) = model.laws().get(contact) else {
@@ -27,10 +27,10 @@ fn along<R>(
     };
     let view = displacement.as_array();
     let (points, orders) = (view.nrows(), view.ncols());
-    if points != law.points() || orders < 2 {
+    if points != law.displacements() || orders < 2 {
         return Err(PyValueError::new_err(format!(
             "displacement: expected {} rows of at least X_0 and X_1, got {points} x {orders}",
-            law.points()
+            law.displacements()
         )));
     }
     if !view.iter().all(|amplitude| amplitude.is_finite()) {

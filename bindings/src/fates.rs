@@ -129,7 +129,7 @@ pub fn fates(
         .iter()
         .any(|fate| fate.as_ref().is_none_or(|fate| fate.reason == Reason::Interrupted));
     let dofs = model.compliance().dofs();
-    let states = 2 * dofs + model.compliance().contacts();
+    let states = model.states();
     Ok(Fates { inner, dofs, states, interrupted, seconds: began.elapsed().as_secs_f64() })
 }
 

@@ -21,15 +21,12 @@ pub struct LimitCycles {
     inner: orbit::LimitCycles,
     dofs: usize,
     contacts: usize,
+    states: usize,
 }
 
 impl LimitCycles {
     fn cycles(&self) -> &[Cycle] {
         &self.inner.cycles
-    }
-
-    fn states(&self) -> usize {
-        2 * self.dofs + self.contacts
     }
 
     fn amplitudes<'py>(
@@ -136,12 +133,12 @@ impl LimitCycles {
 
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, self.states(), |c| c.state.clone())
+        self.rows(py, self.states, |c| c.state.clone())
     }
 
     #[getter]
     fn multipliers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<Complex64>>> {
-        let columns = self.states().saturating_sub(1);
+        let columns = self.states.saturating_sub(1);
         let filled = |cycle: &Cycle| {
             let mut row = cycle.multipliers.clone();
             row.resize(columns, Complex64::new(f64::NAN, f64::NAN));
@@ -323,5 +320,6 @@ pub fn limit_cycles(
         inner: inner.ok_or_else(given_up)?.map_err(refused)?,
         dofs: model.compliance().dofs(),
         contacts: model.compliance().contacts(),
+        states: model.states(),
     })
 }

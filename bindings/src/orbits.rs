@@ -268,8 +268,7 @@ pub fn exact_response(
             stickslip_core::orbit::Orbits { points, half_wave, interrupted: true, profile }
         }
     };
-    let (points, dofs) = (model.compliance().contacts(), model.compliance().dofs());
-    Ok(Orbits { inner, observed, contacts: points, states: 2 * dofs + points })
+    Ok(Orbits { inner, observed, contacts: model.compliance().contacts(), states: model.states() })
 }
 
 /// Frequency and exact amplitude at the true maximum of one DOF; `bracket` holds the lowest, the

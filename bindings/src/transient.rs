@@ -170,6 +170,5 @@ pub fn transient(
             "transient: the contacts do not settle on stick or slip at one instant; perturb the start state slightly, or use scheme = \"rk4\"",
         ));
     }
-    let (points, dofs) = (model.compliance().contacts(), model.compliance().dofs());
-    Ok(History { inner, observed, contacts: points, states: 2 * dofs + points })
+    Ok(History { inner, observed, contacts: model.compliance().contacts(), states: model.states() })
 }

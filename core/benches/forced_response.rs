@@ -10,7 +10,7 @@ use common::snecma_beam;
 use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion};
 use std::hint::black_box;
 use stickslip_core::balance::{sweep, ForcedBalance, HarmonicChoice, Settings};
-use stickslip_core::contact::{FrictionLaw as _, Jenkins, Motion, Residual, SlipLoad};
+use stickslip_core::contact::{HarmonicForce as _, Jenkins, Motion, Residual, SlipLoad};
 use stickslip_core::fourier::{Harmonics, SampleTable};
 use stickslip_core::structure::Receptance;
 

@@ -59,6 +59,16 @@ pub enum Error {
         /// Natural frequency in rad/s.
         natural: f64,
     },
+    /// A contact law that has no events.
+    #[error(
+        "contact {contact}: the law {law} has no events that an exact motion could be followed by; balance harmonics with forced_response instead"
+    )]
+    NoEvents {
+        /// The contact, from 1.
+        contact: usize,
+        /// Name of its law.
+        law: String,
+    },
     /// Time-domain analysis of one sector.
     #[error("one sector of a travelling wave has no motion of its own in time; give all sectors")]
     TravellingWave,

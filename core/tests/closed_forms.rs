@@ -2,7 +2,7 @@
 //! 1999, eqs. 2.12-2.14 with the sign of 2.13 corrected).
 
 use std::f64::consts::PI;
-use stickslip_core::contact::{FrictionLaw, Jenkins, Motion, PointSummary, Residual, SlipLoad};
+use stickslip_core::contact::{HarmonicForce, Jenkins, Motion, PointSummary, Residual, SlipLoad};
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
 const STIFFNESS: f64 = 3.0e5;

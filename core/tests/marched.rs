@@ -8,7 +8,7 @@ mod common;
 use common::coupled::{Coupled, SLIP_FORCE, STIFFNESS};
 use faer::mat;
 use stickslip_core::contact::{
-    FrictionLaw, Jenkins, Marched, Motion, PointSummary, Residual, SlipLoad,
+    Aft, ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual, SlipLoad,
 };
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
@@ -28,14 +28,14 @@ fn series(table: &SampleTable, terms: &[Term]) -> Vec<f64> {
     u
 }
 
-fn load(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64], residual: Residual) -> SlipLoad {
+fn load(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], residual: Residual) -> SlipLoad {
     let mut load = SlipLoad::default();
     law.slip_load(Motion { table, displacement: u, residual }, true, &mut load);
     load
 }
 
 /// Largest difference between tangent and central differences, relative to the stiffness.
-fn tangent_error(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64], residual: Residual) -> f64 {
+fn tangent_error(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], residual: Residual) -> f64 {
     let exact = load(law, table, u, residual);
     let (size, step) = (u.len(), 1e-6);
     let mut worst = 0.0_f64;
@@ -53,12 +53,12 @@ fn tangent_error(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64], residual
     worst / STIFFNESS
 }
 
-fn jenkins() -> Box<dyn FrictionLaw> {
+fn jenkins() -> Box<dyn ContactLaw> {
     Box::new(Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap())
 }
 
-fn marched(samples: usize) -> Marched {
-    Marched::new(jenkins(), samples).unwrap()
+fn marched(samples: usize) -> Aft<Box<dyn ContactLaw>> {
+    Aft::new(jenkins(), samples).unwrap()
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn tangents_in_every_contact_state() {
             let states = [load(&law, table, &u, residual), load(&*jenkins(), table, &u, residual)];
             assert_eq!(states[0].active, states[1].active, "{name}");
         }
-        let frictionless = Marched::new(Box::new(Jenkins::new(STIFFNESS, 0.0).unwrap()), samples);
+        let frictionless = Aft::new(Box::new(Jenkins::new(STIFFNESS, 0.0).unwrap()), samples);
         let u = series(&odd, &once);
         assert!(tangent_error(&frictionless.unwrap(), &odd, &u, Residual::Centred) < 1e-9);
     }
@@ -115,7 +115,7 @@ fn tangents_in_every_contact_state() {
 
 #[test]
 fn coupled_points_keep_their_history_in_the_tangent() {
-    let law = Marched::new(Box::new(Coupled::new()), 128).unwrap();
+    let law = Aft::new(Box::new(Coupled::new()), 128).unwrap();
     for half_wave in [true, false] {
         let table = SampleTable::new(Harmonics::new(5, half_wave));
         for scale in [0.15, 0.6, 4.0] {
@@ -135,7 +135,7 @@ fn coupled_points_keep_their_history_in_the_tangent() {
             let element = |i: usize, k, f| {
                 let v: Vec<f64> =
                     one.iter().zip(&two).map(|(a, b)| t[(i, 0)] * a + t[(i, 1)] * b).collect();
-                let law = Marched::new(Box::new(Jenkins::new(k, f).unwrap()), 128).unwrap();
+                let law = Aft::new(Box::new(Jenkins::new(k, f).unwrap()), 128).unwrap();
                 load(&law, &table, &v, Residual::FromRest).value
             };
             let own = [element(0, STIFFNESS, SLIP_FORCE), element(1, 1.3, 0.7)];
@@ -160,7 +160,7 @@ fn distance(samples: usize, half_wave: bool) -> f64 {
         let term =
             |k: usize, a: f64| (k, a * (k as f64 * phase).cos(), a * (k as f64 * phase).sin());
         let u = series(&table, &[(0, 0.3, 0.0), term(1, 1.4), term(2, 0.3), term(3, 0.5)]);
-        let [a, b] = [&law as &dyn FrictionLaw, &*exact]
+        let [a, b] = [&law as &dyn ContactLaw, &*exact]
             .map(|law| load(law, &table, &u, Residual::Centred).value);
         sum += a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
     }

@@ -10,6 +10,7 @@ use faer::{mat, Mat};
 use stickslip_core::balance::{
     refine_peak, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus, Settings, Solution,
 };
+use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
 use stickslip_core::model::{Contact, Model};
 use stickslip_core::solve::FirstJacobian;
@@ -85,7 +86,8 @@ fn a_law_without_closed_form_runs_through_the_whole_balance() {
             vec![Contact { law: Box::new(law), rows: Mat::identity(2, 2) }]
         } else {
             let row = |i: usize| Mat::from_fn(1, 2, |_, j| law.transform[(i, j)]);
-            (0..2).map(|i| Contact { law: Box::new(law.elements[i]), rows: row(i) }).collect()
+            let alone = |i: usize| Box::new(Jenkins::of(vec![law.elements[i]]).unwrap());
+            (0..2).map(|i| Contact { law: alone(i), rows: row(i) }).collect()
         };
         let amplitude = [faer::c64::new(6.0, 0.0), faer::c64::new(0.0, 3.0)].to_vec();
         let loads = vec![HarmonicLoad { harmonic: 1, amplitude }];

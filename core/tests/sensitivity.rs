@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use stickslip_core::balance::{
     Cause, ForcedBalance, HarmonicChoice, Linearised, Point, PointStatus, Settings,
 };
-use stickslip_core::contact::{FrictionLaw, Jenkins, Motion, Residual};
+use stickslip_core::contact::{ContactLaw, HarmonicForce, Jenkins, Motion, Residual};
 use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use stickslip_core::solve::NewtonSettings;
 use stickslip_core::Model;

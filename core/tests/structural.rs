@@ -7,8 +7,8 @@ mod common;
 use common::damper::{stiffness, Random, LIMITS};
 use faer::{mat, Mat};
 use stickslip_core::contact::{
-    FrictionLaw, Jenkins, Marched, Motion, PointState, PointSummary, Residual, SlipLoad,
-    StructuralDamper,
+    Aft, ContactLaw, HarmonicForce, Jenkins, Motion, PointState, PointSummary, Residual,
+    SlipElement, SlipLoad, StructuralDamper,
 };
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
@@ -16,7 +16,7 @@ fn motion<'a>(table: &'a SampleTable, displacement: &'a [f64]) -> Motion<'a> {
     Motion { table, displacement, residual: Residual::Centred }
 }
 
-fn load(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64]) -> SlipLoad {
+fn load(law: &dyn ContactLaw, table: &SampleTable, u: &[f64]) -> SlipLoad {
     let mut load = SlipLoad::default();
     law.slip_load(motion(table, u), true, &mut load);
     load
@@ -93,7 +93,7 @@ fn random_marches_approach_the_exact_passage() {
         let errors: Vec<f64> = [1024, 8192]
             .iter()
             .map(|&samples| {
-                let marched = Marched::new(law.softened(1.0), samples).unwrap();
+                let marched = Aft::new(law.with_scaled_stiffness(1.0), samples).unwrap();
                 difference(&load(&marched, &table, &u).value, &exact) / largest(&exact).max(1.0)
             })
             .collect();
@@ -165,7 +165,7 @@ fn equal_limits_slip_together_with_the_least_slip() {
     assert!((slip_load.value[0] - 9.0).abs() < 1e-14 && slip_load.active);
     let mut force = [0.2, -0.2];
     let mut gain = [0.0; 4];
-    law.advance(&[1.0, -1.0], &mut force, Some(&mut gain));
+    law.increment(&[1.0, -1.0], &mut force, Some(&mut gain));
     assert_eq!(force, [0.7, -0.7]);
 }
 
@@ -175,14 +175,14 @@ fn increments_solve_their_complementarity_problem() {
     for case in 0..2000 {
         let points = 1 + case % 8;
         let law = random.damper(points, 1.0, 1.0);
-        let (stiffness, limits) = (law.stiffness(), law.limits());
+        let (stiffness, limits) = (SlipElement::stiffness(&law), SlipElement::limits(&law));
         let mut force = vec![0.0; points];
         for _ in 0..4 {
             let size = 10f64.powf(random.between(-1.0, 2.0));
             let du: Vec<f64> = (0..points).map(|_| size * random.next()).collect();
             let before = force.clone();
             let mut gain = vec![0.0; points * points];
-            law.advance(&du, &mut force, Some(&mut gain));
+            law.increment(&du, &mut force, Some(&mut gain));
             let trial: Vec<f64> = (0..points)
                 .map(|i| before[i] + (0..points).map(|j| stiffness[(i, j)] * du[j]).sum::<f64>())
                 .collect();

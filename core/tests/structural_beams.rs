@@ -8,7 +8,7 @@ use common::damper::{damped_beams, DOFS};
 use stickslip_core::balance::{
     refine_peak, sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
 };
-use stickslip_core::contact::{FrictionLaw, Marched, Motion, PointState, Residual, SlipLoad};
+use stickslip_core::contact::{Aft, ContactLaw, Motion, PointState, Residual, SlipLoad};
 use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use stickslip_core::model::Model;
 use stickslip_core::motion::{transient, Scheme, TransientSettings};
@@ -286,7 +286,7 @@ fn the_increment_is_of_second_order_in_the_samples() {
         let table = SampleTable::new(Harmonics::new(9, true));
         let series = series_of(&table, &point);
         let law = &model.laws()[0];
-        let load = |law: &dyn FrictionLaw, series: &[f64]| {
+        let load = |law: &dyn ContactLaw, series: &[f64]| {
             let mut load = SlipLoad::default();
             let motion =
                 Motion { table: &table, displacement: series, residual: Residual::Centred };
@@ -298,7 +298,7 @@ fn the_increment_is_of_second_order_in_the_samples() {
         let errors: Vec<f64> = counts
             .iter()
             .map(|&samples| {
-                let marched = Marched::new(law.softened(1.0), samples).unwrap();
+                let marched = Aft::new(law.with_scaled_stiffness(1.0), samples).unwrap();
                 let error = |phase: f64| {
                     let turned = turned(&table, &series, phase);
                     let (rough, exact) = (load(&marched, &turned), load(law.as_ref(), &turned));

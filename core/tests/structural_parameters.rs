@@ -9,7 +9,7 @@ use common::damper::{stiffness, Random, LIMITS};
 use faer::{mat, Mat};
 use std::collections::BTreeSet;
 use stickslip_core::contact::{
-    FrictionLaw, Jenkins, Marched, Motion, PointState, Residual, SlipLoad, StructuralDamper,
+    Aft, ContactLaw, Jenkins, Motion, PointState, Residual, SlipLoad, StructuralDamper,
 };
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
@@ -18,20 +18,21 @@ fn motion<'a>(table: &'a SampleTable, displacement: &'a [f64]) -> Motion<'a> {
 }
 
 /// Series of the contact forces `D u − q`.
-fn force(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64]) -> Vec<f64> {
+fn force(law: &dyn ContactLaw, table: &SampleTable, u: &[f64]) -> Vec<f64> {
     let mut load = SlipLoad::default();
     law.slip_load(motion(table, u), false, &mut load);
     let (d, slots) = (law.stiffness(), table.harmonics().slots());
     (0..u.len())
         .map(|k| {
             let (i, slot) = (k / slots, k % slots);
-            let stuck: f64 = (0..law.points()).map(|j| d[(i, j)] * u[j * slots + slot]).sum();
+            let stuck: f64 =
+                (0..law.displacements()).map(|j| d[(i, j)] * u[j * slots + slot]).sum();
             stuck - load.value[k]
         })
         .collect()
 }
 
-fn slope(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64], index: usize) -> Vec<f64> {
+fn slope(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], index: usize) -> Vec<f64> {
     let mut slope = vec![f64::NAN; u.len()];
     law.parameter_slope(motion(table, u), index, &mut slope);
     slope
@@ -76,7 +77,7 @@ fn error(law: &StructuralDamper, table: &SampleTable, u: &[f64], index: usize) -
         .fold(f64::INFINITY, f64::min)
 }
 
-fn slip_sets(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64]) -> BTreeSet<Vec<bool>> {
+fn slip_sets(law: &dyn ContactLaw, table: &SampleTable, u: &[f64]) -> BTreeSet<Vec<bool>> {
     let phases = law.phases(motion(table, u));
     phases
         .iter()
@@ -214,7 +215,7 @@ fn a_march_approaches_the_slopes() {
         let exact = slope(&law, &table, &u, index);
         assert!(largest(&exact) > 0.1);
         let errors = [512, 8192].map(|samples| {
-            let marched = Marched::new(law.softened(1.0), samples).unwrap();
+            let marched = Aft::new(law.with_scaled_stiffness(1.0), samples).unwrap();
             difference(&slope(&marched, &table, &u, index), &exact) / largest(&exact)
         });
         assert!(errors[1] < 1e-3 && errors[1] < 0.2 * errors[0], "{index}: {errors:?}");

@@ -1,14 +1,16 @@
 //! Tangents against central differences in every contact state.
 
 use proptest::prelude::*;
-use stickslip_core::contact::{FrictionLaw, Jenkins, Motion, PointSummary, Residual, SlipLoad};
+use stickslip_core::contact::{
+    ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual, SlipLoad,
+};
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
 const STIFFNESS: f64 = 2.0;
 const SLIP_FORCE: f64 = 1.0;
 
 /// Largest difference between tangent and central differences, relative to the stiffness.
-fn tangent_error(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64], residual: Residual) -> f64 {
+fn tangent_error(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], residual: Residual) -> f64 {
     let evaluate = |u: &[f64], tangent: bool| {
         let mut load = SlipLoad::default();
         law.slip_load(Motion { table, displacement: u, residual }, tangent, &mut load);
@@ -50,7 +52,7 @@ fn series(table: &SampleTable, terms: &[Term]) -> Vec<f64> {
 }
 
 /// Slip phases per period, counted on a fine force history.
-fn slip_phases(law: &dyn FrictionLaw, table: &SampleTable, u: &[f64]) -> usize {
+fn slip_phases(law: &dyn ContactLaw, table: &SampleTable, u: &[f64]) -> usize {
     let history =
         law.force_history(Motion { table, displacement: u, residual: Residual::Centred }, 20_000);
     let slips = |f: f64| f.abs() >= SLIP_FORCE;

@@ -175,7 +175,7 @@ fn mistuned_rings_move_as_the_assembled_disk() {
             (0..count).map(|i| 1.0 + 0.07 * (2.3 * f64::from(i) + 0.4).sin()).collect();
         let ring = sectors(&factors, 2, between);
         let contacts = (0..ring.laws().len()).map(|i| Contact {
-            law: ring.laws()[i].softened(1.0),
+            law: ring.laws()[i].with_scaled_stiffness(1.0),
             rows: ring.ports().rows.get(i..i + 1, ..).to_owned(),
         });
         let loads = ring.ports().loads.clone();
@@ -216,7 +216,7 @@ fn other_laws_and_slopes_of_rings_are_those_of_the_whole_disk() {
     let whole = {
         let assembled = |model: &Model| {
             let contacts = (0..model.laws().len()).map(|i| Contact {
-                law: model.laws()[i].softened(1.0),
+                law: model.laws()[i].with_scaled_stiffness(1.0),
                 rows: model.ports().rows.get(i..i + 1, ..).to_owned(),
             });
             let loads = model.ports().loads.clone();

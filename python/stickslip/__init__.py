@@ -37,6 +37,7 @@ _HOMES = {
     "Severity": "results.diagnostic",
     "State": "model.state",
     "Status": "results",
+    "ParallelJenkins": "model",
     "StructuralDamper": "model",
     "Structure": "model",
     "Transient": "results.transient",

@@ -38,6 +38,7 @@ from stickslip.model import Force as Force
 from stickslip.model import Jenkins as Jenkins
 from stickslip.model import ModalDamping as ModalDamping
 from stickslip.model import Model as Model
+from stickslip.model import ParallelJenkins as ParallelJenkins
 from stickslip.model import Rayleigh as Rayleigh
 from stickslip.model import StructuralDamper as StructuralDamper
 from stickslip.model import Structure as Structure

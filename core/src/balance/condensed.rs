@@ -2,7 +2,7 @@
 
 use super::linear::{Factor, Linear};
 use super::unknowns::gather;
-use crate::contact::{FrictionLaw, Motion, Residual, SlipLoad};
+use crate::contact::{ContactLaw, Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::timing::Profile;
@@ -34,7 +34,7 @@ pub struct Condensed<'a> {
     pub(super) path: Path,
     pub(super) load_scale: f64,
     /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
-    pub(super) softened: Option<(f64, Vec<Box<dyn FrictionLaw>>)>,
+    pub(super) softened: Option<(f64, Vec<Box<dyn ContactLaw>>)>,
     pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
     pub(super) factor: Option<Factor>,
     /// Points of contacts with a tangent, of the last factorisation.

@@ -4,18 +4,21 @@
 //! structure that just reaches the slip limit of one contact: friction need not dissipate anything.
 
 use super::limit_cycle::CycleBalance;
-use crate::contact::Describing;
+use crate::contact::{ContactLaw, Describing};
 use crate::fourier::SampleTable;
 use crate::model::SelfExcited;
 use crate::solve::at_parameter;
 use crate::structure::StuckMode;
 use crate::Error;
+use std::sync::Arc;
 
 /// Newton iterations for the first point.
 const ITERATIONS: usize = 40;
 /// First ratios, relative to the excess over the onset that is asked for, down to which a start is
 /// looked for: closer to the onset the stuck mode is nearer to the solution.
 const NEARER: [f64; 7] = [1.0, 0.5, 0.2, 0.05, 0.01, 1e-3, 1e-4];
+/// Doublings of the excess over the onset up to which friction is asked to balance a guess.
+const FURTHER: u32 = 12;
 /// Contact displacement, relative to the largest of all modes, that counts as none.
 const STILL: f64 = 1e-9;
 
@@ -30,7 +33,9 @@ pub struct Onset {
     pub amplitude: f64,
     /// That contact point.
     pub point: usize,
-    /// Its slip limit [N].
+    /// Its law, if that has a describing function.
+    law: Option<Arc<dyn ContactLaw>>,
+    /// Force at which it begins to slip [N].
     pub limit: f64,
     /// DOF that moves most, of those that no contact restrains, if there are any.
     pub dof: usize,
@@ -49,7 +54,7 @@ impl Onset {
         let mut limits = Vec::new();
         for (law, range) in laws.iter().zip(model.points()) {
             stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
-            limits.extend(law.limits());
+            limits.extend(law.onsets());
         }
         let modes = family.destabilised().stuck_modes(stiffness.as_ref())?;
         let largest = modes.iter().flat_map(|m| &m.contact).map(|u| u.norm()).fold(0.0, f64::max);
@@ -92,7 +97,11 @@ impl Onset {
             .filter(|dof| !restrained(*dof) && size(dof) > 0.01 * size(&most))
             .max_by(moves)
             .unwrap_or(most);
-        Ok(Self { mode: own.clone(), ratio, amplitude, point, limit: limits[point], dof })
+        let mut contacts = laws.iter().zip(model.points());
+        let law = contacts.find(|(_, range)| range.contains(&point)).map(|(law, _)| law);
+        let law = law.filter(|law| law.describing(1.0).is_some());
+        let law = law.map(|law| Arc::from(law.with_scaled_forces(1.0)));
+        Ok(Self { mode: own.clone(), ratio, amplitude, point, law, limit: limits[point], dof })
     }
 
     /// A limit cycle at the ratio r asked for, or as near to the onset as needed: unknowns of
@@ -107,7 +116,7 @@ impl Onset {
         for share in NEARER {
             for factor in [1.0, 0.7, 1.5, 0.3, 3.0] {
                 let ratio = self.ratio + share * (ratio - self.ratio);
-                let Some(guess) = self.guess(table, ratio, factor) else { continue };
+                let Some((guess, excess)) = self.guess(table, ratio, factor) else { continue };
                 let mut curve = CycleBalance::new(family, table, &guess, interrupted);
                 let Some((z, _)) = at_parameter(&mut curve, &guess, ratio, ITERATIONS) else {
                     if interrupted() {
@@ -119,7 +128,8 @@ impl Onset {
                 let slots = table.harmonics().slots();
                 let moved = table.harmonics().fundamental(&z[self.point * slots..][..slots]);
                 let expected = self.amplitude * self.mode.contact[self.point].norm();
-                if (0.7..1.3).contains(&near) && moved > 0.5 * expected && moved < 3.0 * expected {
+                let most = 1.5 * (1.0 + excess).max(2.0) * expected;
+                if (0.7..1.3).contains(&near) && moved > 0.5 * expected && moved < most {
                     return Some(z);
                 }
             }
@@ -128,22 +138,24 @@ impl Onset {
     }
 
     /// The stuck mode beyond the onset of slip by what makes friction dissipate the work of the
-    /// negative damping, by the first harmonic of one slipping contact; nothing if it cannot.
-    fn guess(&self, table: &SampleTable, ratio: f64, factor: f64) -> Option<Vec<f64>> {
+    /// negative damping, by the first harmonic of one slipping contact, and by which share of the
+    /// amplitude at the onset it lies beyond; nothing if it cannot.
+    fn guess(&self, table: &SampleTable, ratio: f64, factor: f64) -> Option<(Vec<f64>, f64)> {
         let (harmonics, mode) = (table.harmonics(), &self.mode);
         let damping = mode.damping + ratio * mode.negative;
         let stroke = mode.contact[self.point].norm();
         let stiffness = self.limit / (stroke * self.amplitude);
         let force = |excess: f64| {
             let size = (1.0 + excess) * stroke * self.amplitude;
-            Describing::of_jenkins(stiffness, self.limit, size).stiffness
+            let own = self.law.as_ref().and_then(|law| law.describing(size));
+            own.unwrap_or_else(|| Describing::of_jenkins(stiffness, self.limit, size)).stiffness
         };
-        // Dissipation grows with the excess up to twice the amplitude at the onset.
+        // The dissipation of one element grows with the excess up to twice the amplitude at its
+        // onset; that of several ones further.
         let left = |excess: f64| mode.omega * damping + stroke * stroke * force(excess).im;
-        if left(1.0) < 0.0 {
-            return None;
-        }
-        let (mut low, mut high) = (0.0, 1.0);
+        let mut reached = (0..FURTHER).map(|doubled| f64::from(1 << doubled));
+        let mut high = reached.find(|excess| left(*excess) >= 0.0)?;
+        let mut low = 0.0;
         for _ in 0..100 {
             let middle = 0.5 * (low + high);
             if left(middle) < 0.0 {
@@ -165,6 +177,6 @@ impl Onset {
             }
         }
         z.extend([omega, ratio]);
-        Some(z)
+        Some((z, high))
     }
 }

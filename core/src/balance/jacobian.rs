@@ -227,7 +227,9 @@ impl Parametrised for Condensed<'_> {
         match self.path {
             Path::Load => self.load_scale = scale,
             Path::Stiffness => {
-                let soften = || self.model.laws().iter().map(|law| law.softened(scale)).collect();
+                let soften = || {
+                    self.model.laws().iter().map(|law| law.with_scaled_stiffness(scale)).collect()
+                };
                 self.softened = (scale < 1.0).then(|| (scale, soften()));
             }
         }

@@ -6,7 +6,7 @@
 
 use super::condensed::{gathered_load, scattered};
 use super::unknowns::{gather, Unknowns};
-use crate::contact::{FrictionLaw, Motion, Residual, SlipLoad};
+use crate::contact::{ContactLaw, Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::SelfExcited;
 use crate::solve::{norm, Curve};
@@ -30,7 +30,7 @@ pub struct CycleBalance<'a> {
 /// What the equations are made of at a point.
 pub(super) struct Evaluation {
     z: Vec<f64>,
-    pub(super) laws: Vec<Box<dyn FrictionLaw>>,
+    pub(super) laws: Vec<Box<dyn ContactLaw>>,
     pub(super) stiffness: Mat<f64>,
     pub(super) ratio: f64,
     answers: Vec<Answer>,

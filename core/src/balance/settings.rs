@@ -30,7 +30,7 @@ pub enum Evaluation {
     /// As the laws know best: by exact integrals, if they have them.
     #[default]
     Direct,
-    /// Marched through equidistant samples (see [`crate::contact::Marched`]).
+    /// Marched through equidistant samples (see [`crate::contact::Aft`]).
     Marched(SampleChoice),
 }
 

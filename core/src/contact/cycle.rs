@@ -1,4 +1,4 @@
-//! The path of an elastic, perfectly plastic element over one period, from event to event.
+//! The cycles of elastic, perfectly plastic elements over one period, from event to event.
 
 use super::Motion;
 use crate::fourier::{Harmonics, TurningPoint};
@@ -12,8 +12,9 @@ const USUAL_TURNS: usize = 8;
 pub(super) struct Stick {
     pub(super) start: f64,
     pub(super) end: f64,
-    /// Turning point at which the last slip ended; its displacement fixes the slip load.
-    pub(super) anchor: f64,
+    /// Turning point of the path, by position, at which the last slip ended and this interval
+    /// starts; its displacement fixes the slip load.
+    pub(super) anchor: usize,
     pub(super) slip_load: f64,
 }
 
@@ -22,60 +23,82 @@ pub(super) struct Stick {
 pub(super) struct Slip {
     pub(super) start: f64,
     pub(super) end: f64,
+    /// Turning point of the path, by position, at which it ends.
+    pub(super) turn: usize,
     pub(super) sign: f64,
     pub(super) travel: f64,
 }
 
-/// The path of an element over the span its series is followed.
+/// A displacement from turning point to turning point, which all elements on it share.
+#[derive(Debug)]
+pub(super) struct Path<'a> {
+    harmonics: &'a Harmonics,
+    series: &'a [f64],
+    /// The two turning points that bound the displacement over the whole period.
+    pub(super) crest: TurningPoint,
+    pub(super) trough: TurningPoint,
+    /// Turning points over one span, beginning and ending at the largest displacement (at its
+    /// mirror image under half-wave symmetry); none if the displacement is constant.
+    pub(super) turns: Vec<TurningPoint>,
+}
+
+impl<'a> Path<'a> {
+    pub(super) fn new(motion: Motion<'a>) -> Self {
+        let (harmonics, series) = (motion.table.harmonics(), motion.displacement);
+        let mut turns = Vec::with_capacity(USUAL_TURNS);
+        motion.table.turning_points(series, &mut turns);
+        let (crest, trough) = extremes(harmonics, &turns, series);
+        // A displacement that is not a number has no turning points: the caller sees it diverge.
+        let turns = if turns.is_empty() { turns } else { path_from_crest(harmonics, &turns) };
+        Self { harmonics, series, crest, trough, turns }
+    }
+
+    /// Middle of the displacement.
+    pub(super) fn middle(&self) -> f64 {
+        0.5 * (self.crest.value + self.trough.value)
+    }
+
+    /// Half the range of the displacement.
+    pub(super) fn half_range(&self) -> f64 {
+        0.5 * (self.crest.value - self.trough.value)
+    }
+}
+
+/// The cycle of an element over the span its series is followed.
 #[derive(Debug)]
 pub(super) enum Cycle {
     /// A slider without friction, or without spring: the slip load is `k_d u`.
     Free,
-    /// No slip; the two turning points that bound the displacement.
-    Stuck { crest: TurningPoint, trough: TurningPoint },
+    /// No slip.
+    Stuck,
     /// Stick and slip in turn.
     Slipping { sticks: Vec<Stick>, slips: Vec<Slip> },
 }
 
 impl Cycle {
-    /// Follows an element of stiffness k_d and slip force F_d over the span of the series.
-    pub(super) fn new(motion: Motion<'_>, stiffness: f64, slip_force: f64) -> Self {
+    /// Follows an element of stiffness k_d and slip force F_d along a path.
+    pub(super) fn new(path: &Path<'_>, stiffness: f64, slip_force: f64) -> Self {
         if slip_force == 0.0 || stiffness == 0.0 {
             return Self::Free;
         }
-        let harmonics = motion.table.harmonics();
-        let mut turns = Vec::with_capacity(USUAL_TURNS);
-        motion.table.turning_points(motion.displacement, &mut turns);
-        let (crest, trough) = extremes(harmonics, &turns, motion.displacement);
-        let range = crest.value - trough.value;
-        // A displacement that is not a number has no turning points: the caller sees it diverge.
-        if turns.is_empty() || stiffness * range <= 2.0 * slip_force {
-            return Self::Stuck { crest, trough };
+        let range = path.crest.value - path.trough.value;
+        if path.turns.is_empty() || stiffness * range <= 2.0 * slip_force {
+            return Self::Stuck;
         }
-        let path = path_from_crest(harmonics, &turns);
-        Self::follow(harmonics, motion.displacement, &path, stiffness, slip_force)
+        Self::follow(path, stiffness, slip_force)
     }
 
-    /// Marches along the turning points of `path`. At its start, the largest displacement, the
+    /// Marches along the turning points of a path. At its start, the largest displacement, the
     /// force is known: a range above 2 F_d/k_d has pushed it to the limit.
-    fn follow(
-        harmonics: &Harmonics,
-        series: &[f64],
-        path: &[TurningPoint],
-        k: f64,
-        limit: f64,
-    ) -> Self {
-        let mut sticks = Vec::with_capacity(path.len());
-        let mut slips = Vec::with_capacity(path.len());
-        let start = path[0];
-        let sign = if start.value >= path[1].value { 1.0 } else { -1.0 };
-        let mut stick = Stick {
-            start: start.theta,
-            end: start.theta,
-            anchor: start.theta,
-            slip_load: k * start.value - sign * limit,
-        };
-        for ends in path.windows(2) {
+    fn follow(path: &Path<'_>, k: f64, limit: f64) -> Self {
+        let turns = &path.turns;
+        let mut sticks = Vec::with_capacity(turns.len());
+        let mut slips = Vec::with_capacity(turns.len());
+        let start = turns[0];
+        let sign = if start.value >= turns[1].value { 1.0 } else { -1.0 };
+        let slip_load = k * start.value - sign * limit;
+        let mut stick = Stick { start: start.theta, end: start.theta, anchor: 0, slip_load };
+        for (index, ends) in turns.windows(2).enumerate() {
             let (from, to) = (ends[0], ends[1]);
             let sign = (to.value - from.value).signum();
             let onset = (stick.slip_load + sign * limit) / k;
@@ -85,24 +108,16 @@ impl Cycle {
             let (theta, value) = if sign * (from.value - onset) >= 0.0 {
                 (from.theta, from.value)
             } else {
-                (crossing(harmonics, series, from, to, onset), onset)
+                (crossing(path.harmonics, path.series, from, to, onset), onset)
             };
             stick.end = theta;
             sticks.push(stick);
-            slips.push(Slip {
-                start: theta,
-                end: to.theta,
-                sign,
-                travel: (to.value - value).abs(),
-            });
-            stick = Stick {
-                start: to.theta,
-                end: to.theta,
-                anchor: to.theta,
-                slip_load: k * to.value - sign * limit,
-            };
+            let travel = (to.value - value).abs();
+            slips.push(Slip { start: theta, end: to.theta, turn: index + 1, sign, travel });
+            let slip_load = k * to.value - sign * limit;
+            stick = Stick { start: to.theta, end: to.theta, anchor: index + 1, slip_load };
         }
-        stick.end = path[path.len() - 1].theta;
+        stick.end = turns[turns.len() - 1].theta;
         sticks.push(stick);
         Self::Slipping { sticks, slips }
     }

@@ -1,388 +1,341 @@
-//! The Jenkins element: a spring k_d in series with a slider of limit F_d.
+//! Jenkins elements on one displacement: each a spring k_d in series with a slider of limit F_d.
 //!
-//! It is the stop operator `f_j = clip(f_{j−1} + k_d Δu, ±F_d)` (Guillen 1999, Table 3.1,
-//! corrected: the printed update never unloads). Here it is followed from event to event: between
-//! the turning points of u, each located exactly, the element sticks, or sticks and then slips.
-//! The Fourier integrals over the intervals are exact, so that no sampling error enters, and
-//! their derivative is exact with them: f is continuous, hence moving interval ends add nothing.
+//! An element is the stop operator `f_j = clip(f_{j−1} + k_d Δu, ±F_d)` (Guillen 1999, Table 3.1,
+//! corrected: the printed update never unloads). One alone is the Jenkins element; several in
+//! parallel are the discrete Iwan model. Here they are followed from event to event: between the
+//! turning points of u, each located exactly, an element sticks, or sticks and then slips. The
+//! Fourier integrals over the intervals are exact, so that no sampling error enters, and their
+//! derivative is exact with them: f is continuous, hence moving interval ends add nothing. Turning
+//! points are common to all elements, so that the tangent has one term of rank one for each of them,
+//! however many elements there are.
 
-use super::cycle::{Cycle, Slip, Stick};
+use super::cycle::{Cycle, Path};
+use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement as _};
+use super::registry::numbers;
+use super::slider_integrals::add_slipping;
 use super::{
-    scalar, Describing, FrictionLaw, Motion, Parameter, Parameters, PointState, PointSummary,
-    Residual, SlipLoad,
+    ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointSummary, Residual, Slider,
+    SlipLoad,
 };
-use crate::fourier::{Harmonics, IntervalSums};
 use crate::Error;
 use faer::Mat;
-use std::f64::consts::PI;
+use std::f64::consts::TAU;
+use std::sync::Arc;
 
-/// Elastic, perfectly plastic friction element.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Elastic, perfectly plastic elements in parallel, all on one displacement.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Jenkins {
-    pub(super) stiffness: f64,
-    pub(super) slip_force: f64,
+    pub(super) sliders: Vec<Slider>,
+    /// The factor on the stiffness that the elements were built with: 1 of a single one.
+    pub(super) factor: f64,
+    /// The stiffness that they were built with.
+    pub(super) unit: Vec<f64>,
 }
 
 impl Jenkins {
-    /// An element of stiffness k_d [N/m] and slip force F_d [N]; an infinite slip force never
-    /// slips.
+    /// One element; see [`Slider::new`].
     ///
     /// # Errors
     /// Negative or NaN parameters, infinite stiffness.
     pub fn new(stiffness: f64, slip_force: f64) -> Result<Self, Error> {
-        if !(stiffness.is_finite() && stiffness >= 0.0) {
-            return Err(Error::value(
-                "jenkins: stiffness",
-                stiffness,
-                "must be finite and not negative; take about 1000 times the local stiffness of the structure for a rigid damper",
-            ));
+        Self::of(vec![Slider::new(stiffness, slip_force)?])
+    }
+
+    /// Elements in parallel.
+    ///
+    /// # Errors
+    /// No element.
+    pub fn of(sliders: Vec<Slider>) -> Result<Self, Error> {
+        if sliders.is_empty() {
+            return Err(Error::shape("jenkins: stiffness", "at least one number", 0));
         }
-        if slip_force.is_nan() || slip_force < 0.0 {
-            return Err(Error::value(
-                "jenkins: slip_force",
-                slip_force,
-                "must not be negative; infinity means that the contact never slips",
-            ));
-        }
-        Ok(Self { stiffness, slip_force })
+        let unit = sliders.iter().map(|slider| slider.stiffness).collect();
+        Ok(Self { sliders, factor: 1.0, unit })
     }
 
     pub(super) fn from_parameters(parameters: &Parameters) -> Result<Self, Error> {
-        Self::new(
-            scalar("jenkins", parameters, "stiffness")?,
-            scalar("jenkins", parameters, "slip_force")?,
-        )
+        let stiffness = numbers("jenkins", parameters, "stiffness")?;
+        let slip_force = numbers("jenkins", parameters, "slip_force")?;
+        if stiffness.len() != slip_force.len() {
+            let expected = format!("{}, one per stiffness", stiffness.len());
+            return Err(Error::shape("jenkins: slip_force", expected, slip_force.len()));
+        }
+        let sliders = stiffness.iter().zip(slip_force).map(|(k, f)| Slider::new(*k, *f));
+        Self::of(sliders.collect::<Result<_, _>>()?)
     }
 
-    /// Slip load of a stuck contact and its derivatives in the middle and in half the range of u.
-    fn held_load(&self, residual: Residual, middle: f64, half_range: f64) -> (f64, f64, f64) {
-        let k = self.stiffness;
-        let (wanted, wanted_slope) = match residual {
-            Residual::Centred => (0.0, 0.0),
-            Residual::FromRest => (k * middle, k),
-            Residual::Value(force) => (force, 0.0),
-        };
-        let room = self.slip_force - k * half_range;
-        if wanted.abs() <= room {
-            (k * middle - wanted, k - wanted_slope, 0.0)
-        } else {
-            (k * middle - room.copysign(wanted), k, k.copysign(wanted))
+    fn total_stiffness(&self) -> f64 {
+        self.sliders.iter().map(|slider| slider.stiffness).sum()
+    }
+
+    /// The mean over the elements, weighted by stiffness.
+    fn weighted(&self, of: impl Fn(&Slider) -> f64) -> f64 {
+        let total = self.total_stiffness();
+        if self.sliders.len() == 1 || total == 0.0 {
+            return of(&self.sliders[0]);
         }
+        self.sliders.iter().map(|slider| slider.stiffness / total * of(slider)).sum()
+    }
+
+    fn cycles(&self, path: &Path<'_>) -> Vec<Cycle> {
+        let cycle = |slider: &Slider| Cycle::new(path, slider.stiffness, slider.slip_force);
+        self.sliders.iter().map(cycle).collect()
+    }
+
+    fn mapped(&self, change: impl Fn(&Slider) -> Slider, share: f64) -> Box<dyn ContactLaw> {
+        Box::new(Self {
+            sliders: self.sliders.iter().map(change).collect(),
+            factor: self.factor,
+            unit: self.unit.iter().map(|k| share * k).collect(),
+        })
     }
 }
 
-impl FrictionLaw for Jenkins {
-    fn points(&self) -> usize {
+impl ContactLaw for Jenkins {
+    fn name(&self) -> &'static str {
+        "jenkins"
+    }
+
+    fn displacements(&self) -> usize {
         1
+    }
+
+    fn state_size(&self) -> usize {
+        self.sliders.len()
+    }
+
+    fn stiffness(&self) -> Mat<f64> {
+        Mat::from_fn(1, 1, |_, _| self.total_stiffness())
+    }
+
+    fn state_stiffness(&self) -> Mat<f64> {
+        Mat::from_fn(self.sliders.len(), 1, |i, _| self.sliders[i].stiffness)
     }
 
     fn is_odd(&self) -> bool {
         true
     }
 
-    fn stiffness(&self) -> Mat<f64> {
-        Mat::from_fn(1, 1, |_, _| self.stiffness)
+    fn is_monotone(&self) -> bool {
+        true
     }
 
-    fn softened(&self, share: f64) -> Box<dyn FrictionLaw> {
-        Box::new(Self { stiffness: share * self.stiffness, ..*self })
+    fn limits(&self) -> Vec<f64> {
+        vec![self.sliders.iter().map(Slider::limit).sum()]
     }
 
+    fn onsets(&self) -> Vec<f64> {
+        let rubs = self.sliders.iter().filter(|slider| slider.limit() > 0.0);
+        let onset = rubs.map(|slider| slider.slip_force / slider.stiffness);
+        vec![match self.sliders.len() {
+            1 => self.sliders[0].limit(),
+            _ => self.total_stiffness() * onset.fold(f64::INFINITY, f64::min),
+        }]
+    }
+
+    fn return_map(
+        &self,
+        before: &[f64],
+        after: &[f64],
+        state: &mut [f64],
+        force: &mut [f64],
+        jacobian: Option<&mut ReturnMapJacobian>,
+    ) {
+        let du = [after[0] - before[0]];
+        let count = self.sliders.len();
+        let mut sticks = vec![0.0; count];
+        for (i, slider) in self.sliders.iter().enumerate() {
+            slider.increment(&du, &mut state[i..=i], Some(&mut sticks[i..=i]));
+        }
+        force[0] = state.iter().sum();
+        let Some(jacobian) = jacobian else { return };
+        jacobian.reset(1, count);
+        for (i, slider) in self.sliders.iter().enumerate() {
+            jacobian.by_state[i * count + i] = sticks[i];
+            jacobian.by_after[i] = sticks[i] * slider.stiffness;
+            jacobian.by_before[i] = -jacobian.by_after[i];
+            jacobian.force_by_state[i] = 1.0;
+        }
+        let slips = self.sliders.iter().zip(&sticks).map(|(slider, sticks)| (slider, 1.0 - sticks));
+        let total = self.total_stiffness();
+        jacobian.slipping[0] = if count == 1 || total == 0.0 {
+            1.0 - sticks[0]
+        } else {
+            slips.map(|(slider, slips)| slider.stiffness / total * slips).sum()
+        };
+    }
+
+    fn stuck_load(&self, residual: Residual, low: f64, high: f64) -> Option<[f64; 3]> {
+        let (middle, half_range) = (0.5 * (low + high), 0.5 * (high - low));
+        let mut sum = [0.0; 3];
+        for slider in &self.sliders {
+            let sticks = slider.stiffness * (high - low) <= 2.0 * slider.slip_force;
+            if !sticks || slider.slip_force == 0.0 || slider.stiffness == 0.0 {
+                return None;
+            }
+            let (load, by_middle, by_range) = slider.held_load(residual, middle, half_range);
+            let terms = [load, 0.5 * (by_middle - by_range), 0.5 * (by_middle + by_range)];
+            sum.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        }
+        Some(sum)
+    }
+
+    fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
+        self.mapped(|slider| Slider { stiffness: share * slider.stiffness, ..*slider }, share)
+    }
+
+    fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
+        self.mapped(|slider| Slider { slip_force: factor * slider.slip_force, ..*slider }, 1.0)
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let stiffness = match &self.sliders[..] {
+            [one] => Parameter::stiffness(one.stiffness),
+            _ => Parameter { factor: true, ..Parameter::stiffness(self.factor) },
+        };
+        let limits = self.sliders.iter().enumerate();
+        let limits = limits.map(|(point, slider)| Parameter::slip_force(point, slider.slip_force));
+        std::iter::once(stiffness).chain(limits).collect()
+    }
+
+    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn ContactLaw>, Error> {
+        let mut changed = self.clone();
+        match (index, &mut changed.sliders[..]) {
+            (0, [one]) => return Ok(Box::new(Self::new(value, one.slip_force)?)),
+            (0, several) => {
+                for (slider, unit) in several.iter_mut().zip(&self.unit) {
+                    *slider = Slider::new(value * unit, slider.slip_force)?;
+                }
+                changed.factor = value;
+            }
+            (_, several) => {
+                let slider = &mut several[index - 1];
+                *slider = Slider::new(slider.stiffness, value)?;
+            }
+        }
+        Ok(Box::new(changed))
+    }
+
+    fn closed_form(&self) -> Option<&dyn HarmonicForce> {
+        Some(self)
+    }
+
+    fn parts(&self) -> Vec<Box<dyn ContactLaw>> {
+        if self.sliders.len() == 1 {
+            return Vec::new();
+        }
+        let alone = |(slider, unit): (&Slider, &f64)| -> Box<dyn ContactLaw> {
+            Box::new(Self { sliders: vec![*slider], factor: 1.0, unit: vec![*unit] })
+        };
+        self.sliders.iter().zip(&self.unit).map(alone).collect()
+    }
+
+    fn elements(&self) -> Option<Vec<Element>> {
+        let element = |slider: &Slider| Element { components: vec![0], law: Arc::new(*slider) };
+        Some(self.sliders.iter().map(element).collect())
+    }
+
+    fn describing(&self, amplitude: f64) -> Option<Describing> {
+        let of = |slider: &Slider| {
+            Describing::of_jenkins(slider.stiffness, slider.slip_force, amplitude)
+        };
+        let sum = |part: fn(Describing) -> faer::c64| {
+            self.sliders.iter().map(|slider| part(of(slider))).sum()
+        };
+        Some(Describing {
+            stiffness: sum(|one| one.stiffness),
+            slope: sum(|one| one.slope),
+            slip_fraction: self.weighted(|slider| of(slider).slip_fraction),
+        })
+    }
+}
+
+impl HarmonicForce for Jenkins {
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         let harmonics = motion.table.harmonics();
         let size = harmonics.slots();
         out.reset(size, tangent);
-        let k = self.stiffness;
-        match Cycle::new(motion, self.stiffness, self.slip_force) {
-            Cycle::Free => {
-                for (i, u) in motion.displacement.iter().enumerate() {
-                    out.value[i] = k * u;
-                    if tangent {
-                        out.tangent[i * size + i] = k;
-                    }
+        let path = Path::new(motion);
+        let cycles = self.cycles(&path);
+        if cycles.iter().any(|cycle| matches!(cycle, Cycle::Slipping { .. })) {
+            out.active = true;
+            add_slipping(&self.sliders, motion, &path, &cycles, tangent, out);
+        }
+        for (slider, cycle) in self.sliders.iter().zip(&cycles) {
+            match cycle {
+                Cycle::Free => slider.add_free(motion, tangent, out),
+                Cycle::Stuck if harmonics.has_mean() => {
+                    slider.add_stuck(motion, &path, tangent, out);
                 }
-                out.active = k > 0.0;
-            }
-            Cycle::Stuck { crest, trough } => {
-                if !harmonics.has_mean() {
-                    return;
-                }
-                let middle = 0.5 * (crest.value + trough.value);
-                let half_range = 0.5 * (crest.value - trough.value);
-                let (load, by_middle, by_range) =
-                    self.held_load(motion.residual, middle, half_range);
-                out.value[0] = load;
-                out.active = by_middle != 0.0 || by_range != 0.0;
-                if tangent && out.active {
-                    let (mut high, mut low) = (vec![0.0; size], vec![0.0; size]);
-                    harmonics.basis(crest.theta, &mut high);
-                    harmonics.basis(trough.theta, &mut low);
-                    for (j, slope) in out.tangent[..size].iter_mut().enumerate() {
-                        *slope =
-                            0.5 * (by_middle * (high[j] + low[j]) + by_range * (high[j] - low[j]));
-                    }
-                }
-            }
-            Cycle::Slipping { sticks, slips } => {
-                out.active = true;
-                let weight = 2.0 / harmonics.span();
-                let SlipLoad { value, tangent: matrix, .. } = out;
-                let union = union_of(&slips, harmonics);
-                union.products(harmonics, weight * k, |i, j, v| {
-                    value[i] += v * motion.displacement[j];
-                    if tangent {
-                        matrix[i * size + j] = v;
-                    }
-                });
-                let ends = StickEnds::new(harmonics, &sticks);
-                self.add_constants(&ends, &sticks, &slips, weight, value);
-                if tangent {
-                    ends.add_anchors(harmonics, sticks.len(), k * weight, matrix);
-                }
-                halve_mean_row(harmonics, size, out, tangent);
+                _ => {}
             }
         }
-    }
-
-    fn stuck_load(&self, residual: Residual, low: f64, high: f64) -> Option<[f64; 3]> {
-        let sticks = self.stiffness * (high - low) <= 2.0 * self.slip_force;
-        if !sticks || self.slip_force == 0.0 || self.stiffness == 0.0 {
-            return None;
-        }
-        let (load, by_middle, by_range) =
-            self.held_load(residual, 0.5 * (low + high), 0.5 * (high - low));
-        Some([load, 0.5 * (by_middle - by_range), 0.5 * (by_middle + by_range)])
-    }
-
-    fn describing(&self, amplitude: f64) -> Option<Describing> {
-        Some(Describing::of_jenkins(self.stiffness, self.slip_force, amplitude))
-    }
-
-    fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
-        let trial = force[0] + self.stiffness * du[0];
-        force[0] = trial.clamp(-self.slip_force, self.slip_force);
-        if let Some(gain) = gain {
-            gain[0] = f64::from(u8::from(trial == force[0]));
-        }
-    }
-
-    fn limits(&self) -> Vec<f64> {
-        vec![if self.stiffness == 0.0 { 0.0 } else { self.slip_force }]
-    }
-
-    fn tangent(&self, points: &[PointState]) -> Mat<f64> {
-        let sticks = points[0] == PointState::Stuck && self.slip_force > 0.0;
-        Mat::from_fn(1, 1, |_, _| if sticks { self.stiffness } else { 0.0 })
-    }
-
-    fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
-        Mat::from_fn(1, 1, |_, _| points[0].sign().abs())
     }
 
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
-        let span = motion.table.harmonics().span();
-        out[0] = match Cycle::new(motion, self.stiffness, self.slip_force) {
-            Cycle::Free => PointSummary {
-                slip_fraction: f64::from(u8::from(self.slip_force == 0.0)),
-                dissipation: 0.0,
-            },
-            Cycle::Stuck { .. } => PointSummary::default(),
-            Cycle::Slipping { slips, .. } => {
-                let length: f64 = slips.iter().map(|slip| slip.end - slip.start).sum();
-                let travel: f64 = slips.iter().map(|slip| slip.travel).sum();
-                PointSummary {
-                    slip_fraction: length / span,
-                    dissipation: self.slip_force * travel * 2.0 * PI / span,
-                }
-            }
+        let (path, span) = (Path::new(motion), motion.table.harmonics().span());
+        let of = |slider: &Slider| {
+            slider.summary(&Cycle::new(&path, slider.stiffness, slider.slip_force), span)
+        };
+        out[0] = PointSummary {
+            slip_fraction: self.weighted(|slider| of(slider).slip_fraction),
+            dissipation: self.sliders.iter().map(|slider| of(slider).dissipation).sum(),
         };
     }
 
-    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+    fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
         let harmonics = motion.table.harmonics();
-        let k = self.stiffness;
-        let cycle = Cycle::new(motion, self.stiffness, self.slip_force);
-        (0..samples)
-            .map(|n| {
-                let theta = 2.0 * PI * n as f64 / samples as f64;
-                let u = harmonics.jet(motion.displacement, theta)[0];
-                match &cycle {
+        let path = Path::new(motion);
+        let cycles = self.cycles(&path);
+        let (middle, half_range) = (path.middle(), path.half_range());
+        let mut history = Vec::with_capacity(samples * self.sliders.len());
+        for n in 0..samples {
+            let theta = TAU * n as f64 / samples as f64;
+            let u = harmonics.jet(motion.displacement, theta)[0];
+            for (slider, cycle) in self.sliders.iter().zip(&cycles) {
+                history.push(match cycle {
                     Cycle::Free => 0.0,
-                    Cycle::Stuck { crest, trough } => {
-                        let middle = 0.5 * (crest.value + trough.value);
-                        let half_range = 0.5 * (crest.value - trough.value);
-                        k * u - self.held_load(motion.residual, middle, half_range).0
+                    Cycle::Stuck => {
+                        let load = slider.held_load(motion.residual, middle, half_range).0;
+                        slider.stiffness * u - load
                     }
                     Cycle::Slipping { sticks, slips } => {
                         let span = harmonics.span();
-                        let start = sticks[0].start;
-                        let turns = ((theta - start) / span).floor();
+                        let turns = ((theta - sticks[0].start) / span).floor();
                         let folded = theta - turns * span;
                         let mirror = harmonics.half_wave() && turns.rem_euclid(2.0) != 0.0;
                         let sign = if mirror { -1.0 } else { 1.0 };
-                        sign * self.force_at(sticks, slips, folded, sign * u)
+                        sign * slider.force_at(sticks, slips, folded, sign * u)
                     }
-                }
-            })
-            .collect()
+                });
+            }
+        }
+        history
     }
 
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::stiffness(self.stiffness), Parameter::slip_force(0, self.slip_force)]
+    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+        let states = self.state_history(motion, samples);
+        states.chunks_exact(self.sliders.len()).map(|forces| forces.iter().sum()).collect()
     }
 
-    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn FrictionLaw>, Error> {
-        Ok(Box::new(match index {
-            0 => Self::new(value, self.slip_force)?,
-            _ => Self::new(self.stiffness, value)?,
-        }))
-    }
-
-    fn magnified(&self, factor: f64) -> Box<dyn FrictionLaw> {
-        Box::new(Self { slip_force: factor * self.slip_force, ..*self })
+    fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
+        Phase::from_forces(&self.force_history(motion, Phase::INSTANTS), &self.limits())
     }
 
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         out.fill(0.0);
+        let path = Path::new(motion);
         match index {
-            0 => self.stiffness_slope(motion, out),
-            _ => self.slip_force_slope(motion, out),
-        }
-    }
-}
-
-impl Jenkins {
-    /// Integrals of the constant parts: the slip load of each stick interval, and `−(±F_d)` of
-    /// each slip interval, which lies between two of them.
-    fn add_constants(
-        &self,
-        ends: &StickEnds,
-        sticks: &[Stick],
-        slips: &[Slip],
-        weight: f64,
-        out: &mut [f64],
-    ) {
-        for (index, stick) in sticks.iter().enumerate() {
-            let constant = weight * stick.slip_load;
-            add_difference(ends.of(2 * index + 1), ends.of(2 * index), constant, out);
-        }
-        for (index, slip) in slips.iter().enumerate() {
-            let constant = -weight * slip.sign * self.slip_force;
-            add_difference(ends.of(2 * index + 2), ends.of(2 * index + 1), constant, out);
-        }
-    }
-
-    /// Force at an angle inside the span that the intervals cover.
-    fn force_at(&self, sticks: &[Stick], slips: &[Slip], theta: f64, u: f64) -> f64 {
-        if let Some(slip) = slips.iter().find(|s| theta >= s.start && theta < s.end) {
-            return slip.sign * self.slip_force;
-        }
-        let stick = sticks.iter().find(|s| theta >= s.start && theta <= s.end);
-        let load = stick.or(sticks.last()).map_or(0.0, |s| s.slip_load);
-        (self.stiffness * u - load).clamp(-self.slip_force, self.slip_force)
-    }
-}
-
-/// Basis integrals over intervals, from the antiderivatives at their two ends.
-pub(super) struct Bounds {
-    /// Antiderivatives at the start and, behind them, at the end.
-    ends: Vec<f64>,
-}
-
-impl Bounds {
-    pub(super) fn new(harmonics: &Harmonics) -> Self {
-        Self { ends: vec![0.0; 2 * harmonics.slots()] }
-    }
-
-    /// Adds `factor ∫ basis dθ` to `out`.
-    pub(super) fn add_integral(
-        &mut self,
-        harmonics: &Harmonics,
-        start: f64,
-        end: f64,
-        factor: f64,
-        out: &mut [f64],
-    ) {
-        let (from, to) = self.ends.split_at_mut(harmonics.slots());
-        harmonics.antiderivative(start, from);
-        harmonics.antiderivative(end, to);
-        for ((out, start), end) in out.iter_mut().zip(&*from).zip(&*to) {
-            *out += factor * (end - start);
-        }
-    }
-}
-
-/// Antiderivatives of the basis at the start and the end of each stick interval, in turn.
-struct StickEnds {
-    size: usize,
-    values: Vec<f64>,
-}
-
-impl StickEnds {
-    fn new(harmonics: &Harmonics, sticks: &[Stick]) -> Self {
-        let size = harmonics.slots();
-        // Behind them, room for one integral and one basis.
-        let mut values = vec![0.0; 2 * (sticks.len() + 1) * size];
-        for (stick, ends) in sticks.iter().zip(values.chunks_exact_mut(2 * size)) {
-            let (start, end) = ends.split_at_mut(size);
-            harmonics.antiderivative(stick.start, start);
-            harmonics.antiderivative(stick.end, end);
-        }
-        Self { size, values }
-    }
-
-    fn of(&self, end: usize) -> &[f64] {
-        &self.values[end * self.size..(end + 1) * self.size]
-    }
-
-    /// Adds the rank-one change of every stick interval: its slip load follows the displacement
-    /// of its anchor, where it starts. Leaving this history out breaks Newton's method.
-    fn add_anchors(
-        mut self,
-        harmonics: &Harmonics,
-        sticks: usize,
-        weight: f64,
-        tangent: &mut [f64],
-    ) {
-        let size = self.size;
-        let (ends, rest) = self.values.split_at_mut(2 * sticks * size);
-        let (integral, at_anchor) = rest.split_at_mut(size);
-        for ends in ends.chunks_exact(2 * size) {
-            let (start, end) = ends.split_at(size);
-            integral.fill(0.0);
-            add_difference(end, start, weight, integral);
-            harmonics.differentiate(start, at_anchor);
-            for (row, i) in tangent.chunks_exact_mut(size).zip(&*integral) {
-                for (entry, j) in row.iter_mut().zip(&*at_anchor) {
-                    *entry += i * j;
+            0 => {
+                let mut slope = vec![0.0; out.len()];
+                for (slider, unit) in self.sliders.iter().zip(&self.unit) {
+                    slope.fill(0.0);
+                    slider.stiffness_slope(motion, &path, &mut slope);
+                    let weight = if self.sliders.len() == 1 { 1.0 } else { *unit };
+                    out.iter_mut().zip(&slope).for_each(|(out, slope)| *out += weight * slope);
                 }
             }
-        }
-    }
-}
-
-/// `out += factor (end − start)`.
-fn add_difference(end: &[f64], start: &[f64], factor: f64, out: &mut [f64]) {
-    for ((out, end), start) in out.iter_mut().zip(end).zip(start) {
-        *out += factor * (end - start);
-    }
-}
-
-/// Sums over all slip intervals.
-pub(super) fn union_of(slips: &[Slip], harmonics: &Harmonics) -> IntervalSums {
-    let mut sums = IntervalSums::new(harmonics);
-    for slip in slips {
-        sums.add(slip.start, slip.end);
-    }
-    sums
-}
-
-/// The mean of a series is its integral over the period, not twice that.
-fn halve_mean_row(harmonics: &Harmonics, size: usize, out: &mut SlipLoad, tangent: bool) {
-    if harmonics.has_mean() {
-        out.value[0] *= 0.5;
-        if tangent {
-            out.tangent[..size].iter_mut().for_each(|entry| *entry *= 0.5);
+            _ => self.sliders[index - 1].slip_force_slope(motion, &path, out),
         }
     }
 }

@@ -1,22 +1,28 @@
-//! What a march through a friction law carries from instant to instant: its derivative, and the
+//! What a march through a contact law carries from instant to instant: its derivative, and the
 //! friction work.
 
-use super::{Elastic, FrictionLaw};
+use super::law::ReturnMapJacobian;
+use super::Elastic;
 use faer::Mat;
 
-/// Derivative of the slip loads at one instant in all coefficients, point after point.
+/// Share of the stiffness below which a derivative is the rounding of two that cancel.
+const CANCELLED: f64 = 1e-14;
+
+/// Derivative in all coefficients of `K_z u − z` at one instant: what slip has taken off the state
+/// z. It stays as it is while the state follows its stiffness K_z.
 #[derive(Clone)]
 pub(super) struct Rate {
     slots: usize,
     stiffness: Mat<f64>,
+    state_stiffness: Mat<f64>,
     value: Vec<f64>,
 }
 
 impl Rate {
-    /// No derivative yet, in `slots` coefficients per point.
-    pub(super) fn new(stiffness: Mat<f64>, slots: usize) -> Self {
-        let points = stiffness.nrows();
-        Self { slots, stiffness, value: vec![0.0; points * points * slots] }
+    /// No derivative yet, in `slots` coefficients per displacement.
+    pub(super) fn new(stiffness: Mat<f64>, state_stiffness: Mat<f64>, slots: usize) -> Self {
+        let value = vec![0.0; state_stiffness.nrows() * stiffness.nrows() * slots];
+        Self { slots, stiffness, state_stiffness, value }
     }
 
     /// Multiplies the derivative by a sign.
@@ -29,23 +35,33 @@ impl Rate {
         self.value.iter_mut().zip(&other.value).for_each(|(a, b)| *a = 0.5 * (*a + b));
     }
 
-    /// Takes the derivative through one return map.
-    pub(super) fn follow(&mut self, gain: &[f64], basis: &[f64]) {
-        let points = self.stiffness.nrows();
-        if is_identity(gain, points) {
-            return;
-        }
-        let size = points * self.slots;
+    /// Takes the derivative through one return map, from an instant with one basis, or from rest, to
+    /// an instant with another.
+    pub(super) fn follow(
+        &mut self,
+        jacobian: &ReturnMapJacobian,
+        before: Option<&[f64]>,
+        after: &[f64],
+    ) {
+        let (states, count) = (self.state_stiffness.nrows(), self.stiffness.nrows());
+        let size = count * self.slots;
         let mut next = vec![0.0; self.value.len()];
         for (i, row) in next.chunks_exact_mut(size).enumerate() {
-            for j in 0..points {
-                let through = gain[i * points + j];
-                let slips = f64::from(u8::from(i == j)) - through;
+            let through = &jacobian.by_state[i * states..(i + 1) * states];
+            for (j, through) in through.iter().enumerate().filter(|(_, through)| **through != 0.0) {
                 let old = &self.value[j * size..(j + 1) * size];
                 row.iter_mut().zip(old).for_each(|(row, old)| *row += through * old);
-                for (l, block) in row.chunks_exact_mut(self.slots).enumerate() {
-                    let taken = slips * self.stiffness[(j, l)];
-                    block.iter_mut().zip(basis).for_each(|(block, b)| *block += taken * b);
+            }
+            for (l, block) in row.chunks_exact_mut(self.slots).enumerate() {
+                let own = self.state_stiffness[(i, l)];
+                let taken = own - jacobian.by_after[i * count + l];
+                block.iter_mut().zip(after).for_each(|(block, b)| *block += taken * b);
+                let Some(before) = before else { continue };
+                let kept: f64 =
+                    (0..states).map(|j| through[j] * self.state_stiffness[(j, l)]).sum();
+                let by_before = kept + jacobian.by_before[i * count + l];
+                if by_before.abs() > CANCELLED * own.abs() {
+                    block.iter_mut().zip(before).for_each(|(block, b)| *block -= by_before * b);
                 }
             }
         }
@@ -53,59 +69,111 @@ impl Rate {
     }
 
     /// Adds the outer product with the summed basis to a tangent, and clears the sum.
-    pub(super) fn add_to(&self, sum: &mut [f64], out: &mut [f64]) {
-        let size = self.stiffness.nrows() * self.slots;
-        for (rows, rate) in
-            out.chunks_exact_mut(self.slots * size).zip(self.value.chunks_exact(size))
+    pub(super) fn add_to(&self, force_by_state: &[f64], sum: &mut [f64], out: &mut [f64]) {
+        let (states, size) = (self.state_stiffness.nrows(), self.stiffness.nrows() * self.slots);
+        let mut force = vec![0.0; size];
+        for (rows, by_state) in
+            out.chunks_exact_mut(self.slots * size).zip(force_by_state.chunks_exact(states))
         {
+            force.fill(0.0);
+            for (rate, by) in
+                self.value.chunks_exact(size).zip(by_state).filter(|(_, by)| **by != 0.0)
+            {
+                force.iter_mut().zip(rate).for_each(|(force, rate)| *force += by * rate);
+            }
             for (row, s) in rows.chunks_exact_mut(size).zip(&*sum) {
-                row.iter_mut().zip(rate).for_each(|(row, rate)| *row += s * rate);
+                row.iter_mut().zip(&force).for_each(|(row, force)| *row += s * force);
             }
         }
         sum.fill(0.0);
     }
-}
 
-/// Whether point i of a return map sticks: its own displacement moves its force in full. Others may
-/// take part of it by their slip.
-pub(super) fn sticks(gain: &[f64], points: usize, i: usize) -> bool {
-    gain[i * points + i] == 1.0
-}
-
-/// Whether all points stick.
-pub(super) fn is_identity(gain: &[f64], points: usize) -> bool {
-    (0..points).all(|i| sticks(gain, points, i))
-}
-
-/// Adds the friction work of a step. Over a period that of a single point is the work of its
-/// force; coupled points exchange elastic energy, so that their slip has to be known.
-pub(super) fn add_work(
-    law: &dyn FrictionLaw,
-    before: &[f64],
-    force: &[f64],
-    du: &[f64],
-    gain: &[f64],
-    work: &mut [f64],
-) {
-    let points = force.len();
-    if points == 1 {
-        work[0] += 0.5 * (before[0] + force[0]) * du[0];
-        return;
+    /// Adds what an instant loses of the stuck contact's force without any slip of its state: the
+    /// force follows the displacements by another stiffness than D.
+    pub(super) fn add_direct(
+        &self,
+        jacobian: &ReturnMapJacobian,
+        weight: f64,
+        basis: &[f64],
+        out: &mut [f64],
+    ) {
+        let (states, count) = (self.state_stiffness.nrows(), self.stiffness.nrows());
+        let size = count * self.slots;
+        for i in 0..count {
+            for l in 0..count {
+                let by_state = &jacobian.force_by_state[i * states..(i + 1) * states];
+                let through: f64 =
+                    (0..states).map(|j| by_state[j] * self.state_stiffness[(j, l)]).sum();
+                let own = self.stiffness[(i, l)];
+                let lost = own - through - jacobian.force_by_after[i * count + l];
+                if lost.abs() <= CANCELLED * own.abs() {
+                    continue;
+                }
+                for (k, b) in basis.iter().enumerate() {
+                    let first = (i * self.slots + k) * size + l * self.slots;
+                    let row = &mut out[first..first + self.slots];
+                    row.iter_mut().zip(basis).for_each(|(row, c)| *row += weight * lost * b * c);
+                }
+            }
+        }
     }
-    let slips: Vec<bool> = (0..points).map(|i| !sticks(gain, points, i)).collect();
-    if !slips.contains(&true) {
-        return;
-    }
-    let stiffness = law.stiffness();
-    let lost: Vec<f64> = (0..points)
-        .map(|i| {
-            let elastic: f64 = (0..points).map(|j| stiffness[(i, j)] * du[j]).sum();
-            before[i] + elastic - force[i]
+}
+
+/// Whether a step takes the state along its stiffness, without any loss.
+pub(super) fn is_elastic(jacobian: &ReturnMapJacobian, stiffness: &Mat<f64>) -> bool {
+    let (states, count) = (stiffness.nrows(), stiffness.ncols());
+    let own = |i: usize, j: usize| f64::from(u8::from(i == j));
+    jacobian.sticks()
+        && (0..states).all(|i| {
+            (0..states).all(|j| jacobian.by_state[i * states + j] == own(i, j))
+                && (0..count).all(|l| {
+                    jacobian.by_after[i * count + l] == stiffness[(i, l)]
+                        && jacobian.by_before[i * count + l] == -stiffness[(i, l)]
+                })
         })
-        .collect();
-    if let Ok(elastic) = Elastic::new(stiffness.as_ref()) {
-        let slip = elastic.slip(&slips, &lost);
-        for (i, s) in slip.into_iter().enumerate() {
+}
+
+/// The friction work of a march. Over a period that of a single displacement is the work of its
+/// force; coupled ones exchange elastic energy, so that their slip has to be known.
+pub(super) struct FrictionWork {
+    stiffness: Mat<f64>,
+    elastic: Option<Elastic>,
+}
+
+impl FrictionWork {
+    pub(super) fn new(stiffness: Mat<f64>, elastic: bool) -> Self {
+        let couples = stiffness.nrows() > 1 && elastic;
+        let elastic = couples.then(|| Elastic::new(stiffness.as_ref()).ok()).flatten();
+        Self { stiffness, elastic }
+    }
+
+    /// Adds the work of a step.
+    pub(super) fn add(
+        &self,
+        before: &[f64],
+        force: &[f64],
+        du: &[f64],
+        slipping: &[f64],
+        work: &mut [f64],
+    ) {
+        let count = force.len();
+        let Some(elastic) = &self.elastic else {
+            for i in 0..count {
+                work[i] += 0.5 * (before[i] + force[i]) * du[i];
+            }
+            return;
+        };
+        let slips: Vec<bool> = slipping.iter().map(|share| *share > 0.0).collect();
+        if !slips.contains(&true) {
+            return;
+        }
+        let lost: Vec<f64> = (0..count)
+            .map(|i| {
+                let elastic: f64 = (0..count).map(|j| self.stiffness[(i, j)] * du[j]).sum();
+                before[i] + elastic - force[i]
+            })
+            .collect();
+        for (i, s) in elastic.slip(&slips, &lost).into_iter().enumerate() {
             work[i] += 0.5 * (before[i] + force[i]) * s;
         }
     }

@@ -10,7 +10,7 @@ use super::derivative::Derivative;
 use super::jets::Jet;
 use super::slip_set::SlipSet;
 use super::structural::StructuralDamper;
-use super::{Motion, PointState};
+use super::{Motion, PointState, SlipElement as _};
 use crate::fourier::Harmonics;
 use std::borrow::Cow;
 

@@ -3,8 +3,8 @@
 //! On a stretch `q = (D − T) u + κ`. Products of basis functions are summed over all stretches of
 //! the same slip set at once; moving transitions add nothing, because f is continuous.
 
-use super::jenkins::Bounds;
 use super::passage::Passage;
+use super::slider_integrals::Bounds;
 use super::{Motion, SlipLoad};
 use crate::fourier::{Harmonics, IntervalSums};
 use faer::Mat;

@@ -10,14 +10,15 @@
 use super::derivative::Derivative;
 use super::elastic::{Elastic, Sliding};
 use super::increment::Increment;
+use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement};
 use super::passage::{Passage, Stretch};
+use super::registry::numbers;
 use super::slip_series::{self, halve_means};
-use super::{
-    numbers, FrictionLaw, Motion, Parameter, Parameters, Phase, PointState, PointSummary, SlipLoad,
-};
+use super::{ContactLaw, Motion, Parameter, Parameters, Phase, PointState, PointSummary, SlipLoad};
 use crate::Error;
 use faer::{Mat, MatRef, Side};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Asymmetry, and negative eigenvalues, relative to the largest entry, that printed digits may
 /// leave in a stiffness.
@@ -117,8 +118,32 @@ impl StructuralDamper {
         Self::new(stiffness.as_ref(), limits)
     }
 
-    /// Takes the forces through a change of displacements; see [`FrictionLaw::advance`].
-    pub(super) fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
+    fn sliding(&self, states: &[PointState]) -> Sliding {
+        let moves = states.iter().zip(&self.limits);
+        let slips: Vec<bool> =
+            moves.map(|(state, limit)| *state != PointState::Stuck || *limit == 0.0).collect();
+        self.elastic.sliding(&slips)
+    }
+}
+
+impl SlipElement for StructuralDamper {
+    fn stiffness(&self) -> Mat<f64> {
+        self.stiffness.clone()
+    }
+
+    fn limits(&self) -> Vec<f64> {
+        self.limits.clone()
+    }
+
+    fn tangent(&self, points: &[PointState]) -> Mat<f64> {
+        self.sliding(points).tangent
+    }
+
+    fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
+        self.sliding(points).slip_rate
+    }
+
+    fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
         let before = force.to_vec();
         for (i, force) in force.iter_mut().enumerate() {
             *force += du.iter().enumerate().map(|(j, du)| self.stiffness[(i, j)] * du).sum::<f64>();
@@ -129,29 +154,72 @@ impl StructuralDamper {
             increment.gain(gain);
         }
     }
-
-    fn sliding(&self, states: &[PointState]) -> Sliding {
-        let moves = states.iter().zip(&self.limits);
-        let slips: Vec<bool> =
-            moves.map(|(state, limit)| *state != PointState::Stuck || *limit == 0.0).collect();
-        self.elastic.sliding(&slips)
-    }
 }
 
-impl FrictionLaw for StructuralDamper {
-    fn points(&self) -> usize {
+impl ContactLaw for StructuralDamper {
+    fn name(&self) -> &'static str {
+        "structural"
+    }
+
+    fn displacements(&self) -> usize {
         self.limits.len()
     }
 
-    fn is_odd(&self) -> bool {
-        true
+    fn state_size(&self) -> usize {
+        self.limits.len()
     }
 
     fn stiffness(&self) -> Mat<f64> {
         self.stiffness.clone()
     }
 
-    fn softened(&self, share: f64) -> Box<dyn FrictionLaw> {
+    fn state_stiffness(&self) -> Mat<f64> {
+        self.stiffness.clone()
+    }
+
+    fn is_odd(&self) -> bool {
+        true
+    }
+
+    fn is_monotone(&self) -> bool {
+        true
+    }
+
+    fn limits(&self) -> Vec<f64> {
+        self.limits.clone()
+    }
+
+    fn return_map(
+        &self,
+        before: &[f64],
+        after: &[f64],
+        state: &mut [f64],
+        force: &mut [f64],
+        jacobian: Option<&mut ReturnMapJacobian>,
+    ) {
+        let points = state.len();
+        let du: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
+        let Some(jacobian) = jacobian else {
+            self.increment(&du, state, None);
+            force.copy_from_slice(state);
+            return;
+        };
+        jacobian.reset(points, points);
+        self.increment(&du, state, Some(&mut jacobian.by_state));
+        force.copy_from_slice(state);
+        for i in 0..points {
+            let gain = &jacobian.by_state[i * points..(i + 1) * points];
+            for j in 0..points {
+                let through: f64 = (0..points).map(|l| gain[l] * self.stiffness[(l, j)]).sum();
+                jacobian.by_after[i * points + j] = through;
+                jacobian.by_before[i * points + j] = -through;
+            }
+            jacobian.force_by_state[i * points + i] = 1.0;
+            jacobian.slipping[i] = f64::from(u8::from(gain[i] != 1.0));
+        }
+    }
+
+    fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
         Box::new(Self {
             stiffness: faer::Scale(share) * &self.stiffness,
             limits: self.limits.clone(),
@@ -161,6 +229,30 @@ impl FrictionLaw for StructuralDamper {
         })
     }
 
+    fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
+        let limits = self.limits.iter().map(|limit| factor * limit).collect();
+        Box::new(Self { limits, ..self.clone() })
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        self.own_parameters()
+    }
+
+    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn ContactLaw>, Error> {
+        Ok(Box::new(self.changed(index, value)?))
+    }
+
+    fn closed_form(&self) -> Option<&dyn HarmonicForce> {
+        Some(self)
+    }
+
+    fn elements(&self) -> Option<Vec<Element>> {
+        let components = (0..self.limits.len()).collect();
+        Some(vec![Element { components, law: Arc::new(self.clone()) }])
+    }
+}
+
+impl HarmonicForce for StructuralDamper {
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         out.reset(motion.displacement.len(), tangent);
         if motion.displacement.iter().any(|u| !u.is_finite()) {
@@ -178,24 +270,8 @@ impl FrictionLaw for StructuralDamper {
         out.active = passage.slipped || self.limits.contains(&0.0);
         if out.active {
             slip_series::write(&passage, &self.stiffness, motion, out);
-            halve_means(motion.table.harmonics(), self.points(), out);
+            halve_means(motion.table.harmonics(), self.limits.len(), out);
         }
-    }
-
-    fn advance(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
-        self.increment(du, force, gain);
-    }
-
-    fn limits(&self) -> Vec<f64> {
-        self.limits.clone()
-    }
-
-    fn tangent(&self, points: &[PointState]) -> Mat<f64> {
-        self.sliding(points).tangent
-    }
-
-    fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
-        self.sliding(points).slip_rate
     }
 
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
@@ -227,11 +303,15 @@ impl FrictionLaw for StructuralDamper {
         }
     }
 
+    fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+        self.force_history(motion, samples)
+    }
+
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
         let harmonics = motion.table.harmonics();
         let span = harmonics.span();
         let passage = Passage::new(self, motion, Derivative::None);
-        let mut history = Vec::with_capacity(samples * self.points());
+        let mut history = Vec::with_capacity(samples * self.limits.len());
         for n in 0..samples {
             let theta = TAU * n as f64 / samples as f64;
             let mirror = harmonics.half_wave() && theta >= span;
@@ -271,20 +351,7 @@ impl FrictionLaw for StructuralDamper {
         phases
     }
 
-    fn parameters(&self) -> Vec<Parameter> {
-        self.own_parameters()
-    }
-
-    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn FrictionLaw>, Error> {
-        Ok(Box::new(self.changed(index, value)?))
-    }
-
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         self.slope(motion, index, out);
-    }
-
-    fn magnified(&self, factor: f64) -> Box<dyn FrictionLaw> {
-        let limits = self.limits.iter().map(|limit| factor * limit).collect();
-        Box::new(Self { limits, ..self.clone() })
     }
 }

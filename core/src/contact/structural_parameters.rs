@@ -8,10 +8,11 @@
 //! `∂f/∂a = f − Σ F_i ∂f/∂F_i`.
 
 use super::derivative::Derivative;
-use super::jenkins::Bounds;
+use super::law::HarmonicForce as _;
 use super::passage::Passage;
+use super::slider_integrals::Bounds;
 use super::slip_series::halve_mean;
-use super::{Elastic, FrictionLaw, Motion, Parameter, SlipLoad, StructuralDamper};
+use super::{Elastic, Motion, Parameter, SlipLoad, StructuralDamper};
 use crate::Error;
 use faer::Mat;
 
@@ -32,7 +33,7 @@ impl StructuralDamper {
 
     /// The damper with another slip limit or another factor on its stiffness.
     pub(super) fn changed(&self, index: usize, value: f64) -> Result<Self, Error> {
-        if index < self.points() {
+        if index < self.limits.len() {
             let mut limits = self.limits.clone();
             limits[index] = value;
             return Ok(Self { limits: Self::checked(&limits)?, ..self.clone() });
@@ -49,7 +50,7 @@ impl StructuralDamper {
     /// Series of the derivative of the forces in a parameter.
     pub(super) fn slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         out.fill(0.0);
-        if index < self.points() {
+        if index < self.limits.len() {
             self.limit_slope(motion, index, out);
         } else {
             self.factor_slope(motion, out);
@@ -83,7 +84,7 @@ impl StructuralDamper {
             bounds.add_integral(harmonics, stretch.start, stretch.end, weight, &mut integral);
             for (point, series) in out.chunks_exact_mut(integral.len()).enumerate() {
                 // f = T u − κ, and T does not change.
-                let rate = -stretch.rate[point * self.points() + i];
+                let rate = -stretch.rate[point * self.limits.len() + i];
                 series.iter_mut().zip(&integral).for_each(|(s, integral)| *s += rate * integral);
             }
         }
@@ -94,7 +95,7 @@ impl StructuralDamper {
     fn factor_slope(&self, motion: Motion<'_>, out: &mut [f64]) {
         if self.factor == 0.0 {
             // The first trace of stiffness sticks wherever there is friction.
-            let Ok(trace) = self.changed(self.points(), 1.0) else { return };
+            let Ok(trace) = self.changed(self.limits.len(), 1.0) else { return };
             let limits =
                 self.limits.iter().map(|limit| if *limit > 0.0 { f64::INFINITY } else { 0.0 });
             Self { limits: limits.collect(), ..trace }.factor_slope(motion, out);

@@ -70,7 +70,7 @@ fn level(model: &Model, residual: Residual, level: f64) -> Result<Member, Error>
     if !(level > 0.0 && level.is_finite()) {
         return Err(Error::value("level", level, "must be a finite factor above zero"));
     }
-    let laws = model.laws().iter().map(|law| law.magnified(level.recip())).collect();
+    let laws = model.laws().iter().map(|law| law.with_scaled_forces(level.recip())).collect();
     let residual = match residual {
         Residual::Value(force) => Residual::Value(force / level),
         other => other,

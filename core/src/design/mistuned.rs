@@ -1,6 +1,6 @@
 //! The rings that a tuned disk becomes when the stiffness of its sectors deviates.
 
-use crate::contact::FrictionLaw;
+use crate::contact::ContactLaw;
 use crate::model::{Model, SectorContact};
 use crate::structure::{HarmonicLoad, RingCoupling, Structure};
 use crate::Error;
@@ -89,7 +89,7 @@ impl TunedDisk {
             .iter()
             .map(|contact| {
                 // The same law: no other method copies one.
-                let law: Box<dyn FrictionLaw> = contact.law.magnified(1.0);
+                let law: Box<dyn ContactLaw> = contact.law.with_scaled_forces(1.0);
                 SectorContact { law, own: contact.own.clone(), next: contact.next.clone() }
             })
             .collect()

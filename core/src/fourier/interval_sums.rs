@@ -28,19 +28,20 @@ impl IntervalSums {
 
     /// Adds the interval `[start, end]` of angles.
     pub fn add(&mut self, start: f64, end: f64) {
-        self.cos[0] += end - start;
-        self.add_bound(end, 1.0);
-        self.add_bound(start, -1.0);
+        self.add_end(end, 1.0);
+        self.add_end(start, -1.0);
     }
 
-    fn add_bound(&mut self, theta: f64, sign: f64) {
+    /// Adds the end of an interval, with the weight of the interval; its start with the negative one.
+    pub fn add_end(&mut self, theta: f64, weight: f64) {
+        self.cos[0] += weight * theta;
         let (sin_step, cos_step) = (self.step as f64 * theta).sin_cos();
         let (mut cos, mut sin) = (cos_step, sin_step);
         let mut order = self.step;
         while order < self.cos.len() {
-            let weight = sign / order as f64;
-            self.cos[order] += weight * sin;
-            self.sin[order] -= weight * cos;
+            let share = weight / order as f64;
+            self.cos[order] += share * sin;
+            self.sin[order] -= share * cos;
             (cos, sin) = (cos * cos_step - sin * sin_step, sin * cos_step + cos * sin_step);
             order += self.step;
         }

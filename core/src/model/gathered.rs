@@ -1,13 +1,13 @@
 //! Contacts gathered into the rows and the stiffness of a structure.
 
-use crate::contact::FrictionLaw;
+use crate::contact::ContactLaw;
 use crate::Error;
 use faer::Mat;
 use std::ops::Range;
 
 /// Contacts one after the other, their rows and their stiffness.
 pub(super) struct Gathered {
-    pub(super) laws: Vec<Box<dyn FrictionLaw>>,
+    pub(super) laws: Vec<Box<dyn ContactLaw>>,
     pub(super) points: Vec<Range<usize>>,
     /// Rows of B, one matrix per part of the structure that they act on.
     pub(super) rows: [Mat<f64>; 2],
@@ -17,15 +17,15 @@ pub(super) struct Gathered {
 impl Gathered {
     pub(super) fn new(
         dofs: usize,
-        contacts: impl Iterator<Item = (Box<dyn FrictionLaw>, Vec<Mat<f64>>)>,
+        contacts: impl Iterator<Item = (Box<dyn ContactLaw>, Vec<Mat<f64>>)>,
     ) -> Result<Self, Error> {
         let contacts: Vec<_> = contacts.collect();
-        let total: usize = contacts.iter().map(|(law, _)| law.points()).sum();
+        let total: usize = contacts.iter().map(|(law, _)| law.displacements()).sum();
         let mut rows = [Mat::zeros(total, dofs), Mat::zeros(total, dofs)];
         let mut stiffness = Mat::zeros(total, total);
         let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
         for (index, (law, parts)) in contacts.into_iter().enumerate() {
-            let size = law.points();
+            let size = law.displacements();
             let entry = format!("contact {}", index + 1);
             for (part, rows) in parts.iter().zip(&mut rows) {
                 if (part.nrows(), part.ncols()) != (size, dofs) {

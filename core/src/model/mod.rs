@@ -10,7 +10,7 @@ pub use resonances::Resonance;
 pub use self_excited::{NegativeDamping, SelfExcited};
 pub use variation::{Change, Common, Variation};
 
-use crate::contact::{FrictionLaw, Marched, Parameter};
+use crate::contact::{Aft, ContactLaw, Parameter};
 use crate::structure::{
     compliance, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure, HarmonicLoad, Ports,
     Ring, RingCoupling, RingSector, Structure,
@@ -30,7 +30,7 @@ const NO_LIMIT: f64 = 1e-13;
 #[derive(Debug)]
 pub struct Contact {
     /// The friction law.
-    pub law: Box<dyn FrictionLaw>,
+    pub law: Box<dyn ContactLaw>,
     /// Rows of B, points × N.
     pub rows: Mat<f64>,
 }
@@ -39,7 +39,7 @@ pub struct Contact {
 #[derive(Debug)]
 pub struct SectorContact {
     /// The friction law.
-    pub law: Box<dyn FrictionLaw>,
+    pub law: Box<dyn ContactLaw>,
     /// Rows on the sector itself, points × N.
     pub own: Mat<f64>,
     /// Rows on the next sector, points × N.
@@ -50,7 +50,7 @@ pub struct SectorContact {
 pub struct Model {
     structure: Arc<Structure>,
     ports: Arc<Ports>,
-    laws: Vec<Box<dyn FrictionLaw>>,
+    laws: Vec<Box<dyn ContactLaw>>,
     points: Vec<Range<usize>>,
     compliance: Arc<dyn Compliance>,
     modal_base: &'static str,
@@ -185,7 +185,7 @@ impl Model {
         body: Body,
         structure: Structure,
         ports: Ports,
-        laws: Vec<Box<dyn FrictionLaw>>,
+        laws: Vec<Box<dyn ContactLaw>>,
         points: Vec<Range<usize>>,
     ) -> Result<Self, Error> {
         let (compliance, modal_base) = body.compliance(&structure, &ports)?;
@@ -196,14 +196,14 @@ impl Model {
     }
 
     /// The same problem with every law evaluated by marching through `samples` instants per period
-    /// (see [`Marched`]), on the same decomposition.
+    /// (see [`Aft`]), on the same decomposition.
     ///
     /// # Errors
     /// An odd or too small number of samples.
     pub fn marched(&self, samples: usize) -> Result<Self, Error> {
-        let mut laws: Vec<Box<dyn FrictionLaw>> = Vec::with_capacity(self.laws.len());
+        let mut laws: Vec<Box<dyn ContactLaw>> = Vec::with_capacity(self.laws.len());
         for law in &self.laws {
-            laws.push(Box::new(Marched::new(law.softened(1.0), samples)?));
+            laws.push(Box::new(Aft::new(law.with_scaled_stiffness(1.0), samples)?));
         }
         self.with_laws(laws)
     }
@@ -219,8 +219,8 @@ impl Model {
     ///
     /// # Errors
     /// Laws that do not fit the contacts, an eigenvalue iteration that fails.
-    pub fn with_laws(&self, laws: Vec<Box<dyn FrictionLaw>>) -> Result<Self, Error> {
-        let sizes = |laws: &[Box<dyn FrictionLaw>]| laws.iter().map(|l| l.points()).collect();
+    pub fn with_laws(&self, laws: Vec<Box<dyn ContactLaw>>) -> Result<Self, Error> {
+        let sizes = |laws: &[Box<dyn ContactLaw>]| laws.iter().map(|l| l.displacements()).collect();
         let (expected, got): (Vec<usize>, Vec<usize>) = (sizes(&self.laws), sizes(&laws));
         if expected != got {
             return Err(Error::shape("laws", format!("{expected:?} points"), format!("{got:?}")));
@@ -265,8 +265,14 @@ impl Model {
 
     /// The friction laws, in the order of the contacts.
     #[must_use]
-    pub fn laws(&self) -> &[Box<dyn FrictionLaw>] {
+    pub fn laws(&self) -> &[Box<dyn ContactLaw>] {
         &self.laws
+    }
+
+    /// Number of numbers in a state in time: displacements, velocities and what the laws remember.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        2 * self.structure.dofs() + self.laws.iter().map(|law| law.state_size()).sum::<usize>()
     }
 
     /// Rows of B that belong to each contact.
@@ -310,9 +316,9 @@ impl Model {
 
 /// Laws with the slip limits that count against the loads; others are zero.
 fn perceptible(
-    mut laws: Vec<Box<dyn FrictionLaw>>,
+    mut laws: Vec<Box<dyn ContactLaw>>,
     loads: &[HarmonicLoad],
-) -> Result<Vec<Box<dyn FrictionLaw>>, Error> {
+) -> Result<Vec<Box<dyn ContactLaw>>, Error> {
     let amplitudes = loads.iter().flat_map(|load| &load.amplitude);
     let least = NO_LIMIT * amplitudes.map(|force| force.norm()).fold(0.0, f64::max);
     for law in &mut laws {

@@ -6,7 +6,7 @@
 //! carry moves it from there.
 
 use super::{Body, Model};
-use crate::contact::FrictionLaw;
+use crate::contact::ContactLaw;
 use crate::structure::Poles;
 use crate::Error;
 use faer::{c64, Mat};
@@ -284,7 +284,7 @@ where
 }
 
 /// Which points always slip, and which never do: what the states of a model depend on.
-pub(super) fn slip_kinds(laws: &[Box<dyn FrictionLaw>]) -> Vec<(bool, bool)> {
+pub(super) fn slip_kinds(laws: &[Box<dyn ContactLaw>]) -> Vec<(bool, bool)> {
     let limits = laws.iter().flat_map(|law| law.limits());
     limits.map(|limit| (limit == 0.0, limit.is_infinite())).collect()
 }

@@ -2,7 +2,7 @@
 //! in a parameter of its contacts.
 
 use super::{Body, Change, Common, Model, Variation};
-use crate::contact::FrictionLaw;
+use crate::contact::ContactLaw;
 use crate::structure::Destabilised;
 use crate::Error;
 use faer::{c64, Mat};
@@ -125,7 +125,7 @@ impl<'a> SelfExcited<'a> {
     ///
     /// # Errors
     /// A value that a law refuses.
-    pub fn laws_at(&self, value: f64) -> Result<Vec<Box<dyn FrictionLaw>>, Error> {
+    pub fn laws_at(&self, value: f64) -> Result<Vec<Box<dyn ContactLaw>>, Error> {
         self.variation.laws(self.model, value)
     }
 

@@ -2,7 +2,7 @@
 //! of the loads, or for the ratio of negative damping.
 
 use super::Model;
-use crate::contact::FrictionLaw;
+use crate::contact::ContactLaw;
 use crate::Error;
 
 /// How one number stands for the parameters of several contacts.
@@ -108,9 +108,9 @@ impl Variation {
     ///
     /// # Errors
     /// As [`Variation::changes`], or a value that a law refuses.
-    pub fn laws(&self, model: &Model, value: f64) -> Result<Vec<Box<dyn FrictionLaw>>, Error> {
-        let mut laws: Vec<Box<dyn FrictionLaw>> =
-            model.laws().iter().map(|law| law.magnified(1.0)).collect();
+    pub fn laws(&self, model: &Model, value: f64) -> Result<Vec<Box<dyn ContactLaw>>, Error> {
+        let mut laws: Vec<Box<dyn ContactLaw>> =
+            model.laws().iter().map(|law| law.with_scaled_forces(1.0)).collect();
         for change in self.changes(model)? {
             let law = &mut laws[change.contact];
             *law = law.with_parameter(change.parameter, change.at(value))?;

@@ -88,8 +88,7 @@ pub struct FateSettings {
 }
 
 /// What becomes of free motions of a model.
-pub struct Fates<'a> {
-    model: &'a Model,
+pub struct Fates {
     settings: FateSettings,
     system: ModalSystem,
     slipping: Slipping,
@@ -104,13 +103,13 @@ pub struct Fates<'a> {
     fast: f64,
 }
 
-impl<'a> Fates<'a> {
+impl Fates {
     /// Prepares the classification of motions of a model without forces.
     ///
     /// # Errors
     /// A travelling wave, settings outside their range, a structure without oscillation, an
     /// eigenvalue iteration that fails.
-    pub fn new(model: &'a Model, settings: FateSettings) -> Result<Self, Error> {
+    pub fn new(model: &Model, settings: FateSettings) -> Result<Self, Error> {
         if settings.periods == 0 {
             return Err(Error::value("periods", 0.0, "must be at least 1"));
         }
@@ -122,7 +121,7 @@ impl<'a> Fates<'a> {
             let remedy = "free motions have none; leave the forces out";
             return Err(Error::value("forces", system.loads.len() as f64, remedy));
         }
-        let sticking = Sticking::new(model, &system)?;
+        let sticking = Sticking::new(&system)?;
         let (squares, modes) = sticking.modes()?;
         let highest = squares.last().copied().unwrap_or(0.0);
         // Beside a mass that is hardly there every true oscillation would pass for rigid motion.
@@ -133,9 +132,8 @@ impl<'a> Fates<'a> {
         };
         system.check_pace(model, lowest.sqrt(), FASTEST)?;
         Ok(Self {
-            model,
             settings,
-            slipping: Slipping::new(model, &system)?,
+            slipping: Slipping::new(&system)?,
             passive: is_passive(model),
             sticking,
             system,
@@ -153,7 +151,7 @@ impl<'a> Fates<'a> {
         let mut state = State::from_dofs(&self.system, start)?;
         let coordinates = Transition::new(&self.system, TAU / self.slow);
         let ended = || !go_on();
-        let mut flow = Flow::new(self.model, &self.system, TAU / self.slow).watched(&ended);
+        let mut flow = Flow::new(&self.system, TAU / self.slow).watched(&ended);
         let mut returns = Returns::new(self.shape(0), self.settings.tolerance);
         let (mut section, mut trend) = (usize::MAX, Trend::default());
         let mut period = f64::NAN;
@@ -258,7 +256,7 @@ impl<'a> Fates<'a> {
     ) -> Result<Survey, Halt> {
         let n = self.system.modes();
         let ended = || !go_on();
-        let mut flow = Flow::new(self.model, &self.system, TAU / self.slow).watched(&ended);
+        let mut flow = Flow::new(&self.system, TAU / self.slow).watched(&ended);
         let shapes: Vec<Vec<f64>> = (0..n).map(|dof| self.system.shape(dof).collect()).collect();
         let mut survey =
             Survey { range: vec![[f64::INFINITY, f64::NEG_INFINITY]; n], kinetic: vec![0.0; n] };
@@ -351,8 +349,11 @@ impl Trend {
     }
 }
 
-/// Whether the symmetric part of the damping matrix takes energy out of every motion.
+/// Whether contacts and the symmetric part of the damping matrix take energy out of every motion.
 fn is_passive(model: &Model) -> bool {
+    if !model.laws().iter().all(|law| law.is_monotone()) {
+        return false;
+    }
     let damping = model.structure().damping();
     let symmetric = Mat::from_fn(damping.nrows(), damping.ncols(), |i, j| {
         0.5 * (damping[(i, j)] + damping[(j, i)])

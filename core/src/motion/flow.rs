@@ -8,7 +8,6 @@ use super::polynomial::first_zero;
 use super::power_series::{sum_of_products, PowerSeries, DEGREE};
 use super::state::State;
 use crate::contact::PointState;
-use crate::model::Model;
 
 /// Leading coefficient, relative to the largest, that counts as zero: a point is at its limit.
 const AT_LIMIT: f64 = 1e-14;
@@ -94,7 +93,6 @@ enum Next {
 
 /// The flow of a model excited at one frequency.
 pub struct Flow<'a> {
-    model: &'a Model,
     system: &'a ModalSystem,
     omega: f64,
     series: PowerSeries,
@@ -108,12 +106,11 @@ pub struct Flow<'a> {
 }
 
 impl<'a> Flow<'a> {
-    /// The flow of a model at a frequency [rad/s].
+    /// The flow of a system at a frequency [rad/s].
     #[must_use]
-    pub fn new(model: &'a Model, system: &'a ModalSystem, omega: f64) -> Self {
+    pub fn new(system: &'a ModalSystem, omega: f64) -> Self {
         let series = PowerSeries::new(system, omega);
         Self {
-            model,
             system,
             omega,
             series,
@@ -156,7 +153,7 @@ impl<'a> Flow<'a> {
         until: f64,
         observe: &mut dyn FnMut(Passage<'_>),
     ) -> Result<(), Halt> {
-        let mut regime = Regime::new(self.model, &state.points);
+        let mut regime = Regime::new(self.system, &state.points);
         let mut changes = 0;
         while state.time < until {
             if !state.is_bounded() {
@@ -204,7 +201,7 @@ impl<'a> Flow<'a> {
             let limit = self.system.limits[point];
             let side = if to == PointState::Stuck { state.force[point] } else { to.sign() };
             state.force[point] = limit.copysign(side);
-            let after = Regime::new(self.model, &state.points);
+            let after = Regime::new(self.system, &state.points);
             let speed = self.system.contact_displacement(&state.velocity);
             observe(Passage::Event {
                 event: Event { time: state.time, point, state: to },
@@ -327,7 +324,7 @@ fn rescale(a: &mut [f64], length: f64) {
 mod tests {
     use super::*;
     use crate::contact::StructuralDamper;
-    use crate::model::Contact;
+    use crate::model::{Contact, Model};
     use crate::structure::Structure;
     use faer::{mat, Mat};
 
@@ -354,7 +351,7 @@ mod tests {
                 *v = 2.0 * (f64::from(start) * (1.3 + j as f64)).sin();
             }
             let mut begun = f64::NAN;
-            Flow::new(&model, &system, 1.0)
+            Flow::new(&system, 1.0)
                 .run(&mut state, 20.0, &mut |passage| match passage {
                     Passage::Arc(arc) => {
                         let (mut x, mut v) = (vec![0.0; 3], vec![0.0; 3]);
@@ -384,7 +381,7 @@ mod tests {
         let system = ModalSystem::new(&model).unwrap();
         let mut state = State::rest(&system);
         state.velocity[0] = 1.0;
-        let mut flow = Flow::new(&model, &system, 1.0).granted(7);
+        let mut flow = Flow::new(&system, 1.0).granted(7);
         let run = flow.run(&mut state.clone(), 1e6, &mut |_| {});
         assert_eq!((run, flow.steps, flow.is_spent()), (Err(Halt::Steps), 7, true));
         let asked = std::cell::Cell::new(0);
@@ -392,7 +389,7 @@ mod tests {
             asked.set(asked.get() + 1);
             asked.get() > 3
         };
-        let mut flow = Flow::new(&model, &system, 1.0).watched(&interrupted);
+        let mut flow = Flow::new(&system, 1.0).watched(&interrupted);
         let run = flow.run(&mut state, 1e6, &mut |_| {});
         assert_eq!((run, flow.steps), (Err(Halt::Interrupted), 3 * LOOK));
     }

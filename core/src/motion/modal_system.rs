@@ -1,6 +1,6 @@
 //! The equations of motion in the modes of the structure without contacts.
 
-use crate::contact::{Elastic, FrictionLaw, PointState};
+use crate::contact::{Elastic, PointState, PointSummary, SlipElement};
 use crate::model::Model;
 use crate::structure::{real_modes, ModalDamping, RealModes};
 use crate::Error;
@@ -17,11 +17,13 @@ pub(super) enum Damping {
     Full(Mat<f64>),
 }
 
-/// A contact: its law, its points and what deforms in it.
+/// An element of a contact: its law, its points and what deforms in it.
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
-    pub(crate) law: Arc<dyn FrictionLaw>,
-    /// Its points among those of the model.
+    pub(crate) law: Arc<dyn SlipElement>,
+    /// Position of its contact.
+    pub(crate) contact: usize,
+    /// Its points among those of all elements.
     pub(crate) points: Range<usize>,
     /// Its strains among those of the model.
     pub(crate) strains: Range<usize>,
@@ -40,15 +42,17 @@ pub struct ModalSystem {
     shapes: Mat<f64>,
     /// Φᵀ M, the inverse of Φ.
     to_modes: Mat<f64>,
-    /// B Φ, contact after contact.
+    /// B Φ, element after element.
     pub(super) contacts: Vec<f64>,
+    /// The contact displacement of the model that each point of an element acts on.
+    components: Vec<usize>,
     /// Φᵀ P_k per forced harmonic.
     pub(super) loads: Vec<(usize, Vec<c64>)>,
     /// Highest rate of the motion [1/s]: the unit of time of a power series.
     rate: f64,
     /// Slip limits of all points [N].
     pub(super) limits: Vec<f64>,
-    /// The contacts.
+    /// The elements of the contacts.
     bodies: Vec<Body>,
 }
 
@@ -56,7 +60,8 @@ impl ModalSystem {
     /// The modal form of a model.
     ///
     /// # Errors
-    /// The eigenvalue iteration fails; the model is one sector of a travelling wave.
+    /// The eigenvalue iteration fails; the model is one sector of a travelling wave; a contact law
+    /// has no events that an exact motion could be followed by.
     pub fn new(model: &Model) -> Result<Self, Error> {
         if model.is_travelling_wave() {
             return Err(Error::TravellingWave);
@@ -66,8 +71,9 @@ impl ModalSystem {
         let damping = modes.damping(structure.damping());
         let size = modes.omega_squared.len();
         let rows = &model.ports().rows * &modes.shapes;
+        let (bodies, components) = elements(model)?;
         let contacts =
-            (0..rows.nrows()).flat_map(|i| (0..size).map(move |j| (i, j))).map(|at| rows[at]);
+            components.iter().flat_map(|&i| (0..size).map(move |j| (i, j))).map(|at| rows[at]);
         let loads = model.ports().loads.iter().map(|load| {
             let modal = (0..size)
                 .map(|j| (0..size).map(|i| load.amplitude[i] * modes.shapes[(i, j)]).sum())
@@ -80,8 +86,9 @@ impl ModalSystem {
             rate: rate_of(model, &damping),
             damping: Damping::of(&damping),
             to_modes: modes.shapes.transpose() * structure.mass(),
-            limits: limits_of(model),
-            bodies: bodies(model)?,
+            limits: limits_of(&bodies),
+            bodies,
+            components,
             omega_squared: modes.omega_squared,
             shapes: modes.shapes,
         })
@@ -93,12 +100,14 @@ impl ModalSystem {
     /// # Errors
     /// A contact whose stiffness has no eigenvalues.
     pub(crate) fn undriven(&self, model: &Model, damping: &ModalDamping) -> Result<Self, Error> {
+        let (bodies, components) = elements(model)?;
         Ok(Self {
             loads: Vec::new(),
             rate: rate_of(model, damping),
             damping: Damping::of(damping),
-            limits: limits_of(model),
-            bodies: bodies(model)?,
+            limits: limits_of(&bodies),
+            bodies,
+            components,
             ..self.clone()
         })
     }
@@ -131,10 +140,64 @@ impl ModalSystem {
         self.omega_squared.len()
     }
 
-    /// Number of contact points.
+    /// Number of points of all elements.
     #[must_use]
     pub fn points(&self) -> usize {
         self.limits.len()
+    }
+
+    /// The contact displacement of the model that each point of an element acts on.
+    #[must_use]
+    pub fn components(&self) -> &[usize] {
+        &self.components
+    }
+
+    /// Number of contact displacements of the model.
+    #[must_use]
+    pub fn displacements(&self) -> usize {
+        self.components.iter().max().map_or(0, |last| last + 1)
+    }
+
+    /// The entries of the first element on every contact displacement, of what all on it share.
+    #[must_use]
+    pub fn shared<T: Copy>(&self, points: &[T]) -> Vec<T> {
+        let first = |component: usize| self.components.iter().position(|own| *own == component);
+        (0..self.displacements()).filter_map(first).map(|point| points[point]).collect()
+    }
+
+    /// Forces of the elements gathered into those of the contact displacements.
+    #[must_use]
+    pub fn contact_forces(&self, elements: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; self.displacements()];
+        for (component, force) in self.components.iter().zip(elements) {
+            forces[*component] += force;
+        }
+        forces
+    }
+
+    /// Slip and friction work of the elements gathered into those of the contact displacements: the
+    /// share in slip is the mean weighted by stiffness.
+    #[must_use]
+    pub fn contact_summaries(&self, elements: &[PointSummary]) -> Vec<PointSummary> {
+        let mut weights = vec![0.0; self.points()];
+        let mut totals = vec![0.0; self.displacements()];
+        let mut count = vec![0; self.displacements()];
+        for body in &self.bodies {
+            let stiffness = body.law.stiffness();
+            for (i, point) in body.points.clone().enumerate() {
+                weights[point] = stiffness[(i, i)];
+                totals[self.components[point]] += stiffness[(i, i)];
+                count[self.components[point]] += 1;
+            }
+        }
+        let mut gathered = vec![PointSummary::default(); self.displacements()];
+        for ((own, weight), &component) in elements.iter().zip(weights).zip(&self.components) {
+            let alone = count[component] == 1;
+            let share = if alone { 1.0 } else { weight / totals[component] };
+            gathered[component].slip_fraction += share * own.slip_fraction;
+            gathered[component].dissipation += own.dissipation;
+        }
+        gathered
     }
 
     /// Fastest rate in a motion excited at `omega` [1/s].
@@ -182,7 +245,7 @@ impl ModalSystem {
         (0..self.modes()).map(move |j| self.shapes[(dof, j)])
     }
 
-    /// Relative displacement of a contact point per modal coordinate.
+    /// Relative displacement of a point of an element per modal coordinate.
     #[must_use]
     pub fn contact_shape(&self, point: usize) -> &[f64] {
         &self.contacts[point * self.modes()..(point + 1) * self.modes()]
@@ -200,7 +263,7 @@ impl ModalSystem {
         multiply(&self.to_modes, dofs)
     }
 
-    /// Relative displacements `u = B Φ η`.
+    /// Relative displacements at the points of the elements, `u = B Φ η`.
     #[must_use]
     pub fn contact_displacement(&self, modal: &[f64]) -> Vec<f64> {
         (0..self.points()).map(|point| dot(self.contact_shape(point), modal)).collect()
@@ -240,13 +303,13 @@ impl ModalSystem {
         &self.omega_squared
     }
 
-    /// Slip limits of all contact points [N].
+    /// Slip limits of all points of the elements [N].
     #[must_use]
     pub fn limits(&self) -> &[f64] {
         &self.limits
     }
 
-    /// The contacts.
+    /// The elements of the contacts.
     pub(crate) fn bodies(&self) -> &[Body] {
         &self.bodies
     }
@@ -257,26 +320,30 @@ impl ModalSystem {
     }
 }
 
-fn bodies(model: &Model) -> Result<Vec<Body>, Error> {
-    let mut bodies: Vec<Body> = Vec::with_capacity(model.laws().len());
-    for (law, points) in model.laws().iter().zip(model.points()) {
-        let elastic = Elastic::new(law.stiffness().as_ref())?;
-        let first = bodies.last().map_or(0, |body| body.strains.end);
-        let strains = first..first + elastic.rank();
-        bodies.push(Body {
-            law: Arc::from(law.magnified(1.0)),
-            points: points.clone(),
-            strains,
-            elastic,
-        });
+/// The elements of all contacts, and the contact displacement that each of their points acts on.
+fn elements(model: &Model) -> Result<(Vec<Body>, Vec<usize>), Error> {
+    let (mut bodies, mut components) = (Vec::<Body>::new(), Vec::new());
+    for (contact, (law, range)) in model.laws().iter().zip(model.points()).enumerate() {
+        let elements = law
+            .elements()
+            .ok_or_else(|| Error::NoEvents { contact: contact + 1, law: law.name().to_owned() })?;
+        for element in elements {
+            let elastic = Elastic::new(element.law.stiffness().as_ref())?;
+            let first = bodies.last().map_or(0, |body| body.strains.end);
+            let strains = first..first + elastic.rank();
+            let start = components.len();
+            components.extend(element.components.iter().map(|own| range.start + own));
+            let points = start..components.len();
+            bodies.push(Body { law: element.law, contact, points, strains, elastic });
+        }
     }
-    Ok(bodies)
+    Ok((bodies, components))
 }
 
 /// `∂f/∂u` and slip per displacement of all contacts in given states.
 #[derive(Debug, Clone)]
 pub struct Regime {
-    /// State of each contact point.
+    /// State of each point of an element.
     pub points: Vec<PointState>,
     /// `∂f/∂u`, points × points [N/m].
     pub tangent: Mat<f64>,
@@ -285,24 +352,21 @@ pub struct Regime {
 }
 
 impl Regime {
-    pub(crate) fn new(model: &Model, points: &[PointState]) -> Self {
+    pub(crate) fn new(system: &ModalSystem, points: &[PointState]) -> Self {
         let total = points.len();
         let mut regime = Self {
             points: points.to_vec(),
             tangent: Mat::zeros(total, total),
             slip_rate: Mat::zeros(total, total),
         };
-        for (law, range) in model.laws().iter().zip(model.points()) {
-            let (start, size) = (range.start, range.len());
-            let own = &points[range.clone()];
-            regime
-                .tangent
-                .get_mut(start..start + size, start..start + size)
-                .copy_from(law.tangent(own));
-            regime
-                .slip_rate
-                .get_mut(start..start + size, start..start + size)
-                .copy_from(law.slip_rate(own));
+        for body in system.bodies() {
+            let (start, size) = (body.points.start, body.points.len());
+            let own = &points[body.points.clone()];
+            let block = |matrix: &mut Mat<f64>, own: Mat<f64>| {
+                matrix.get_mut(start..start + size, start..start + size).copy_from(own);
+            };
+            block(&mut regime.tangent, body.law.tangent(own));
+            block(&mut regime.slip_rate, body.law.slip_rate(own));
         }
         regime
     }
@@ -330,8 +394,8 @@ fn rate_of(model: &Model, damping: &ModalDamping) -> f64 {
         + damping.matrix().norm_l2()
 }
 
-fn limits_of(model: &Model) -> Vec<f64> {
-    model.laws().iter().flat_map(|law| law.limits()).collect()
+fn limits_of(bodies: &[Body]) -> Vec<f64> {
+    bodies.iter().flat_map(|body| body.law.limits()).collect()
 }
 
 fn is_zero(load: &[c64]) -> bool {

@@ -39,8 +39,9 @@ impl<'a> Output<'a> {
             trace.displacement.push(dot(shape, x));
             trace.velocity.push(dot(shape, v));
         }
-        trace.contact_displacement.extend(self.system.contact_displacement(x));
-        trace.force.extend(force);
+        let displacement = self.system.contact_displacement(x);
+        trace.contact_displacement.extend(self.system.shared(&displacement));
+        trace.force.extend(self.system.contact_forces(force));
     }
 
     /// Time of an output instant within the period [s].
@@ -86,7 +87,8 @@ impl<'a> Output<'a> {
                 }
             }
             Passage::Event { event, .. } => {
-                events.push(Event { time: begin + event.time, ..event });
+                let point = self.system.components()[event.point];
+                events.push(Event { time: begin + event.time, point, ..event });
             }
         });
         if run == Err(Halt::Interrupted) {
@@ -158,7 +160,7 @@ impl<'a> Output<'a> {
 
     /// Keeps the first `instants` of a trace.
     fn truncate(&self, trace: &mut Trace, instants: usize) {
-        let (dofs, points) = (self.shapes.len(), self.system.points());
+        let (dofs, points) = (self.shapes.len(), self.system.displacements());
         trace.time.truncate(instants);
         trace.displacement.truncate(instants * dofs);
         trace.velocity.truncate(instants * dofs);
@@ -178,7 +180,7 @@ impl<'a> Output<'a> {
             return;
         }
         let first = (periods - keep) * samples;
-        let (dofs, points) = (self.shapes.len(), self.system.points());
+        let (dofs, points) = (self.shapes.len(), self.system.displacements());
         trace.time.drain(..first);
         trace.displacement.drain(..first * dofs);
         trace.velocity.drain(..first * dofs);

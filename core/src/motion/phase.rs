@@ -7,7 +7,6 @@
 use super::modal_system::{dot, Damping, ModalSystem, Regime};
 use super::state::State;
 use crate::contact::PointState;
-use crate::model::Model;
 use crate::solve::hermitian_eigen;
 use crate::Error;
 use faer::linalg::solvers::{DenseSolveCore as _, Solve as _};
@@ -34,13 +33,9 @@ pub(super) struct Phase {
 
 impl Phase {
     /// The phase in which the given points slip, the others stick.
-    pub(super) fn new(
-        model: &Model,
-        system: &ModalSystem,
-        points: &[PointState],
-    ) -> Result<Self, Error> {
+    pub(super) fn new(system: &ModalSystem, points: &[PointState]) -> Result<Self, Error> {
         let n = system.modes();
-        let tangent = Regime::new(model, points).tangent;
+        let tangent = Regime::new(system, points).tangent;
         let mut stiffness =
             Mat::from_fn(n, n, |i, j| if i == j { system.omega_squared()[i] } else { 0.0 });
         for a in 0..system.points() {
@@ -136,13 +131,13 @@ pub(super) struct Slipping {
 }
 
 impl Slipping {
-    pub(super) fn new(model: &Model, system: &ModalSystem) -> Result<Self, Error> {
+    pub(super) fn new(system: &ModalSystem) -> Result<Self, Error> {
         let held: Vec<bool> = system.limits().iter().map(|limit| limit.is_infinite()).collect();
         let states: Vec<PointState> = held
             .iter()
             .map(|held| if *held { PointState::Stuck } else { PointState::Forward })
             .collect();
-        let phase = Phase::new(model, system, &states)?;
+        let phase = Phase::new(system, &states)?;
         let n = system.modes();
         let neutral = phase.neutral();
         let grip = (0..2 * n)
@@ -159,7 +154,7 @@ impl Slipping {
                 (k, (0..system.points()).map(per_point).collect())
             })
             .collect();
-        Ok(Self { passed: passed_on(model, &held), phase, held, grip })
+        Ok(Self { passed: passed_on(system, &held), phase, held, grip })
     }
 
     /// Whether the motion grows for ever, whatever friction does: with `z' = λ z + g` and
@@ -194,16 +189,17 @@ impl Slipping {
 }
 
 /// `D_HF D_FF⁻¹` of each law, from points F that slip to points H that never do.
-fn passed_on(model: &Model, held: &[bool]) -> Mat<f64> {
-    let stiffness = model.contact_stiffness();
+fn passed_on(system: &ModalSystem, held: &[bool]) -> Mat<f64> {
     let mut passed = Mat::zeros(held.len(), held.len());
-    for range in model.points() {
+    for body in system.bodies() {
+        let (stiffness, range) = (body.law.stiffness(), &body.points);
+        let at = |i: usize, j: usize| stiffness[(i - range.start, j - range.start)];
         let (holds, slips): (Vec<usize>, Vec<usize>) = range.clone().partition(|&i| held[i]);
         if holds.is_empty() || slips.is_empty() {
             continue;
         }
-        let own = Mat::from_fn(slips.len(), slips.len(), |a, b| stiffness[(slips[a], slips[b])]);
-        let cross = Mat::from_fn(slips.len(), holds.len(), |a, b| stiffness[(slips[a], holds[b])]);
+        let own = Mat::from_fn(slips.len(), slips.len(), |a, b| at(slips[a], slips[b]));
+        let cross = Mat::from_fn(slips.len(), holds.len(), |a, b| at(slips[a], holds[b]));
         let solved = own.partial_piv_lu().solve(&cross);
         for (a, &slip) in slips.iter().enumerate() {
             for (b, &hold) in holds.iter().enumerate() {
@@ -224,14 +220,14 @@ pub(super) struct Sticking {
 }
 
 impl Sticking {
-    pub(super) fn new(model: &Model, system: &ModalSystem) -> Result<Self, Error> {
+    pub(super) fn new(system: &ModalSystem) -> Result<Self, Error> {
         // A point without friction slips from the start.
         let states: Vec<PointState> = system
             .limits()
             .iter()
             .map(|limit| if *limit > 0.0 { PointState::Stuck } else { PointState::Forward })
             .collect();
-        let phase = Phase::new(model, system, &states)?;
+        let phase = Phase::new(system, &states)?;
         let (n, points) = (system.modes(), system.points());
         let per_pole = |point: usize, pole: usize| {
             let mut sum = c64::new(0.0, 0.0);

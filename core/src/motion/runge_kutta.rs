@@ -2,12 +2,10 @@
 
 use super::modal_system::{dot, ModalSystem};
 use super::state::State;
-use crate::model::Model;
 
 /// Integrates the modes with equal steps; contact forces follow from the laws' return maps from
 /// the start of each step.
 pub struct RungeKutta<'a> {
-    model: &'a Model,
     system: &'a ModalSystem,
     steps: usize,
     step: f64,
@@ -25,7 +23,7 @@ pub struct RungeKutta<'a> {
 impl<'a> RungeKutta<'a> {
     /// The scheme with `steps` steps per period at a frequency [rad/s].
     #[must_use]
-    pub fn new(model: &'a Model, system: &'a ModalSystem, omega: f64, steps: usize) -> Self {
+    pub fn new(system: &'a ModalSystem, omega: f64, steps: usize) -> Self {
         let modes = system.modes();
         let mut loads = vec![0.0; 2 * steps * modes];
         for (i, load) in loads.chunks_exact_mut(modes).enumerate() {
@@ -34,7 +32,6 @@ impl<'a> RungeKutta<'a> {
         }
         let points = system.points();
         Self {
-            model,
             system,
             steps,
             step: std::f64::consts::TAU / omega / steps as f64,
@@ -126,9 +123,9 @@ impl<'a> RungeKutta<'a> {
             let u = dot(self.system.contact_shape(point), &self.trial[..modes]);
             *change = u - self.reference[point];
         }
-        for (law, points) in self.model.laws().iter().zip(self.model.points()) {
-            let change = &self.change[points.clone()];
-            law.advance(change, &mut self.force[points.clone()], None);
+        for body in self.system.bodies() {
+            let change = &self.change[body.points.clone()];
+            body.law.increment(change, &mut self.force[body.points.clone()], None);
         }
     }
 

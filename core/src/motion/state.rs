@@ -77,14 +77,14 @@ impl State {
                 ));
             }
         }
-        for (number, body) in system.bodies().iter().enumerate() {
+        for body in system.bodies() {
             let own = &force[body.points.clone()];
             let carried = body.elastic.carried(own);
             let size = own.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
             let most = (PRINTED * size).max(negligible);
             if let Some(i) = (0..own.len()).find(|&i| (own[i] - carried[i]).abs() > most) {
                 return Err(Error::value(
-                    format!("state: force of contact {}, point {i}", number + 1),
+                    format!("state: force of contact {}, point {i}", body.contact + 1),
                     own[i],
                     &format!(
                         "no deformation of the contact gives these forces; the nearest that one gives is {}",
@@ -141,7 +141,7 @@ impl State {
             let force = &mut self.force[range.clone()];
             let states = &mut self.points[range.clone()];
             let mut gain = vec![0.0; size * size];
-            body.law.advance(&vec![0.0; size], force, Some(&mut gain));
+            body.law.increment(&vec![0.0; size], force, Some(&mut gain));
             states.fill(PointState::Stuck);
             settle(body, force, &speed[range.clone()], &system.limits()[range.clone()], states);
             for (i, free) in free[range].iter_mut().enumerate() {

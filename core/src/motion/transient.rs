@@ -146,11 +146,9 @@ pub fn transient(
     let go_on = || progress(share.get());
     let ended = || !go_on();
     let mut integrator = match settings.scheme {
-        Scheme::Exact => {
-            Integrator::Exact(Flow::new(model, &system, settings.omega).watched(&ended))
-        }
+        Scheme::Exact => Integrator::Exact(Flow::new(&system, settings.omega).watched(&ended)),
         Scheme::RungeKutta(steps) => {
-            Integrator::RungeKutta(RungeKutta::new(model, &system, settings.omega, steps))
+            Integrator::RungeKutta(RungeKutta::new(&system, settings.omega, steps))
         }
     };
     let coordinates = Transition::new(&system, settings.omega);

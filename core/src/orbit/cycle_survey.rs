@@ -6,7 +6,6 @@ use super::survey::Survey;
 use crate::balance::{Point, PointStatus};
 use crate::contact::PointState;
 use crate::fourier::{Harmonics, SampleTable};
-use crate::model::Model;
 use crate::motion::{Event, Flow, ModalSystem, Passage, State};
 use std::f64::consts::PI;
 
@@ -35,21 +34,21 @@ pub(super) fn survey(
     let [.., omega, _] = z else { return None };
     let starts = curve.states(z)?;
     curve.with_shooting(z, |member, _, _| {
-        let (model, system) = (member.model(), &member.system);
-        let course = Course { model, system, omega: *omega, starts };
+        let system = &member.system;
+        let course = Course { system, omega: *omega, starts };
         let begin = course.maximum(phase, table, quadrature)?;
         let highest = table.harmonics().highest();
         let all: Vec<usize> = (0..system.modes()).collect();
         let survey = course.pass(&begin, &all, highest, quadrature)?;
-        let points = system.points();
-        let mut response = Point::empty(*omega, PointStatus::Converged, all.len(), points);
+        let mut response =
+            Point::empty(*omega, PointStatus::Converged, all.len(), system.displacements());
         response.harmonics = highest;
         let displacement = survey.displacement();
         let (dofs, contacts) = displacement.split_at(all.len() * (highest + 1));
         response.displacement = dofs.to_vec();
         response.contact_displacement = contacts.to_vec();
         response.contact_force = survey.force();
-        response.contacts.clone_from(&survey.contacts);
+        response.contacts = survey.summaries();
         response.error_estimate = vec![0.0; all.len()];
         Some(CycleSurvey {
             response,
@@ -72,7 +71,6 @@ struct Begin {
 
 /// The motion over half a period, with the states from which its segments start.
 struct Course<'a> {
-    model: &'a Model,
     system: &'a ModalSystem,
     omega: f64,
     starts: Vec<State>,
@@ -88,7 +86,7 @@ impl Course<'_> {
         quadrature: &'a mut Quadrature,
     ) -> Option<Survey<'a>> {
         let mut survey = Survey::new(self.system, self.omega, true, highest, observe, quadrature);
-        let mut flow = Flow::new(self.model, self.system, self.omega);
+        let mut flow = Flow::new(self.system, self.omega);
         let half = PI / self.omega;
         let mut state = begin.state.clone();
         let mut see = |passage: Passage<'_>| survey.include(&passage);
@@ -111,7 +109,7 @@ impl Course<'_> {
     fn state_at(&self, time: f64) -> Option<State> {
         let start = self.starts.iter().rev().find(|start| start.time <= time)?;
         let mut state = start.clone();
-        Flow::new(self.model, self.system, self.omega).run(&mut state, time, &mut |_| {}).ok()?;
+        Flow::new(self.system, self.omega).run(&mut state, time, &mut |_| {}).ok()?;
         Some(state)
     }
 

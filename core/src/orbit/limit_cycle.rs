@@ -194,14 +194,8 @@ impl<'a> OrbitCurve<'a> {
         }
         let member = self.orbits.member(*value).ok()?;
         let coordinates = Transition::new(&member.system, self.scale);
-        let mut shooting = Shooting::within(
-            member.model(),
-            &member.system,
-            *omega,
-            true,
-            Some(self.interrupted),
-            coordinates,
-        );
+        let mut shooting =
+            Shooting::within(&member.system, *omega, true, Some(self.interrupted), coordinates);
         visit(&member, &mut shooting, y)
     }
 
@@ -226,7 +220,7 @@ impl<'a> OrbitCurve<'a> {
     fn velocity(&self, z: &[f64]) -> Option<Vec<f64>> {
         self.with_shooting(z, |member, shooting, y| {
             let (state, _) = shooting.coordinates.state(y.get(..self.orbits.size())?);
-            let regime = Regime::new(member.model(), &state.points);
+            let regime = Regime::new(&member.system, &state.points);
             Some(shooting.coordinates.rate(&state, &regime))
         })
     }

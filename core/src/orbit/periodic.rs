@@ -150,7 +150,7 @@ impl<'a> PeriodicOrbits<'a> {
         let (observed, points) = (self.observe.len(), self.system.points());
         let size = 2 * self.system.modes() + points;
         Orbit {
-            response: Point::empty(omega, status, observed, points),
+            response: Point::empty(omega, status, observed, self.system.displacements()),
             range: vec![[f64::NAN; 2]; observed],
             state: vec![f64::NAN; size],
             multipliers: vec![c64::new(f64::NAN, f64::NAN); size],
@@ -171,8 +171,7 @@ impl<'a> PeriodicOrbits<'a> {
         let (progress, share) = (self.progress, self.share);
         let interrupted = || !progress(share);
         let system = Arc::clone(&self.system);
-        let mut shooting =
-            Shooting::new(self.model, &system, omega, self.half_wave, Some(&interrupted));
+        let mut shooting = Shooting::new(&system, omega, self.half_wave, Some(&interrupted));
         if let Some(rotation) = self.rotation {
             shooting.rotate(rotation, &system);
         }
@@ -340,7 +339,7 @@ impl<'a> PeriodicOrbits<'a> {
             orbit.response.displacement = displacement[..observed * orders].to_vec();
             orbit.response.contact_displacement = displacement[observed * orders..].to_vec();
             orbit.response.contact_force = survey.force();
-            orbit.response.contacts = survey.contacts.clone();
+            orbit.response.contacts = survey.summaries();
             orbit.range = survey.range[..observed].to_vec();
             (orbit.work, orbit.viscous) = (survey.work, survey.viscous);
             orbit.events = std::mem::take(&mut survey.events);

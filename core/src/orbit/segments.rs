@@ -47,7 +47,7 @@ pub(super) fn follow(
         shooting.narrow(number, count);
         let image = shooting.image(start)?;
         let state = shooting.end.as_ref()?;
-        let regime = Regime::new(member.model(), &state.points);
+        let regime = Regime::new(&member.system, &state.points);
         let rate = shooting.coordinates.rate(state, &regime);
         let derivative = if derivatives { shooting.derivative() } else { Mat::new() };
         segments.push(Segment { image, rate, derivative, slipped: shooting.slipped().to_vec() });

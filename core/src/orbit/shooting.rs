@@ -2,7 +2,6 @@
 //! after half a period.
 
 use super::rotation::Rotation;
-use crate::model::Model;
 use crate::motion::{Flow, Leg, ModalSystem, State, Transition};
 use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
@@ -44,19 +43,17 @@ pub(super) struct Shooting<'a> {
 
 impl<'a> Shooting<'a> {
     pub(super) fn new(
-        model: &'a Model,
         system: &'a ModalSystem,
         omega: f64,
         half_wave: bool,
         interrupted: Option<&'a dyn Fn() -> bool>,
     ) -> Self {
         let coordinates = Transition::new(system, omega);
-        Self::within(model, system, omega, half_wave, interrupted, coordinates)
+        Self::within(system, omega, half_wave, interrupted, coordinates)
     }
 
     /// As [`Shooting::new`], in given coordinates.
     pub(super) fn within(
-        model: &'a Model,
         system: &'a ModalSystem,
         omega: f64,
         half_wave: bool,
@@ -64,7 +61,7 @@ impl<'a> Shooting<'a> {
         coordinates: Transition<'a>,
     ) -> Self {
         let period = std::f64::consts::TAU / omega;
-        let flow = Flow::new(model, system, omega).granted(STEPS);
+        let flow = Flow::new(system, omega).granted(STEPS);
         let flow = match interrupted {
             Some(interrupted) => flow.watched(interrupted),
             None => flow,

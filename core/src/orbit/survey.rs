@@ -69,7 +69,10 @@ impl<'a> Survey<'a> {
                 self.widen(arc);
                 self.follow_slip(arc);
             }
-            Passage::Event { event, .. } => self.events.push(*event),
+            Passage::Event { event, .. } => {
+                let point = self.system.components()[event.point];
+                self.events.push(Event { point, ..*event });
+            }
         }
     }
 
@@ -169,9 +172,11 @@ impl<'a> Survey<'a> {
 
     /// Harmonics X_0, X_1, … of the observed DOFs and the contact displacements, row after row.
     pub(super) fn displacement(&self) -> Vec<c64> {
+        let (observed, contacts) = self.shapes.split_at(self.shapes.len() - self.system.points());
         let columns = self.system.modes() + self.system.points();
         let mut out = Vec::with_capacity(self.shapes.len() * self.orders);
-        for shape in &self.shapes {
+        let shared: Vec<usize> = self.system.shared(&(0..contacts.len()).collect::<Vec<_>>());
+        for shape in observed.iter().chain(shared.into_iter().map(|point| &contacts[point])) {
             for row in self.series.chunks_exact(columns) {
                 out.push(shape.iter().zip(row).map(|(s, c)| *c * *s).sum());
             }
@@ -179,12 +184,21 @@ impl<'a> Survey<'a> {
         out
     }
 
-    /// Harmonics of the contact forces, point after point.
+    /// Harmonics of the contact forces, contact displacement after contact displacement.
     pub(super) fn force(&self) -> Vec<c64> {
         let modes = self.system.modes();
         let columns = modes + self.system.points();
-        (0..self.system.points())
-            .flat_map(|point| self.series.chunks_exact(columns).map(move |row| row[modes + point]))
-            .collect()
+        let mut out = vec![c64::new(0.0, 0.0); self.system.displacements() * self.orders];
+        for (order, row) in self.series.chunks_exact(columns).enumerate() {
+            for (component, force) in self.system.components().iter().zip(&row[modes..]) {
+                out[component * self.orders + order] += force;
+            }
+        }
+        out
+    }
+
+    /// What the contact displacements do.
+    pub(super) fn summaries(&self) -> Vec<PointSummary> {
+        self.system.contact_summaries(&self.contacts)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{snecma_beam, System};
 use faer::{c64, mat, Mat};
-use stickslip_core::contact::{FrictionLaw, StructuralDamper};
+use stickslip_core::contact::{ContactLaw, StructuralDamper};
 use stickslip_core::model::{Contact, Model};
 use stickslip_core::structure::{HarmonicLoad, Structure};
 
@@ -37,7 +37,7 @@ pub fn beams(force: f64) -> System {
 }
 
 /// A model of `system` with further laws, each on the DOFs `dofs`.
-pub fn with_laws(system: &System, laws: Vec<(Box<dyn FrictionLaw>, Vec<usize>)>) -> Model {
+pub fn with_laws(system: &System, laws: Vec<(Box<dyn ContactLaw>, Vec<usize>)>) -> Model {
     let n = system.dofs();
     let structure =
         Structure::new(system.mass.as_ref(), system.damping.as_ref(), system.stiffness.as_ref())

@@ -242,11 +242,13 @@ def _stuck_forces(
     load = largest = 0.0
     for ref in varied:
         position, point = model.point(ref)
-        column = response.arrays.contact_force[:, :, response._columns(position, point)][:, :, 0]
-        forces = amplitude_of(np.ascontiguousarray(column), "half_range")
+        place = min(point, model.contacts[position].points - 1)
+        column = response.arrays.contact_force[:, :, response._columns(position, place)][:, :, 0]
+        share = model.contacts[position].slider_shares[point]
+        forces = share * amplitude_of(np.ascontiguousarray(column), "half_range")
         start = forces[np.isfinite(forces)][:1].sum()
         relative = variation.common == "factor" or variation.parameter == "level"
-        own = model.contacts[position].limits[point]
+        own = model.contacts[position].slider_limits[point]
         if relative and not 0.0 < own < np.inf:
             continue
         scale = own if relative else 1.0

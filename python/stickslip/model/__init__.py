@@ -6,6 +6,7 @@ from stickslip.model.contact import Contact, Jenkins
 from stickslip.model.force import Force, force_from_spec
 from stickslip.model.laws import LAWS, contact_from_spec
 from stickslip.model.model import ContactRef, Model, PointRef, natural_frequencies
+from stickslip.model.parallel_jenkins import ParallelJenkins
 from stickslip.model.structural import StructuralDamper
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
@@ -17,6 +18,7 @@ __all__ = [
     "Jenkins",
     "ModalDamping",
     "Model",
+    "ParallelJenkins",
     "PointRef",
     "Rayleigh",
     "SlipConfigurations",

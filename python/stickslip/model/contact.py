@@ -17,7 +17,7 @@ from stickslip.checks import Matrix, brief, real_number, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
 
-__all__ = ["Contact", "Jenkins"]
+__all__ = ["Contact", "Jenkins", "end_rows", "two_ends"]
 
 
 @dataclass(frozen=True)
@@ -75,8 +75,18 @@ class Contact(ABC):
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Slip limit of each contact point [N]."""
+        """Largest force of each contact point [N]."""
         return (self.parameters().get("slip_force", np.inf),) * self.points
+
+    @property
+    def slider_limits(self) -> tuple[float, ...]:
+        """Slip limit of each part that sticks or slips by itself [N]: as a rule, of each point."""
+        return self.limits
+
+    @property
+    def slider_shares(self) -> tuple[float, ...]:
+        """Share of the force of its stuck point that each of these parts carries."""
+        return (1.0,) * len(self.slider_limits)
 
     @abstractmethod
     def parameters(self) -> dict[str, float]:
@@ -230,14 +240,7 @@ class Jenkins(Contact):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        text(self.dof, "jenkins contact: dof")
-        if self.other is not None:
-            text(self.other, "jenkins contact: other")
-        if self.dof == self.other:
-            raise ModelError(
-                f"jenkins contact: both ends at dof {brief(self.dof)}; name another dof, or leave "
-                "`other` out for the ground"
-            )
+        two_ends(self.law, self.dof, self.other)
         entry = f"jenkins contact at {brief(self.dof)}"
         stiffness = real_number(self.stiffness, f"{entry}: stiffness", finite=False)
         slip_force = real_number(self.slip_force, f"{entry}: slip_force", finite=False)
@@ -288,11 +291,7 @@ class Jenkins(Contact):
         ModelError
             If the structure lacks a degree of freedom.
         """
-        rows = np.zeros((1, len(structure)))
-        rows[0, structure.index(self.dof)] = 1.0
-        if self.other is not None:
-            rows[0, structure.index(self.other)] = -1.0
-        return rows
+        return end_rows(structure, self.dof, self.other)
 
     @property
     def stuck_stiffness(self) -> Matrix:
@@ -338,6 +337,27 @@ class Jenkins(Contact):
             slip_force=_parameter(parameters, "slip_force", "jenkins contact"),
             name=name,
         )
+
+
+def two_ends(law: str, dof: object, other: object) -> None:
+    """Refuse two ends of a contact that are no two degrees of freedom."""
+    text(dof, f"{law} contact: dof")
+    if other is not None:
+        text(other, f"{law} contact: other")
+    if dof == other:
+        raise ModelError(
+            f"{law} contact: both ends at dof {brief(dof)}; name another dof, or leave "
+            "`other` out for the ground"
+        )
+
+
+def end_rows(structure: Structure, dof: str, other: str | None) -> Matrix:
+    """Return B of u = x_dof - x_other, shape (1, N)."""
+    rows = np.zeros((1, len(structure)))
+    rows[0, structure.index(dof)] = 1.0
+    if other is not None:
+        rows[0, structure.index(other)] = -1.0
+    return rows
 
 
 def _parameter(parameters: Mapping[str, object], key: str, entry: str) -> float:

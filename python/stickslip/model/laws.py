@@ -8,11 +8,14 @@ from inspect import signature
 from stickslip.checks import brief, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact, Jenkins
+from stickslip.model.parallel_jenkins import ParallelJenkins
 from stickslip.model.structural import StructuralDamper
 
 __all__ = ["LAWS", "contact_from_spec", "unknown_law"]
 
-LAWS: Mapping[str, type[Contact]] = {law.law: law for law in (Jenkins, StructuralDamper)}
+LAWS: Mapping[str, type[Contact]] = {
+    law.law: law for law in (Jenkins, ParallelJenkins, StructuralDamper)
+}
 """Every law by its name."""
 
 

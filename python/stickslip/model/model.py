@@ -163,7 +163,8 @@ class Model:
             contact = self.contact_index(point[0])
             owner = f"contact {brief(self.contact_names[contact])}"
             position = whole_number(point[1], f"{owner}: point")
-            _require_position("point", position, self.contacts[contact].points, owner)
+            sliders = len(self.contacts[contact].slider_limits)
+            _require_position("point", position, sliders, owner)
             return contact, position
         contact = self.contact_index(point)
         points = self.contacts[contact].points

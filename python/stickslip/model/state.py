@@ -154,7 +154,7 @@ class State:
         ModelError
             If the state cannot be one of this model.
         """
-        points = sum(contact.points for contact in model.contacts)
+        points = sum(len(contact.slider_limits) for contact in model.contacts)
         if self.dofs != model.structure.dofs or self.contact_force.size != points:
             raise ModelError(
                 f"{entry}: a state of {len(self.dofs)} dofs and {self.contact_force.size} contact "
@@ -179,7 +179,7 @@ def _motion(model: Model, values: object, entry: str) -> Float:
 
 
 def _forces(model: Model, values: object) -> Float:
-    sizes = [contact.points for contact in model.contacts]
+    sizes = [len(contact.slider_limits) for contact in model.contacts]
     forces = np.zeros(sum(sizes))
     if isinstance(values, Mapping):
         for reference, value in values.items():
@@ -212,14 +212,14 @@ def _require_held(model: Model, forces: Float, entry: str) -> None:
     """Refuse forces beyond what their contact can hold."""
     place = 0
     for name, contact in zip(model.contact_names, model.contacts, strict=True):
-        own = forces[place : place + contact.points]
-        for force, limit in zip(own, contact.limits, strict=True):
+        limits = contact.slider_limits
+        for force, limit in zip(forces[place:], limits, strict=False):
             if abs(force) > limit * (1.0 + _ROUNDING):
                 raise ModelError(
                     f"{entry}: {force:g} N at contact {name!r} exceeds its slip force of "
                     f"{limit:g} N; give a force within it"
                 )
-        place += contact.points
+        place += len(limits)
 
 
 def _rebuilt(dofs: tuple[str, ...], *arrays: Float) -> State:

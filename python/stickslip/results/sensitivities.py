@@ -271,7 +271,7 @@ def _known(model: Model, contact: PointRef | None) -> dict[tuple[Place, str], Ca
     for position in positions:
         owner, name = model.contacts[position], model.contact_names[position]
         for parameter, values in owner.adjustable().items():
-            if owner.points == 1 or (len(values) == 1 and only is None):
+            if len(owner.slider_limits) == 1 or (len(values) == 1 and only is None):
                 known[name, parameter] = (position, None, parameter)
             elif len(values) > 1:
                 for point in range(len(values)) if only is None else [only]:

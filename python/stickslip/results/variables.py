@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -162,10 +162,19 @@ def point_coordinates(model: Model) -> dict[Hashable, object]:
 
 def point_names(model: Model) -> list[str]:
     """Return a name for every contact point: that of its contact, numbered if it has several."""
+    return _numbered(model, [contact.points for contact in model.contacts])
+
+
+def slider_names(model: Model) -> list[str]:
+    """Return a name for every part that sticks or slips by itself."""
+    return _numbered(model, [len(contact.slider_limits) for contact in model.contacts])
+
+
+def _numbered(model: Model, counts: Sequence[int]) -> list[str]:
     return [
-        name if contact.points == 1 else f"{name}[{point}]"
-        for name, contact in zip(model.contact_names, model.contacts, strict=True)
-        for point in range(contact.points)
+        name if count == 1 else f"{name}[{position}]"
+        for name, count in zip(model.contact_names, counts, strict=True)
+        for position in range(count)
     ]
 
 
@@ -173,4 +182,4 @@ def state_names(model: Model) -> list[str]:
     """Return a name for every entry of a state: displacements, velocities, contact forces."""
     dofs = model.structure.dofs
     moved = [f"{letter} {dof}" for letter in "xv" for dof in dofs]
-    return moved + [f"f {point}" for point in point_names(model)]
+    return moved + [f"f {slider}" for slider in slider_names(model)]

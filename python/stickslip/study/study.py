@@ -28,9 +28,8 @@ from stickslip.study.tables import ForceTable, StudyTables
 if TYPE_CHECKING:
     from stickslip.results.result import Result
     from stickslip.study.disk_table import DiskTable, InterfaceTable
-    from stickslip.study.structural_table import StructuralTable
     from stickslip.study.structure_table import StructureTable
-    from stickslip.study.tables import JenkinsTable
+    from stickslip.study.tables import ContactTable
 
 __all__ = ["Case", "Study", "json_schema", "notable_dofs"]
 
@@ -284,7 +283,7 @@ def _model(tables: StudyTables, folder: Path) -> Model:
 
 def _check_parts(tables: StudyTables, structure: Structure) -> None:
     """Say in which contact or force a DOF or a number is wrong."""
-    parts: list[tuple[str, ForceTable | JenkinsTable | StructuralTable]] = [
+    parts: list[tuple[str, ForceTable | ContactTable]] = [
         *((f"contact {number}", contact) for number, contact in enumerate(tables.contact, 1)),
         *((f"force {number}", force) for number, force in enumerate(tables.force, 1)),
     ]
@@ -295,7 +294,7 @@ def _check_parts(tables: StudyTables, structure: Structure) -> None:
 
 
 def _check_touched(
-    part: ForceTable | JenkinsTable | StructuralTable,
+    part: ForceTable | ContactTable,
     own: Sequence[str],
     *,
     between_sectors: bool,

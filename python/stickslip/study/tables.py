@@ -14,7 +14,7 @@ from pydantic import (
 
 from stickslip.checks import brief
 from stickslip.errors import EntryError, ModelError
-from stickslip.model import Force, Jenkins
+from stickslip.model import Force, Jenkins, ParallelJenkins
 from stickslip.settings.entries import (
     ONE_OF,
     Angle,
@@ -55,10 +55,9 @@ def _length_unit(value: object) -> object:
 # ------------------------------------------------------------------------ [[contact]], [[force]]
 
 
-class JenkinsTable(Table):
-    """A Jenkins element: a spring in series with a Coulomb slider."""
+class EndsTable(Table):
+    """A contact of one relative displacement: to ground, or between two DOFs."""
 
-    law: Literal["jenkins"] = Field(description="Friction law.")
     dof: Dof | None = Field(
         default=None, description="The DOF, for a contact to ground.", examples=["tip"]
     )
@@ -67,8 +66,6 @@ class JenkinsTable(Table):
         description="The two DOFs, for a contact between them.",
         examples=[["left.tip", "right.tip"]],
     )
-    stiffness: StiffnessValue = Field(description="Contact stiffness k_d.")
-    slip_force: SlipForce = Field(description="Slip limit F_d; inf: it never slips.")
     name: Text | None = Field(default=None, description="Name; left out: that of the law.")
 
     @model_validator(mode="after")
@@ -89,10 +86,36 @@ class JenkinsTable(Table):
         """The DOFs it acts on."""
         return self.dofs or ((self.dof,) if self.dof is not None else ())
 
+
+class JenkinsTable(EndsTable):
+    """A Jenkins element: a spring in series with a Coulomb slider."""
+
+    law: Literal["jenkins"] = Field(description="Friction law.")
+    stiffness: StiffnessValue = Field(description="Contact stiffness k_d.")
+    slip_force: SlipForce = Field(description="Slip limit F_d; inf: it never slips.")
+
     def build(self) -> Jenkins:
         """Return the contact."""
         return Jenkins(
             *self.touched, stiffness=self.stiffness, slip_force=self.slip_force, name=self.name
+        )
+
+
+class ParallelJenkinsTable(EndsTable):
+    """Jenkins elements in parallel on one displacement: the discrete Iwan model."""
+
+    law: Literal["parallel-jenkins"] = Field(description="Friction law.")
+    stiffness: Some[StiffnessValue] = Field(
+        description="Stiffness of each element.", examples=[["1e5 N/m", 2e5]]
+    )
+    slip_forces: Some[SlipForce] = Field(
+        description="Slip limit of each element; inf: it never slips.", examples=[["5 N", 20]]
+    )
+
+    def build(self) -> ParallelJenkins:
+        """Return the contact."""
+        return ParallelJenkins(
+            *self.touched, stiffness=self.stiffness, slip_forces=self.slip_forces, name=self.name
         )
 
 
@@ -115,8 +138,10 @@ class ForceTable(Table):
 
 
 ContactTable = Annotated[
-    Annotated[JenkinsTable, Tag("<jenkins>")] | Annotated[StructuralTable, Tag("<structural>")],
-    chosen_by("law", "jenkins", "structural"),
+    Annotated[JenkinsTable, Tag("<jenkins>")]
+    | Annotated[ParallelJenkinsTable, Tag("<parallel-jenkins>")]
+    | Annotated[StructuralTable, Tag("<structural>")],
+    chosen_by("law", "jenkins", "parallel-jenkins", "structural"),
 ]
 """Each further friction law joins this union with a table of its own."""
 

@@ -1,33 +1,26 @@
-//! How the force of a Jenkins element depends on its parameters at a fixed displacement.
+//! How the force of an element depends on its parameters at a fixed displacement.
 //!
 //! Between the events of the path `f = k_d (u − u_a) ± F_d` while it sticks, from the turning
 //! point u_a at which the last slip ended, and `f = ±F_d` while it slips. The events move with
 //! the parameters, but f is continuous there, so that the integrals over the fixed intervals are
 //! the exact derivatives.
 
-use super::cycle::{Cycle, Slip, Stick};
-use super::jenkins::{union_of, Bounds};
-use super::{Jenkins, Motion, Residual};
-use crate::fourier::Harmonics;
+use super::cycle::{Cycle, Path, Slip, Stick};
+use super::slider_integrals::Bounds;
+use super::{Motion, Residual, Slider};
+use crate::fourier::{Harmonics, IntervalSums};
 
-impl Jenkins {
+impl Slider {
     /// Series of ∂f/∂k_d: `u − u_a` while it sticks, nothing while it slips.
-    pub(super) fn stiffness_slope(&self, motion: Motion<'_>, out: &mut [f64]) {
+    pub(super) fn stiffness_slope(&self, motion: Motion<'_>, path: &Path<'_>, out: &mut [f64]) {
         let harmonics = motion.table.harmonics();
-        match Cycle::new(motion, self.stiffness, self.slip_force) {
+        match Cycle::new(path, self.stiffness, self.slip_force) {
             // Without friction there is no force whatever the spring.
             Cycle::Free if self.slip_force == 0.0 => {}
-            // The first trace of a spring follows the whole motion.
-            Cycle::Free => {
-                let (middle, half_range) = swing(motion);
+            // The first trace of a spring follows the whole motion, too.
+            Cycle::Free | Cycle::Stuck => {
                 out.copy_from_slice(motion.displacement);
-                self.add_stuck_mean(motion, middle, half_range, out);
-            }
-            Cycle::Stuck { crest, trough } => {
-                let middle = 0.5 * (crest.value + trough.value);
-                let half_range = 0.5 * (crest.value - trough.value);
-                out.copy_from_slice(motion.displacement);
-                self.add_stuck_mean(motion, middle, half_range, out);
+                self.add_stuck_mean(motion, path.middle(), path.half_range(), out);
             }
             Cycle::Slipping { sticks, slips } => {
                 out.copy_from_slice(motion.displacement);
@@ -35,12 +28,14 @@ impl Jenkins {
                 if harmonics.has_mean() {
                     out[0] *= 2.0;
                 }
-                union_of(&slips, harmonics).products(harmonics, -weight, |i, j, v| {
+                let mut sums = IntervalSums::new(harmonics);
+                slips.iter().for_each(|slip| sums.add(slip.start, slip.end));
+                sums.products(harmonics, -weight, |i, j, v| {
                     out[i] += v * motion.displacement[j];
                 });
                 let mut bounds = Bounds::new(harmonics);
                 for stick in &sticks {
-                    let anchor = harmonics.jet(motion.displacement, stick.anchor)[0];
+                    let anchor = path.turns[stick.anchor].value;
                     bounds.add_integral(harmonics, stick.start, stick.end, -weight * anchor, out);
                 }
                 halve_mean(harmonics, out);
@@ -49,35 +44,40 @@ impl Jenkins {
     }
 
     /// Series of ∂f/∂F_d: the sign of the last slip.
-    pub(super) fn slip_force_slope(&self, motion: Motion<'_>, out: &mut [f64]) {
+    pub(super) fn slip_force_slope(&self, motion: Motion<'_>, path: &Path<'_>, out: &mut [f64]) {
         let harmonics = motion.table.harmonics();
         // Without friction the derivative is that of the first trace of it: slip all the time.
         if self.slip_force == 0.0 && self.stiffness > 0.0 {
-            return add_direction(motion, out);
+            return add_direction(motion, path, out);
         }
-        match Cycle::new(motion, self.stiffness, self.slip_force) {
+        match Cycle::new(path, self.stiffness, self.slip_force) {
             Cycle::Free => {}
-            Cycle::Stuck { crest, trough } => {
-                let middle = 0.5 * (crest.value + trough.value);
-                let room = self.slip_force - 0.5 * self.stiffness * (crest.value - trough.value);
-                let wanted = self.wanted_mean(motion.residual, middle);
+            Cycle::Stuck => {
+                let room = self.slip_force - self.stiffness * path.half_range();
+                let wanted = self.wanted_mean(motion.residual, path.middle());
                 if harmonics.has_mean() && wanted.abs() > room {
                     out[0] = 1.0_f64.copysign(wanted);
                 }
             }
             Cycle::Slipping { sticks, slips } => {
-                self.add_signs(motion, &sticks, &slips, out);
+                self.add_signs(harmonics, path, &sticks, &slips, out);
                 halve_mean(harmonics, out);
             }
         }
     }
 
-    fn add_signs(&self, motion: Motion<'_>, sticks: &[Stick], slips: &[Slip], out: &mut [f64]) {
-        let harmonics = motion.table.harmonics();
+    fn add_signs(
+        &self,
+        harmonics: &Harmonics,
+        path: &Path<'_>,
+        sticks: &[Stick],
+        slips: &[Slip],
+        out: &mut [f64],
+    ) {
         let weight = 2.0 / harmonics.span();
         let mut bounds = Bounds::new(harmonics);
         for stick in sticks {
-            let anchor = harmonics.jet(motion.displacement, stick.anchor)[0];
+            let anchor = path.turns[stick.anchor].value;
             let sign = (self.stiffness * anchor - stick.slip_load).signum();
             bounds.add_integral(harmonics, stick.start, stick.end, weight * sign, out);
         }
@@ -113,35 +113,12 @@ impl Jenkins {
     }
 }
 
-/// Middle and half the range of a displacement.
-fn swing(motion: Motion<'_>) -> (f64, f64) {
-    let harmonics = motion.table.harmonics();
-    let mut turns = Vec::new();
-    motion.table.turning_points(motion.displacement, &mut turns);
-    let mean = harmonics.mean(motion.displacement);
-    let high = turns.iter().map(|p| p.value).fold(mean, f64::max);
-    let low = turns.iter().map(|p| p.value).fold(mean, f64::min);
-    if harmonics.half_wave() {
-        return (0.0, high.max(-low));
-    }
-    (0.5 * (high + low), 0.5 * (high - low))
-}
-
 /// Adds the series of the sign of the velocity.
-fn add_direction(motion: Motion<'_>, out: &mut [f64]) {
+fn add_direction(motion: Motion<'_>, path: &Path<'_>, out: &mut [f64]) {
     let harmonics = motion.table.harmonics();
-    let mut turns = Vec::new();
-    motion.table.turning_points(motion.displacement, &mut turns);
-    let Some(&first) = turns.first() else { return };
-    let mirror = if harmonics.half_wave() { -1.0 } else { 1.0 };
-    let last = crate::fourier::TurningPoint {
-        theta: first.theta + harmonics.span(),
-        value: mirror * first.value,
-    };
-    turns.push(last);
     let weight = 2.0 / harmonics.span();
     let mut bounds = Bounds::new(harmonics);
-    for ends in turns.windows(2) {
+    for ends in path.turns.windows(2) {
         let sign = (ends[1].value - ends[0].value).signum();
         bounds.add_integral(harmonics, ends[0].theta, ends[1].theta, weight * sign, out);
     }

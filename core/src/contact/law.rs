@@ -1,0 +1,405 @@
+//! What a contact law is: one small trait, and the capabilities that a law may have beside it.
+//!
+//! The contact force is written `f = D u − q`: the stuck spring's force less the *slip load* q,
+//! which is what slip takes off it. The stuck structure carries D, so that the balance has to
+//! find q alone; it vanishes while a contact sticks.
+
+use super::{Aft, Describing, Parameter};
+use crate::fourier::SampleTable;
+use crate::Error;
+use faer::Mat;
+use std::sync::Arc;
+
+/// Samples per period where nothing controls their error.
+const UNCONTROLLED: usize = 1024;
+
+/// Force at mid-range of a contact that never slips. Its steady motion does not determine it: it
+/// is what the past has left, and has to be assumed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Residual {
+    /// The force swings about zero.
+    Centred,
+    /// The load was raised slowly from rest with an unloaded contact.
+    FromRest,
+    /// A given force [N], reduced where it would make the contact slip.
+    Value(f64),
+}
+
+impl Residual {
+    /// Whether a motion with half-wave symmetry keeps it under this assumption.
+    #[must_use]
+    pub fn is_symmetric(self) -> bool {
+        !matches!(self, Self::Value(value) if value != 0.0)
+    }
+}
+
+/// One period of the relative displacements at the points of a contact.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<'a> {
+    /// The harmonics kept, and their samples.
+    pub table: &'a SampleTable,
+    /// Real coefficients, point after point.
+    pub displacement: &'a [f64],
+    /// Assumed force at mid-range where the contact never slips.
+    pub residual: Residual,
+}
+
+/// Fourier coefficients of the slip load of one contact, and their derivative.
+#[derive(Debug, Clone, Default)]
+pub struct SlipLoad {
+    /// q, laid out as the displacement [N].
+    pub value: Vec<f64>,
+    /// ∂q/∂u, row by row, empty unless it was asked for [N/m].
+    pub tangent: Vec<f64>,
+    /// Whether the tangent differs from zero: a contact that sticks for good is a linear spring
+    /// and drops out of the Newton system.
+    pub active: bool,
+}
+
+impl SlipLoad {
+    pub(crate) fn reset(&mut self, size: usize, tangent: bool) {
+        self.value.clear();
+        self.value.resize(size, 0.0);
+        self.tangent.clear();
+        if tangent {
+            self.tangent.resize(size * size, 0.0);
+        }
+        self.active = false;
+    }
+}
+
+/// What one point of a contact does over a period.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PointSummary {
+    /// Share of the period in slip.
+    pub slip_fraction: f64,
+    /// Friction work per period [J].
+    pub dissipation: f64,
+}
+
+/// What a contact point does at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PointState {
+    /// It sticks.
+    Stuck,
+    /// It slips with positive force: the relative displacement grows.
+    Forward,
+    /// It slips with negative force.
+    Backward,
+}
+
+impl PointState {
+    /// Direction of slip: 1, −1, or 0 in stick.
+    #[must_use]
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Stuck => 0.0,
+            Self::Forward => 1.0,
+            Self::Backward => -1.0,
+        }
+    }
+
+    /// The state in the mirror image of the motion.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::Stuck => Self::Stuck,
+            Self::Forward => Self::Backward,
+            Self::Backward => Self::Forward,
+        }
+    }
+
+    /// Slip in the direction of `sign`.
+    #[must_use]
+    pub fn slipping(sign: f64) -> Self {
+        if sign > 0.0 {
+            Self::Forward
+        } else {
+            Self::Backward
+        }
+    }
+}
+
+/// A stretch of the period in which no point changes its state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phase {
+    /// Angle θ = ωt from which on, up to the start of the next one.
+    pub start: f64,
+    /// States of the points. A point without friction counts as stuck: it carries no force.
+    pub states: Vec<PointState>,
+}
+
+impl Phase {
+    /// Instants at which a law that keeps no account of its phases is asked.
+    pub const INSTANTS: usize = 4096;
+
+    /// The phases that show in the forces at equidistant instants: a point slips at its limit.
+    #[must_use]
+    pub fn from_forces(history: &[f64], limits: &[f64]) -> Vec<Self> {
+        let step = std::f64::consts::TAU * limits.len() as f64 / history.len() as f64;
+        let mut phases: Vec<Self> = Vec::new();
+        for (n, force) in history.chunks_exact(limits.len()).enumerate() {
+            let states: Vec<PointState> = force
+                .iter()
+                .zip(limits)
+                .map(|(f, limit)| match *limit {
+                    limit if limit > 0.0 && f.abs() >= limit => PointState::slipping(*f),
+                    _ => PointState::Stuck,
+                })
+                .collect();
+            if phases.last().is_none_or(|last| last.states != states) {
+                phases.push(Self { start: step * n as f64, states });
+            }
+        }
+        phases
+    }
+}
+
+/// Derivative of one step of a return map, with n displacements and m numbers of state; matrices
+/// row by row.
+#[derive(Debug, Clone, Default)]
+pub struct ReturnMapJacobian {
+    /// New state by old state, m × m.
+    pub by_state: Vec<f64>,
+    /// New state by the displacements before the step, m × n.
+    pub by_before: Vec<f64>,
+    /// New state by the displacements after the step, m × n.
+    pub by_after: Vec<f64>,
+    /// Force by the new state, n × m.
+    pub force_by_state: Vec<f64>,
+    /// Force by the displacements after the step at a fixed new state, n × n.
+    pub force_by_after: Vec<f64>,
+    /// Share of every displacement's contact that slips in the step.
+    pub slipping: Vec<f64>,
+}
+
+impl ReturnMapJacobian {
+    /// Clears the derivative for a law.
+    pub fn reset(&mut self, displacements: usize, state: usize) {
+        for (matrix, size) in [
+            (&mut self.by_state, state * state),
+            (&mut self.by_before, state * displacements),
+            (&mut self.by_after, state * displacements),
+            (&mut self.force_by_state, state * displacements),
+            (&mut self.force_by_after, displacements * displacements),
+            (&mut self.slipping, displacements),
+        ] {
+            matrix.clear();
+            matrix.resize(size, 0.0);
+        }
+    }
+
+    /// Whether nothing slips in the step.
+    #[must_use]
+    pub fn sticks(&self) -> bool {
+        self.slipping.iter().all(|share| *share == 0.0)
+    }
+}
+
+/// A law between one or several relative displacements and as many contact forces.
+///
+/// A law needs no more than what has no default here: the sampled evaluation ([`Aft`]) then gives
+/// its harmonics. A new law is one file in this folder and one line in its registry.
+pub trait ContactLaw: Send + Sync + std::fmt::Debug {
+    /// Name in messages and in the registry.
+    fn name(&self) -> &'static str;
+
+    /// Number n of relative displacements, and of contact forces.
+    fn displacements(&self) -> usize;
+
+    /// Number m of numbers that the law remembers.
+    fn state_size(&self) -> usize;
+
+    /// Stiffness D of the stuck contact, n × n, symmetric positive semidefinite [N/m].
+    fn stiffness(&self) -> Mat<f64>;
+
+    /// Stiffness of the state of the stuck contact, `∂z/∂u`, m × n.
+    fn state_stiffness(&self) -> Mat<f64>;
+
+    /// Whether the opposite motion gives the opposite force. An odd law under odd harmonics keeps
+    /// half-wave symmetry.
+    fn is_odd(&self) -> bool;
+
+    /// Whether the force is a monotone operator of the motion. A passive structure with laws that
+    /// all are has one steady motion.
+    fn is_monotone(&self) -> bool;
+
+    /// Largest force that every component can have [N]: 0 if it never carries any, infinite if it
+    /// never slips.
+    fn limits(&self) -> Vec<f64>;
+
+    /// Force of every component at which slip begins [N].
+    fn onsets(&self) -> Vec<f64> {
+        self.limits()
+    }
+
+    /// Return map of one step: takes the state through a change of the displacements and gives the
+    /// force after it. All states are zero where the displacements are and nothing has slipped.
+    fn return_map(
+        &self,
+        before: &[f64],
+        after: &[f64],
+        state: &mut [f64],
+        force: &mut [f64],
+        jacobian: Option<&mut ReturnMapJacobian>,
+    );
+
+    /// Slip load of a contact of one displacement that stays between `low` and `high` without slip,
+    /// with its derivatives in the two; `None` if it slips. Laws of several displacements have no
+    /// such rule: a march of them starts without slip.
+    fn stuck_load(&self, _residual: Residual, _low: f64, _high: f64) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// The same law with all its stiffness multiplied by `share`, for homotopies.
+    fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw>;
+
+    /// The same law with all its forces multiplied by `factor` and its stiffness kept: at `factor`
+    /// times the displacements its force is `factor` times as large.
+    fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw>;
+
+    /// The parameters, each addressed by its position; none by default.
+    fn parameters(&self) -> Vec<Parameter> {
+        Vec::new()
+    }
+
+    /// The same law with another value of one parameter.
+    ///
+    /// # Errors
+    /// A value that the law refuses.
+    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn ContactLaw>, Error> {
+        let _ = index;
+        Err(Error::value("parameter", value, "the law has no parameters"))
+    }
+
+    /// An evaluation of its own for periodic motions, if the law has one: exact Fourier integrals.
+    fn closed_form(&self) -> Option<&dyn HarmonicForce> {
+        None
+    }
+
+    /// The laws that this one is the sum of, if it is one: each remembers its own motion.
+    fn parts(&self) -> Vec<Box<dyn ContactLaw>> {
+        Vec::new()
+    }
+
+    /// The elements whose events exact motions are followed by, if the law is made of such.
+    fn elements(&self) -> Option<Vec<Element>> {
+        None
+    }
+
+    /// Describing function of a law of one displacement under a harmonic one of the given
+    /// amplitude, if it has one in closed form.
+    fn describing(&self, _amplitude: f64) -> Option<Describing> {
+        None
+    }
+}
+
+/// Evaluates a law's own form, or the sampled one where there is none.
+macro_rules! evaluated {
+    ($law:expr, $call:ident($($argument:expr),*)) => {
+        match $law.closed_form() {
+            Some(exact) => exact.$call($($argument),*),
+            None => Aft { law: $law, samples: UNCONTROLLED }.$call($($argument),*),
+        }
+    };
+}
+
+/// Every law has the harmonics of a periodic motion: by its closed form, or by samples.
+impl dyn ContactLaw + '_ {
+    /// See [`HarmonicForce::slip_load`].
+    pub fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
+        evaluated!(self, slip_load(motion, tangent, out));
+    }
+
+    /// See [`HarmonicForce::resolves`].
+    #[must_use]
+    pub fn resolves(&self) -> usize {
+        evaluated!(self, resolves())
+    }
+
+    /// See [`HarmonicForce::summary`].
+    pub fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
+        evaluated!(self, summary(motion, out));
+    }
+
+    /// See [`HarmonicForce::state_history`].
+    #[must_use]
+    pub fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+        evaluated!(self, state_history(motion, samples))
+    }
+
+    /// See [`HarmonicForce::force_history`].
+    #[must_use]
+    pub fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+        evaluated!(self, force_history(motion, samples))
+    }
+
+    /// See [`HarmonicForce::phases`].
+    #[must_use]
+    pub fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
+        evaluated!(self, phases(motion))
+    }
+
+    /// See [`HarmonicForce::parameter_slope`].
+    pub fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
+        evaluated!(self, parameter_slope(motion, index, out));
+    }
+}
+
+/// The harmonics of the contact force of a periodic motion, and what belongs to them.
+pub trait HarmonicForce {
+    /// Slip load of a periodic motion and, if asked for, its tangent. Both belong to each other
+    /// exactly: the tangent is the derivative of this value, history included.
+    fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad);
+
+    /// Highest harmonic that the evaluation resolves; all of them where it is exact.
+    fn resolves(&self) -> usize {
+        usize::MAX
+    }
+
+    /// Slip share and friction work of every component.
+    fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]);
+
+    /// States at `samples` equidistant instants, instant after instant.
+    fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
+
+    /// Contact forces at `samples` equidistant instants, instant after instant [N].
+    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
+
+    /// What the components do over a period, from change to change.
+    fn phases(&self, motion: Motion<'_>) -> Vec<Phase>;
+
+    /// Series of the derivative of the contact force in parameter `index` at fixed displacement,
+    /// laid out as the displacement.
+    fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]);
+}
+
+/// A part of a law that exact motions follow from event to event.
+#[derive(Debug, Clone)]
+pub struct Element {
+    /// Components of the law's relative displacement that it acts on.
+    pub components: Vec<usize>,
+    /// What it does.
+    pub law: Arc<dyn SlipElement>,
+}
+
+/// An element that is linear between events: each of its points sticks, or slips at its limit. Its
+/// forces are its state.
+pub trait SlipElement: Send + Sync + std::fmt::Debug {
+    /// Stiffness of the stuck element, points × points [N/m].
+    fn stiffness(&self) -> Mat<f64>;
+
+    /// Slip limit of every point [N].
+    fn limits(&self) -> Vec<f64>;
+
+    /// `∂f/∂u` while the points are in these states, points × points [N/m].
+    fn tangent(&self, points: &[PointState]) -> Mat<f64>;
+
+    /// Slip per relative displacement, `s' = R u'`, while the points are in these states,
+    /// points × points; rows of points that stick are zero.
+    fn slip_rate(&self, points: &[PointState]) -> Mat<f64>;
+
+    /// Takes the forces through a change `du` of the displacements. `gain`, if asked for, is the
+    /// derivative of the new forces in the trial forces `f + D du`, points × points, row by row.
+    fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>);
+}
