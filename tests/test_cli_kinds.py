@@ -253,18 +253,21 @@ def parse(analysis):
     [
         ('kind = "exat"\nomega = [1]', "analysis: unknown kind 'exat'; did you mean 'exact'?"),
         ('kind = "exact"', "analysis: 'omega' is missing"),
-        ('kind = "exact"\nomega = [1]\nharmonics = "auto"', "harmonics = 'auto' is not a whole"),
+        ('kind = "exact"\nomega = [1]\nharmonics = "auto"', "harmonics: 'auto' is not an integer"),
         ('kind = "exact"\nomega = [1]\nmethod = "newton"', "unknown key 'method'"),
         ('kind = "transient"\nomega = [1]', "omega = [1] is not a frequency [rad/s]"),
-        ('kind = "transient"\nomega = 1\nperiods = 0', "periods = 0 is below the least allowed"),
+        ('kind = "transient"\nomega = 1\nperiods = 0', "periods: 0 lies below 1"),
         ('kind = "transient"\nomega = 1\nscheme = "rk5"', "scheme: unknown choice 'rk5'; did you"),
         ('kind = "transient"\nomega = 1\ntolerance = 2', "tolerance: 2; give a fraction from"),
         ('kind = "transient"\nomega = 1\nstart = {tpi = 1}', "start[1]: unknown dof 'tpi'"),
         ('kind = "transient"\nomega = 1\nstart = {tip = "1 N"}', "'1 N' is not a length [m]"),
         ('kind = "transient"\nomega = 1\nsteps = 2', "steps: 2 lies below 4"),
-        ('kind = "certify"\nomega = [1]\npoints = "some"', "points: unknown choice 'some'"),
-        ('kind = "certify"\nomega = [1]\npoints = []', "points = [] has too few entries"),
-        ('kind = "certify"\nomega = [1]\npoints = 0', "points = 0 is below the least allowed, 1"),
+        (
+            'kind = "certify"\nomega = [1]\npoints = "some"',
+            "points: 'some'; give \"all\", a number",
+        ),
+        ('kind = "certify"\nomega = [1]\npoints = []', "points: empty; give at least one"),
+        ('kind = "certify"\nomega = [1]\npoints = 0', "points: 0 lies below 1"),
     ],
 )
 def test_bad_studies_are_refused_in_one_line(analysis, message):

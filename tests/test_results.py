@@ -268,6 +268,8 @@ def test_settings():
     assert type(settings.harmonics) is int
     assert settings.fixed_harmonics == 5
     assert ForcedSettings.of().fixed_harmonics is None
+    # Files of other versions have other keys.
+    assert ForcedSettings.stored({"span": [1.0, 2.0], "speed": 3}).span == (1.0, 2.0)
     with pytest.raises(ss.ModelError, match="a range has two ends, not 3"):
         ForcedSettings.of(span=(1, 2, 3))
     with pytest.raises(ValueError, match="frozen"):

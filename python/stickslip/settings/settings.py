@@ -46,9 +46,10 @@ class Settings(Table):
     @classmethod
     def stored(cls, values: Mapping[str, Any]) -> Self:
         """Return the settings that a file holds; keys of other versions are passed over."""
-        return cls.of(
-            **{name: _frozen(values[name]) for name in cls.model_fields if name in values}
-        )
+        known = {name: _frozen(values[name]) for name in cls.model_fields if name in values}
+        if not known:
+            raise KeyError("settings")
+        return cls.of(**known)
 
     def part(self, kind: type[Settings]) -> dict[str, Any]:
         """Return the values of those keys that other settings have as well."""
