@@ -252,8 +252,9 @@ def run(*changes, tail=""):
         (
             [('"jenkins"', '"coulomb"')],
             "",
-            "contact 1: unknown law 'coulomb'; known: 'jenkins', 'structural' (slip limits are "
-            "slip_force of 'jenkins' and slip_forces of 'structural')",
+            "contact 1: unknown law 'coulomb'; known: 'jenkins', 'parallel-jenkins', 'structural' "
+            "(slip limits are slip_force of 'jenkins' and slip_forces of 'parallel-jenkins' and "
+            "slip_forces of 'structural')",
         ),
         (
             [('"forced-response"', '"exact-response"')],
