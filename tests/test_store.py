@@ -314,7 +314,7 @@ def test_foreign_file(tmp_path):
         ("stickslip_format", "new", r"in format new, this version reads format 1"),
         ("stickslip_kind", "wave_fronts", r"holds 'wave_fronts', this version reads 'forced_"),
         ("settings", "{", r"not a complete stickslip result"),
-        ("settings", "{}", r"not a complete stickslip result \('settings'\)"),
+        ("settings", "{}", r"not a complete stickslip result \('span'\)"),
         ("settings", '{"span": null, "tolerance": 3}', r"\(tolerance: 3; give a fraction"),
     ],
 )

@@ -141,6 +141,7 @@ def forced_response(
     samples: int | Literal["auto"] = "auto",
     max_samples: int = 16384,
     observe: Iterable[str] | str | None = None,
+    outputs: Iterable[str] | str = (),
     progress: Progress = None,
 ) -> ForcedResponse: ...
 def limit_cycles(

@@ -60,6 +60,9 @@ def settings_of(kind: type[ColumnResult], dataset: xr.Dataset) -> Settings:
     if values.get("samples", 0) is None:
         # The first files had no name for what is automatic.
         values["samples"] = "auto"
+    if "span" in set(kind.settings_class.model_fields) - set(values):
+        # No default stands for the frequencies of a result.
+        raise KeyError("span")
     return kind.settings_class.stored(values)
 
 
