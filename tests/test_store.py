@@ -95,7 +95,7 @@ def test_dataset(frf):
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs
-    assert flags["flag_values"].tolist() == list(range(8))
+    assert flags["flag_values"].tolist() == list(range(9))
     assert flags["flag_meanings"].split() == [
         "converged",
         "stalled",
@@ -105,6 +105,7 @@ def test_dataset(frf):
         "orbit_stalled",
         "samples_limit",
         "steps_limit",
+        "effort_limit",
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5
