@@ -41,7 +41,8 @@ def mixed(seed: int) -> tuple[ss.Model, np.ndarray]:
 
 
 # In 22, 26, 40 and 59 contacts that stick in the truncated solution slip in the true one, which one
-# Newton step does not foresee. In 1 one DOF errs by 7 estimates with H = 1: its extended balance is bounded.
+# Newton step does not foresee. In 1 one DOF errs by 7 estimates with H = 1: its extended
+# balance is bounded.
 BOUNDED = pytest.mark.xfail(strict=True, reason="bounded extended balance, H = 1")
 
 
