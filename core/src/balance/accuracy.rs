@@ -6,10 +6,9 @@
 //! The change between two values of H, in contrast, says nothing, for the error stays on a plateau
 //! until Hω passes the highest stuck natural frequency.
 //!
-//! No tangent foresees that contacts begin to slip or to stick. Where the force at the motion that
-//! the first step leads to is not the one that it expects, a second step follows, with the tangent
-//! there, and the larger change counts. A second step with the first tangent overshoots ten times
-//! and more at nearly rigid contacts.
+//! No tangent foresees that contacts begin to slip, or cease to. Where they do at the motion that the
+//! first step leads to, a second step follows, with the tangent there, and the larger change counts.
+//! Elsewhere a second step would overshoot, ten times and more at nearly rigid contacts.
 
 use super::condensed::Condensed;
 use super::solution::Point;
@@ -33,10 +32,6 @@ const LEAST: usize = 2;
 /// Newton steps that the solution of a point with slip takes: four to seven, the last ones without a
 /// tangent of their own.
 const OF_SOLUTION: f64 = 6.0;
-
-/// Share of the first step, contact by contact, that its end may leave unexplained: more is worth a
-/// second step.
-const UNEXPLAINED: f64 = 0.02;
 
 /// The change after the second step counts up to this multiple of that after the first: where it is
 /// still larger, the second one overshoots.
@@ -161,11 +156,12 @@ pub(super) fn errors(
         if last || !extension.second_step {
             break;
         }
-        let size = extended.relative_size(&step, &x);
-        extended.residual(&x, &mut defect);
-        if extended.relative_size(&defect, &x) <= UNEXPLAINED * size {
+        extended.value(&x, &mut defect);
+        let mut contacts = extended.loads.iter().zip(&extended.values);
+        if contacts.all(|(before, after)| before.active == after.active) {
             break;
         }
+        extended.residual(&x, &mut defect);
     }
     Ok(Some(errors))
 }

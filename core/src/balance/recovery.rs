@@ -98,7 +98,7 @@ impl ForcedBalance<'_> {
         let extension = Extension::new(harmonics, point.omega, self.model, slipping, observed);
         let extension = extension.within(resolved);
         let order = extension.highest;
-        let least = if climb { (2 * (order + 1)).next_power_of_two() } else { 0 };
+        let least = if climb { (8 * (order + 1)).next_power_of_two() } else { 0 };
         let model = self.evaluated(point.samples.map(|samples| samples.max(least)))?;
         let table = self.table(order);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
