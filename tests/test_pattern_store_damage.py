@@ -211,6 +211,7 @@ def test_a_full_disk_keeps_what_is_stored(tmp_path, monkeypatch, pages):
 def test_a_failing_disk_keeps_what_is_stored(tmp_path, monkeypatch, code, text, remedy):
     """Every statement fails in turn; what was stored before it stays, and is gone on from."""
     connect, unbroken = sqlite3.connect, small(None)
+    monkeypatch.setattr(pattern_store, "_PATIENCE", 0.0)
     for allowed in range(40):
         calls = iter(range(allowed))
 

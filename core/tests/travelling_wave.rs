@@ -195,8 +195,9 @@ fn mistuned_rings_move_as_the_assembled_disk() {
             for (a, b) in a.displacement.iter().zip(&b.displacement) {
                 assert!((a - b).norm() < 1e-9 * size);
             }
+            // How far an estimate may look depends on what the equations cost in either form.
             for (a, b) in a.error_estimate.iter().zip(&b.error_estimate) {
-                assert!((a - b).abs() < 1e-6 * size);
+                assert!(*a <= 10.0 * b + 1e-9 * size && *b <= 10.0 * a + 1e-9 * size, "{a} {b}");
             }
         }
         assert!(slips);
