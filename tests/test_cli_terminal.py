@@ -67,9 +67,10 @@ class Screen(io.StringIO):
         return True
 
 
-def test_the_bar_appears_only_on_a_terminal_and_only_for_long_work(monkeypatch):
+def test_the_bar_appears_only_on_a_terminal_and_only_for_long_work(monkeypatch, capsys):
     with console.progress("beam", wanted=True) as advance:
-        assert advance is None
+        advance(0.3)
+    assert "beam" not in capsys.readouterr().err
     for name in ("stdout", "stderr"):
         monkeypatch.setattr(sys, name, Screen())
     monkeypatch.setenv("TERM", "xterm")

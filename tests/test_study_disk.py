@@ -131,7 +131,7 @@ def test_engine_orders_of_harmonics():
             r"coupling = .* is not written as a table; begin it with \[\[coupling\]\]",
         ),
         (
-            TUNED.replace("harmonics = 3", "harmonics = 3\nkind = 'exact'"),
+            TUNED.replace(ANALYSIS, "[analysis]\nkind = 'transient'\nomega = 20\n"),
             "travelling wave",
         ),
     ],

@@ -47,6 +47,7 @@ pub(super) fn add_slipping(
             let Some(slip) = slip else { continue };
             let constant = -weight * slip.sign * slider.slip_force;
             add_difference(turns.antiderivative(slip.turn), &at_end, constant, &mut out.value);
+            sums.add_length(k * (slip.end - slip.start));
             sums.add_end(slip.start, -k);
             turns.slipping[slip.turn] += k;
         }

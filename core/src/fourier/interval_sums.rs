@@ -28,13 +28,18 @@ impl IntervalSums {
 
     /// Adds the interval `[start, end]` of angles.
     pub fn add(&mut self, start: f64, end: f64) {
+        self.add_length(end - start);
         self.add_end(end, 1.0);
         self.add_end(start, -1.0);
     }
 
-    /// Adds the end of an interval, with the weight of the interval; its start with the negative one.
+    /// Adds the length of an interval, times its weight.
+    pub fn add_length(&mut self, length: f64) {
+        self.cos[0] += length;
+    }
+
+    /// Adds the end of an interval, with its weight; the start with the negative one.
     pub fn add_end(&mut self, theta: f64, weight: f64) {
-        self.cos[0] += weight * theta;
         let (sin_step, cos_step) = (self.step as f64 * theta).sin_cos();
         let (mut cos, mut sin) = (cos_step, sin_step);
         let mut order = self.step;
