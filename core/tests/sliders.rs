@@ -1,5 +1,7 @@
 //! Sliders in parallel on one displacement against as many elements of their own.
 
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use common::damper::Random;
