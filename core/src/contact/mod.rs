@@ -1,6 +1,7 @@
 //! Contact laws behind one trait: series of u in, series of slip load and tangent out.
 
 mod aft;
+mod aft_march;
 mod cycle;
 mod derivative;
 mod describing;
