@@ -7,7 +7,7 @@ use crate::watch::{given_up, watched};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use stickslip_core::motion::{self, Fate, FateSettings, Reason};
+use stickslip_core::motion::{self, Classification, ClassificationSettings, Reason};
 use stickslip_core::Model;
 
 /// What becomes of some starts.
@@ -20,16 +20,25 @@ pub struct Fates {
 }
 
 /// One row per start; of those that were not decided the numbers are missing.
-fn columns(py: Python<'_>, fates: &[Option<Fate>], model: &Model) -> PyResult<Py<PyDict>> {
+fn columns(
+    py: Python<'_>,
+    fates: &[Option<Classification>],
+    model: &Model,
+) -> PyResult<Py<PyDict>> {
     let dofs = model.compliance().dofs();
     let states = model.states();
     let fates = || fates.iter().map(Option::as_ref);
-    let numbers = |of: fn(&Fate) -> f64| fates().map(move |fate| fate.map_or(f64::NAN, of));
-    let rows = |of: fn(&Fate) -> &[f64]| fates().map(move |fate| fate.map_or(&[][..], of));
+    let numbers =
+        |of: fn(&Classification) -> f64| fates().map(move |fate| fate.map_or(f64::NAN, of));
+    let rows =
+        |of: fn(&Classification) -> &[f64]| fates().map(move |fate| fate.map_or(&[][..], of));
     let columns = Columns::new(py);
-    let reason = |fate: Option<&Fate>| code(fate.map_or(Reason::Interrupted, |fate| fate.reason));
+    let reason =
+        |fate: Option<&Classification>| code(fate.map_or(Reason::Interrupted, |fate| fate.reason));
     columns.one("reason", fates().map(reason))?;
-    let mode = |fate: Option<&Fate>| fate.and_then(|fate| fate.mode).map_or(-1, |mode| mode as i64);
+    let mode = |fate: Option<&Classification>| {
+        fate.and_then(|fate| fate.mode).map_or(-1, |mode| mode as i64)
+    };
     columns.one("mode", fates().map(mode))?;
     columns.one("share", numbers(|fate| fate.share))?;
     columns.one("omega", numbers(|fate| fate.omega))?;
@@ -60,7 +69,7 @@ pub fn fates(
     let starts: Vec<Vec<f64>> =
         starts.as_array().outer_iter().map(|row| row.iter().copied().collect()).collect();
     let ClassifySettings { periods, tolerance } = settings;
-    let settings = FateSettings { periods, tolerance };
+    let settings = ClassificationSettings { periods, tolerance };
     let model = &problem.model;
     let began = std::time::Instant::now();
     let own = Arc::clone(model);
@@ -78,11 +87,11 @@ pub fn fates(
 
 fn code(reason: Reason) -> u8 {
     match reason {
-        Reason::Held => 0,
+        Reason::Stuck => 0,
         Reason::Passive => 1,
         Reason::Closed => 2,
-        Reason::Wanders => 3,
-        Reason::Outgrown => 4,
+        Reason::Aperiodic => 3,
+        Reason::Unbounded => 4,
         Reason::Overflow => 5,
         Reason::Settling => 6,
         Reason::Growing => 7,

@@ -7,7 +7,7 @@ use crate::settings::{HarmonicSettings, LawEvaluation, PeakSettings};
 use crate::watch::{watched_parts, whole};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::design::{self, study, Pattern, Summit};
+use stickslip_core::design::{self, study, GlobalPeak, Pattern};
 use stickslip_core::structure::RingCoupling;
 
 /// A tuned disk, from which rings of deviating sectors are made.
@@ -60,16 +60,17 @@ impl TunedDisk {
     }
 }
 
-fn quest(groups: Vec<Vec<usize>>, measure: &str, span: (f64, f64)) -> PyResult<design::Quest> {
-    Ok(design::Quest { groups, measure: measure.parse().map_err(refused)?, span })
+fn quest(groups: Vec<Vec<usize>>, measure: &str, span: (f64, f64)) -> PyResult<design::PeakQuery> {
+    Ok(design::PeakQuery { groups, measure: measure.parse().map_err(refused)?, span })
 }
 
 /// Frequency, amplitude, DOF by its position in the group, status, harmonics kept, error estimate,
 /// whether it lies at an end of the range.
 type Row = (f64, f64, usize, u8, usize, f64, bool);
 
-fn row(summit: &Summit) -> Row {
-    let Summit { omega, amplitude, member, status, harmonics, error_estimate, at_edge } = *summit;
+fn row(summit: &GlobalPeak) -> Row {
+    let GlobalPeak { omega, amplitude, member, status, harmonics, error_estimate, at_edge } =
+        *summit;
     (omega, amplitude, member, status_code(status), harmonics, error_estimate, at_edge)
 }
 

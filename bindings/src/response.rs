@@ -16,7 +16,7 @@ use stickslip_core::balance::{
     self, sweep, sweep_range, ForcedBalance, Kept, Point, PointStatus, Progress, HIGHEST_ORDER,
 };
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
-use stickslip_core::orbit::Rescue;
+use stickslip_core::orbit::OrbitInitialGuess;
 use stickslip_core::timing::Profile;
 use stickslip_core::Model;
 
@@ -126,7 +126,7 @@ pub fn forced_response(
     };
     let model = Arc::clone(&problem.model);
     swept(py, progress.as_ref(), observe.len(), &model, move |model, kept, look| {
-        let orbits = Rescue::new(model, settings.residual, &observe, look);
+        let orbits = OrbitInitialGuess::new(model, settings.residual, &observe, look);
         let balance = ForcedBalance::new(model, settings, &observe)?
             .watched(look)
             .rescued(&orbits)

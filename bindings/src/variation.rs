@@ -1,7 +1,7 @@
 //! What is varied.
 
 use pyo3::prelude::*;
-use stickslip_core::model::{Common, Variation};
+use stickslip_core::model::{ParameterMode, Variation};
 
 /// What is varied: `parameter` is "level" or one of the laws', of contacts or of points.
 #[derive(FromPyObject)]
@@ -18,7 +18,7 @@ impl From<Varied> for Variation {
         match parameter.as_str() {
             "level" => Self::Level,
             _ => {
-                let common = if factor { Common::Factor } else { Common::Value };
+                let common = if factor { ParameterMode::Factor } else { ParameterMode::Value };
                 Self::Law { parameter, contacts, common }
             }
         }

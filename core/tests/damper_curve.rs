@@ -10,7 +10,7 @@ use stickslip_core::balance::{
 };
 use stickslip_core::design::{optimum, peak_curve, Target};
 use stickslip_core::fourier::Measure;
-use stickslip_core::model::{Common, Variation};
+use stickslip_core::model::{ParameterMode, Variation};
 use stickslip_core::Model;
 
 const SPAN: (f64, f64) = (150.0, 240.0);
@@ -19,7 +19,7 @@ fn fixed(highest: usize) -> Settings {
     Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
 }
 
-fn slip_force(contacts: &[usize], common: Common) -> Variation {
+fn slip_force(contacts: &[usize], common: ParameterMode) -> Variation {
     let contacts = contacts.iter().map(|&contact| (contact, None)).collect();
     Variation::Law { parameter: "slip_force".to_owned(), contacts, common }
 }
@@ -60,7 +60,7 @@ fn compare(system: &System, dof: usize, values: &[f64], highest: usize) {
     let model = system.model();
     let target = Target { dof, measure: Measure::HalfRange, span: SPAN };
     let contacts: Vec<usize> = (0..system.dampers.len()).collect();
-    let variation = slip_force(&contacts, Common::Value);
+    let variation = slip_force(&contacts, ParameterMode::Value);
     let curve = peak_curve(&model, fixed(highest), &variation, values, &target, &|_| true).unwrap();
     for peak in &curve.peaks {
         assert_eq!(peak.status, PointStatus::Converged);
@@ -92,7 +92,7 @@ fn a_curve_costs_less_than_ten_sweeps() {
     for highest in [3, 15] {
         let target = Target { dof: 1, measure: Measure::HalfRange, span: SPAN };
         let values = geometric(1.0, 1e4, 60);
-        let variation = slip_force(&[0], Common::Value);
+        let variation = slip_force(&[0], ParameterMode::Value);
         let curve =
             peak_curve(&model, fixed(highest), &variation, &values, &target, &|_| true).unwrap();
         let balance = ForcedBalance::new(&model, fixed(highest), &[0, 1, 2]).unwrap();
@@ -115,12 +115,12 @@ fn slopes_of_the_curve_match_differences() {
     let model = beam_pair(20.313).model();
     let target = Target { dof: 1, measure: Measure::HalfRange, span: SPAN };
     let variations = [
-        slip_force(&[0, 1, 2], Common::Value),
-        slip_force(&[0, 2], Common::Factor),
+        slip_force(&[0, 1, 2], ParameterMode::Value),
+        slip_force(&[0, 2], ParameterMode::Factor),
         Variation::Law {
             parameter: "stiffness".to_owned(),
             contacts: vec![(1, None)],
-            common: Common::Value,
+            common: ParameterMode::Value,
         },
         Variation::Level,
     ];
@@ -151,7 +151,8 @@ fn optima_of_the_beam() {
             optimum(&model, settings, variation, bounds, &target, &|_| true).unwrap()
         };
         let by_level = run(&Variation::Level, (0.5, 60.0));
-        let by_force = run(&slip_force(&[0], Common::Value), (246.048 / 60.0, 246.048 / 0.5));
+        let by_force =
+            run(&slip_force(&[0], ParameterMode::Value), (246.048 / 60.0, 246.048 / 0.5));
         for (position, (load, ratio)) in expected.into_iter().enumerate() {
             let (one, two) = (by_level.minima[position], by_force.minima[position]);
             println!("{dof}: level {one:?}\n  force {two:?}");
@@ -171,7 +172,7 @@ fn narrow_resonances_are_found_from_afar() {
     let model = system.model();
     let target = Target { dof: 1, measure: Measure::HalfRange, span: SPAN };
     let values = [300.0, 3e3, 1e4, 1e6];
-    let variation = slip_force(&[0], Common::Value);
+    let variation = slip_force(&[0], ParameterMode::Value);
     let curve = peak_curve(&model, fixed(9), &variation, &values, &target, &|_| true).unwrap();
     assert!(curve.points < 40 * values.len(), "{}", curve.points);
     for peak in &curve.peaks {
@@ -193,7 +194,7 @@ fn an_optimum_is_that_of_a_fine_grid() {
         let model = system.model();
         let target = Target { dof, measure: Measure::HalfRange, span: SPAN };
         let contacts: Vec<usize> = (0..system.dampers.len()).collect();
-        let variation = slip_force(&contacts, Common::Factor);
+        let variation = slip_force(&contacts, ParameterMode::Factor);
         let found =
             optimum(&model, fixed(7), &variation, (0.05, 10.0), &target, &|_| true).unwrap();
         let grid = geometric(0.05, 10.0, 400);
@@ -215,7 +216,7 @@ fn an_ended_analysis_keeps_what_it_has() {
         calls.get() < 200
     };
     let values = geometric(1.0, 1e4, 60);
-    let variation = slip_force(&[0], Common::Value);
+    let variation = slip_force(&[0], ParameterMode::Value);
     let curve = peak_curve(&model, fixed(7), &variation, &values, &target, &progress).unwrap();
     let done = curve.peaks.iter().filter(|p| p.status == PointStatus::Converged).count();
     assert!(curve.interrupted && done > 0 && done < values.len(), "{done}");

@@ -11,7 +11,7 @@ use stickslip_core::balance::{
     sweep, ExactOrbits, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
 };
 use stickslip_core::contact::Residual;
-use stickslip_core::orbit::Rescue;
+use stickslip_core::orbit::OrbitInitialGuess;
 
 /// Two masses with a damper between them, three hundred times as stiff as they are, and hardly any
 /// viscous damping.
@@ -29,7 +29,7 @@ fn stiff_and_light() -> System {
 
 /// Exact orbits, and how often they were asked for and found.
 struct Counted<'a> {
-    rescue: Rescue<'a>,
+    rescue: OrbitInitialGuess<'a>,
     asked: Cell<usize>,
     answered: Cell<usize>,
 }
@@ -53,7 +53,7 @@ fn stiff_dampers_on_lightly_damped_structures_are_solved() {
     let model = stiff_and_light().model();
     let omega: Vec<f64> = (0..60).map(|i| 150.0 + 0.6 * f64::from(i)).collect();
     let progress = |_: f64| true;
-    let rescue = Rescue::new(&model, Residual::Centred, &[], &progress);
+    let rescue = OrbitInitialGuess::new(&model, Residual::Centred, &[], &progress);
     let counted = Counted { rescue, asked: Cell::new(0), answered: Cell::new(0) };
     for highest in [7, 9, 15] {
         let mut settings =

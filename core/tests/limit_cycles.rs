@@ -8,7 +8,7 @@ use common::snecma_beam;
 use faer::{mat, Mat};
 use stickslip_core::balance::HarmonicChoice;
 use stickslip_core::contact::Jenkins;
-use stickslip_core::model::{Common, Contact, Model, NegativeDamping, Variation};
+use stickslip_core::model::{Contact, Model, NegativeDamping, ParameterMode, Variation};
 use stickslip_core::orbit::{limit_cycles, ChangeKind, Cycle, CycleSettings, LimitCycles};
 use stickslip_core::solve::End;
 use stickslip_core::structure::Structure;
@@ -132,7 +132,7 @@ fn the_stiffness_of_the_single_mass_can_be_followed() {
     let stiffness = Variation::Law {
         parameter: "stiffness".to_owned(),
         contacts: vec![(0, None)],
-        common: Common::Factor,
+        common: ParameterMode::Factor,
     };
     let settings =
         CycleSettings { values: Some(vec![10.0, 1000.0]), range: (0.01, 1001.0), ..exact(0, None) };
@@ -156,7 +156,7 @@ fn the_slip_force_scales_the_motion_alone() {
     let force = Variation::Law {
         parameter: "slip_force".to_owned(),
         contacts: vec![(0, None)],
-        common: Common::Value,
+        common: ParameterMode::Value,
     };
     let settings = CycleSettings {
         values: Some(vec![100.0, 492.096]),

@@ -12,7 +12,7 @@ use stickslip_core::balance::{
     sweep, ForcedBalance, HarmonicChoice, Linearised, PointStatus, Settings,
 };
 use stickslip_core::contact::{Jenkins, Residual};
-use stickslip_core::design::{study, summits, Pattern, Quest, Summits, TunedDisk};
+use stickslip_core::design::{study, summits, Pattern, PeakQuery, Summits, TunedDisk};
 use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use stickslip_core::model::{Model, SectorContact};
 use stickslip_core::structure::{HarmonicLoad, RingCoupling};
@@ -62,10 +62,10 @@ fn disk(sectors: usize) -> TunedDisk {
     }
 }
 
-fn quest(model: &Model) -> Quest {
+fn quest(model: &Model) -> PeakQuery {
     let dofs = model.compliance().dofs();
     let groups = vec![(0..dofs).step_by(3).collect(), (1..dofs).step_by(3).collect()];
-    Quest { groups, measure: Measure::HalfRange, span: SPAN }
+    PeakQuery { groups, measure: Measure::HalfRange, span: SPAN }
 }
 
 /// Amplitudes of some DOFs at frequencies, point after point.
@@ -137,7 +137,7 @@ fn run(threads: usize, most: usize) -> Vec<(usize, Summits)> {
         (0..12).map(|n| (0..5).map(|i| 0.05 * f64::from(n * 5 + i).sin()).collect()).collect();
     let patterns: Vec<Pattern<'_>> =
         rows.iter().enumerate().map(|(n, row)| Pattern { disk: n % 2, deviations: row }).collect();
-    let quest = Quest { groups: vec![vec![1]], measure: Measure::HalfRange, span: SPAN };
+    let quest = PeakQuery { groups: vec![vec![1]], measure: Measure::HalfRange, span: SPAN };
     let mut found = Vec::new();
     let asked = Cell::new(0);
     study(
@@ -184,12 +184,12 @@ fn impossible_disks_and_ranges_are_refused() {
     assert!(refused(&[0.0, 0.0, -1.0, 0.0, 0.0]).contains("must be a deviation above -1"));
     let model = disk.mistuned(&PATTERN).unwrap();
     for (groups, span) in [(vec![vec![0]], (260.0, 150.0)), (vec![vec![]], SPAN), (vec![], SPAN)] {
-        let quest = Quest { groups, measure: Measure::Max, span };
+        let quest = PeakQuery { groups, measure: Measure::Max, span };
         assert!(summits(&model, SETTINGS, &quest, None, &|_| true).is_err());
     }
-    let quest = Quest { groups: vec![vec![99]], measure: Measure::Max, span: SPAN };
+    let quest = PeakQuery { groups: vec![vec![99]], measure: Measure::Max, span: SPAN };
     assert!(summits(&model, SETTINGS, &quest, None, &|_| true).is_err());
-    let ended = Quest { groups: vec![vec![0]], ..quest };
+    let ended = PeakQuery { groups: vec![vec![0]], ..quest };
     let found = summits(&model, SETTINGS, &ended, None, &|_| false).unwrap();
     assert!(found.interrupted());
 }

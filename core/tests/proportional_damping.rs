@@ -4,7 +4,7 @@
 
 use faer::{c64, Mat};
 use stickslip_core::structure::{
-    compliance, real_modes, Compliance, Destabilised, DirectCompliance, HarmonicLoad, Ports,
+    compliance, real_modes, Compliance, DirectCompliance, FlutterCompliance, HarmonicLoad, Ports,
     Receptance, Structure,
 };
 
@@ -185,7 +185,8 @@ fn negative_damping_of_a_law_keeps_the_modes() {
     for law in [false, true] {
         let structure = structure.clone().with_law(law);
         let family =
-            Destabilised::new(&structure, ports.rows.as_ref(), negative.as_ref(), law).unwrap();
+            FlutterCompliance::new(&structure, ports.rows.as_ref(), negative.as_ref(), law)
+                .unwrap();
         assert_eq!(family.name(), "free modes");
         let total = &own + faer::Scale(0.05) * &negative;
         let summed = Structure::new(mass.as_ref(), total.as_ref(), stiffness.as_ref()).unwrap();
@@ -198,6 +199,7 @@ fn negative_damping_of_a_law_keeps_the_modes() {
         assert!(error < 1e-8, "{error:.1e}");
     }
     let local = Mat::from_fn(size, size, |i, j| if i == 3 && j == 3 { -1.0 } else { 0.0 });
-    let family = Destabilised::new(&structure, ports.rows.as_ref(), local.as_ref(), false).unwrap();
+    let family =
+        FlutterCompliance::new(&structure, ports.rows.as_ref(), local.as_ref(), false).unwrap();
     assert_eq!(family.name(), "direct");
 }

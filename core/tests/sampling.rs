@@ -14,7 +14,7 @@ use stickslip_core::balance::{
     SampleChoice, Settings, Solution,
 };
 use stickslip_core::contact::Jenkins;
-use stickslip_core::design::{peak_curve, summits, Quest, Target};
+use stickslip_core::design::{peak_curve, summits, PeakQuery, Target};
 use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use stickslip_core::model::{Model, SectorContact, Variation};
 use stickslip_core::orbit::{orbit_sweep, OrbitSettings, PeriodicOrbits};
@@ -252,7 +252,8 @@ fn ranges_and_summits_choose_samples_too() {
     let balance = ForcedBalance::new(&model, settings, &[1]).unwrap();
     let curve = sweep_range(balance, 150.0, 250.0).unwrap();
     assert!(curve.points.iter().all(|p| p.status == PointStatus::Converged));
-    let quest = Quest { groups: vec![vec![1]], measure: Measure::HalfRange, span: (150.0, 250.0) };
+    let quest =
+        PeakQuery { groups: vec![vec![1]], measure: Measure::HalfRange, span: (150.0, 250.0) };
     let summit = |settings: Settings| {
         let found = summits(&model, settings, &quest, None, &|_| true).unwrap();
         assert_eq!(found.summits[0].status, PointStatus::Converged);

@@ -142,7 +142,7 @@ impl CycleBalance<'_> {
     }
 }
 
-/// Common harmonics of a series laid out for one set, in another.
+/// ParameterMode harmonics of a series laid out for one set, in another.
 pub(super) fn recast(from: &Harmonics, to: &Harmonics, values: &[f64]) -> Vec<f64> {
     super::Unknowns::new(from.clone(), values.to_vec()).recast(to)
 }

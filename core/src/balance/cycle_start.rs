@@ -6,7 +6,7 @@
 use super::limit_cycle::CycleBalance;
 use crate::contact::{ContactLaw, Describing};
 use crate::fourier::SampleTable;
-use crate::model::SelfExcited;
+use crate::model::FlutterModel;
 use crate::solve::at_parameter;
 use crate::structure::StuckMode;
 use crate::Error;
@@ -47,7 +47,7 @@ impl Onset {
     ///
     /// # Errors
     /// No such mode; a mode that moves no contact or that the negative damping does not excite.
-    pub fn new(family: &SelfExcited<'_>, mode: usize, value: f64) -> Result<Self, Error> {
+    pub fn new(family: &FlutterModel<'_>, mode: usize, value: f64) -> Result<Self, Error> {
         let laws = family.laws_at(value)?;
         let model = family.model();
         let mut stiffness = model.contact_stiffness().clone();
@@ -108,7 +108,7 @@ impl Onset {
     /// [`CycleBalance`]. Nothing if Newton's method finds none.
     pub fn first_point(
         &self,
-        family: &SelfExcited<'_>,
+        family: &FlutterModel<'_>,
         table: &SampleTable,
         ratio: f64,
         interrupted: &dyn Fn() -> bool,

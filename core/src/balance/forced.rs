@@ -2,7 +2,7 @@
 
 use super::condensed::{Condensed, Path};
 use super::evaluation::{Evaluated, Evaluations};
-use super::ladder::{Ladder, Resolution, Rung, Verdict};
+use super::resolution_control::{Decision, Level, Resolution, ResolutionControl};
 use super::scale::{Scale, OF_HARMONICS};
 use super::settings::{Method, Settings};
 use super::solution::{Point, PointStatus};
@@ -29,7 +29,7 @@ pub struct ForcedBalance<'a> {
     forced: Vec<usize>,
     tables: BTreeMap<usize, Arc<SampleTable>>,
     evaluations: Evaluations<'a>,
-    pub(super) ladder: Ladder,
+    pub(super) ladder: ResolutionControl,
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
@@ -41,9 +41,9 @@ pub struct ForcedBalance<'a> {
 /// What passes from one balance to the next: sample tables, the rung that automatic harmonics and
 /// samples start from, and the account of the work.
 #[derive(Default)]
-pub(crate) struct Memory {
+pub(crate) struct WarmStart {
     tables: BTreeMap<usize, Arc<SampleTable>>,
-    rung: Rung,
+    rung: Level,
     half_wave: bool,
     pub(crate) profile: Profile,
 }
@@ -89,7 +89,7 @@ impl<'a> ForcedBalance<'a> {
             settings,
             observe,
             half_wave,
-            ladder: Ladder::new(settings, &forced),
+            ladder: ResolutionControl::new(settings, &forced),
             forced,
             tables: BTreeMap::new(),
             evaluations: Evaluations::new(model),
@@ -146,8 +146,8 @@ impl<'a> ForcedBalance<'a> {
 
     /// Takes over what another balance of the same contacts has learnt.
     #[must_use]
-    pub(crate) fn remembering(mut self, memory: Memory) -> Self {
-        let Memory { tables, rung, half_wave, profile } = memory;
+    pub(crate) fn remembering(mut self, memory: WarmStart) -> Self {
+        let WarmStart { tables, rung, half_wave, profile } = memory;
         if half_wave == self.half_wave {
             (self.tables, self.ladder.rung) = (tables, rung);
         }
@@ -156,9 +156,9 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// What a balance of the same contacts can use again.
-    pub(crate) fn into_memory(self) -> Memory {
+    pub(crate) fn into_memory(self) -> WarmStart {
         let Self { tables, ladder, half_wave, profile, .. } = self;
-        Memory { tables, rung: ladder.rung, half_wave, profile }
+        WarmStart { tables, rung: ladder.rung, half_wave, profile }
     }
 
     /// Whether only odd harmonics are solved for.
@@ -202,13 +202,13 @@ impl<'a> ForcedBalance<'a> {
             point.iterations = climb.iterations;
             resolution = match point.status {
                 PointStatus::Converged => match self.judge(&point) {
-                    Verdict::Enough => return Ok(point),
-                    Verdict::Limit(limit) => {
+                    Decision::Enough => return Ok(point),
+                    Decision::Limit(limit) => {
                         let exact = self.orbit_beyond(&point, limit);
                         point.status = limit;
                         return Ok(self.ended(exact.unwrap_or(point), resolution, &climb));
                     }
-                    Verdict::More(more) => {
+                    Decision::More(more) => {
                         if let Some(last) = self.instead_of(more, &point) {
                             return Ok(self.ended(last, resolution, &climb));
                         }
@@ -260,7 +260,7 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// What the errors of a solution ask for.
-    fn judge(&mut self, point: &Point) -> Verdict {
+    fn judge(&mut self, point: &Point) -> Decision {
         self.scale.include(point);
         let scale = &self.scale;
         let of_samples = scale.relative(point, OF_HARMONICS, point.sampling_error.iter().copied());

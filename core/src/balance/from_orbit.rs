@@ -2,8 +2,8 @@
 //! frequencies ask for so many that the balance equations would cost more.
 
 use super::forced::ForcedBalance;
-use super::ladder::Resolution;
 use super::price::{Price, TRIFLE};
+use super::resolution_control::Resolution;
 use super::scale::OF_HARMONICS;
 use super::settings::HIGHEST_ORDER;
 use super::solution::{Point, PointStatus};

@@ -8,14 +8,14 @@ use super::condensed::{gathered_load, scattered};
 use super::unknowns::{gather, Unknowns};
 use crate::contact::{ContactLaw, Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
-use crate::model::SelfExcited;
+use crate::model::FlutterModel;
 use crate::solve::{norm, Curve};
-use crate::structure::Answer;
+use crate::structure::CompliancePartials;
 use faer::{c64, Mat};
 
 /// The equations of a limit cycle in the unknowns `(U, ω, scalar)`.
 pub struct CycleBalance<'a> {
-    pub(super) family: &'a SelfExcited<'a>,
+    pub(super) family: &'a FlutterModel<'a>,
     pub(super) table: &'a SampleTable,
     interrupted: &'a dyn Fn() -> bool,
     /// Of the last evaluation.
@@ -33,7 +33,7 @@ pub(super) struct Evaluation {
     pub(super) laws: Vec<Box<dyn ContactLaw>>,
     pub(super) stiffness: Mat<f64>,
     pub(super) ratio: f64,
-    answers: Vec<Answer>,
+    answers: Vec<CompliancePartials>,
     pub(super) loads: Vec<SlipLoad>,
 }
 
@@ -42,7 +42,7 @@ impl<'a> CycleBalance<'a> {
     /// displacements, ω and the scalar.
     #[must_use]
     pub fn new(
-        family: &'a SelfExcited<'a>,
+        family: &'a FlutterModel<'a>,
         table: &'a SampleTable,
         start: &[f64],
         interrupted: &'a dyn Fn() -> bool,
@@ -120,7 +120,7 @@ impl<'a> CycleBalance<'a> {
     }
 
     /// `A q` over all harmonics, for one of the matrices of an answer.
-    fn product(&self, matrix: impl Fn(&Answer) -> &Mat<c64>, load: &[f64]) -> Vec<f64> {
+    fn product(&self, matrix: impl Fn(&CompliancePartials) -> &Mat<c64>, load: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; load.len()];
         let Some(at) = &self.at else { return out };
         let harmonics = self.table.harmonics();
@@ -284,7 +284,7 @@ impl Curve for CycleBalance<'_> {
 mod tests {
     use super::*;
     use crate::contact::Jenkins;
-    use crate::model::{Common, Contact, Model, NegativeDamping, Variation};
+    use crate::model::{Contact, Model, NegativeDamping, ParameterMode, Variation};
     use crate::structure::Structure;
     use faer::mat;
 
@@ -309,7 +309,7 @@ mod tests {
         let law = |name: &str| Variation::Law {
             parameter: name.to_owned(),
             contacts: vec![(0, None), (1, None)],
-            common: Common::Factor,
+            common: ParameterMode::Factor,
         };
         for (coupled, variation) in [
             (false, Variation::Ratio),
@@ -320,7 +320,8 @@ mod tests {
             let (model, negative) = model(coupled);
             let by_law = variation != Variation::Ratio;
             let family =
-                SelfExcited::new(&model, NegativeDamping::Whole(negative), variation, 0.7).unwrap();
+                FlutterModel::new(&model, NegativeDamping::Whole(negative), variation, 0.7)
+                    .unwrap();
             let table = SampleTable::new(Harmonics::new(5, true));
             let size = 2 * table.harmonics().slots();
             let mut z: Vec<f64> =

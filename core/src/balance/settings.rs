@@ -1,6 +1,6 @@
 //! Settings of a forced response, each with its default.
 
-use super::ladder::{resolving, Resolution};
+use super::resolution_control::{resolving, Resolution};
 use crate::contact::Residual;
 use crate::solve::{FirstJacobian, NewtonSettings};
 use crate::Error;

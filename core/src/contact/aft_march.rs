@@ -3,7 +3,7 @@
 
 use super::law::ReturnMapJacobian;
 use super::march_rate::{is_elastic, FrictionWork, Rate};
-use super::passage::SLOW;
+use super::periodic_march::SLOW;
 use super::samples::Samples;
 use super::{Aft, ContactLaw, Motion, Residual};
 use std::f64::consts::TAU;

@@ -24,7 +24,7 @@ pub struct Elastic {
 
 /// What a body does while some of its points slip.
 #[derive(Debug, Clone)]
-pub(crate) struct Sliding {
+pub(crate) struct ReducedStiffness {
     /// `∂f/∂u`, points × points [N/m].
     pub(crate) tangent: Mat<f64>,
     /// Slip per displacement, `s' = R u'`, rows of points that stick zero. Where the slip is not
@@ -122,7 +122,7 @@ impl Elastic {
     }
 
     /// What the body does while the points marked in `slips` slip.
-    pub(crate) fn sliding(&self, slips: &[bool]) -> Sliding {
+    pub(crate) fn sliding(&self, slips: &[bool]) -> ReducedStiffness {
         let (points, rank) = (self.root.nrows(), self.rank());
         let slipping: Vec<usize> = (0..points).filter(|&i| slips[i]).collect();
         let held = self.directions(&slipping);
@@ -144,7 +144,7 @@ impl Elastic {
         let mut slip_rate = self.least_slip(&slipping, &held, &self.root.transpose().to_owned());
         drop_rounding(&mut tangent);
         drop_rounding(&mut slip_rate);
-        Sliding { tangent, slip_rate }
+        ReducedStiffness { tangent, slip_rate }
     }
 
     /// Orthonormal basis of the strains that the rows of some points span.

@@ -9,10 +9,10 @@
 //! points are common to all elements, so that the tangent has one term of rank one for each of them,
 //! however many elements there are.
 
-use super::cycle::{Cycle, Path};
 use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement as _};
 use super::registry::numbers;
 use super::slider_integrals::add_slipping;
+use super::stick_slip::{Path, StickSlipIntervals};
 use super::{
     ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointSummary, Residual, Slider,
     SlipLoad,
@@ -77,8 +77,9 @@ impl Jenkins {
         self.sliders.iter().map(|slider| slider.stiffness / total * of(slider)).sum()
     }
 
-    fn cycles(&self, path: &Path<'_>) -> Vec<Cycle> {
-        let cycle = |slider: &Slider| Cycle::new(path, slider.stiffness, slider.slip_force);
+    fn cycles(&self, path: &Path<'_>) -> Vec<StickSlipIntervals> {
+        let cycle =
+            |slider: &Slider| StickSlipIntervals::new(path, slider.stiffness, slider.slip_force);
         self.sliders.iter().map(cycle).collect()
     }
 
@@ -257,14 +258,14 @@ impl HarmonicForce for Jenkins {
         out.reset(size, tangent);
         let path = Path::new(motion);
         let cycles = self.cycles(&path);
-        if cycles.iter().any(|cycle| matches!(cycle, Cycle::Slipping { .. })) {
+        if cycles.iter().any(|cycle| matches!(cycle, StickSlipIntervals::Slipping { .. })) {
             out.active = true;
             add_slipping(&self.sliders, motion, &path, &cycles, tangent, out);
         }
         for (slider, cycle) in self.sliders.iter().zip(&cycles) {
             match cycle {
-                Cycle::Free => slider.add_free(motion, tangent, out),
-                Cycle::Stuck if harmonics.has_mean() => {
+                StickSlipIntervals::Free => slider.add_free(motion, tangent, out),
+                StickSlipIntervals::Stuck if harmonics.has_mean() => {
                     slider.add_stuck(motion, &path, tangent, out);
                 }
                 _ => {}
@@ -275,7 +276,8 @@ impl HarmonicForce for Jenkins {
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
         let (path, span) = (Path::new(motion), motion.table.harmonics().span());
         let of = |slider: &Slider| {
-            slider.summary(&Cycle::new(&path, slider.stiffness, slider.slip_force), span)
+            slider
+                .summary(&StickSlipIntervals::new(&path, slider.stiffness, slider.slip_force), span)
         };
         out[0] = PointSummary {
             slip_fraction: self.weighted(|slider| of(slider).slip_fraction),
@@ -294,12 +296,12 @@ impl HarmonicForce for Jenkins {
             let u = harmonics.jet(motion.displacement, theta)[0];
             for (slider, cycle) in self.sliders.iter().zip(&cycles) {
                 history.push(match cycle {
-                    Cycle::Free => 0.0,
-                    Cycle::Stuck => {
+                    StickSlipIntervals::Free => 0.0,
+                    StickSlipIntervals::Stuck => {
                         let load = slider.held_load(motion.residual, middle, half_range).0;
                         slider.stiffness * u - load
                     }
-                    Cycle::Slipping { sticks, slips } => {
+                    StickSlipIntervals::Slipping { sticks, slips } => {
                         let span = harmonics.span();
                         let turns = ((theta - sticks[0].start) / span).floor();
                         let folded = theta - turns * span;

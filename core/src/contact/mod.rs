@@ -1,8 +1,8 @@
 //! Contact laws behind one trait: series of u in, series of slip load and tangent out.
 
+mod active_set;
 mod aft;
 mod aft_march;
-mod cycle;
 mod derivative;
 mod describing;
 mod elastic;
@@ -12,14 +12,14 @@ mod jets;
 mod law;
 mod march_rate;
 mod parameter;
-mod passage;
+mod periodic_march;
 mod registry;
 mod samples;
 mod slider;
 mod slider_integrals;
 mod slider_parameters;
 mod slip_series;
-mod slip_set;
+mod stick_slip;
 mod structural;
 mod structural_parameters;
 mod transitions;

@@ -1,7 +1,7 @@
 //! One elastic, perfectly plastic element: a spring k_d in series with a slider of limit F_d.
 
-use super::cycle::{Cycle, Path, Slip, Stick};
 use super::law::SlipElement;
+use super::stick_slip::{Path, Slip, Stick, StickSlipIntervals};
 use super::{Motion, PointState, PointSummary, Residual, SlipLoad};
 use crate::Error;
 use faer::Mat;
@@ -70,14 +70,14 @@ impl Slider {
         }
     }
 
-    pub(super) fn summary(&self, cycle: &Cycle, span: f64) -> PointSummary {
+    pub(super) fn summary(&self, cycle: &StickSlipIntervals, span: f64) -> PointSummary {
         match cycle {
-            Cycle::Free => PointSummary {
+            StickSlipIntervals::Free => PointSummary {
                 slip_fraction: f64::from(u8::from(self.slip_force == 0.0)),
                 dissipation: 0.0,
             },
-            Cycle::Stuck => PointSummary::default(),
-            Cycle::Slipping { slips, .. } => {
+            StickSlipIntervals::Stuck => PointSummary::default(),
+            StickSlipIntervals::Slipping { slips, .. } => {
                 let length: f64 = slips.iter().map(|slip| slip.end - slip.start).sum();
                 let travel: f64 = slips.iter().map(|slip| slip.travel).sum();
                 PointSummary {

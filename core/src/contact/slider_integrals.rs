@@ -3,7 +3,7 @@
 //! Turning points are common to all elements on a displacement: what is anchored there is summed
 //! before the tangent takes one term of rank one for each of them.
 
-use super::cycle::{Cycle, Path};
+use super::stick_slip::{Path, StickSlipIntervals};
 use super::{Motion, Slider, SlipLoad};
 use crate::fourier::{Harmonics, IntervalSums};
 
@@ -13,7 +13,7 @@ pub(super) fn add_slipping(
     sliders: &[Slider],
     motion: Motion<'_>,
     path: &Path<'_>,
-    cycles: &[Cycle],
+    cycles: &[StickSlipIntervals],
     tangent: bool,
     out: &mut SlipLoad,
 ) {
@@ -24,7 +24,7 @@ pub(super) fn add_slipping(
     let mut sums = IntervalSums::new(harmonics);
     let mut at_end = vec![0.0; size];
     for (slider, cycle) in sliders.iter().zip(cycles) {
-        let Cycle::Slipping { sticks, slips } = cycle else { continue };
+        let StickSlipIntervals::Slipping { sticks, slips } = cycle else { continue };
         let k = slider.stiffness;
         for (index, stick) in sticks.iter().enumerate() {
             // The last interval ends at the last turning point, without slip behind it.

@@ -5,8 +5,8 @@
 //! the parameters, but f is continuous there, so that the integrals over the fixed intervals are
 //! the exact derivatives.
 
-use super::cycle::{Cycle, Path, Slip, Stick};
 use super::slider_integrals::Bounds;
+use super::stick_slip::{Path, Slip, Stick, StickSlipIntervals};
 use super::{Motion, Residual, Slider};
 use crate::fourier::{Harmonics, IntervalSums};
 
@@ -14,15 +14,15 @@ impl Slider {
     /// Series of ∂f/∂k_d: `u − u_a` while it sticks, nothing while it slips.
     pub(super) fn stiffness_slope(&self, motion: Motion<'_>, path: &Path<'_>, out: &mut [f64]) {
         let harmonics = motion.table.harmonics();
-        match Cycle::new(path, self.stiffness, self.slip_force) {
+        match StickSlipIntervals::new(path, self.stiffness, self.slip_force) {
             // Without friction there is no force whatever the spring.
-            Cycle::Free if self.slip_force == 0.0 => {}
+            StickSlipIntervals::Free if self.slip_force == 0.0 => {}
             // The first trace of a spring follows the whole motion, too.
-            Cycle::Free | Cycle::Stuck => {
+            StickSlipIntervals::Free | StickSlipIntervals::Stuck => {
                 out.copy_from_slice(motion.displacement);
                 self.add_stuck_mean(motion, path.middle(), path.half_range(), out);
             }
-            Cycle::Slipping { sticks, slips } => {
+            StickSlipIntervals::Slipping { sticks, slips } => {
                 out.copy_from_slice(motion.displacement);
                 let weight = 2.0 / harmonics.span();
                 if harmonics.has_mean() {
@@ -50,16 +50,16 @@ impl Slider {
         if self.slip_force == 0.0 && self.stiffness > 0.0 {
             return add_direction(motion, path, out);
         }
-        match Cycle::new(path, self.stiffness, self.slip_force) {
-            Cycle::Free => {}
-            Cycle::Stuck => {
+        match StickSlipIntervals::new(path, self.stiffness, self.slip_force) {
+            StickSlipIntervals::Free => {}
+            StickSlipIntervals::Stuck => {
                 let room = self.slip_force - self.stiffness * path.half_range();
                 let wanted = self.wanted_mean(motion.residual, path.middle());
                 if harmonics.has_mean() && wanted.abs() > room {
                     out[0] = 1.0_f64.copysign(wanted);
                 }
             }
-            Cycle::Slipping { sticks, slips } => {
+            StickSlipIntervals::Slipping { sticks, slips } => {
                 self.add_signs(harmonics, path, &sticks, &slips, out);
                 halve_mean(harmonics, out);
             }

@@ -3,7 +3,7 @@
 //! On a stretch `q = (D − T) u + κ`. Products of basis functions are summed over all stretches of
 //! the same slip set at once; moving transitions add nothing, because f is continuous.
 
-use super::passage::Passage;
+use super::periodic_march::PeriodicMarch;
 use super::slider_integrals::Bounds;
 use super::{Motion, SlipLoad};
 use crate::fourier::{Harmonics, IntervalSums};
@@ -11,7 +11,7 @@ use faer::Mat;
 
 /// Writes the series of the slip load of a passage and, if it carries rates, its tangent.
 pub(super) fn write(
-    passage: &Passage,
+    passage: &PeriodicMarch,
     stiffness: &Mat<f64>,
     motion: Motion<'_>,
     out: &mut SlipLoad,

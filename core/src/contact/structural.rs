@@ -8,10 +8,10 @@
 //! (`increment`).
 
 use super::derivative::Derivative;
-use super::elastic::{Elastic, Sliding};
+use super::elastic::{Elastic, ReducedStiffness};
 use super::increment::Increment;
 use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement};
-use super::passage::{Passage, Stretch};
+use super::periodic_march::{PeriodicMarch, Stretch};
 use super::registry::numbers;
 use super::slip_series::{self, halve_means};
 use super::{ContactLaw, Motion, Parameter, Parameters, Phase, PointState, PointSummary, SlipLoad};
@@ -118,7 +118,7 @@ impl StructuralDamper {
         Self::new(stiffness.as_ref(), limits)
     }
 
-    fn sliding(&self, states: &[PointState]) -> Sliding {
+    fn sliding(&self, states: &[PointState]) -> ReducedStiffness {
         let moves = states.iter().zip(&self.limits);
         let slips: Vec<bool> =
             moves.map(|(state, limit)| *state != PointState::Stuck || *limit == 0.0).collect();
@@ -258,7 +258,7 @@ impl HarmonicForce for StructuralDamper {
         if motion.displacement.iter().any(|u| !u.is_finite()) {
             return;
         }
-        let passage = Passage::new(
+        let passage = PeriodicMarch::new(
             self,
             motion,
             if tangent { Derivative::Coefficients } else { Derivative::None },
@@ -278,7 +278,7 @@ impl HarmonicForce for StructuralDamper {
         out.fill(PointSummary::default());
         let harmonics = motion.table.harmonics();
         let span = harmonics.span();
-        let passage = Passage::new(self, motion, Derivative::None);
+        let passage = PeriodicMarch::new(self, motion, Derivative::None);
         let displacement = |theta: f64| -> Vec<f64> {
             let series = motion.displacement.chunks_exact(harmonics.slots());
             series.map(|series| harmonics.jet(series, theta)[0]).collect()
@@ -310,7 +310,7 @@ impl HarmonicForce for StructuralDamper {
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
         let harmonics = motion.table.harmonics();
         let span = harmonics.span();
-        let passage = Passage::new(self, motion, Derivative::None);
+        let passage = PeriodicMarch::new(self, motion, Derivative::None);
         let mut history = Vec::with_capacity(samples * self.limits.len());
         for n in 0..samples {
             let theta = TAU * n as f64 / samples as f64;
@@ -332,7 +332,7 @@ impl HarmonicForce for StructuralDamper {
     }
 
     fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
-        let passage = Passage::new(self, motion, Derivative::None);
+        let passage = PeriodicMarch::new(self, motion, Derivative::None);
         let phase =
             |stretch: &Stretch| Phase { start: stretch.start, states: stretch.states.clone() };
         let mut phases: Vec<Phase> = passage.stretches.iter().map(phase).collect();

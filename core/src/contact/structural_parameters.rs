@@ -9,7 +9,7 @@
 
 use super::derivative::Derivative;
 use super::law::HarmonicForce as _;
-use super::passage::Passage;
+use super::periodic_march::PeriodicMarch;
 use super::slider_integrals::Bounds;
 use super::slip_series::halve_mean;
 use super::{Elastic, Motion, Parameter, SlipLoad, StructuralDamper};
@@ -63,14 +63,14 @@ impl StructuralDamper {
             return;
         }
         if self.limits[i] == 0.0 {
-            let most = Passage::new(self, motion, Derivative::None).elastic;
+            let most = PeriodicMarch::new(self, motion, Derivative::None).elastic;
             let Ok(trace) = self.changed(i, TRACE * most) else { return };
             if most > 0.0 {
                 trace.limit_slope(motion, i, out);
             }
             return;
         }
-        let passage = Passage::new(self, motion, Derivative::Limits);
+        let passage = PeriodicMarch::new(self, motion, Derivative::Limits);
         if !passage.resolved {
             out.fill(f64::NAN);
             return;

@@ -5,7 +5,7 @@
 //! ends, and located by Newton's method.
 
 use super::jets::Jet;
-use super::passage::{March, AT_LIMIT};
+use super::periodic_march::{March, AT_LIMIT};
 use super::PointState;
 
 /// Rate, relative to the sum of its parts, below which it counts as zero.

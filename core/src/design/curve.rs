@@ -1,7 +1,7 @@
 //! The damper curve: peak amplitude and frequency along a parameter.
 
+use super::global_peak::{PeakQuery, PeakSearch, Reached, OF_CURVE};
 use super::member::Member;
-use super::summit::{Climb, Quest, Reached, OF_CURVE};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Progress, Resolution, Settings};
 use crate::fourier::Measure;
 use crate::model::{Model, Variation};
@@ -22,8 +22,8 @@ pub struct Target {
 
 impl Target {
     /// The search for it.
-    pub(super) fn quest(&self) -> Quest {
-        Quest { groups: vec![vec![self.dof]], measure: self.measure, span: self.span }
+    pub(super) fn quest(&self) -> PeakQuery {
+        PeakQuery { groups: vec![vec![self.dof]], measure: self.measure, span: self.span }
     }
 }
 
@@ -104,7 +104,7 @@ pub fn peak_curve(
 pub(super) struct Follower<'a> {
     model: &'a Model,
     pub(super) variation: &'a Variation,
-    climb: Climb<'a>,
+    climb: PeakSearch<'a>,
     /// What the last peak has asked for.
     resolution: Option<Resolution>,
     /// Values without a solved peak.
@@ -117,10 +117,10 @@ impl<'a> Follower<'a> {
         model: &'a Model,
         settings: Settings,
         variation: &'a Variation,
-        quest: &'a Quest,
+        quest: &'a PeakQuery,
         progress: &'a Progress<'a>,
     ) -> Result<Self, Error> {
-        let climb = Climb::new(model, settings, quest, OF_CURVE, progress)?;
+        let climb = PeakSearch::new(model, settings, quest, OF_CURVE, progress)?;
         let missing = Vec::new();
         Ok(Self { model, variation, climb, resolution: None, missing, interrupted: false })
     }

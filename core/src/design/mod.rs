@@ -4,6 +4,7 @@
 mod curve;
 mod envelope;
 mod first_look;
+mod global_peak;
 mod interpolant;
 mod member;
 mod mistuned;
@@ -11,10 +12,9 @@ mod optimum;
 mod patterns;
 mod samples;
 mod search;
-mod summit;
 
 pub use curve::{peak_curve, Curve, Peak, Target};
+pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
 pub use mistuned::TunedDisk;
 pub use optimum::{optimum, Optimum};
 pub use patterns::{study, Pattern};
-pub use summit::{summits, Quest, Summit, Summits};

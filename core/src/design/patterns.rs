@@ -3,8 +3,8 @@
 //! What is computed of a pattern depends on nothing but the pattern and the tuned disk: neither on
 //! the patterns before it nor on the number of threads, so that numbers are the same bit by bit.
 
+use super::global_peak::{climbed, PeakQuery, Summits, OF_STUDY};
 use super::mistuned::TunedDisk;
-use super::summit::{climbed, Quest, Summits, OF_STUDY};
 use crate::balance::Settings;
 use crate::Error;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,7 +35,7 @@ pub fn study(
     disks: &[&TunedDisk],
     patterns: &[Pattern<'_>],
     settings: Settings,
-    quest: &Quest,
+    quest: &PeakQuery,
     order: &[Option<usize>],
     threads: usize,
     deliver: &mut dyn FnMut(usize, Summits) -> bool,
@@ -87,7 +87,7 @@ fn climb(
     disks: &[&TunedDisk],
     pattern: Pattern<'_>,
     settings: Settings,
-    quest: &Quest,
+    quest: &PeakQuery,
     order: &[Option<usize>],
     proceed: &dyn Fn(f64) -> bool,
 ) -> Result<Summits, Error> {
@@ -99,7 +99,8 @@ fn climb(
         let dofs = disk.dofs();
         (0..disk.sectors()).flat_map(|i| group.iter().map(move |dof| i * dofs + dof)).collect()
     };
-    let quest = Quest { groups: quest.groups.iter().map(everywhere).collect(), ..quest.clone() };
+    let quest =
+        PeakQuery { groups: quest.groups.iter().map(everywhere).collect(), ..quest.clone() };
     let model = disk.mistuned(pattern.deviations)?;
     let order = order.get(pattern.disk).copied().flatten();
     climbed(&model, settings, &quest, OF_STUDY, order, proceed)

@@ -1,14 +1,14 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
-mod gathered;
+mod contact_assembly;
+mod flutter_model;
 mod resonances;
-mod self_excited;
 mod slipping;
 mod variation;
 
+pub use flutter_model::{FlutterModel, NegativeDamping};
 pub use resonances::Resonance;
-pub use self_excited::{NegativeDamping, SelfExcited};
-pub use variation::{Change, Common, Variation};
+pub use variation::{Change, ParameterMode, Variation};
 
 use crate::contact::{Aft, ContactLaw, Parameter};
 use crate::structure::{
@@ -16,8 +16,8 @@ use crate::structure::{
     Ring, RingCoupling, RingSector, Structure,
 };
 use crate::Error;
+use contact_assembly::ContactAssembly;
 use faer::Mat;
-use gathered::Gathered;
 use resonances::{slip_kinds, States};
 use std::ops::Range;
 use std::sync::Arc;
@@ -112,8 +112,8 @@ impl Model {
         loads: Vec<HarmonicLoad>,
     ) -> Result<Self, Error> {
         let parts = contacts.into_iter().map(|c| (c.law, vec![c.rows]));
-        let Gathered { laws, points, rows: [rows, _], stiffness } =
-            Gathered::new(structure.dofs(), parts)?;
+        let ContactAssembly { laws, points, rows: [rows, _], stiffness } =
+            ContactAssembly::new(structure.dofs(), parts)?;
         let ports = Ports { rows, stiffness, loads };
         Self::of(Body::Whole, structure, ports, laws, points)
     }
@@ -128,8 +128,8 @@ impl Model {
         loads: Vec<HarmonicLoad>,
     ) -> Result<Self, Error> {
         let parts = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
-        let Gathered { laws, points, rows: [own, next], stiffness } =
-            Gathered::new(cyclic.dofs(), parts)?;
+        let ContactAssembly { laws, points, rows: [own, next], stiffness } =
+            ContactAssembly::new(cyclic.dofs(), parts)?;
         let structure = cyclic.sector()?;
         let ports = Ports { rows: own, stiffness, loads };
         let body = Body::Wave { cyclic: Arc::new(cyclic), next: Arc::new(next) };
@@ -159,7 +159,7 @@ impl Model {
         let (mut laws, mut points) = (Vec::new(), Vec::new());
         for ((structure, contacts), loads) in structures.into_iter().zip(contacts).zip(loads) {
             let rows = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
-            let own = Gathered::new(structure.dofs(), rows)?;
+            let own = ContactAssembly::new(structure.dofs(), rows)?;
             let first = points.last().map_or(0, |last: &Range<usize>| last.end);
             points.extend(own.points.iter().map(|r| first + r.start..first + r.end));
             laws.extend(own.laws);

@@ -7,7 +7,7 @@ use crate::Error;
 
 /// How one number stands for the parameters of several contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Common {
+pub enum ParameterMode {
     /// All take it as their value.
     Value,
     /// All multiply their own value by it.
@@ -24,7 +24,7 @@ pub enum Variation {
         /// Positions of the contacts, each of one of its points or of all that have the parameter.
         contacts: Vec<(usize, Option<usize>)>,
         /// What the number means to them.
-        common: Common,
+        common: ParameterMode,
     },
     /// A factor on all loads.
     Level,
@@ -42,7 +42,7 @@ pub struct Change {
     /// Value as the model is given.
     pub own: f64,
     /// What the number means to it.
-    pub common: Common,
+    pub common: ParameterMode,
 }
 
 impl Change {
@@ -50,9 +50,9 @@ impl Change {
     #[must_use]
     pub fn at(&self, value: f64) -> f64 {
         match self.common {
-            Common::Value => value,
-            Common::Factor if self.own.is_infinite() => self.own,
-            Common::Factor => value * self.own,
+            ParameterMode::Value => value,
+            ParameterMode::Factor if self.own.is_infinite() => self.own,
+            ParameterMode::Factor => value * self.own,
         }
     }
 
@@ -60,9 +60,9 @@ impl Change {
     #[must_use]
     pub fn rate(&self) -> f64 {
         match self.common {
-            Common::Value => 1.0,
-            Common::Factor if self.own.is_infinite() => 0.0,
-            Common::Factor => self.own,
+            ParameterMode::Value => 1.0,
+            ParameterMode::Factor if self.own.is_infinite() => 0.0,
+            ParameterMode::Factor => self.own,
         }
     }
 }
@@ -88,7 +88,7 @@ impl Variation {
                 if one.name != parameter || !here(one.point) {
                     continue;
                 }
-                if one.factor && *common == Common::Value {
+                if one.factor && *common == ParameterMode::Value {
                     return Err(Error::shape(&entry, "a factor on the stiffness D", "a value"));
                 }
                 let (parameter, own, common) = (index, one.value, *common);
@@ -126,7 +126,7 @@ mod tests {
     use crate::contact::{Jenkins, StructuralDamper};
     use crate::design::{peak_curve, Target};
     use crate::fourier::Measure;
-    use crate::model::{Contact, NegativeDamping, SelfExcited};
+    use crate::model::{Contact, FlutterModel, NegativeDamping};
     use crate::structure::Structure;
     use faer::{mat, Mat};
 
@@ -150,7 +150,11 @@ mod tests {
         Model::new(structure, contacts, Vec::new()).unwrap()
     }
 
-    fn law(parameter: &str, contacts: &[(usize, Option<usize>)], common: Common) -> Variation {
+    fn law(
+        parameter: &str,
+        contacts: &[(usize, Option<usize>)],
+        common: ParameterMode,
+    ) -> Variation {
         Variation::Law { parameter: parameter.to_owned(), contacts: contacts.to_vec(), common }
     }
 
@@ -166,17 +170,18 @@ mod tests {
         let given = vec![5.0, 0.5, 2.0, f64::INFINITY, 1.0];
         assert_eq!(values(&Variation::Level, 3.0), given);
         assert_eq!(values(&Variation::Ratio, 3.0), given);
-        let factor = values(&law("slip_force", &all, Common::Factor), 3.0);
+        let factor = values(&law("slip_force", &all, ParameterMode::Factor), 3.0);
         assert_eq!(factor, vec![5.0, 1.5, 6.0, f64::INFINITY, 1.0]);
         // What never slips does so without friction, too: 0 times infinity is no number.
-        let none = values(&law("slip_force", &all, Common::Factor), 0.0);
+        let none = values(&law("slip_force", &all, ParameterMode::Factor), 0.0);
         assert_eq!(none, vec![5.0, 0.0, 0.0, f64::INFINITY, 1.0]);
-        let value = values(&law("slip_force", &[(0, None), (1, Some(0))], Common::Value), 3.0);
+        let value =
+            values(&law("slip_force", &[(0, None), (1, Some(0))], ParameterMode::Value), 3.0);
         assert_eq!(value, vec![5.0, 3.0, 3.0, f64::INFINITY, 1.0]);
-        let stiffness = values(&law("stiffness", &all, Common::Factor), 3.0);
+        let stiffness = values(&law("stiffness", &all, ParameterMode::Factor), 3.0);
         assert_eq!(stiffness, vec![15.0, 0.5, 2.0, f64::INFINITY, 3.0]);
 
-        let changes = law("slip_force", &all, Common::Factor).changes(&model()).unwrap();
+        let changes = law("slip_force", &all, ParameterMode::Factor).changes(&model()).unwrap();
         let rates: Vec<f64> = changes.iter().map(Change::rate).collect();
         assert_eq!(rates, vec![0.5, 2.0, 0.0]);
     }
@@ -184,11 +189,11 @@ mod tests {
     #[test]
     fn what_a_model_does_not_have_is_refused() {
         for (variation, part) in [
-            (law("stiffness", &[(1, None)], Common::Value), "contact 2: parameter"),
-            (law("stiffness", &[(1, Some(0))], Common::Factor), "slip_force"),
-            (law("slip_force", &[(1, Some(2))], Common::Value), "contact 2"),
-            (law("mass", &[(0, None)], Common::Value), "stiffness or slip_force"),
-            (law("slip_force", &[(2, None)], Common::Value), "2 contacts"),
+            (law("stiffness", &[(1, None)], ParameterMode::Value), "contact 2: parameter"),
+            (law("stiffness", &[(1, Some(0))], ParameterMode::Factor), "slip_force"),
+            (law("slip_force", &[(1, Some(2))], ParameterMode::Value), "contact 2"),
+            (law("mass", &[(0, None)], ParameterMode::Value), "stiffness or slip_force"),
+            (law("slip_force", &[(2, None)], ParameterMode::Value), "2 contacts"),
         ] {
             let message = variation.changes(&model()).unwrap_err().to_string();
             assert!(message.contains(part), "{message}");
@@ -203,7 +208,7 @@ mod tests {
         assert!(curve.unwrap_err().to_string().contains("limit cycles"));
         let negative = NegativeDamping::Whole(mat![[-1.0, 0.0], [0.0, -1.0]]);
         let model = model();
-        let cycles = SelfExcited::new(&model, negative, Variation::Level, 1.0);
+        let cycles = FlutterModel::new(&model, negative, Variation::Level, 1.0);
         assert!(cycles.err().is_some_and(|error| error.to_string().contains("no loads")));
     }
 }

@@ -1,6 +1,6 @@
 //! Many starts at once, on all processors.
 
-use super::fate::{Fate, FateSettings, Fates};
+use super::classification::{Classification, ClassificationSettings, Classifier};
 use crate::balance::Progress;
 use crate::model::Model;
 use crate::Error;
@@ -15,15 +15,15 @@ const LOOK: Duration = Duration::from_millis(20);
 /// left out. `threads` is 0 for one per processor. What comes of a start does not depend on it.
 ///
 /// # Errors
-/// As [`Fates::new`] and [`Fates::of`].
+/// As [`Classifier::new`] and [`Classifier::of`].
 pub fn fates(
     model: &Model,
-    settings: FateSettings,
+    settings: ClassificationSettings,
     starts: &[Vec<f64>],
     threads: usize,
     progress: &Progress<'_>,
-) -> Result<Vec<Option<Fate>>, Error> {
-    let prepared = Fates::new(model, settings)?;
+) -> Result<Vec<Option<Classification>>, Error> {
+    let prepared = Classifier::new(model, settings)?;
     let there = std::thread::available_parallelism().map_or(1, usize::from);
     let workers = if threads == 0 { there } else { threads }.min(starts.len().max(1));
     let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
@@ -54,7 +54,7 @@ pub fn fates(
             std::thread::sleep(LOOK.min(Duration::from_micros(200 * (1 + starts.len() as u64))));
         }
     });
-    let mut fates: Vec<Option<Fate>> = vec![None; starts.len()];
+    let mut fates: Vec<Option<Classification>> = vec![None; starts.len()];
     for (index, fate) in done.into_inner().unwrap_or_default() {
         fates[index] = Some(fate?);
     }

@@ -3,7 +3,7 @@
 //! A point that sticks begins to slip where its force reaches its limit; a point that slips sticks
 //! where its slip velocity vanishes. Both are zeros of polynomials, located to rounding.
 
-use super::modal_system::{ModalSystem, Regime};
+use super::modal_system::{ContactState, ModalSystem};
 use super::polynomial::first_zero;
 use super::power_series::{sum_of_products, PowerSeries, DEGREE};
 use super::state::State;
@@ -31,7 +31,7 @@ pub struct Event {
 
 /// A stretch of the motion without events.
 #[derive(Debug)]
-pub struct Arc<'a> {
+pub struct FlowSegment<'a> {
     /// Motion as a power series.
     pub series: &'a PowerSeries,
     /// Time at its start [s].
@@ -39,10 +39,10 @@ pub struct Arc<'a> {
     /// Length in τ of the series.
     pub length: f64,
     /// States of the contact points.
-    pub regime: &'a Regime,
+    pub regime: &'a ContactState,
 }
 
-impl Arc<'_> {
+impl FlowSegment<'_> {
     /// Length [s].
     #[must_use]
     pub fn duration(&self) -> f64 {
@@ -52,19 +52,19 @@ impl Arc<'_> {
 
 /// What an observer of the flow sees, in order of time.
 #[derive(Debug)]
-pub enum Passage<'a> {
+pub enum FlowEvent<'a> {
     /// A stretch without events.
-    Arc(Arc<'a>),
-    /// An event, with the velocity [m/s] of all contact points and the regimes before and after.
+    Segment(FlowSegment<'a>),
+    /// An event, with the velocity [m/s] of all contact points and the contact states before and after.
     Event {
         /// The event.
         event: Event,
         /// Relative velocities at the contacts [m/s].
         speed: &'a [f64],
         /// Before the event.
-        before: &'a Regime,
+        before: &'a ContactState,
         /// After it.
-        after: &'a Regime,
+        after: &'a ContactState,
     },
 }
 
@@ -156,9 +156,9 @@ impl<'a> Flow<'a> {
         &mut self,
         state: &mut State,
         until: f64,
-        observe: &mut dyn FnMut(Passage<'_>),
+        observe: &mut dyn FnMut(FlowEvent<'_>),
     ) -> Result<(), Halt> {
-        let mut regime = Regime::new(self.system, &state.points);
+        let mut regime = ContactState::new(self.system, &state.points);
         let mut changes = 0;
         while state.time < until {
             if !state.is_bounded() {
@@ -190,7 +190,12 @@ impl<'a> Flow<'a> {
             if length > 0.0 {
                 changes = 0;
                 let start = state.time;
-                observe(Passage::Arc(Arc { series: &self.series, start, length, regime: &regime }));
+                observe(FlowEvent::Segment(FlowSegment {
+                    series: &self.series,
+                    start,
+                    length,
+                    regime: &regime,
+                }));
                 self.move_on(state, length);
                 if last && change.is_none() {
                     state.time = until;
@@ -206,9 +211,9 @@ impl<'a> Flow<'a> {
             let limit = self.system.limits[point];
             let side = if to == PointState::Stuck { state.force[point] } else { to.sign() };
             state.force[point] = limit.copysign(side);
-            let after = Regime::new(self.system, &state.points);
+            let after = ContactState::new(self.system, &state.points);
             let speed = self.system.contact_displacement(&state.velocity);
-            observe(Passage::Event {
+            observe(FlowEvent::Event {
                 event: Event { time: state.time, point, state: to },
                 speed: &speed,
                 before: &regime,
@@ -229,7 +234,7 @@ impl<'a> Flow<'a> {
     }
 
     /// What a point does within `length` of τ, and whether it can begin the step as it is.
-    fn next(&mut self, regime: &Regime, point: usize, natural: f64, length: f64) -> Next {
+    fn next(&mut self, regime: &ContactState, point: usize, natural: f64, length: f64) -> Next {
         let limit = self.system.limits[point];
         if !(limit > 0.0 && limit.is_finite()) {
             return Next::Stay;
@@ -274,7 +279,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Slip velocity in the direction of slip, on the unit interval.
-    fn fill_slip_velocity(&mut self, regime: &Regime, point: usize, sign: f64, natural: f64) {
+    fn fill_slip_velocity(&mut self, regime: &ContactState, point: usize, sign: f64, natural: f64) {
         self.scratch.clear();
         self.scratch.resize(DEGREE, 0.0);
         for (n, a) in self.scratch.iter_mut().enumerate() {
@@ -358,7 +363,7 @@ mod tests {
             let mut begun = f64::NAN;
             Flow::new(&system, 1.0)
                 .run(&mut state, 20.0, &mut |passage| match passage {
-                    Passage::Arc(arc) => {
+                    FlowEvent::Segment(arc) => {
                         let (mut x, mut v) = (vec![0.0; 3], vec![0.0; 3]);
                         arc.series.motion_at(0.5 * arc.length, &mut x, &mut v);
                         let speed = system.contact_displacement(&v);
@@ -368,10 +373,10 @@ mod tests {
                             assert!(slip * point.sign() >= -1e-9, "{start}: {i} at {slip}");
                         }
                     }
-                    Passage::Event { event, .. } if event.state != PointState::Stuck => {
+                    FlowEvent::Event { event, .. } if event.state != PointState::Stuck => {
                         begun = event.time;
                     }
-                    Passage::Event { event, .. } => {
+                    FlowEvent::Event { event, .. } => {
                         turned_back += usize::from(event.time == begun);
                     }
                 })

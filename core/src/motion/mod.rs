@@ -2,7 +2,7 @@
 //! of free motions.
 
 mod basin;
-mod fate;
+mod classification;
 mod flow;
 mod modal_system;
 mod output;
@@ -17,13 +17,13 @@ mod transient;
 mod transition;
 
 pub use basin::fates;
-pub use fate::{Fate, FateSettings, Fates, Reason};
-pub use flow::{Arc, Event, Flow, Halt, Passage};
-pub use modal_system::{ModalSystem, Regime};
+pub use classification::{Classification, ClassificationSettings, Classifier, Reason};
+pub use flow::{Event, Flow, FlowEvent, FlowSegment, Halt};
+pub use modal_system::{ContactState, ModalSystem};
 pub(crate) use output::Extremes;
 pub(crate) use polynomial::value;
 pub use power_series::PowerSeries;
 pub use runge_kutta::RungeKutta;
 pub use state::State;
 pub use transient::{transient, History, Scheme, Trace, TransientSettings};
-pub(crate) use transition::{Leg, Transition};
+pub(crate) use transition::{LinearPhase, Transition};

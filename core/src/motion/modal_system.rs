@@ -347,7 +347,7 @@ fn elements(model: &Model) -> Result<(Vec<Body>, Vec<usize>), Error> {
 
 /// `∂f/∂u` and slip per displacement of all contacts in given states.
 #[derive(Debug, Clone)]
-pub struct Regime {
+pub struct ContactState {
     /// State of each point of an element.
     pub points: Vec<PointState>,
     /// `∂f/∂u`, points × points [N/m].
@@ -356,7 +356,7 @@ pub struct Regime {
     pub slip_rate: Mat<f64>,
 }
 
-impl Regime {
+impl ContactState {
     pub(crate) fn new(system: &ModalSystem, points: &[PointState]) -> Self {
         let total = points.len();
         let mut regime = Self {

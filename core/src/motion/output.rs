@@ -1,6 +1,6 @@
 //! What a time integration hands out: samples, ranges and events, period after period.
 
-use super::flow::{Event, Flow, Halt, Passage};
+use super::flow::{Event, Flow, FlowEvent, Halt};
 use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{sign_changes, value};
 use super::runge_kutta::RungeKutta;
@@ -68,7 +68,7 @@ impl<'a> Output<'a> {
         let mut extremes = Extremes::default();
         let (trace, events) = (&mut history.trace, &mut history.events);
         let run = flow.run(state, until, &mut |passage| match passage {
-            Passage::Arc(arc) => {
+            FlowEvent::Segment(arc) => {
                 let end = arc.start + arc.duration();
                 while sample <= self.settings.samples && self.instant(sample) <= end + slack {
                     let tau = (self.instant(sample) - arc.start) * arc.series.rate();
@@ -86,7 +86,7 @@ impl<'a> Output<'a> {
                     extremes.widen(range);
                 }
             }
-            Passage::Event { event, .. } => {
+            FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
                 events.push(Event { time: begin + event.time, point, ..event });
             }

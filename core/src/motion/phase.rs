@@ -4,7 +4,7 @@
 //! force within the slip limits keeps an unstable mode of the slipping structure from growing. And
 //! a motion that the stuck structure damps, below the onset of slip, stays below it.
 
-use super::modal_system::{dot, Damping, ModalSystem, Regime};
+use super::modal_system::{dot, ContactState, Damping, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
 use crate::solve::hermitian_eigen;
@@ -35,7 +35,7 @@ impl Phase {
     /// The phase in which the given points slip, the others stick.
     pub(super) fn new(system: &ModalSystem, points: &[PointState]) -> Result<Self, Error> {
         let n = system.modes();
-        let tangent = Regime::new(system, points).tangent;
+        let tangent = ContactState::new(system, points).tangent;
         let mut stiffness =
             Mat::from_fn(n, n, |i, j| if i == j { system.omega_squared()[i] } else { 0.0 });
         for a in 0..system.points() {

@@ -4,7 +4,7 @@
 //! ones before. The series needs no decomposition per set of sticking contacts, has no defective
 //! cases, and hands displacements and forces over as polynomials whose zeros are the events.
 
-use super::modal_system::{dot, Damping, ModalSystem, Regime};
+use super::modal_system::{dot, ContactState, Damping, ModalSystem};
 use super::polynomial;
 use super::state::State;
 
@@ -62,7 +62,7 @@ impl PowerSeries {
     pub(super) fn expand(
         &mut self,
         system: &ModalSystem,
-        regime: &Regime,
+        regime: &ContactState,
         omega: f64,
         state: &State,
     ) {
@@ -132,7 +132,7 @@ impl PowerSeries {
     }
 
     /// Coefficients of u and f at one power.
-    fn expand_contacts(&mut self, system: &ModalSystem, regime: &Regime, power: usize) {
+    fn expand_contacts(&mut self, system: &ModalSystem, regime: &ContactState, power: usize) {
         let modal = &self.modal[power * self.modes..(power + 1) * self.modes];
         let points = system.points();
         for point in 0..points {

@@ -3,7 +3,7 @@
 //! The section is the maximum of one coordinate. A free motion has no clock; how long it takes to
 //! come back is its period.
 
-use super::flow::Arc;
+use super::flow::FlowSegment;
 use super::modal_system::ModalSystem;
 use super::polynomial::{sign_changes, value};
 use super::state::State;
@@ -63,7 +63,7 @@ impl Returns {
     /// own start. `told` hears of each: size of the motion, least closing error.
     pub(super) fn follow(
         &mut self,
-        arc: &Arc<'_>,
+        arc: &FlowSegment<'_>,
         begin: f64,
         system: &ModalSystem,
         coordinates: &Transition<'_>,

@@ -5,8 +5,8 @@
 //! dependence on everything, at the return to stick nothing jumps (Leine and Nijmeijer 2004,
 //! saltation matrix).
 
-use super::flow::Passage;
-use super::modal_system::{Damping, ModalSystem, Regime};
+use super::flow::FlowEvent;
+use super::modal_system::{ContactState, Damping, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
 use faer::Mat;
@@ -16,8 +16,8 @@ const SMALL: f64 = 0.5;
 
 /// A stretch of the motion in one regime, and what ends it.
 #[derive(Debug, Clone)]
-pub(crate) struct Leg {
-    regime: Regime,
+pub(crate) struct LinearPhase {
+    regime: ContactState,
     /// Duration [s].
     duration: f64,
     onset: Option<Onset>,
@@ -33,11 +33,11 @@ struct Onset {
     jump: Vec<f64>,
 }
 
-impl Leg {
+impl LinearPhase {
     /// Adds what an observer of the flow sees to the legs so far.
-    pub(crate) fn record(legs: &mut Vec<Self>, passage: &Passage<'_>) {
+    pub(crate) fn record(legs: &mut Vec<Self>, passage: &FlowEvent<'_>) {
         match passage {
-            Passage::Arc(arc) => match legs.last_mut() {
+            FlowEvent::Segment(arc) => match legs.last_mut() {
                 Some(leg) if leg.onset.is_none() && leg.regime.points == arc.regime.points => {
                     leg.duration += arc.duration();
                 }
@@ -48,9 +48,9 @@ impl Leg {
                 }),
             },
             // Changes before the first arc find the states to begin with.
-            Passage::Event { .. } if legs.is_empty() => {}
-            Passage::Event { event, speed, before, after } => {
-                let rate = |regime: &Regime, i: usize| -> f64 {
+            FlowEvent::Event { .. } if legs.is_empty() => {}
+            FlowEvent::Event { event, speed, before, after } => {
+                let rate = |regime: &ContactState, i: usize| -> f64 {
                     speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
                 };
                 let jumps = (0..speed.len()).map(|i| rate(after, i) - rate(before, i));
@@ -86,7 +86,7 @@ impl Leg {
 
 impl Onset {
     /// The jump while other points keep their states: the point's force is taken out of all.
-    fn new(point: usize, rate: f64, before: &Regime) -> Self {
+    fn new(point: usize, rate: f64, before: &ContactState) -> Self {
         let own = before.tangent[(point, point)];
         let jump = (0..before.points.len())
             .map(|i| match i {
@@ -140,7 +140,7 @@ impl<'a> Transition<'a> {
     }
 
     /// Rate of change of the coordinates of a state without loads, in its regime.
-    pub(crate) fn rate(&self, state: &State, regime: &Regime) -> Vec<f64> {
+    pub(crate) fn rate(&self, state: &State, regime: &ContactState) -> Vec<f64> {
         let system = self.system;
         let speed = system.contact_displacement(&state.velocity);
         let displacement = state.velocity.iter().zip(&self.weight).map(|(v, w)| w * v);
@@ -207,7 +207,7 @@ impl<'a> Transition<'a> {
     }
 
     /// Derivative of the end state in the start state along the legs of a motion.
-    pub(crate) fn along(&self, legs: &[Leg], free: &[bool]) -> Mat<f64> {
+    pub(crate) fn along(&self, legs: &[LinearPhase], free: &[bool]) -> Mat<f64> {
         let mut total = self.start(legs, free);
         for leg in legs {
             if leg.duration > 0.0 {
@@ -221,7 +221,7 @@ impl<'a> Transition<'a> {
     }
 
     /// Derivative at the start: points that slip, and forces that their limits hold, do not vary.
-    fn start(&self, legs: &[Leg], free: &[bool]) -> Mat<f64> {
+    fn start(&self, legs: &[LinearPhase], free: &[bool]) -> Mat<f64> {
         let (size, first) = (self.size(), 2 * self.weight.len());
         let mut total = Mat::<f64>::identity(size, size);
         for body in self.system.bodies() {
@@ -271,7 +271,7 @@ impl<'a> Transition<'a> {
     }
 
     /// Exponential of the linear equations over a duration [s], by scaling and squaring.
-    fn exponential(&self, regime: &Regime, duration: f64) -> Mat<f64> {
+    fn exponential(&self, regime: &ContactState, duration: f64) -> Mat<f64> {
         let (size, modes) = (self.size(), self.weight.len());
         let mut a = Mat::<f64>::zeros(size, size);
         for j in 0..modes {

@@ -8,7 +8,7 @@ use super::stability::{judge, Judge, TRACING};
 use super::traced::{extreme, joined, value, Traced};
 use crate::balance::{CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress};
 use crate::fourier::SampleTable;
-use crate::model::{Model, NegativeDamping, SelfExcited, Variation};
+use crate::model::{FlutterModel, Model, NegativeDamping, Variation};
 use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, End, Steps};
 use crate::timing::Profile;
 use crate::Error;
@@ -40,8 +40,8 @@ pub fn limit_cycles(
 ) -> Result<LimitCycles, Error> {
     settings.check()?;
     let begin = Instant::now();
-    let given = SelfExcited::new(model, negative.clone(), Variation::Ratio, ratio)?;
-    let family = SelfExcited::new(model, negative.clone(), variation.clone(), ratio)?;
+    let given = FlutterModel::new(model, negative.clone(), Variation::Ratio, ratio)?;
+    let family = FlutterModel::new(model, negative.clone(), variation.clone(), ratio)?;
     let stopped = Cell::new(false);
     let share = Cell::new(0.0);
     let interrupted = || {
@@ -75,8 +75,8 @@ pub fn limit_cycles(
 
 struct Finder<'a> {
     /// The family in r, in which every branch begins.
-    given: SelfExcited<'a>,
-    family: &'a SelfExcited<'a>,
+    given: FlutterModel<'a>,
+    family: &'a FlutterModel<'a>,
     onset: &'a Onset,
     settings: &'a CycleSettings,
     ratio: f64,
@@ -343,7 +343,7 @@ impl Finder<'_> {
     fn cycle(&self, z: &[f64], slipping: bool, response: Point) -> Cycle {
         let value = value(z);
         let model = self.family.model();
-        let size = 2 * self.family.destabilised().dofs() + model.contact_stiffness().nrows();
+        let size = model.states();
         Cycle {
             value,
             ratio: self.family.ratio_at(value),

@@ -6,7 +6,7 @@ use super::survey::Survey;
 use crate::balance::{Point, PointStatus};
 use crate::contact::PointState;
 use crate::fourier::{Harmonics, SampleTable};
-use crate::motion::{Event, Flow, ModalSystem, Passage, State};
+use crate::motion::{Event, Flow, FlowEvent, ModalSystem, State};
 use std::f64::consts::PI;
 
 /// Newton steps to the maximum of the DOF with which the period begins.
@@ -89,7 +89,7 @@ impl Course<'_> {
         let mut flow = Flow::new(self.system, self.omega);
         let half = PI / self.omega;
         let mut state = begin.state.clone();
-        let mut see = |passage: Passage<'_>| survey.include(&passage);
+        let mut see = |passage: FlowEvent<'_>| survey.include(&passage);
         for (lap, side) in [(0.0, begin.side), (half, -begin.side)] {
             // A single segment passes its end as it comes.
             for start in self.starts.iter().filter(|_| self.starts.len() > 1) {

@@ -12,8 +12,8 @@ use super::shooting::Shooting;
 use super::start::start_of;
 use crate::balance::Point;
 use crate::contact::Residual;
-use crate::model::{Model, SelfExcited};
-use crate::motion::{ModalSystem, Regime, State, Transition};
+use crate::model::{FlutterModel, Model};
+use crate::motion::{ContactState, ModalSystem, State, Transition};
 use crate::solve::{norm, Curve};
 use crate::structure::ModalDamping;
 use crate::Error;
@@ -26,7 +26,7 @@ const DIFFERENCE: f64 = 1e-7;
 
 /// A family of self-excited models in the time domain.
 pub struct CycleOrbits<'a> {
-    family: &'a SelfExcited<'a>,
+    family: &'a FlutterModel<'a>,
     system: ModalSystem,
     /// Modal damping and modal negative damping.
     damping: ModalDamping,
@@ -51,7 +51,7 @@ impl<'a> CycleOrbits<'a> {
     ///
     /// # Errors
     /// The eigenvalue iteration fails.
-    pub fn new(family: &'a SelfExcited<'a>) -> Result<Option<Self>, Error> {
+    pub fn new(family: &'a FlutterModel<'a>) -> Result<Option<Self>, Error> {
         let Some(negative) = family.negative() else { return Ok(None) };
         let system = ModalSystem::new(family.model())?;
         let damping = system.project(family.model().structure().damping());
@@ -220,7 +220,7 @@ impl<'a> OrbitCurve<'a> {
     fn velocity(&self, z: &[f64]) -> Option<Vec<f64>> {
         self.with_shooting(z, |member, shooting, y| {
             let (state, _) = shooting.coordinates.state(y.get(..self.orbits.size())?);
-            let regime = Regime::new(&member.system, &state.points);
+            let regime = ContactState::new(&member.system, &state.points);
             Some(shooting.coordinates.rate(&state, &regime))
         })
     }

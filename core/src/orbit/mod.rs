@@ -24,7 +24,7 @@ pub use cycle_branch::limit_cycles;
 pub use cycles::{Cycle, CycleSettings, LimitCycles, Turn};
 pub use limit_cycle::{CycleOrbits, OrbitCurve};
 pub use periodic::{Orbit, PeriodicOrbits};
-pub use rescue::Rescue;
+pub use rescue::OrbitInitialGuess;
 pub use rotation::Rotation;
 pub use settings::OrbitSettings;
 pub use stability::{Change, ChangeKind};

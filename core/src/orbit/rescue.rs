@@ -13,7 +13,7 @@ use std::cell::RefCell;
 const PATIENCE: f64 = 4e10;
 
 /// Finds exact orbits on demand.
-pub struct Rescue<'a> {
+pub struct OrbitInitialGuess<'a> {
     model: &'a Model,
     residual: Residual,
     observe: &'a [usize],
@@ -24,7 +24,7 @@ pub struct Rescue<'a> {
     last: RefCell<Option<(f64, State)>>,
 }
 
-impl<'a> Rescue<'a> {
+impl<'a> OrbitInitialGuess<'a> {
     /// Orbits of a model, with the DOFs `observe`, under the residual assumed by its balance;
     /// `progress` may end a search.
     #[must_use]
@@ -56,7 +56,7 @@ impl<'a> Rescue<'a> {
     }
 }
 
-impl ExactOrbits for Rescue<'_> {
+impl ExactOrbits for OrbitInitialGuess<'_> {
     fn orbit(&self, omega: f64, highest: usize) -> Option<Point> {
         self.with(|orbits| {
             orbits.report_up_to(highest);

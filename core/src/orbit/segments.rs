@@ -8,7 +8,7 @@
 
 use super::limit_cycle::Member;
 use super::shooting::Shooting;
-use crate::motion::Regime;
+use crate::motion::ContactState;
 use faer::{c64, Mat};
 
 /// Growth of a small change over a segment, as the Frobenius norm of its transition matrix, beyond
@@ -47,7 +47,7 @@ pub(super) fn follow(
         shooting.narrow(number, count);
         let image = shooting.image(start)?;
         let state = shooting.end.as_ref()?;
-        let regime = Regime::new(&member.system, &state.points);
+        let regime = ContactState::new(&member.system, &state.points);
         let rate = shooting.coordinates.rate(state, &regime);
         let derivative = if derivatives { shooting.derivative() } else { Mat::new() };
         segments.push(Segment { image, rate, derivative, slipped: shooting.slipped().to_vec() });

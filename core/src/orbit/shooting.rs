@@ -2,7 +2,7 @@
 //! after half a period.
 
 use super::rotation::Rotation;
-use crate::motion::{Flow, Leg, ModalSystem, State, Transition};
+use crate::motion::{Flow, LinearPhase, ModalSystem, State, Transition};
 use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
@@ -31,7 +31,7 @@ pub(super) struct Shooting<'a> {
     interrupted: Option<&'a dyn Fn() -> bool>,
     /// Of the last evaluation: legs, forces that were free to vary at the start, points that
     /// have slipped.
-    legs: Vec<Leg>,
+    legs: Vec<LinearPhase>,
     free: Vec<bool>,
     slipped: Vec<bool>,
     /// State after the span.
@@ -115,7 +115,9 @@ impl<'a> Shooting<'a> {
         self.legs.clear();
         self.derivative = None;
         let legs = &mut self.legs;
-        let run = self.flow.run(&mut state, self.span, &mut |passage| Leg::record(legs, &passage));
+        let run = self
+            .flow
+            .run(&mut state, self.span, &mut |passage| LinearPhase::record(legs, &passage));
         self.slipped = (0..self.limits.len())
             .map(|i| !self.free[i] || self.legs.iter().any(|leg| leg.slips(i)))
             .collect();

@@ -2,7 +2,7 @@
 
 use super::quadrature::Quadrature;
 use crate::contact::{PointState, PointSummary};
-use crate::motion::{value, Arc, Event, Extremes, ModalSystem, Passage};
+use crate::motion::{value, Event, Extremes, FlowEvent, FlowSegment, ModalSystem};
 use faer::c64;
 use std::f64::consts::TAU;
 
@@ -62,21 +62,21 @@ impl<'a> Survey<'a> {
     }
 
     /// Takes a passage of the flow into account.
-    pub(super) fn include(&mut self, passage: &Passage<'_>) {
+    pub(super) fn include(&mut self, passage: &FlowEvent<'_>) {
         match passage {
-            Passage::Arc(arc) => {
+            FlowEvent::Segment(arc) => {
                 self.integrate(arc);
                 self.widen(arc);
                 self.follow_slip(arc);
             }
-            Passage::Event { event, .. } => {
+            FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
                 self.events.push(Event { point, ..*event });
             }
         }
     }
 
-    fn integrate(&mut self, arc: &Arc<'_>) {
+    fn integrate(&mut self, arc: &FlowSegment<'_>) {
         let (modes, points) = (self.system.modes(), self.system.points());
         let angle = self.omega * arc.duration();
         let count = NODES + (0.5 * angle * self.orders as f64).ceil() as usize;
@@ -117,7 +117,7 @@ impl<'a> Survey<'a> {
     }
 
     /// Widens the ranges by the extremes on an arc.
-    fn widen(&mut self, arc: &Arc<'_>) {
+    fn widen(&mut self, arc: &FlowSegment<'_>) {
         for (shape, range) in self.shapes.iter().zip(&mut self.range) {
             let shape = shape.iter().copied();
             arc.series.project(shape, arc.length, &mut self.extremes.series);
@@ -125,7 +125,7 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn follow_slip(&mut self, arc: &Arc<'_>) {
+    fn follow_slip(&mut self, arc: &FlowSegment<'_>) {
         let share = self.omega * arc.duration() / TAU;
         for (point, summary) in self.contacts.iter_mut().enumerate() {
             let limit = self.system.limits()[point];

@@ -5,9 +5,9 @@
 //! needs no partition of the matrices and takes ω as an unknown.
 
 mod cyclic;
-mod destabilised;
 mod direct;
 mod flexibility;
+mod flutter_compliance;
 mod modal;
 mod modes;
 mod poles;
@@ -21,8 +21,8 @@ mod spectrum;
 mod system;
 
 pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
-pub use destabilised::{Answer, Destabilised, StuckMode};
 pub use direct::DirectCompliance;
+pub use flutter_compliance::{CompliancePartials, FlutterCompliance, StuckMode};
 pub use modal::{compliance, ModalBase, ModalCompliance};
 pub use modes::{natural_frequencies, real_modes, RealModes};
 pub use poles::Poles;

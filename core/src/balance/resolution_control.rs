@@ -52,12 +52,12 @@ pub(super) fn resolving(highest: usize) -> usize {
 
 /// Where the next point begins.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Rung {
+pub(crate) struct Level {
     order: usize,
     samples: usize,
 }
 
-impl Default for Rung {
+impl Default for Level {
     fn default() -> Self {
         Self { order: FIRST_RUNG, samples: FEWEST_SAMPLES }
     }
@@ -65,7 +65,7 @@ impl Default for Rung {
 
 /// What the errors of a solution ask for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum Decision {
     Enough,
     More(Resolution),
     /// More than the settings allow.
@@ -74,14 +74,14 @@ pub(super) enum Verdict {
 
 /// The rungs that the settings allow.
 #[derive(Debug, Clone)]
-pub(super) struct Ladder {
+pub(super) struct ResolutionControl {
     settings: Settings,
     orders: Vec<usize>,
     lowest: usize,
-    pub(super) rung: Rung,
+    pub(super) rung: Level,
 }
 
-impl Ladder {
+impl ResolutionControl {
     /// The ladder of a model with loads at the harmonics `forced`.
     pub(super) fn new(settings: Settings, forced: &[usize]) -> Self {
         let limit = settings.max_harmonics;
@@ -94,7 +94,7 @@ impl Ladder {
             }
         };
         let lowest = orders.iter().position(|&h| h >= LOWEST_ORDER).unwrap_or(0);
-        Self { settings, orders, lowest, rung: Rung::default() }
+        Self { settings, orders, lowest, rung: Level::default() }
     }
 
     /// Whether there is nothing to choose.
@@ -120,20 +120,20 @@ impl Ladder {
 
     /// Judges a solution by its errors relative to its amplitudes: that of all that is chosen
     /// automatically, and the part of it that more samples would take away.
-    pub(super) fn judge(&mut self, at: Resolution, error: f64, of_samples: f64) -> Verdict {
+    pub(super) fn judge(&mut self, at: Resolution, error: f64, of_samples: f64) -> Decision {
         let tolerance = self.settings.tolerance;
         let target = OF_SAMPLES * tolerance;
-        let mut verdict = Verdict::Enough;
+        let mut verdict = Decision::Enough;
         let mut left = error;
         if let Some(samples) = at.samples.filter(|_| self.samples_climb()) {
             self.rung.samples = samples;
             if of_samples > target {
                 let finer = self.allowed(at.harmonics, finer(at.samples, of_samples / target));
                 if finer != at {
-                    return Verdict::More(finer);
+                    return Decision::More(finer);
                 }
                 // More harmonics bring the rest of the error down all the same.
-                verdict = Verdict::Limit(PointStatus::SamplesLimit);
+                verdict = Decision::Limit(PointStatus::SamplesLimit);
                 left -= of_samples;
             } else if of_samples <= GENEROUS_SAMPLES * target {
                 self.rung.samples = samples / 2;
@@ -146,9 +146,9 @@ impl Ladder {
         if left > tolerance {
             let Some(&more) = self.orders.get(order + 1) else {
                 self.rung.order = order;
-                return Verdict::Limit(PointStatus::HarmonicsLimit);
+                return Decision::Limit(PointStatus::HarmonicsLimit);
             };
-            return Verdict::More(self.allowed(more, at.samples));
+            return Decision::More(self.allowed(more, at.samples));
         }
         let generous = left <= GENEROUS * tolerance;
         self.rung.order = (order - usize::from(generous && order > 0)).max(self.lowest);
@@ -183,7 +183,7 @@ impl Ladder {
         self.orders[self.lowest.min(self.orders.len() - 1)]
     }
 
-    /// As [`Ladder::first`], from the lowest rung on.
+    /// As [`ResolutionControl::first`], from the lowest rung on.
     pub(super) fn start_over(&mut self) -> Resolution {
         self.rung.order = self.lowest;
         self.first()

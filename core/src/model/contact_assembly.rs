@@ -1,4 +1,4 @@
-//! Contacts gathered into the rows and the stiffness of a structure.
+//! Contacts contact_assembly into the rows and the stiffness of a structure.
 
 use crate::contact::ContactLaw;
 use crate::Error;
@@ -6,7 +6,7 @@ use faer::Mat;
 use std::ops::Range;
 
 /// Contacts one after the other, their rows and their stiffness.
-pub(super) struct Gathered {
+pub(super) struct ContactAssembly {
     pub(super) laws: Vec<Box<dyn ContactLaw>>,
     pub(super) points: Vec<Range<usize>>,
     /// Rows of B, one matrix per part of the structure that they act on.
@@ -14,7 +14,7 @@ pub(super) struct Gathered {
     pub(super) stiffness: Mat<f64>,
 }
 
-impl Gathered {
+impl ContactAssembly {
     pub(super) fn new(
         dofs: usize,
         contacts: impl Iterator<Item = (Box<dyn ContactLaw>, Vec<Mat<f64>>)>,

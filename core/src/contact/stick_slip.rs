@@ -66,7 +66,7 @@ impl<'a> Path<'a> {
 
 /// The cycle of an element over the span its series is followed.
 #[derive(Debug)]
-pub(super) enum Cycle {
+pub(super) enum StickSlipIntervals {
     /// A slider without friction, or without spring: the slip load is `k_d u`.
     Free,
     /// No slip.
@@ -75,7 +75,7 @@ pub(super) enum Cycle {
     Slipping { sticks: Vec<Stick>, slips: Vec<Slip> },
 }
 
-impl Cycle {
+impl StickSlipIntervals {
     /// Follows an element of stiffness k_d and slip force F_d along a path.
     pub(super) fn new(path: &Path<'_>, stiffness: f64, slip_force: f64) -> Self {
         if slip_force == 0.0 || stiffness == 0.0 {

@@ -6,9 +6,9 @@
 //! after the other (Murty's principal pivoting of the rate problem), and the derivative of κ in the
 //! coefficients of u is carried through it.
 
+use super::active_set::ActiveSet;
 use super::derivative::Derivative;
 use super::jets::Jet;
-use super::slip_set::SlipSet;
 use super::structural::StructuralDamper;
 use super::{Motion, PointState, SlipElement as _};
 use crate::fourier::Harmonics;
@@ -42,8 +42,8 @@ pub(super) struct Stretch {
 
 /// The last round of a march from zero slip to forces that repeat.
 #[derive(Debug)]
-pub(super) struct Passage {
-    pub(super) sets: Vec<SlipSet>,
+pub(super) struct PeriodicMarch {
+    pub(super) sets: Vec<ActiveSet>,
     pub(super) stretches: Vec<Stretch>,
     /// Whether anything has slipped since the start of the march.
     pub(super) slipped: bool,
@@ -60,7 +60,7 @@ pub(super) struct March<'a> {
     series: &'a [f64],
     /// Displacements at the ends of the cells of a grid.
     grid: Vec<Jet>,
-    pub(super) sets: Vec<SlipSet>,
+    pub(super) sets: Vec<ActiveSet>,
     pub(super) here: Stretch,
     done: Vec<Stretch>,
     derivative: Derivative,
@@ -68,7 +68,7 @@ pub(super) struct March<'a> {
     transitions: usize,
 }
 
-impl Passage {
+impl PeriodicMarch {
     /// Follows a motion until the forces repeat.
     pub(super) fn new(law: &StructuralDamper, motion: Motion<'_>, derivative: Derivative) -> Self {
         let mut march = March::new(law, motion, derivative);
@@ -269,7 +269,7 @@ impl<'a> March<'a> {
             return known;
         }
         let sliding = self.law.elastic.sliding(&slips);
-        self.sets.push(SlipSet::new(slips, sliding, self.series));
+        self.sets.push(ActiveSet::new(slips, sliding, self.series));
         self.sets.len() - 1
     }
 

@@ -1,13 +1,13 @@
 //! What a massless elastic damper does along one motion while the same points slip.
 
-use super::elastic::Sliding;
+use super::elastic::ReducedStiffness;
 use faer::Mat;
 
 /// A set of slipping points with its stiffness and the series it gives.
 #[derive(Debug)]
-pub(super) struct SlipSet {
+pub(super) struct ActiveSet {
     pub(super) slips: Vec<bool>,
-    pub(super) sliding: Sliding,
+    pub(super) sliding: ReducedStiffness,
     /// Series of `T u` and of the slip `R u`, point after point.
     pub(super) force: Vec<f64>,
     pub(super) slip: Vec<f64>,
@@ -16,10 +16,10 @@ pub(super) struct SlipSet {
     slip_rate: Vec<f64>,
 }
 
-impl SlipSet {
+impl ActiveSet {
     /// The set of the points marked in `slips`, and the series that those of all displacements,
     /// point after point, give in it.
-    pub(super) fn new(slips: Vec<bool>, sliding: Sliding, series: &[f64]) -> Self {
+    pub(super) fn new(slips: Vec<bool>, sliding: ReducedStiffness, series: &[f64]) -> Self {
         let points = slips.len();
         let rows = |matrix: &Mat<f64>| -> Vec<f64> {
             (0..points * points).map(|at| matrix[(at / points, at % points)]).collect()
@@ -34,7 +34,7 @@ impl SlipSet {
         product(&self.tangent[i * of.len()..], of)
     }
 
-    /// As [`SlipSet::force_on`], the slip of a point.
+    /// As [`ActiveSet::force_on`], the slip of a point.
     pub(super) fn slip_of(&self, i: usize, of: &[f64]) -> f64 {
         product(&self.slip_rate[i * of.len()..], of)
     }

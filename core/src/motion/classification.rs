@@ -1,7 +1,7 @@
 //! What becomes of a free motion: it dies away, settles on a periodic motion, goes on without
 //! settling, or grows for ever.
 
-use super::flow::{Flow, Halt, Passage};
+use super::flow::{Flow, FlowEvent, Halt};
 use super::modal_system::ModalSystem;
 use super::output::Extremes;
 use super::phase::{Slipping, Sticking};
@@ -31,15 +31,15 @@ const CHOICE: usize = 32;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
     /// Dies away: no contact slips any more, and the stuck structure is damped.
-    Held,
+    Stuck,
     /// Dies away: every motion loses energy.
     Passive,
     /// Settled on a periodic motion.
     Closed,
     /// Neither settled nor changing in size over the second half of the span.
-    Wanders,
+    Aperiodic,
     /// Grows for ever: friction cannot hold the motion at its size.
-    Outgrown,
+    Unbounded,
     /// Grew out of the range of numbers.
     Overflow,
     /// Undecided: still settling at the end of the span.
@@ -58,7 +58,7 @@ pub enum Reason {
 
 /// What becomes of one start.
 #[derive(Debug, Clone)]
-pub struct Fate {
+pub struct Classification {
     /// Why, and with it what.
     pub reason: Reason,
     /// Stuck mode with the largest share of the kinetic energy at the end; none of a motion that
@@ -80,7 +80,7 @@ pub struct Fate {
 
 /// Settings of a classification.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FateSettings {
+pub struct ClassificationSettings {
     /// Longest motion, in periods of the lowest stuck mode.
     pub periods: usize,
     /// Closing error of a settled motion, relative to its size.
@@ -88,8 +88,8 @@ pub struct FateSettings {
 }
 
 /// What becomes of free motions of a model.
-pub struct Fates {
-    settings: FateSettings,
+pub struct Classifier {
+    settings: ClassificationSettings,
     system: ModalSystem,
     slipping: Slipping,
     sticking: Sticking,
@@ -103,13 +103,13 @@ pub struct Fates {
     fast: f64,
 }
 
-impl Fates {
+impl Classifier {
     /// Prepares the classification of motions of a model without forces.
     ///
     /// # Errors
     /// A travelling wave, settings outside their range, a structure without oscillation, an
     /// eigenvalue iteration that fails.
-    pub fn new(model: &Model, settings: FateSettings) -> Result<Self, Error> {
+    pub fn new(model: &Model, settings: ClassificationSettings) -> Result<Self, Error> {
         if settings.periods == 0 {
             return Err(Error::value("periods", 0.0, "must be at least 1"));
         }
@@ -147,7 +147,7 @@ impl Fates {
     ///
     /// # Errors
     /// A state that does not fit the model.
-    pub fn of(&self, start: &[f64], go_on: &dyn Fn() -> bool) -> Result<Fate, Error> {
+    pub fn of(&self, start: &[f64], go_on: &dyn Fn() -> bool) -> Result<Classification, Error> {
         let mut state = State::from_dofs(&self.system, start)?;
         let coordinates = Transition::new(&self.system, TAU / self.slow);
         let ended = || !go_on();
@@ -158,10 +158,10 @@ impl Fates {
         let mut passed = 0;
         let reason = loop {
             if self.sticking.keeps(&self.system, &state) {
-                break Reason::Held;
+                break Reason::Stuck;
             }
             if self.slipping.outgrows(&self.system, &state) {
-                break Reason::Outgrown;
+                break Reason::Unbounded;
             }
             if let Some(closed) = returns.closed() {
                 period = closed.period;
@@ -189,7 +189,7 @@ impl Fates {
             }
             state.time = 0.0;
             let run = flow.run(&mut state, self.slow, &mut |passage| {
-                if let Passage::Arc(arc) = passage {
+                if let FlowEvent::Segment(arc) = passage {
                     returns.follow(&arc, begin, &self.system, &coordinates, &mut |size, error| {
                         trend.add(quarter, size, error);
                     });
@@ -215,8 +215,8 @@ impl Fates {
         state: &State,
         events: usize,
         go_on: &dyn Fn() -> bool,
-    ) -> Fate {
-        let mut fate = Fate {
+    ) -> Classification {
+        let mut fate = Classification {
             reason,
             mode: None,
             share: f64::NAN,
@@ -228,13 +228,13 @@ impl Fates {
         };
         let span = match reason {
             Reason::Closed => period,
-            Reason::Held | Reason::Passive => self.slow,
-            Reason::Outgrown | Reason::Overflow | Reason::Contradiction => return fate,
+            Reason::Stuck | Reason::Passive => self.slow,
+            Reason::Unbounded | Reason::Overflow | Reason::Contradiction => return fate,
             _ => SURVEYED as f64 * self.slow,
         };
         if let Ok(survey) = self.survey(&mut state.clone(), span, go_on) {
             fate.amplitude = survey.range.iter().map(|[low, high]| 0.5 * (high - low)).collect();
-            if !matches!(reason, Reason::Held | Reason::Passive) {
+            if !matches!(reason, Reason::Stuck | Reason::Passive) {
                 let (mode, share) = survey.mode();
                 (fate.mode, fate.share) = (Some(mode), share);
             }
@@ -268,7 +268,7 @@ impl Fates {
         let (mut x, mut v) = (vec![0.0; n], vec![0.0; n]);
         state.time = 0.0;
         flow.run(state, span, &mut |passage| {
-            let Passage::Arc(arc) = passage else { return };
+            let FlowEvent::Segment(arc) = passage else { return };
             for (shape, range) in shapes.iter().zip(&mut survey.range) {
                 arc.series.project(shape.iter().copied(), arc.length, &mut extremes.series);
                 extremes.widen(range);
@@ -344,7 +344,7 @@ impl Trend {
         } else if error < SETTLING.ln() {
             Reason::Settling
         } else {
-            Reason::Wanders
+            Reason::Aperiodic
         }
     }
 }

@@ -14,9 +14,9 @@ use crate::Error;
 use faer::linalg::solvers::{PartialPivLu, Solve as _};
 use faer::{c64, Mat, MatRef};
 
-/// Answer of the contacts to slip loads at one harmonic: `U = G Q`.
+/// CompliancePartials of the contacts to slip loads at one harmonic: `U = G Q`.
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct CompliancePartials {
     /// G, contacts × contacts [m/N].
     pub contact: Mat<c64>,
     /// dG/dω.
@@ -71,12 +71,12 @@ enum Form {
 
 /// A structure with its contacts and negative damping.
 #[derive(Debug, Clone)]
-pub struct Destabilised {
+pub struct FlutterCompliance {
     form: Form,
     whole: Matrices,
 }
 
-impl Destabilised {
+impl FlutterCompliance {
     /// Of a structure, the rows B of its contacts and its negative damping, N × N, made by a `law`
     /// that couples no modes without contacts, or any.
     ///
@@ -110,7 +110,7 @@ impl Destabilised {
     /// complex matrix of negative damping per nodal diameter 0..n.
     ///
     /// # Errors
-    /// Another number of matrices than sectors; as [`Destabilised::new`].
+    /// Another number of matrices than sectors; as [`FlutterCompliance::new`].
     pub fn travelling(
         cyclic: &CyclicStructure,
         own: MatRef<'_, f64>,
@@ -171,7 +171,7 @@ impl Destabilised {
         omega: f64,
         ratio: f64,
         stiffness: MatRef<'_, f64>,
-    ) -> Answer {
+    ) -> CompliancePartials {
         let stiffness = complex(stiffness);
         match &self.form {
             Form::Modes(modes) => modes.answer(order, omega, ratio, &stiffness),
@@ -239,7 +239,7 @@ impl Destabilised {
     /// Modal dampings `(φᴴ C φ, φᴴ C_neg φ)` in the modes without contacts [1/s].
     ///
     /// # Errors
-    /// As [`Destabilised::stuck_modes`].
+    /// As [`FlutterCompliance::stuck_modes`].
     pub fn free_modes(&self) -> Result<Vec<StuckMode>, Error> {
         self.stuck_modes(Mat::zeros(self.contacts(), self.contacts()).as_ref())
     }
@@ -288,7 +288,13 @@ impl Modes {
         [weight, by_omega, by_ratio]
     }
 
-    fn answer(&self, order: usize, omega: f64, ratio: f64, stiffness: &Mat<c64>) -> Answer {
+    fn answer(
+        &self,
+        order: usize,
+        omega: f64,
+        ratio: f64,
+        stiffness: &Mat<c64>,
+    ) -> CompliancePartials {
         let contacts = self.contacts.nrows();
         let order = order as f64;
         let mut sums = [(); 3].map(|()| Mat::<c64>::zeros(contacts, contacts));
@@ -315,7 +321,7 @@ impl Modes {
         let kept = Mat::<c64>::identity(contacts, contacts) - stiffness * &contact;
         let by_omega = lu.solve(faer::Scale(c64::new(order, 0.0)) * &by_omega * &kept);
         let by_ratio = lu.solve(&by_ratio * &kept);
-        Answer { contact, by_omega, by_ratio }
+        CompliancePartials { contact, by_omega, by_ratio }
     }
 
     fn displacement(&self, omega: f64, ratio: f64, forces: &[c64]) -> Vec<c64> {
@@ -346,7 +352,13 @@ impl Matrices {
         dynamic.partial_piv_lu()
     }
 
-    fn answer(&self, order: usize, omega: f64, ratio: f64, stiffness: &Mat<c64>) -> Answer {
+    fn answer(
+        &self,
+        order: usize,
+        omega: f64,
+        ratio: f64,
+        stiffness: &Mat<c64>,
+    ) -> CompliancePartials {
         let (order, size) = (order as f64, self.mass.nrows());
         let frequency = order * omega;
         let lu = self.factor(frequency, ratio, stiffness);
@@ -357,7 +369,7 @@ impl Matrices {
                 - c64::new(0.0, order) * (self.damping[(i, j)] + ratio * self.negative[(i, j)])
         });
         let driving = faer::Scale(c64::new(0.0, -frequency)) * &self.negative;
-        Answer {
+        CompliancePartials {
             contact: &self.rows * &of_contacts,
             by_omega: &self.rows * lu.solve(softening * &of_contacts),
             by_ratio: &self.rows * lu.solve(driving * &of_contacts),

@@ -8,10 +8,11 @@ use common::passive::passive_system;
 use common::{single_dof, snecma_beam, System};
 use proptest::prelude::*;
 use stickslip_core::motion::{
-    fates, transient, Fate, FateSettings, Fates, Reason, Scheme, TransientSettings,
+    fates, transient, Classification, ClassificationSettings, Classifier, Reason, Scheme,
+    TransientSettings,
 };
 
-const SETTINGS: FateSettings = FateSettings { periods: 2000, tolerance: 1e-6 };
+const SETTINGS: ClassificationSettings = ClassificationSettings { periods: 2000, tolerance: 1e-6 };
 
 /// A system without forces, its damping multiplied.
 fn free(mut system: System, factor: f64) -> System {
@@ -20,8 +21,8 @@ fn free(mut system: System, factor: f64) -> System {
     system
 }
 
-fn fate(system: &System, start: &[f64]) -> Fate {
-    Fates::new(&system.model(), SETTINGS).unwrap().of(start, &|| true).unwrap()
+fn fate(system: &System, start: &[f64]) -> Classification {
+    Classifier::new(&system.model(), SETTINGS).unwrap().of(start, &|| true).unwrap()
 }
 
 #[test]
@@ -36,7 +37,7 @@ fn growth_is_claimed_beyond_the_separatrix_alone() {
     }
     for share in [1.001, 1.05, 1.5, 1e3] {
         let fate = fate(&system, &[share * amplitude, 0.0, common::SLIP_FORCE]);
-        assert_eq!(fate.reason, Reason::Outgrown, "{share}");
+        assert_eq!(fate.reason, Reason::Unbounded, "{share}");
     }
 }
 
@@ -44,7 +45,7 @@ fn growth_is_claimed_beyond_the_separatrix_alone() {
 fn a_damped_motion_below_the_onset_of_slip_never_slips_again() {
     let system = free(snecma_beam(0.0), 1.0);
     let fate = fate(&system, &[1e-4, 2e-3, 1e-4, 0.0, 0.0, 0.0, 100.0]);
-    assert_eq!(fate.reason, Reason::Held);
+    assert_eq!(fate.reason, Reason::Stuck);
     assert!(fate.events > 0);
     let settings = TransientSettings {
         omega: 225.0,
@@ -69,18 +70,19 @@ fn a_longer_period_is_not_mistaken_for_a_spiral() {
 
 #[test]
 fn what_does_not_fit_is_refused_and_an_interruption_is_heard() {
-    assert!(Fates::new(&single_dof(1.0).model(), SETTINGS).is_err());
+    assert!(Classifier::new(&single_dof(1.0).model(), SETTINGS).is_err());
     let system = free(snecma_beam(0.0), -0.2);
     let model = system.model();
-    let none = FateSettings { periods: 0, ..SETTINGS };
-    assert!(Fates::new(&model, none).is_err());
-    let loose = FateSettings { tolerance: 1.0, ..SETTINGS };
-    assert!(Fates::new(&model, loose).is_err());
+    let none = ClassificationSettings { periods: 0, ..SETTINGS };
+    assert!(Classifier::new(&model, none).is_err());
+    let loose = ClassificationSettings { tolerance: 1.0, ..SETTINGS };
+    assert!(Classifier::new(&model, loose).is_err());
     let starts = vec![vec![1e-5, 1e-5, 3e-4, 0.0, 0.0, 0.0, 0.0]; 4];
     assert!(fates(&model, SETTINGS, &[vec![0.0; 3]], 0, &|_| true).is_err());
     let stopped = fates(&model, SETTINGS, &starts, 2, &|_| false).unwrap();
-    let undone =
-        |fate: &Option<Fate>| fate.as_ref().is_none_or(|fate| fate.reason == Reason::Interrupted);
+    let undone = |fate: &Option<Classification>| {
+        fate.as_ref().is_none_or(|fate| fate.reason == Reason::Interrupted)
+    };
     assert!(stopped.iter().all(undone));
 }
 
@@ -94,7 +96,7 @@ proptest! {
         let mut start = vec![0.0; 2 * n + system.dampers.len()];
         start[0] = size;
         let fate = fate(&system, &start);
-        prop_assert!(matches!(fate.reason, Reason::Held | Reason::Passive), "{:?}", fate.reason);
+        prop_assert!(matches!(fate.reason, Reason::Stuck | Reason::Passive), "{:?}", fate.reason);
     }
 
     #[test]
@@ -107,7 +109,7 @@ proptest! {
         let mut start = vec![0.0; 2 * n + system.dampers.len()];
         start[0] = size;
         let fate = fate(&system, &start);
-        prop_assert!(!matches!(fate.reason, Reason::Held | Reason::Passive), "{:?}", fate.reason);
+        prop_assert!(!matches!(fate.reason, Reason::Stuck | Reason::Passive), "{:?}", fate.reason);
         prop_assert!(fate.reason != Reason::Contradiction);
     }
 }

@@ -1,9 +1,9 @@
 //! A family of self-excited models: a structure with friction and the damping `C + r C_neg`, in r or
 //! in a parameter of its contacts.
 
-use super::{Body, Change, Common, Model, Variation};
+use super::{Body, Change, Model, ParameterMode, Variation};
 use crate::contact::ContactLaw;
-use crate::structure::Destabilised;
+use crate::structure::FlutterCompliance;
 use crate::Error;
 use faer::{c64, Mat};
 
@@ -20,16 +20,16 @@ pub enum NegativeDamping {
 }
 
 /// A self-excited model: without loads, with the damping `C + r C_neg`.
-pub struct SelfExcited<'a> {
+pub struct FlutterModel<'a> {
     model: &'a Model,
     negative: NegativeDamping,
-    destabilised: Destabilised,
+    destabilised: FlutterCompliance,
     ratio: f64,
     variation: Variation,
     changes: Vec<Change>,
 }
 
-impl<'a> SelfExcited<'a> {
+impl<'a> FlutterModel<'a> {
     /// A model with its negative damping; `ratio` is r where a parameter of contacts is varied.
     ///
     /// # Errors
@@ -59,10 +59,10 @@ impl<'a> SelfExcited<'a> {
                 Body::Whole | Body::Ring(_),
             ) => {
                 let law = matches!(negative, NegativeDamping::Proportional(_));
-                Destabilised::new(model.structure(), rows, matrix.as_ref(), law)?
+                FlutterCompliance::new(model.structure(), rows, matrix.as_ref(), law)?
             }
             (NegativeDamping::Wave(matrices), Body::Wave { cyclic, next }) => {
-                Destabilised::travelling(cyclic, rows, next.as_ref().as_ref(), matrices)?
+                FlutterCompliance::travelling(cyclic, rows, next.as_ref().as_ref(), matrices)?
             }
             (NegativeDamping::Whole(_) | NegativeDamping::Proportional(_), _) => {
                 return Err(Error::shape(
@@ -97,7 +97,7 @@ impl<'a> SelfExcited<'a> {
 
     /// The compliance.
     #[must_use]
-    pub fn destabilised(&self) -> &Destabilised {
+    pub fn destabilised(&self) -> &FlutterCompliance {
         &self.destabilised
     }
 
@@ -142,7 +142,7 @@ impl<'a> SelfExcited<'a> {
             return Some(self.ratio);
         }
         let first = self.changes.first()?;
-        if first.common == Common::Factor {
+        if first.common == ParameterMode::Factor {
             return Some(1.0);
         }
         self.changes.iter().all(|change| change.own == first.own).then_some(first.own)

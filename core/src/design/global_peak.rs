@@ -5,7 +5,8 @@ use super::first_look::FirstLook;
 use super::samples::Sample;
 use super::search::{Aim, Found, Search};
 use crate::balance::{
-    Evaluation, ForcedBalance, HarmonicChoice, Memory, PointStatus, Progress, Resolution, Settings,
+    Evaluation, ForcedBalance, HarmonicChoice, PointStatus, Progress, Resolution, Settings,
+    WarmStart,
 };
 use crate::fourier::Measure;
 use crate::model::Model;
@@ -25,7 +26,7 @@ const MOST_POINTS: usize = 1000;
 
 /// Which highest points are sought.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Quest {
+pub struct PeakQuery {
     /// DOFs, group by group; the highest of each group is sought.
     pub groups: Vec<Vec<usize>>,
     /// Measure of their amplitudes.
@@ -36,7 +37,7 @@ pub struct Quest {
 
 /// The highest point of a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Summit {
+pub struct GlobalPeak {
     /// Its frequency; of a missing summit, where nothing bounds the response, if that is why [rad/s].
     pub omega: f64,
     /// Its amplitude [m].
@@ -54,7 +55,7 @@ pub struct Summit {
     pub at_edge: bool,
 }
 
-impl Summit {
+impl GlobalPeak {
     pub(super) fn missing(status: PointStatus) -> Self {
         let nan = f64::NAN;
         Self {
@@ -73,7 +74,7 @@ impl Summit {
 #[derive(Debug, Clone)]
 pub struct Summits {
     /// One per group.
-    pub summits: Vec<Summit>,
+    pub summits: Vec<GlobalPeak>,
     /// Responses solved for.
     pub points: usize,
     /// Where the time went.
@@ -102,7 +103,7 @@ impl Summits {
 pub fn summits(
     model: &Model,
     settings: Settings,
-    quest: &Quest,
+    quest: &PeakQuery,
     order: Option<usize>,
     progress: &Progress<'_>,
 ) -> Result<Summits, Error> {
@@ -113,13 +114,13 @@ pub fn summits(
 pub(super) fn climbed(
     model: &Model,
     settings: Settings,
-    quest: &Quest,
+    quest: &PeakQuery,
     gain: f64,
     order: Option<usize>,
     progress: &Progress<'_>,
 ) -> Result<Summits, Error> {
     let start = Instant::now();
-    let mut climb = Climb::new(model, settings, quest, gain, progress)?;
+    let mut climb = PeakSearch::new(model, settings, quest, gain, progress)?;
     let reached = climb.run(model, order, None)?;
     let profile = Profile { total: start.elapsed(), ..climb.memory.profile };
     let summits = reached.summits.into_iter().map(|(summit, _)| summit).collect();
@@ -127,15 +128,15 @@ pub(super) fn climbed(
 }
 
 /// Searches for highest points, each from the samples of the last.
-pub(super) struct Climb<'a> {
+pub(super) struct PeakSearch<'a> {
     pub(super) settings: Settings,
-    pub(super) quest: &'a Quest,
+    pub(super) quest: &'a PeakQuery,
     pub(super) progress: &'a Progress<'a>,
     /// Share of the work that is done, for the progress.
     pub(super) share: f64,
     /// Gain in height, relative, that is not worth another point.
     pub(super) gain: f64,
-    pub(super) memory: Memory,
+    pub(super) memory: WarmStart,
     /// Samples of the last search.
     pub(super) seeds: Vec<Sample>,
     pub(super) points: usize,
@@ -144,14 +145,14 @@ pub(super) struct Climb<'a> {
 /// What a climb has reached.
 pub(super) struct Reached {
     /// The summits, each with the position of its sample.
-    pub(super) summits: Vec<(Summit, usize)>,
+    pub(super) summits: Vec<(GlobalPeak, usize)>,
     /// With what they were found.
     pub(super) resolution: Resolution,
     /// What they ask for by themselves.
     pub(super) wanted: Resolution,
 }
 
-impl<'a> Climb<'a> {
+impl<'a> PeakSearch<'a> {
     /// A climb of models like this one.
     ///
     /// # Errors
@@ -159,7 +160,7 @@ impl<'a> Climb<'a> {
     pub(super) fn new(
         model: &Model,
         settings: Settings,
-        quest: &'a Quest,
+        quest: &'a PeakQuery,
         gain: f64,
         progress: &'a Progress<'a>,
     ) -> Result<Self, Error> {
@@ -201,7 +202,7 @@ impl<'a> Climb<'a> {
             let Some(found) = self.search(model, resolution)? else {
                 let ended = !(self.progress)(self.share);
                 let status = if ended { PointStatus::NotComputed } else { PointStatus::Stalled };
-                let summits = vec![(Summit::missing(status), 0); quest.groups.len()];
+                let summits = vec![(GlobalPeak::missing(status), 0); quest.groups.len()];
                 return Ok(Reached { summits, resolution, wanted: resolution });
             };
             let mut summits = Vec::with_capacity(found.tops.len());
@@ -210,14 +211,16 @@ impl<'a> Climb<'a> {
             for (top, group) in found.tops.iter().zip(&quest.groups) {
                 summits.push(match top {
                     // A lower maximum is no summit.
-                    Err(doubt) => (Summit { omega: doubt.at, ..Summit::missing(doubt.status) }, 0),
+                    Err(doubt) => {
+                        (GlobalPeak { omega: doubt.at, ..GlobalPeak::missing(doubt.status) }, 0)
+                    }
                     Ok(top) => {
                         let best = &found.samples[top.sample];
                         let (status, kept, error_estimate) =
                             self.judge(model, all[top.curve], best.at, Some(best))?;
                         let summit = if status.is_solved() {
                             wanted = wanted.or_finer(kept);
-                            Summit {
+                            GlobalPeak {
                                 omega: best.at,
                                 amplitude: best.knots[top.curve].height,
                                 member: top.curve - first,
@@ -227,7 +230,7 @@ impl<'a> Climb<'a> {
                                 at_edge: top.sample == 0 || top.sample + 1 == found.samples.len(),
                             }
                         } else {
-                            Summit::missing(status)
+                            GlobalPeak::missing(status)
                         };
                         (summit, top.sample)
                     }
