@@ -1,4 +1,4 @@
-"""Doors that every number, name and matrix from outside passes before it is used."""
+"""Checks of every number, name and matrix that a user gives."""
 
 from __future__ import annotations
 

@@ -431,7 +431,7 @@ fn if_bounded(report: Report, x: &[f64], equations: &Condensed<'_>) -> Report {
     report
 }
 
-/// Whether a motion still feels the load: of one that dwarfs the stuck response no digit does.
+/// Whether a motion is small enough that rounding leaves the effect of the load in its digits.
 pub(super) fn is_bounded(x: &[f64], stuck: &[f64]) -> bool {
     norm(x) <= UNBOUNDED * norm(stuck)
 }

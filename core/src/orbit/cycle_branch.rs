@@ -64,7 +64,7 @@ pub fn limit_cycles(
         _ => finder.balanced(orbits.as_ref(), &interrupted, &share),
     };
     let mut out = match found {
-        // Nothing was found because nothing more was looked for.
+        // The caller has ended the search: there is nothing to report.
         Err(_) if stopped.get() => finder.result(&Traced::default(), Vec::new(), 0),
         other => other?,
     };

@@ -1,4 +1,4 @@
-"""Doors that the arguments of analyses pass: frequencies, degrees of freedom, preload."""
+"""Checks of the arguments of analyses: frequencies, degrees of freedom, preload."""
 
 from __future__ import annotations
 
