@@ -6,9 +6,10 @@
 mod common;
 
 use common::coupled::{Coupled, SLIP_FORCE, STIFFNESS};
-use faer::mat;
+use faer::{mat, Mat};
 use stickslip_core::contact::{
-    Aft, ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual, SlipLoad,
+    Aft, ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual, ReturnMapJacobian,
+    Slider, SlipElement as _, SlipLoad,
 };
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
@@ -226,5 +227,105 @@ fn the_onset_of_slip_is_continuous() {
     }
     for (a, b) in at(stuck).value.iter().zip(&at(slipping).value) {
         assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
+}
+
+/// A slider beside a spring that acts beyond a gap alone: its force departs from that of the stuck
+/// contact without slip, and not by its state.
+#[derive(Debug, Clone, Copy)]
+struct Rubbing {
+    slider: Slider,
+    spring: f64,
+    gap: f64,
+}
+
+impl ContactLaw for Rubbing {
+    fn name(&self) -> &'static str {
+        "rubbing"
+    }
+
+    fn displacements(&self) -> usize {
+        1
+    }
+
+    fn state_size(&self) -> usize {
+        1
+    }
+
+    fn stiffness(&self) -> Mat<f64> {
+        Mat::from_fn(1, 1, |_, _| self.slider.stiffness + self.spring)
+    }
+
+    fn state_stiffness(&self) -> Mat<f64> {
+        Mat::from_fn(1, 1, |_, _| self.slider.stiffness)
+    }
+
+    fn is_odd(&self) -> bool {
+        false
+    }
+
+    fn is_monotone(&self) -> bool {
+        true
+    }
+
+    fn limits(&self) -> Vec<f64> {
+        vec![f64::INFINITY]
+    }
+
+    fn return_map(
+        &self,
+        before: &[f64],
+        after: &[f64],
+        state: &mut [f64],
+        force: &mut [f64],
+        jacobian: Option<&mut ReturnMapJacobian>,
+    ) {
+        let mut sticks = [0.0];
+        self.slider.increment(&[after[0] - before[0]], state, Some(&mut sticks));
+        let touches = f64::from(u8::from(after[0] > self.gap));
+        force[0] = state[0] + touches * self.spring * (after[0] - self.gap);
+        let Some(jacobian) = jacobian else { return };
+        jacobian.reset(1, 1);
+        jacobian.by_state[0] = sticks[0];
+        jacobian.by_after[0] = sticks[0] * self.slider.stiffness;
+        jacobian.by_before[0] = -jacobian.by_after[0];
+        jacobian.force_by_state[0] = 1.0;
+        jacobian.force_by_after[0] = touches * self.spring;
+        jacobian.slipping[0] = 1.0 - sticks[0];
+    }
+
+    fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
+        let stiffness = share * self.slider.stiffness;
+        Box::new(Self {
+            slider: Slider { stiffness, ..self.slider },
+            spring: share * self.spring,
+            gap: self.gap,
+        })
+    }
+
+    fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
+        let slip_force = factor * self.slider.slip_force;
+        Box::new(Self {
+            slider: Slider { slip_force, ..self.slider },
+            gap: factor * self.gap,
+            ..*self
+        })
+    }
+}
+
+#[test]
+fn forces_that_depart_without_slip_have_their_load_and_tangent() {
+    let table = SampleTable::new(Harmonics::new(5, false));
+    let u: Vec<f64> =
+        (0..table.harmonics().slots()).map(|i| (1.3 * i as f64 + 0.4).sin()).collect();
+    // Slipping, and stuck for good.
+    for slip_force in [0.4, f64::INFINITY] {
+        let slider = Slider::new(STIFFNESS, slip_force).unwrap();
+        let law = Rubbing { slider, spring: 0.7 * STIFFNESS, gap: 0.35 };
+        let error = tangent_error(&law, &table, &u, Residual::Centred);
+        // Samples that come to touch between two differences are few.
+        assert!(error < 2e-3, "{slip_force}: {error:e}");
+        let found = load(&law, &table, &u, Residual::Centred);
+        assert!(found.active && found.value.iter().any(|q| q.abs() > 0.1));
     }
 }

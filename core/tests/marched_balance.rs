@@ -13,6 +13,7 @@ use stickslip_core::balance::{
 use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
 use stickslip_core::model::{Contact, Model};
+use stickslip_core::motion::ModalSystem;
 use stickslip_core::solve::FirstJacobian;
 use stickslip_core::structure::{HarmonicLoad, Structure};
 
@@ -91,13 +92,19 @@ fn a_law_without_closed_form_runs_through_the_whole_balance() {
         };
         let amplitude = [faer::c64::new(6.0, 0.0), faer::c64::new(0.0, 3.0)].to_vec();
         let loads = vec![HarmonicLoad { harmonic: 1, amplitude }];
-        Model::new(structure, contacts, loads).unwrap().marched(256).unwrap()
+        Model::new(structure, contacts, loads).unwrap()
     };
     let fixed = Settings { harmonics: HarmonicChoice::Fixed(7), ..Settings::default() };
     let omega: Vec<f64> = (0..40).map(|i| 1.0 + 0.15 * f64::from(i)).collect();
     let run =
         |model: &Model| sweep(ForcedBalance::new(model, fixed, &[0, 1]).unwrap(), &omega).unwrap();
-    let (one, two) = (run(&build(true)), run(&build(false)));
+    let sampled = |coupled| run(&build(coupled).marched(256).unwrap());
+    let (one, two) = (sampled(true), sampled(false));
+    // By itself it is sampled finely, and no motion from event to event can follow it.
+    let alone = build(true);
+    assert!(apart(&run(&alone), &run(&build(false))) < 1e-4);
+    let refused = ModalSystem::new(&alone).unwrap_err().to_string();
+    assert!(refused.contains("contact 1: the law coupled has no events"), "{refused}");
     assert!(two.points.iter().any(|p| p.contacts.iter().all(|c| c.slip_fraction > 0.0)));
     assert!(one.points.iter().all(|p| p.status == PointStatus::Converged));
     assert!(apart(&one, &two) < 1e-9);

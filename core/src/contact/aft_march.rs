@@ -2,7 +2,7 @@
 //! derivative.
 
 use super::law::ReturnMapJacobian;
-use super::march_rate::{is_elastic, FrictionWork, Rate};
+use super::march_rate::{follows, is_elastic, FrictionWork, Rate};
 use super::periodic_march::SLOW;
 use super::samples::Samples;
 use super::{Aft, ContactLaw, Motion, Residual};
@@ -27,7 +27,7 @@ pub(super) struct Round {
     pub(super) slipping: Vec<f64>,
     /// Friction work of every displacement over the span, if it was asked for.
     pub(super) work: Vec<f64>,
-    /// Whether anything has slipped from the start on.
+    /// Whether the force has ever departed from the stuck spring's, by slip or otherwise.
     pub(super) slipped: bool,
 }
 
@@ -101,6 +101,11 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     /// Marches until the state repeats; with `account` of the friction work.
     pub(super) fn march(&self, samples: &Samples, account: bool) -> Round {
         let (count, size) = (self.law.displacements(), self.law.state_size());
+        let (stiffness, state_stiffness) = (self.law.stiffness(), self.law.state_stiffness());
+        let departs = |step: &Step| {
+            !(is_elastic(&step.jacobian, &state_stiffness)
+                && follows(&step.jacobian, &stiffness, &state_stiffness))
+        };
         let mut step = self.start(samples);
         let mut round = Round {
             state: vec![0.0; samples.count * size],
@@ -108,7 +113,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             averaged: vec![false],
             slipping: Vec::new(),
             work: Vec::new(),
-            slipped: !step.jacobian.sticks(),
+            slipped: departs(&step),
         };
         let friction =
             account.then(|| FrictionWork::new(self.law.stiffness(), self.law.elements().is_some()));
@@ -123,6 +128,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                 round.state[(n - 1) * size..n * size].copy_from_slice(&step.state);
                 round.force[old..old + count].copy_from_slice(&step.force);
                 self.advance(samples, n, &mut step);
+                round.slipped = round.slipped || departs(&step);
                 largest = step.state.iter().fold(largest, |most, z| most.max(z.abs()));
                 let shares = round.slipping.iter_mut().zip(&step.jacobian.slipping);
                 shares.for_each(|(sum, share)| *sum += share);
@@ -136,7 +142,6 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             }
             step.state.iter_mut().for_each(|z| *z *= samples.sign);
             step.force.iter_mut().for_each(|f| *f *= samples.sign);
-            round.slipped |= round.slipping.iter().any(|&share| share > 0.0);
             let change = step.state.iter().zip(&before).map(|(a, b)| (a - b).abs());
             let change = change.fold(0.0, f64::max);
             if change <= PERIODIC * largest || round.averaged.len() == MOST_ROUNDS {

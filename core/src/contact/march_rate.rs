@@ -101,12 +101,8 @@ impl Rate {
         let size = count * self.slots;
         for i in 0..count {
             for l in 0..count {
-                let by_state = &jacobian.force_by_state[i * states..(i + 1) * states];
-                let through: f64 =
-                    (0..states).map(|j| by_state[j] * self.state_stiffness[(j, l)]).sum();
-                let own = self.stiffness[(i, l)];
-                let lost = own - through - jacobian.force_by_after[i * count + l];
-                if lost.abs() <= CANCELLED * own.abs() {
+                let lost = lost(jacobian, i, l, &self.stiffness, &self.state_stiffness, states);
+                if lost == 0.0 {
                     continue;
                 }
                 for (k, b) in basis.iter().enumerate() {
@@ -116,6 +112,39 @@ impl Rate {
                 }
             }
         }
+    }
+}
+
+/// Whether the force after a step follows the displacements by the stuck stiffness D.
+pub(super) fn follows(
+    jacobian: &ReturnMapJacobian,
+    stiffness: &Mat<f64>,
+    state_stiffness: &Mat<f64>,
+) -> bool {
+    let (states, count) = (state_stiffness.nrows(), stiffness.nrows());
+    (0..count).all(|i| {
+        (0..count).all(|l| lost(jacobian, i, l, stiffness, state_stiffness, states) == 0.0)
+    })
+}
+
+/// What force i loses per displacement l against the stuck stiffness, though its state loses nothing.
+fn lost(
+    jacobian: &ReturnMapJacobian,
+    i: usize,
+    l: usize,
+    stiffness: &Mat<f64>,
+    state_stiffness: &Mat<f64>,
+    states: usize,
+) -> f64 {
+    let by_state = &jacobian.force_by_state[i * states..(i + 1) * states];
+    let through: f64 = (0..states).map(|j| by_state[j] * state_stiffness[(j, l)]).sum();
+    let own = stiffness[(i, l)];
+    let lost = own - through - jacobian.force_by_after[i * stiffness.nrows() + l];
+    let cancelled = lost.abs() <= CANCELLED * own.abs();
+    if cancelled {
+        0.0
+    } else {
+        lost
     }
 }
 
