@@ -221,5 +221,13 @@ def test_bad_elements_are_refused(stiffness, limits, message):
 
 def test_an_element_has_no_results_of_its_own():
     curve = ss.forced_response(models()[0], OMEGA[:2], 3)
-    with pytest.raises(ss.ModelError, match="share one displacement"):
-        curve.slip_fraction(("parallel-jenkins", 3))
+    element = ("parallel-jenkins", 3)
+    for refused in (
+        lambda: curve.slip_fraction(element),
+        lambda: ss.natural_frequencies(curve.model, [element]),
+        lambda: ss.slip_configurations(curve.model, points=[element]),
+    ):
+        with pytest.raises(ss.ModelError, match=r"contact 'parallel-jenkins' has 1, at"):
+            refused()
+    with pytest.raises(ss.ModelError, match="it has 20 points; write"):
+        ss.State(curve.model, contact_force={"parallel-jenkins": 0.01})

@@ -13,7 +13,7 @@ __all__ = ["require_memory", "require_numbers"]
 SHARE = 0.75
 """Share of the memory that an analysis may take."""
 
-COPIES = 3.8
+COPIES = 4.2
 """Copies of a result while it is saved: itself, its dataset, the file, and the room it grows in."""
 
 _PER_POINT = 80

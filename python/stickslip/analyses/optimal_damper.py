@@ -241,7 +241,7 @@ def _stuck_forces(
     response = forced_response(stuck, settings.span, max(highest, 1), observe=[settings.dof])
     load = largest = 0.0
     for ref in varied:
-        position, point = model.point(ref)
+        position, point = model.slider(ref)
         place = min(point, model.contacts[position].points - 1)
         column = response.arrays.contact_force[:, :, response._columns(position, place)][:, :, 0]
         share = model.contacts[position].slider_shares[point]

@@ -106,7 +106,7 @@ def _chosen(
     ref: PointRef, parameter: Parameter, model: Model, common: Common
 ) -> tuple[Chosen, ...]:
     """Return the contact that is meant, or the points of it that have a value each."""
-    position, point = model.point(ref) if isinstance(ref, tuple | list) else (ref, None)
+    position, point = model.slider(ref) if isinstance(ref, tuple | list) else (ref, None)
     contact = model.contacts[model.contact_index(position)]
     known, name = contact.adjustable(), str(contact.name)
     if parameter not in known:
@@ -133,8 +133,8 @@ def _points(contact: Contact, parameter: Parameter) -> tuple[Chosen, ...]:
 
 def _without_value(name: str, parameter: Parameter) -> ModelError:
     return ModelError(
-        f'contact {name!r}: its {parameter} is a matrix, which takes no value; common="factor" '
-        "multiplies it"
+        f"contact {name!r}: its {parameter} is that of several parts, which takes no value; "
+        'common="factor" multiplies it'
     )
 
 

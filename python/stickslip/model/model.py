@@ -6,7 +6,7 @@ count from 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, count
@@ -157,20 +157,29 @@ class Model:
             If there is no such contact or point, or the contact has several points and none is
             named.
         """
+        return self._place(point, [contact.points for contact in self.contacts])
+
+    def slider(self, slider: PointRef) -> tuple[int, int]:
+        """Return a part of a contact that sticks or slips by itself as positions.
+
+        Parameters, returns and errors are those of `point`; elements in parallel count one by one.
+        """
+        return self._place(slider, [len(contact.slider_limits) for contact in self.contacts])
+
+    def _place(self, point: PointRef, counts: Sequence[int]) -> tuple[int, int]:
         if isinstance(point, tuple | list):
             if len(point) != 2:
                 raise ModelError(f"contact point {brief(point)}: write (contact, point)")
             contact = self.contact_index(point[0])
             owner = f"contact {brief(self.contact_names[contact])}"
             position = whole_number(point[1], f"{owner}: point")
-            sliders = len(self.contacts[contact].slider_limits)
-            _require_position("point", position, sliders, owner)
+            _require_position("point", position, counts[contact], owner)
             return contact, position
         contact = self.contact_index(point)
-        points = self.contacts[contact].points
-        if points != 1:
+        if counts[contact] != 1:
             raise ModelError(
-                f"contact {brief(point)}: it has {points} points; write ({brief(point)}, 0)"
+                f"contact {brief(point)}: it has {counts[contact]} points; write "
+                f"({brief(point)}, 0)"
             )
         return contact, 0
 

@@ -183,7 +183,7 @@ def _forces(model: Model, values: object) -> Float:
     forces = np.zeros(sum(sizes))
     if isinstance(values, Mapping):
         for reference, value in values.items():
-            contact, point = model.point(reference)
+            contact, point = model.slider(reference)
             place = sum(sizes[:contact]) + point
             forces[place] = real_number(value, f"contact_force of {reference!r}")
     elif values is not None:

@@ -101,7 +101,7 @@ class OptimalDamper(Result):
         """
         if self.parameter != "slip_force":
             raise ModelError(f"slip_force: the {self.parameter} was varied; see value")
-        points = [self.model.point(ref) for ref in self.curve.settings.variation.contacts]
+        points = [self.model.slider(ref) for ref in self.curve.settings.variation.contacts]
         forces = {self.model.contacts[contact].slider_limits[point] for contact, point in points}
         if len(forces) > 1:
             raise ModelError("slip_force: the contacts have several; see model.contacts")

@@ -162,13 +162,7 @@ class Result(ABC):
             If there is no such contact or point.
         """
         if isinstance(contact, tuple | list):
-            number, point = self.model.point(contact)
-            if point >= self.model.contacts[number].points:
-                raise ModelError(
-                    f"contact {contact[0]!r}: its {point + 1} elements share one displacement and "
-                    "have no results of their own; name it without a point"
-                )
-            return number, point
+            return self.model.point(contact)
         return self.model.contact_index(contact), None
 
     def _column(self, dof: str) -> int:

@@ -261,7 +261,7 @@ def _known(model: Model, contact: PointRef | None) -> dict[tuple[Place, str], Ca
     """Return all that a contact, one of its points, or the model can be differentiated by."""
     only: int | None = None
     if isinstance(contact, tuple | list):
-        position, only = model.point(contact)
+        position, only = model.slider(contact)
         positions = [position]
     elif contact is None:
         positions = list(range(len(model.contacts)))

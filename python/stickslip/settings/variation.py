@@ -128,4 +128,4 @@ def located(model: Model, ref: Chosen) -> tuple[int, int | None]:
     ModelError
         If the model lacks it.
     """
-    return (model.contact_index(ref), None) if isinstance(ref, str) else model.point(ref)
+    return (model.contact_index(ref), None) if isinstance(ref, str) else model.slider(ref)
