@@ -20,7 +20,7 @@ from stickslip.results.arrays import Arrays
 
 pytestmark = pytest.mark.timeout(60)
 
-PREAMBLE = """
+PREAMBLE = '''
 import json, os, resource, signal, sys, threading, time
 import numpy as np
 import stickslip as ss
@@ -34,17 +34,27 @@ def chain(n, contacts):
     pads = [ss.Jenkins(dofs[3 * i], stiffness=5e3, slip_force=1.0) for i in range(contacts)]
     return ss.Model(structure, pads, [ss.Force(dofs[n // 2], 5.0)])
 
-def pressed(analysis, delay=0.3):
-    "What an analysis leaves behind when Ctrl-C is pressed while it runs."
+def press(delay):
     threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+def pressed(analysis, delay=0.3):
+    """What an analysis leaves behind when Ctrl-C is pressed while it runs.
+
+    Without a delay the analysis is given what presses when it has begun to compute.
+    """
     try:
-        analysis()
+        if delay is None:
+            presses = iter([press])
+            analysis(lambda fraction: next(presses, lambda _: None)(0.05))
+        else:
+            press(delay)
+            analysis()
     except ss.Interrupted as stop:
         return type(stop.result).__name__
     except KeyboardInterrupt:
         return "nothing"
     return "not stopped"
-"""
+'''
 
 # Each would run for minutes. What it leaves behind, and how it is called.
 ANALYSES = {
@@ -57,7 +67,7 @@ ANALYSES = {
     "single_harmonic": ("ForcedResponse", "ss.single_harmonic(big, np.tile(grid, 100))"),
     "exact_response": ("ExactResponse", "ss.exact_response(big, grid)"),
     "transient": ("Transient", "ss.transient(big, 0.01, 1000, samples=2)"),
-    "rk4": ("Transient", "ss.transient(big, 0.1, 1000, scheme='rk4', steps=20000, samples=2)"),
+    "rk4": ("Transient", "ss.transient(big, 0.1, 1000, scheme='rk4', steps=20000, samples=2, progress=p)"),
     "damper_curve": (
         "DamperCurve",
         "ss.damper_curve(big, slip_force=np.geomspace(0.1, 10, 2000), dof='x3')",
@@ -72,11 +82,12 @@ ANALYSES = {
     "classify": ("MotionClass", "ss.classify(alone, {'x0': 5.0}, periods=10**6)"),
     "basin_map": (
         "BasinMap",
-        "ss.basin_map(alone, {'x0': np.arange(30.0), 'x3': np.arange(30.0)}, threads=1)",
+        "ss.basin_map(alone, {'x0': np.arange(30.0), 'x3': np.arange(30.0)}, threads=1, progress=p)",
     ),
     "mistuning_study": (
         "MistuningStudy",
-        "ss.mistuning_study(beam_ring(24, 7e3, 3), 0.05, omega=(150, 260), patterns=500, seed=1)",
+        "ss.mistuning_study(beam_ring(24, 7e3, 3), 0.05, omega=(150, 260), patterns=500, seed=1, "
+        "progress=p)",
     ),
     "certify": ("ForcedResponse", "ss.certify(curve, 'all')"),
     "sensitivity": ("nothing", "[curve.sensitivity('x3') for _ in range(1000)]"),
@@ -97,7 +108,7 @@ def child(code, **options):
 
 
 def test_ctrl_c_stops_every_analysis():
-    calls = ",\n".join(f"{name!r}: lambda: {call}" for name, (_, call) in ANALYSES.items())
+    calls = ",\n".join(f"{name!r}: lambda p=None: {call}" for name, (_, call) in ANALYSES.items())
     code = f"""
 big = chain(60, 15)
 alone, negative = ss.Model(big.structure, big.contacts), -0.1 * np.eye(60)
@@ -105,8 +116,8 @@ grid = np.linspace(10, 260, 5000)
 curve = ss.forced_response(chain(40, 10), np.linspace(10, 60, 200), harmonics=5)
 calls = {{{calls}}}
 # These are prepared for a while, in which there is nothing to keep.
-late = {{"basin_map": 1.2, "mistuning_study": 1.2, "rk4": 1.2}}
-print(json.dumps({{name: pressed(call, late.get(name, 0.3)) for name, call in calls.items()}}))
+late = ("basin_map", "mistuning_study", "rk4")
+print(json.dumps({{n: pressed(call, None if n in late else 0.3) for n, call in calls.items()}}))
 """
     left = json.loads(child(code).stdout)
     assert left == {name: kind for name, (kind, _) in ANALYSES.items()}
