@@ -37,6 +37,8 @@ const OF_SOLUTION: f64 = 6.0;
 /// steps than is reckoned: measured, an estimate of this effort takes 0.1 to 1 times as long. With
 /// less, estimates at low frequencies stop short of the stuck modes, and of the error.
 const ALLOWED: f64 = 3.0;
+/// The same of a ring, of which nearly all is reckoned.
+const ALLOWED_OF_RING: f64 = 1.5;
 
 /// The change after the second step counts up to this multiple of that after the first: where it is
 /// still larger, the second one overshoots.
@@ -69,9 +71,10 @@ impl Extension {
         // The compliances of the kept harmonics are known; all are recovered, after each step.
         let known = effort.orders(highest, [1.0, 0.0]);
         let solution = effort.orders(highest, [1.0, 1.0]) + OF_SOLUTION * effort.step(highest);
+        let is_ring = model.compliance().ring().is_some();
+        let allowed = solution * if is_ring { ALLOWED_OF_RING } else { ALLOWED };
         let affordable = |order: &usize| {
-            effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order)
-                <= ALLOWED * solution
+            effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order) <= allowed
         };
         let candidates = (highest + LEAST..=wanted).step_by(LEAST);
         let farthest = candidates.take_while(affordable).last();

@@ -3,7 +3,7 @@
 
 use super::first_look::FirstLook;
 use super::samples::Sample;
-use super::search::{Aim, Found, Search};
+use super::search::{Aim, Found, Precision, Search};
 use crate::balance::{
     Evaluation, ForcedBalance, HarmonicChoice, PointStatus, Progress, Resolution, Settings,
     WarmStart,
@@ -14,13 +14,12 @@ use crate::timing::Profile;
 use crate::Error;
 use std::time::Instant;
 
-/// Gain in height, relative, that is not worth another point: the frequency errs by the root of it,
-/// in bandwidths. Of a single peak, whose frequency and slopes are asked for, …
-const SINGLE: f64 = 1e-13;
+/// Of a single peak, whose frequency and slopes are asked for, …
+const SINGLE: Precision = Precision { gain: 1e-13, flat: 1e-20 };
 /// … of peaks along a parameter, …
-pub(super) const OF_CURVE: f64 = 1e-11;
+pub(super) const OF_CURVE: Precision = Precision { gain: 1e-11, flat: 1e-20 };
 /// … and of many disks, of which the heights count.
-pub(super) const OF_STUDY: f64 = 1e-8;
+pub(super) const OF_STUDY: Precision = Precision { gain: 1e-8, flat: 1e-10 };
 /// Points after which a search ends in any case.
 const MOST_POINTS: usize = 1000;
 
@@ -110,17 +109,17 @@ pub fn summits(
     climbed(model, settings, quest, SINGLE, order, progress)
 }
 
-/// [`summits`] up to a gain that is not worth another point.
+/// [`summits`] to a precision.
 pub(super) fn climbed(
     model: &Model,
     settings: Settings,
     quest: &PeakQuery,
-    gain: f64,
+    precision: Precision,
     order: Option<usize>,
     progress: &Progress<'_>,
 ) -> Result<Summits, Error> {
     let start = Instant::now();
-    let mut climb = PeakSearch::new(model, settings, quest, gain, progress)?;
+    let mut climb = PeakSearch::new(model, settings, quest, precision, progress)?;
     let reached = climb.run(model, order, None)?;
     let profile = Profile { total: start.elapsed(), ..climb.memory.profile };
     let summits = reached.summits.into_iter().map(|(summit, _)| summit).collect();
@@ -134,8 +133,7 @@ pub(super) struct PeakSearch<'a> {
     pub(super) progress: &'a Progress<'a>,
     /// Share of the work that is done, for the progress.
     pub(super) share: f64,
-    /// Gain in height, relative, that is not worth another point.
-    pub(super) gain: f64,
+    pub(super) precision: Precision,
     pub(super) memory: WarmStart,
     /// Samples of the last search.
     pub(super) seeds: Vec<Sample>,
@@ -161,7 +159,7 @@ impl<'a> PeakSearch<'a> {
         model: &Model,
         settings: Settings,
         quest: &'a PeakQuery,
-        gain: f64,
+        precision: Precision,
         progress: &'a Progress<'a>,
     ) -> Result<Self, Error> {
         let (low, high) = quest.span;
@@ -174,7 +172,7 @@ impl<'a> PeakSearch<'a> {
         let all = quest.groups.concat();
         let memory = ForcedBalance::new(model, settings, &all)?.into_memory();
         let (share, seeds, points) = (0.0, Vec::new(), 0);
-        Ok(Self { settings, quest, progress, share, gain, memory, seeds, points })
+        Ok(Self { settings, quest, progress, share, precision, memory, seeds, points })
     }
 
     /// Finds the summits of a model. Automatic harmonics start from what is known to resolve a
@@ -259,7 +257,7 @@ impl<'a> PeakSearch<'a> {
             groups: self.quest.groups.clone(),
             measure: self.quest.measure,
             span: self.quest.span,
-            gain: self.gain,
+            precision: self.precision,
             most_points: MOST_POINTS,
         };
         let table = balance.table(resolution.harmonics);

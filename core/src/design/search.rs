@@ -24,9 +24,10 @@ const DOUBT: f64 = 1e-6;
 const ASIDE: f64 = 1e-8;
 /// Distance at which a resonance is looked at from the side, in bandwidths.
 const FLANK: f64 = 0.5;
-/// Resonances closer than this share of a bandwidth to a point are seen from there, …
-const SEEN: f64 = 0.5;
-/// … and what others overlay if there are points on both sides within this share.
+/// Resonances closer than this share of a bandwidth to a point are seen from there; of those whose
+/// height is not known, which are many and lie close, the second.
+const SEEN: [f64; 2] = [0.5, 1.0];
+/// What others overlay is seen if there are points on both sides within this share.
 const AROUND: f64 = 0.75;
 /// What a resonance may exceed the height by that its load and friction can give it.
 const SHARE: f64 = 2.0;
@@ -34,11 +35,18 @@ const SHARE: f64 = 2.0;
 const OVERLAID: f64 = 10.0;
 /// Gain in height, relative, that the shortest interval must not promise.
 const UNRESOLVED: f64 = 1e-3;
-/// Steps that bring a top to where its slope vanishes, …
+/// Steps that bring a top to where its slope vanishes.
 const STEPS: usize = 3;
-/// … and the gain in height, relative, that needs none: the frequency errs by the root of it, in
-/// bandwidths.
-const FLAT: f64 = 1e-20;
+
+/// When a top is known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Precision {
+    /// Gain in height, relative, that is not worth another point.
+    pub(super) gain: f64,
+    /// The same in the last steps to where the slope vanishes: the frequency errs by the root of it,
+    /// in bandwidths.
+    pub(super) flat: f64,
+}
 
 /// What is looked for.
 #[derive(Debug, Clone)]
@@ -49,8 +57,7 @@ pub(super) struct Aim {
     pub(super) measure: Measure,
     /// Range of frequencies [rad/s].
     pub(super) span: (f64, f64),
-    /// Gain in height, relative, that is not worth another point.
-    pub(super) gain: f64,
+    pub(super) precision: Precision,
     /// Points after which a search ends in any case.
     pub(super) most_points: usize,
 }
@@ -142,7 +149,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 self.approach(open.remove(next), seeds)?;
                 continue;
             }
-            let next = self.envelope.most_promising(self.aim.gain);
+            let next = self.envelope.most_promising(self.aim.precision.gain);
             let Some((interval, share)) = next.filter(|_| splits < self.aim.most_points) else {
                 break;
             };
@@ -219,12 +226,13 @@ impl<'a, 'b> Search<'a, 'b> {
             around.clone().filter(|sample| (sample.at - candidate.at).abs() <= near).count()
         };
         let surrounded = || within(AROUND) == around.clone().count();
-        if within(SEEN) > 0 && (surrounded() || !self.is_overlaid(candidate)) {
+        let seen = SEEN[usize::from(candidate.highest().is_infinite())];
+        if within(seen) > 0 && (surrounded() || !self.is_overlaid(candidate)) {
             return false;
         }
         candidate.reach.iter().zip(heights).enumerate().any(|(group, (reach, height))| {
             let beside = self.envelope.beside(candidate.at, group);
-            *reach > 0.0 && beside + SHARE * reach > height * (1.0 + self.aim.gain)
+            *reach > 0.0 && beside + SHARE * reach > height * (1.0 + self.aim.precision.gain)
         })
     }
 
@@ -253,7 +261,10 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Moves the top of a group to where its slope vanishes.
     fn polish(&mut self, group: usize) -> Result<(), Error> {
         for _ in 0..STEPS {
-            let Some((interval, share)) = self.envelope.stationary(group, FLAT) else { break };
+            let Some((interval, share)) = self.envelope.stationary(group, self.aim.precision.flat)
+            else {
+                break;
+            };
             let [left, right] = [interval, interval + 1].map(|i| self.envelope.samples[i].at);
             let sample = self.solve(left + share * (right - left), None)?;
             let Some(sample) = sample.filter(|one| left < one.at && one.at < right) else { break };
