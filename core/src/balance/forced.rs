@@ -2,9 +2,9 @@
 
 use super::condensed::{Condensed, Path};
 use super::evaluation::{Evaluated, Evaluations};
-use super::resolution_control::{Decision, Level, Resolution, ResolutionControl};
+use super::resolution_control::{Decision, Level, ResolutionControl};
 use super::scale::{Scale, OF_HARMONICS};
-use super::settings::{Method, Settings};
+use super::settings::{Method, Resolution, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
 use super::{ExactOrbits, Kept, Progress};

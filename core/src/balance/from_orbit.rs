@@ -3,9 +3,8 @@
 
 use super::forced::ForcedBalance;
 use super::price::{Price, TRIFLE};
-use super::resolution_control::Resolution;
 use super::scale::OF_HARMONICS;
-use super::settings::HIGHEST_ORDER;
+use super::settings::{Resolution, HIGHEST_ORDER};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
 use crate::contact::Motion;

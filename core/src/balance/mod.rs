@@ -35,8 +35,9 @@ pub use limit_cycle::CycleBalance;
 pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;
-pub use resolution_control::Resolution;
-pub use settings::{Evaluation, HarmonicChoice, Method, SampleChoice, Settings, HIGHEST_ORDER};
+pub use settings::{
+    Evaluation, HarmonicChoice, Method, Resolution, SampleChoice, Settings, HIGHEST_ORDER,
+};
 pub use single_harmonic::single_harmonic;
 pub use solution::{Point, PointStatus, Solution};
 pub(crate) use sweep::check_frequency;

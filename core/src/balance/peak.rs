@@ -1,8 +1,7 @@
 //! The true maximum of a curve between its grid points.
 
 use super::forced::ForcedBalance;
-use super::resolution_control::Resolution;
-use super::settings::Settings;
+use super::settings::{Resolution, Settings};
 use super::sweep::check_frequency;
 use super::unknowns::Unknowns;
 use super::Progress;

@@ -5,7 +5,9 @@
 //! little of the discarded harmonics. The next point begins where the last one has ended, a rung
 //! lower if that was generous.
 
-use super::settings::{Evaluation, HarmonicChoice, SampleChoice, Settings};
+use super::settings::{
+    resolving, Evaluation, HarmonicChoice, Resolution, SampleChoice, Settings, FEWEST_SAMPLES,
+};
 use super::solution::PointStatus;
 
 /// Orders that automatic harmonics climb: half as many again from rung to rung.
@@ -22,33 +24,6 @@ const OF_SAMPLES: f64 = 0.25;
 /// A sampling error this far below its share lets the next point try half the samples, which err
 /// four times as much.
 const GENEROUS_SAMPLES: f64 = 0.125;
-/// Fewest automatic samples: fewer make no loop to speak of.
-const FEWEST_SAMPLES: usize = 32;
-
-/// What a balance resolves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Resolution {
-    /// Highest harmonic kept.
-    pub harmonics: usize,
-    /// Samples per period of marched laws; none if they are evaluated as they are.
-    pub samples: Option<usize>,
-}
-
-impl Resolution {
-    /// Enough for both.
-    #[must_use]
-    pub fn or_finer(self, other: Self) -> Self {
-        Self {
-            harmonics: self.harmonics.max(other.harmonics),
-            samples: self.samples.max(other.samples),
-        }
-    }
-}
-
-/// Samples that resolve harmonics up to `highest`, and as many beyond: a power of two.
-pub(super) fn resolving(highest: usize) -> usize {
-    (4 * (highest + 1)).next_power_of_two().max(FEWEST_SAMPLES)
-}
 
 /// Where the next point begins.
 #[derive(Debug, Clone, Copy)]

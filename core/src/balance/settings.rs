@@ -1,6 +1,5 @@
 //! Settings of a forced response, each with its default.
 
-use super::resolution_control::{resolving, Resolution};
 use crate::contact::Residual;
 use crate::solve::{FirstJacobian, NewtonSettings};
 use crate::Error;
@@ -43,6 +42,31 @@ pub enum SampleChoice {
     Auto,
 }
 
+/// What a balance resolves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Resolution {
+    /// Highest harmonic kept.
+    pub harmonics: usize,
+    /// Samples per period of marched laws; none if they are evaluated as they are.
+    pub samples: Option<usize>,
+}
+
+impl Resolution {
+    /// Enough for both.
+    #[must_use]
+    pub fn or_finer(self, other: Self) -> Self {
+        Self {
+            harmonics: self.harmonics.max(other.harmonics),
+            samples: self.samples.max(other.samples),
+        }
+    }
+}
+
+/// Samples that resolve harmonics up to `highest`, and as many beyond: a power of two.
+pub(super) fn resolving(highest: usize) -> usize {
+    (4 * (highest + 1)).next_power_of_two().max(FEWEST_SAMPLES)
+}
+
 /// Settings of a forced response.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -71,6 +95,9 @@ pub const HIGHEST_ORDER: usize = 1000;
 const MOST_SAMPLES: usize = 1 << 20;
 /// Finest tolerance: the solvers end at 1e-11 of the contact displacements.
 const FINEST_TOLERANCE: f64 = 1e-8;
+
+/// Fewest automatic samples: fewer make no loop to speak of.
+pub(super) const FEWEST_SAMPLES: usize = 32;
 
 impl Default for Settings {
     fn default() -> Self {

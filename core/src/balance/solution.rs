@@ -1,6 +1,6 @@
 //! What a forced response returns.
 
-use super::resolution_control::Resolution;
+use super::settings::Resolution;
 use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
 use crate::timing::Profile;

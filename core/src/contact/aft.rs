@@ -20,6 +20,8 @@ use std::ops::Deref;
 const FEWEST: usize = 8;
 /// Most samples: as many as memory holds with ease.
 const MOST: usize = 1 << 20;
+/// Samples per period where nothing controls their error.
+const UNCONTROLLED: usize = 1024;
 /// Step of differences in a parameter, relative to it.
 const DIFFERENCE: f64 = 1e-5;
 
@@ -246,5 +248,57 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
 
     fn describing(&self, amplitude: f64) -> Option<Describing> {
         self.law.describing(amplitude)
+    }
+}
+
+/// Evaluates a law's own form, or the sampled one where there is none.
+macro_rules! evaluated {
+    ($law:expr, $call:ident($($argument:expr),*)) => {
+        match $law.closed_form() {
+            Some(exact) => exact.$call($($argument),*),
+            None => Aft { law: $law, samples: UNCONTROLLED }.$call($($argument),*),
+        }
+    };
+}
+
+/// Every law has the harmonics of a periodic motion: by its closed form, or by samples.
+impl dyn ContactLaw + '_ {
+    /// See [`HarmonicForce::slip_load`].
+    pub fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
+        evaluated!(self, slip_load(motion, tangent, out));
+    }
+
+    /// See [`HarmonicForce::resolves`].
+    #[must_use]
+    pub fn resolves(&self) -> usize {
+        evaluated!(self, resolves())
+    }
+
+    /// See [`HarmonicForce::summary`].
+    pub fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
+        evaluated!(self, summary(motion, out));
+    }
+
+    /// See [`HarmonicForce::state_history`].
+    #[must_use]
+    pub fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+        evaluated!(self, state_history(motion, samples))
+    }
+
+    /// See [`HarmonicForce::force_history`].
+    #[must_use]
+    pub fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+        evaluated!(self, force_history(motion, samples))
+    }
+
+    /// See [`HarmonicForce::phases`].
+    #[must_use]
+    pub fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
+        evaluated!(self, phases(motion))
+    }
+
+    /// See [`HarmonicForce::parameter_slope`].
+    pub fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
+        evaluated!(self, parameter_slope(motion, index, out));
     }
 }

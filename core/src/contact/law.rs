@@ -4,14 +4,11 @@
 //! which is what slip takes off it. The stuck structure carries D, so that the balance has to
 //! find q alone; it vanishes while a contact sticks.
 
-use super::{Aft, Describing, Parameter};
+use super::{Describing, Parameter};
 use crate::fourier::SampleTable;
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
-
-/// Samples per period where nothing controls their error.
-const UNCONTROLLED: usize = 1024;
 
 /// Force at mid-range of a contact that never slips. Its steady motion does not determine it: it
 /// is what the past has left, and has to be assumed.
@@ -291,58 +288,6 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// amplitude, if it has one in closed form.
     fn describing(&self, _amplitude: f64) -> Option<Describing> {
         None
-    }
-}
-
-/// Evaluates a law's own form, or the sampled one where there is none.
-macro_rules! evaluated {
-    ($law:expr, $call:ident($($argument:expr),*)) => {
-        match $law.closed_form() {
-            Some(exact) => exact.$call($($argument),*),
-            None => Aft { law: $law, samples: UNCONTROLLED }.$call($($argument),*),
-        }
-    };
-}
-
-/// Every law has the harmonics of a periodic motion: by its closed form, or by samples.
-impl dyn ContactLaw + '_ {
-    /// See [`HarmonicForce::slip_load`].
-    pub fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
-        evaluated!(self, slip_load(motion, tangent, out));
-    }
-
-    /// See [`HarmonicForce::resolves`].
-    #[must_use]
-    pub fn resolves(&self) -> usize {
-        evaluated!(self, resolves())
-    }
-
-    /// See [`HarmonicForce::summary`].
-    pub fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
-        evaluated!(self, summary(motion, out));
-    }
-
-    /// See [`HarmonicForce::state_history`].
-    #[must_use]
-    pub fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        evaluated!(self, state_history(motion, samples))
-    }
-
-    /// See [`HarmonicForce::force_history`].
-    #[must_use]
-    pub fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        evaluated!(self, force_history(motion, samples))
-    }
-
-    /// See [`HarmonicForce::phases`].
-    #[must_use]
-    pub fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
-        evaluated!(self, phases(motion))
-    }
-
-    /// See [`HarmonicForce::parameter_slope`].
-    pub fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
-        evaluated!(self, parameter_slope(motion, index, out));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Where a search for the highest point looks first.
 
 use super::samples::Sample;
-use super::search::Aim;
+use crate::fourier::Measure;
 use crate::model::{Model, Resonance};
 use crate::Error;
 
@@ -12,6 +12,21 @@ const INTERVALS: [usize; 2] = [8, 24];
 const BANDWIDTHS: f64 = 3.0;
 /// Maxima from this share of the highest are looked at again in the next response.
 const RIVAL: f64 = 0.7;
+
+/// What is looked for.
+#[derive(Debug, Clone)]
+pub(super) struct Aim {
+    /// DOFs, group by group; the highest of each group is sought.
+    pub(super) groups: Vec<Vec<usize>>,
+    /// Measure of their amplitudes.
+    pub(super) measure: Measure,
+    /// Range of frequencies [rad/s].
+    pub(super) span: (f64, f64),
+    /// Gain in height, relative, that is not worth another point.
+    pub(super) gain: f64,
+    /// Points after which a search ends in any case.
+    pub(super) most_points: usize,
+}
 
 /// A resonance inside the range.
 #[derive(Debug, Clone)]

@@ -1,9 +1,9 @@
 //! The highest point that any DOF of a group reaches over a range of frequencies: the most loaded
 //! blade of a disk, and where.
 
-use super::first_look::FirstLook;
+use super::first_look::{Aim, FirstLook};
 use super::samples::Sample;
-use super::search::{Aim, Found, Search};
+use super::search::{Found, Search};
 use crate::balance::{
     Evaluation, ForcedBalance, HarmonicChoice, PointStatus, Progress, Resolution, Settings,
     WarmStart,

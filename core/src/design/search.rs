@@ -8,12 +8,11 @@
 //! is followed by itself.
 
 use super::envelope::{is_shortest, Envelope, Gap};
-use super::first_look::{Candidate, FirstLook};
+use super::first_look::{Aim, Candidate, FirstLook};
 use super::interpolant::Knot;
 use super::samples::{predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
 use crate::contact::Residual;
-use crate::fourier::Measure;
 use crate::Error;
 
 /// Points without a solution after which an interval is closed without another attempt.
@@ -39,21 +38,6 @@ const STEPS: usize = 3;
 /// … and the gain in height, relative, that needs none: the frequency errs by the root of it, in
 /// bandwidths.
 const FLAT: f64 = 1e-20;
-
-/// What is looked for.
-#[derive(Debug, Clone)]
-pub(super) struct Aim {
-    /// DOFs, group by group; the highest of each group is sought.
-    pub(super) groups: Vec<Vec<usize>>,
-    /// Measure of their amplitudes.
-    pub(super) measure: Measure,
-    /// Range of frequencies [rad/s].
-    pub(super) span: (f64, f64),
-    /// Gain in height, relative, that is not worth another point.
-    pub(super) gain: f64,
-    /// Points after which a search ends in any case.
-    pub(super) most_points: usize,
-}
 
 /// The highest point of a group.
 #[derive(Debug, Clone, Copy)]

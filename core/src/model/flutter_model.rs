@@ -1,7 +1,8 @@
 //! A family of self-excited models: a structure with friction and the damping `C + r C_neg`, in r or
 //! in a parameter of its contacts.
 
-use super::{Body, Change, Model, ParameterMode, Variation};
+use super::body::Body;
+use super::{Change, Model, ParameterMode, Variation};
 use crate::contact::ContactLaw;
 use crate::structure::FlutterCompliance;
 use crate::Error;

@@ -1,6 +1,8 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
+mod body;
 mod contact_assembly;
+mod contact_states;
 mod flutter_model;
 mod resonances;
 mod slipping;
@@ -12,13 +14,13 @@ pub use variation::{Change, ParameterMode, Variation};
 
 use crate::contact::{Aft, ContactLaw, Parameter};
 use crate::structure::{
-    compliance, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure, HarmonicLoad, Ports,
-    Ring, RingCoupling, RingSector, Structure,
+    Compliance, CyclicStructure, HarmonicLoad, Ports, Ring, RingCoupling, RingSector, Structure,
 };
 use crate::Error;
+use body::Body;
 use contact_assembly::ContactAssembly;
+use contact_states::{slip_kinds, States};
 use faer::Mat;
-use resonances::{slip_kinds, States};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -56,48 +58,6 @@ pub struct Model {
     modal_base: &'static str,
     body: Body,
     states: Arc<States>,
-}
-
-/// How the structure of a model is given.
-#[derive(Clone)]
-enum Body {
-    /// By its matrices.
-    Whole,
-    /// As one sector of a disk in a travelling wave, with the rows of B on the next sector.
-    Wave { cyclic: Arc<CyclicStructure>, next: Arc<Mat<f64>> },
-    /// As a ring of sectors that may differ.
-    Ring(Arc<Ring>),
-}
-
-impl Body {
-    /// The compliance of the body with contacts of the stiffness in `ports`, and its name.
-    fn compliance(
-        &self,
-        structure: &Structure,
-        ports: &Ports,
-    ) -> Result<(Arc<dyn Compliance>, &'static str), Error> {
-        match self {
-            Self::Whole => {
-                let (compliance, name) = compliance(structure, ports)?;
-                Ok((compliance.into(), name))
-            }
-            Self::Wave { cyclic, next } => {
-                let ports = CyclicPorts {
-                    own: ports.rows.clone(),
-                    next: Mat::clone(next),
-                    stiffness: ports.stiffness.clone(),
-                    loads: ports.loads.clone(),
-                };
-                Ok((
-                    Arc::new(CyclicCompliance::new(CyclicStructure::clone(cyclic), ports)?),
-                    "waves",
-                ))
-            }
-            Self::Ring(ring) => {
-                Ok((Arc::new(ring.with_contact_stiffness(ports.stiffness.as_ref())?), "sectors"))
-            }
-        }
-    }
 }
 
 impl Model {

@@ -1,11 +1,11 @@
 //! What a time integration hands out: samples, ranges and events, period after period.
 
 use super::flow::{Event, Flow, FlowEvent, Halt};
+use super::history::{History, Trace, TransientSettings};
 use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{sign_changes, value};
 use super::runge_kutta::RungeKutta;
 use super::state::State;
-use super::transient::{History, Trace, TransientSettings};
 use std::f64::consts::TAU;
 
 /// Share of a sampling interval by which rounding may miss an instant.

@@ -1,7 +1,6 @@
 //! Limit cycles as the caller has them: settings, cycles along a branch, where it turns and where
 //! its stability changes.
 
-use super::stability::Change;
 use crate::balance::{HarmonicChoice, Point, HIGHEST_ORDER};
 use crate::motion::Event;
 use crate::solve::End;
@@ -194,4 +193,32 @@ pub(super) fn relative(point: &Point) -> f64 {
     let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let errors = point.error_estimate.iter().zip(&sizes);
     errors.map(|(error, size)| error / size.max(0.02 * largest)).fold(0.0, f64::max)
+}
+
+/// What happens where stability changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A multiplier passes 1: the branch turns.
+    Fold,
+    /// A complex pair passes the unit circle: quasi-periodic motion branches off.
+    ComplexPair,
+    /// A multiplier passes 1 with motion that breaks the half-wave symmetry.
+    Symmetry,
+    /// A multiplier jumps: a contact begins or ceases to slip at a further place of the period.
+    Grazing,
+}
+
+/// A change of stability.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Value of the scalar.
+    pub value: f64,
+    /// Frequency [rad/s].
+    pub omega: f64,
+    /// Position of the cycle before it.
+    pub after: usize,
+    /// What happens.
+    pub kind: ChangeKind,
+    /// Multipliers outside the unit circle before and after.
+    pub unstable: (usize, usize),
 }

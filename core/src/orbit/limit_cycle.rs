@@ -7,12 +7,12 @@
 //! never fails, and reported orbits begin at a maximum of the DOF that moves most.
 
 use super::periodic::FASTEST;
-use super::segments::{follow, halved, product_eigenvalues, suited, Segment, Suited};
+use super::segments::{follow, halved, product_eigenvalues, suited, Member, Segment, Suited};
 use super::shooting::Shooting;
 use super::start::start_of;
 use crate::balance::Point;
 use crate::contact::Residual;
-use crate::model::{FlutterModel, Model};
+use crate::model::FlutterModel;
 use crate::motion::{ContactState, ModalSystem, State, Transition};
 use crate::solve::{norm, Curve};
 use crate::structure::ModalDamping;
@@ -31,19 +31,6 @@ pub struct CycleOrbits<'a> {
     /// Modal damping and modal negative damping.
     damping: ModalDamping,
     negative: ModalDamping,
-}
-
-/// A member of the family.
-pub(super) struct Member<'a> {
-    own: Option<Model>,
-    given: &'a Model,
-    pub(super) system: ModalSystem,
-}
-
-impl Member<'_> {
-    pub(super) fn model(&self) -> &Model {
-        self.own.as_ref().unwrap_or(self.given)
-    }
 }
 
 impl<'a> CycleOrbits<'a> {

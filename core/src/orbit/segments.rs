@@ -6,9 +6,9 @@
 //! cyclic matrix of all segments, which keeps the small ones that their product loses (Kressner
 //! 2006, section 2).
 
-use super::limit_cycle::Member;
 use super::shooting::Shooting;
-use crate::motion::ContactState;
+use crate::model::Model;
+use crate::motion::{ContactState, ModalSystem};
 use faer::{c64, Mat};
 
 /// Growth of a small change over a segment, as the Frobenius norm of its transition matrix, beyond
@@ -168,5 +168,18 @@ mod tests {
         assert_eq!(values.len(), 2);
         assert!((values[0].re / 1e60 - 1.0).abs() < 1e-10);
         assert!((values[1].re / 1e-20 - 1.0).abs() < 1e-9, "{values:?}");
+    }
+}
+
+/// A member of the family.
+pub(super) struct Member<'a> {
+    pub(super) own: Option<Model>,
+    pub(super) given: &'a Model,
+    pub(super) system: ModalSystem,
+}
+
+impl Member<'_> {
+    pub(super) fn model(&self) -> &Model {
+        self.own.as_ref().unwrap_or(self.given)
     }
 }

@@ -3,7 +3,7 @@
 
 use super::line_search::LineSearch;
 use super::qr::Qr;
-use super::{norm, NewtonSettings, Outcome, Report, System};
+use super::{differences, norm, NewtonSettings, Outcome, Report, System};
 use faer::Mat;
 
 /// Where the first Jacobian, and that of every restart, comes from.
@@ -25,8 +25,6 @@ pub struct BroydenEffort {
     pub updates: usize,
 }
 
-/// Relative step of the forward differences: half the digits.
-const DIFFERENCE: f64 = 1.5e-8;
 /// Shortest step along a direction: below it it is no descent direction in practice.
 const SHORTEST_STEP: f64 = 1.0 / 256.0;
 /// Shortest step along a direction of an updated Jacobian, which a fresh one replaces rather than
@@ -115,39 +113,6 @@ pub fn broyden(
     let residual = size_of_residual / norm(x).max(f64::MIN_POSITIVE);
     let iterations = settings.max_iterations;
     (Report { outcome: Outcome::Stalled, iterations, residual }, effort)
-}
-
-/// Residual and Jacobian by forward differences. Each unknown is moved by a small share of the
-/// group of unknowns that must be accurate by itself.
-pub(super) fn differences<S: System + ?Sized>(
-    system: &mut S,
-    x: &[f64],
-    residual: &mut [f64],
-    out: &mut Mat<f64>,
-) {
-    let size = x.len();
-    system.value(x, residual);
-    let mut unit = vec![0.0; size];
-    let steps: Vec<f64> = (0..size)
-        .map(|column| {
-            unit[column] = 1.0;
-            let step = DIFFERENCE / system.relative_size(&unit, x);
-            unit[column] = 0.0;
-            step
-        })
-        .collect();
-    let (mut moved, mut ahead) = (x.to_vec(), vec![0.0; size]);
-    for (column, step) in steps.into_iter().enumerate() {
-        moved[column] = x[column] + step;
-        let step = moved[column] - x[column];
-        system.value(&moved, &mut ahead);
-        for (row, (a, r)) in ahead.iter().zip(&*residual).enumerate() {
-            out[(row, column)] = (a - r) / step;
-        }
-        moved[column] = x[column];
-    }
-    // What `relative_size` reads from the last evaluation belongs to `x` again.
-    system.value(x, residual);
 }
 
 #[cfg(test)]

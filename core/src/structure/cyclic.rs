@@ -148,7 +148,7 @@ fn wave_rows(own: MatRef<'_, f64>, next: MatRef<'_, f64>, delta: f64) -> Mat<c64
 
 /// `K + Bᴴ D B`.
 fn restrained(stiffness: &Mat<c64>, rows: &Mat<c64>, contacts: MatRef<'_, f64>) -> Mat<c64> {
-    stiffness + rows.adjoint() * (super::modal::complex(contacts) * rows)
+    stiffness + rows.adjoint() * (super::modes::complex(contacts) * rows)
 }
 
 /// The compliance of a sector in a travelling wave.

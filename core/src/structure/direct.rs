@@ -1,7 +1,7 @@
 //! Compliance by one factorisation per frequency, for structures whose complex modes are
 //! defective. Slower than modes, never wrong.
 
-use super::modal::complex;
+use super::modes::complex;
 use super::modes::real_modes;
 use super::ports::{forced_harmonics, HarmonicLoad};
 use super::{Compliance, Ports, Receptance, Structure};

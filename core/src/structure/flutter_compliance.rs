@@ -7,8 +7,8 @@
 //! | any other; a travelling wave | one complex factorisation per harmonic |
 
 use super::cyclic::CyclicStructure;
-use super::modal::{complex, FREE_FLOOR};
-use super::modes::{hermitian_modes, real_modes, RealModes};
+use super::modal::FREE_FLOOR;
+use super::modes::{complex, hermitian_modes, real_modes, RealModes};
 use super::Structure;
 use crate::Error;
 use faer::linalg::solvers::{PartialPivLu, Solve as _};

@@ -28,8 +28,8 @@ pub use modes::{natural_frequencies, real_modes, RealModes};
 pub use poles::Poles;
 pub use ports::{HarmonicLoad, Ports};
 pub(crate) use proportional::ModalDamping;
-pub use ring::{Ring, RingCoupling, RingLayout, RingSector};
-pub use ring_order::{RingMotion, RingOrder};
+pub use ring::{Ring, RingCoupling, RingSector};
+pub use ring_order::{RingLayout, RingMotion, RingOrder};
 pub use system::Structure;
 
 use crate::Error;

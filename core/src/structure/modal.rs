@@ -7,7 +7,7 @@
 //! | any other, also unsymmetric | complex, stuck | directly |
 
 use super::flexibility::Flexibility;
-use super::modes::{real_modes, HermitianModes};
+use super::modes::{complex, real_modes, HermitianModes};
 use super::ports::{HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
 use super::restraint::restrain;
@@ -404,10 +404,6 @@ impl ModalCompliance {
     fn singular(&self) -> Error {
         Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
     }
-}
-
-pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {
-    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
 }
 
 fn multiply(matrix: MatRef<'_, c64>, vector: &[c64]) -> Vec<c64> {

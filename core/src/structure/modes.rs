@@ -1,10 +1,7 @@
 //! Real modes of `(K − ω²M) φ = 0`, scaled to unit modal mass.
 
-use super::modal::complex;
-use super::proportional::ModalDamping;
 use crate::solve::hermitian_eigen;
 use crate::Error;
-use faer::linalg::solvers::DenseSolveCore as _;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
@@ -101,12 +98,6 @@ impl RealModes {
         }
     }
 
-    /// A damping matrix in these modes.
-    pub(crate) fn damping(&self, matrix: MatRef<'_, f64>) -> ModalDamping {
-        let modal = complex(self.project(matrix).as_ref());
-        ModalDamping::new(modal, &self.to_hermitian(), |i, j| c64::new(matrix[(i, j)], 0.0))
-    }
-
     /// `Φᵀ A Φ` of a matrix A.
     #[must_use]
     pub fn project(&self, matrix: MatRef<'_, f64>) -> Mat<f64> {
@@ -136,11 +127,6 @@ impl HermitianModes {
         self.omega_squared.iter().map(|w| w.max(0.0).sqrt()).collect()
     }
 
-    /// A damping matrix in these modes.
-    pub(super) fn damping(&self, matrix: MatRef<'_, c64>) -> ModalDamping {
-        ModalDamping::new(self.project(matrix), self, |i, j| matrix[(i, j)])
-    }
-
     /// `Φᴴ A Φ` of a matrix A.
     pub(super) fn project(&self, matrix: MatRef<'_, c64>) -> Mat<c64> {
         self.shapes.adjoint() * (matrix * &self.shapes)
@@ -166,7 +152,6 @@ pub fn natural_frequencies(
     }
 }
 
-/// Inverse of a well-conditioned complex matrix.
-pub(super) fn inverse(matrix: MatRef<'_, faer::c64>) -> Mat<faer::c64> {
-    matrix.partial_piv_lu().inverse()
+pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
 }

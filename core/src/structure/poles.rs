@@ -1,6 +1,6 @@
 //! Poles of a linear structure: where it resonates, how narrowly, and what drives it there.
 
-use super::modes::{hermitian_modes, real_modes, HermitianModes};
+use super::modes::{complex, hermitian_modes, real_modes, HermitianModes};
 use super::spectrum::{complex_modes, Spectrum};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -28,7 +28,7 @@ impl Poles {
     pub fn real([mass, damping, stiffness]: [MatRef<'_, f64>; 3]) -> Result<Self, Error> {
         let modes = real_modes(mass, stiffness)?;
         let damping = modes.project(damping);
-        Self::of_modes(&modes.to_hermitian(), &super::modal::complex(damping.as_ref()))
+        Self::of_modes(&modes.to_hermitian(), &complex(damping.as_ref()))
     }
 
     /// Of Hermitian mass and stiffness.

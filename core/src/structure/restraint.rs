@@ -1,6 +1,6 @@
 //! From the receptance of the free structure to that of the stuck one.
 
-use super::modal::complex;
+use super::modes::complex;
 use super::Receptance;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat, MatRef};

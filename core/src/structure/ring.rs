@@ -7,7 +7,7 @@
 
 use super::modes::real_modes;
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
-use super::ring_order::RingOrder;
+use super::ring_order::{RingLayout, RingOrder};
 use super::{compliance, Compliance, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -53,33 +53,6 @@ pub struct Ring {
     pub(super) highest: f64,
     pub(super) bandwidth: f64,
     pub(super) forced: Vec<usize>,
-}
-
-/// Sizes and port positions that all sectors of a ring share.
-#[derive(Debug, Clone)]
-pub struct RingLayout {
-    /// DOFs per sector.
-    pub dofs: usize,
-    /// Contacts per sector; they are the first ports of a sector.
-    pub contacts: usize,
-    /// Contacts with a part on the next sector, where they are the next ports.
-    pub between: Vec<usize>,
-    /// DOFs through which neighbours are coupled, the last ports.
-    pub interface: Vec<usize>,
-}
-
-impl RingLayout {
-    /// Number of ports of a sector.
-    #[must_use]
-    pub fn ports(&self) -> usize {
-        self.contacts + self.between.len() + self.interface.len()
-    }
-
-    /// First port of the interface.
-    #[must_use]
-    pub fn first_interface(&self) -> usize {
-        self.contacts + self.between.len()
-    }
 }
 
 impl Ring {
