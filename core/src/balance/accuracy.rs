@@ -17,6 +17,7 @@ use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::System as _;
+use crate::structure::Quantity;
 use crate::Error;
 use faer::c64;
 
@@ -182,7 +183,7 @@ fn changes(
 ) -> Result<Vec<f64>, Error> {
     let mut sums = vec![0.0; observe.len()];
     let orders = point.harmonics + 1;
-    extended.displacements(x, slip_load, observe, |order, observed, _, _| {
+    extended.displacements(Quantity::Whole, [x, slip_load], observe, |order, observed, _, _| {
         for (dof, sum) in sums.iter_mut().enumerate() {
             let before = if order < orders {
                 point.displacement[dof * orders + order]

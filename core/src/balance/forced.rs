@@ -281,7 +281,7 @@ impl<'a> ForcedBalance<'a> {
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
         let interrupted = self.interruption();
-        let mut equations = Condensed::new(&model, &table, self.settings.residual, false);
+        let mut equations = Condensed::new(model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
         if self.settings.method != Method::Newton {
             equations.densify();
@@ -346,7 +346,7 @@ impl<'a> ForcedBalance<'a> {
             Outcome::Singular => PointStatus::Singular,
         };
         let start = std::time::Instant::now();
-        let mut point = self.recover(equations, omega, &x, status)?;
+        let mut point = equations.recover(&x, self.observe, status)?;
         point.samples = samples;
         self.profile.recovery += start.elapsed();
         // Without an observed DOF there is nothing whose error could be estimated.

@@ -86,6 +86,16 @@ impl Point {
         Resolution { harmonics: self.harmonics, samples: self.samples }
     }
 
+    /// Makes room for harmonics up to `highest`.
+    pub(super) fn keep(&mut self, highest: usize) {
+        self.harmonics = highest;
+        for series in
+            [&mut self.displacement, &mut self.contact_displacement, &mut self.contact_force]
+        {
+            *series = vec![c64::new(0.0, 0.0); series.len() * (highest + 1)];
+        }
+    }
+
     pub(crate) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {
         Self {
             omega,

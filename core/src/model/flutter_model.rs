@@ -4,9 +4,10 @@
 use super::body::Body;
 use super::{Change, Model, ParameterMode, Variation};
 use crate::contact::ContactLaw;
-use crate::structure::FlutterCompliance;
+use crate::structure::{FlutterCompliance, Ports};
 use crate::Error;
 use faer::{c64, Mat};
+use std::sync::Arc;
 
 /// The negative damping of a model.
 #[derive(Debug, Clone)]
@@ -128,6 +129,30 @@ impl<'a> FlutterModel<'a> {
     /// A value that a law refuses.
     pub fn laws_at(&self, value: f64) -> Result<Vec<Box<dyn ContactLaw>>, Error> {
         self.variation.laws(self.model, value)
+    }
+
+    /// The model without loads at a value of the number that is varied.
+    ///
+    /// # Errors
+    /// A value that a law refuses.
+    pub fn at(&self, value: f64) -> Result<Model, Error> {
+        let (given, laws) = (self.model, self.laws_at(value)?);
+        let stiffness = given.stiffness_of(&laws);
+        let ports = Ports {
+            rows: given.ports.rows.clone(),
+            stiffness: stiffness.clone(),
+            loads: Vec::new(),
+        };
+        Ok(Model {
+            structure: Arc::clone(&given.structure),
+            ports: Arc::new(ports),
+            laws,
+            points: given.points.clone(),
+            compliance: self.destabilised.at(self.ratio_at(value), stiffness),
+            modal_base: self.destabilised.name(),
+            body: given.body.clone(),
+            states: Arc::clone(&given.states),
+        })
     }
 
     /// The parameters of the laws that it changes; none of the ratio.

@@ -185,10 +185,7 @@ impl Model {
         if expected != got {
             return Err(Error::shape("laws", format!("{expected:?} points"), format!("{got:?}")));
         }
-        let mut stiffness = self.ports.stiffness.clone();
-        for (law, range) in laws.iter().zip(&self.points) {
-            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
-        }
+        let stiffness = self.stiffness_of(&laws);
         let (structure, points) = (Arc::clone(&self.structure), self.points.clone());
         let (mut ports, mut compliance) = (Arc::clone(&self.ports), Arc::clone(&self.compliance));
         let (mut modal_base, body) = (self.modal_base, self.body.clone());
@@ -203,6 +200,15 @@ impl Model {
             states = Arc::new(States::of(&body, structure.dofs()));
         }
         Ok(Self { structure, ports, laws, points, compliance, modal_base, body, states })
+    }
+
+    /// Stiffness D of all points under other laws [N/m].
+    pub(crate) fn stiffness_of(&self, laws: &[Box<dyn ContactLaw>]) -> Mat<f64> {
+        let mut stiffness = self.ports.stiffness.clone();
+        for (law, range) in laws.iter().zip(&self.points) {
+            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
+        }
+        stiffness
     }
 
     /// Whether this is one sector of a disk in a travelling wave.

@@ -9,7 +9,8 @@ use super::modes::hermitian_modes;
 use super::ports::{forced_harmonics, Ports};
 use super::proportional::follows_mass;
 use super::{
-    compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Receptance, Structure,
+    compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Receptance, Request,
+    Structure,
 };
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -313,40 +314,8 @@ impl Compliance for CyclicCompliance {
         self.wave(harmonic)?.receptance(harmonic, omega, out)
     }
 
-    fn displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        self.wave(harmonic)?.displacement(harmonic, omega, contact, slip_load, observe, out)
-    }
-
-    fn slip_displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        self.wave(harmonic)?.slip_displacement(harmonic, omega, contact, slip_load, observe, out)
-    }
-
-    fn displacement_slope(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        self.wave(harmonic)?.displacement_slope(harmonic, omega, contact, slip_load, observe, out)
+    fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
+        self.wave(request.harmonic)?.displacement(request, out)
     }
 
     fn stuck_frequencies(&self) -> &[f64] {
