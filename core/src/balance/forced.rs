@@ -74,11 +74,7 @@ impl<'a> ForcedBalance<'a> {
         let forced = model.compliance().forced_harmonics();
         settings.check(&forced)?;
         settings.check_resolution(model.resolves())?;
-        let known = model.compliance().dofs();
-        if let Some(&dof) = observe.iter().find(|&&dof| dof >= known) {
-            let remedy = format!("the structure has {known} DOFs");
-            return Err(Error::value("observe", dof as f64, &remedy));
-        }
+        Error::check_dofs(observe, model.compliance().dofs())?;
         let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
         if !half_wave {
             let mut receptance = crate::structure::Receptance::default();

@@ -40,8 +40,8 @@ pub use settings::{
 };
 pub use single_harmonic::single_harmonic;
 pub use solution::{Point, PointStatus, Solution};
-pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
+pub(crate) use sweep::{check_bracket, check_frequency, over_frequencies};
 pub use unknowns::Unknowns;
 
 /// Exact orbits that a balance may turn to.

@@ -2,7 +2,7 @@
 
 use super::forced::ForcedBalance;
 use super::settings::{Resolution, Settings};
-use super::sweep::check_frequency;
+use super::sweep::check_bracket;
 use super::unknowns::Unknowns;
 use super::Progress;
 use crate::fourier::{amplitude, Measure};
@@ -29,11 +29,7 @@ pub fn refine_peak(
     [low, guess, high]: [f64; 3],
     progress: &Progress<'_>,
 ) -> Result<(f64, f64), Error> {
-    check_frequency("peak: lower bound", low)?;
-    check_frequency("peak: upper bound", high)?;
-    if !(low <= guess && guess <= high) {
-        return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
-    }
+    check_bracket([low, guess, high])?;
     let observe = [dof];
     let (settings, mut start) = with_one_resolution(model, settings, &observe, [low, high, guess])?;
     let mut balance = ForcedBalance::new(model, settings, &observe)?.watched(progress);

@@ -13,6 +13,16 @@ pub enum HarmonicChoice {
     Auto,
 }
 
+impl HarmonicChoice {
+    /// Highest order that may be kept, `most` of automatic harmonics, with the name of its setting.
+    pub(crate) fn highest(self, most: usize) -> (&'static str, usize) {
+        match self {
+            Self::Fixed(highest) => ("harmonics", highest),
+            Self::Auto => ("max_harmonics", most),
+        }
+    }
+}
+
 /// What solves the equations at each point.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Method {
@@ -121,10 +131,7 @@ impl Settings {
     /// A setting outside its range, or a load at a harmonic that would not be kept.
     pub fn check(&self, forced: &[usize]) -> Result<(), Error> {
         let highest_forced = forced.last().copied().unwrap_or(0).max(1);
-        let (entry, kept) = match self.harmonics {
-            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
-            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
-        };
+        let (entry, kept) = self.harmonics.highest(self.max_harmonics);
         if kept < highest_forced {
             return Err(Error::value(
                 entry,
@@ -145,12 +152,7 @@ impl Settings {
         if self.newton.max_iterations == 0 {
             return Err(Error::value("max_iterations", 0.0, "must be at least 1"));
         }
-        if let Residual::Value(force) = self.residual {
-            if !force.is_finite() {
-                return Err(Error::value("residual", force, "must be a finite force in N"));
-            }
-        }
-        Ok(())
+        self.residual.check()
     }
 
     /// The same settings with what is chosen automatically fixed.
@@ -185,10 +187,7 @@ impl Settings {
     /// # Errors
     /// Too few samples for the harmonics that may be kept.
     pub fn check_resolution(&self, resolved: usize) -> Result<(), Error> {
-        let (entry, kept) = match self.harmonics {
-            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
-            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
-        };
+        let (entry, kept) = self.harmonics.highest(self.max_harmonics);
         let resolved = match self.evaluation {
             Evaluation::Direct => resolved,
             Evaluation::Marched(SampleChoice::Fixed(samples)) => (samples / 2).saturating_sub(1),

@@ -28,6 +28,16 @@ impl Residual {
     pub fn is_symmetric(self) -> bool {
         !matches!(self, Self::Value(value) if value != 0.0)
     }
+
+    /// Refuses a force that is not finite.
+    pub(crate) fn check(self) -> Result<(), Error> {
+        match self {
+            Self::Value(force) if !force.is_finite() => {
+                Err(Error::value("residual", force, "must be a finite force in N"))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// One period of the relative displacements at the points of a contact.

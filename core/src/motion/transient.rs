@@ -34,10 +34,7 @@ pub fn transient(
     settings.check()?;
     let system = ModalSystem::new(model)?;
     system.check_pace(model, settings.omega, FASTEST)?;
-    if let Some(&dof) = observe.iter().find(|&&dof| dof >= system.modes()) {
-        let remedy = format!("the structure has {} DOFs", system.modes());
-        return Err(Error::value("observe", dof as f64, &remedy));
-    }
+    Error::check_dofs(observe, system.modes())?;
     let mut state = match start {
         Some(values) => State::from_dofs(&system, values)?,
         None => State::rest(&system),

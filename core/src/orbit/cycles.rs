@@ -73,15 +73,9 @@ impl CycleSettings {
     /// # Errors
     /// A setting outside its range.
     pub fn check(&self) -> Result<(), Error> {
-        let (entry, kept) = match self.harmonics {
-            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
-            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
-        };
+        let (entry, kept) = self.harmonics.highest(self.max_harmonics);
         for (entry, order) in [(entry, kept), ("harmonics", self.reported)] {
-            if !(1..=HIGHEST_ORDER).contains(&order) {
-                let remedy = format!("must lie between 1 and {HIGHEST_ORDER}");
-                return Err(Error::value(entry, order as f64, &remedy));
-            }
+            Error::check_order(entry, order, HIGHEST_ORDER)?;
         }
         let (low, high) = self.range;
         if !(low > 0.0 && low < high) {

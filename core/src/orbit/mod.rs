@@ -2,9 +2,9 @@
 //! harmonic is discarded, so that they judge the harmonic balance.
 
 mod cycle_branch;
-mod cycle_survey;
 mod cycles;
 mod limit_cycle;
+mod orbit_postprocess;
 mod periodic;
 mod price;
 mod quadrature;

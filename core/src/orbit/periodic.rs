@@ -83,10 +83,7 @@ impl<'a> PeriodicOrbits<'a> {
     ) -> Result<Self, Error> {
         settings.check()?;
         let system = Arc::new(ModalSystem::new(model)?);
-        if let Some(&dof) = observe.iter().find(|&&dof| dof >= system.modes()) {
-            let remedy = format!("the structure has {} DOFs", system.modes());
-            return Err(Error::value("observe", dof as f64, &remedy));
-        }
+        Error::check_dofs(observe, system.modes())?;
         Ok(Self {
             model,
             everywhere: (0..system.modes()).collect(),
@@ -352,13 +349,7 @@ impl<'a> PeriodicOrbits<'a> {
                 state = moved;
                 continue;
             }
-            let displacement = survey.displacement();
-            let orders = highest + 1;
-            orbit.response.harmonics = highest;
-            orbit.response.displacement = displacement[..observed * orders].to_vec();
-            orbit.response.contact_displacement = displacement[observed * orders..].to_vec();
-            orbit.response.contact_force = survey.force();
-            orbit.response.contacts = survey.summaries();
+            survey.write(&mut orbit.response);
             orbit.range = survey.range[..observed].to_vec();
             (orbit.work, orbit.viscous) = (survey.work, survey.viscous);
             orbit.events = std::mem::take(&mut survey.events);

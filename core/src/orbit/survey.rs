@@ -1,6 +1,7 @@
 //! What is read off a closed orbit: harmonics, extremes, energies, slip and events.
 
 use super::quadrature::Quadrature;
+use crate::balance::Point;
 use crate::contact::{PointState, PointSummary};
 use crate::motion::{value, Event, Extremes, FlowEvent, FlowSegment, ModalSystem};
 use faer::c64;
@@ -170,6 +171,18 @@ impl<'a> Survey<'a> {
         self.events.extend(mirrored);
     }
 
+    /// Writes harmonics, slip and friction work into a point.
+    pub(super) fn write(&self, point: &mut Point) {
+        let displacement = self.displacement();
+        let observed = self.shapes.len() - self.system.points();
+        let (dofs, contacts) = displacement.split_at(observed * self.orders);
+        point.harmonics = self.orders - 1;
+        point.displacement = dofs.to_vec();
+        point.contact_displacement = contacts.to_vec();
+        point.contact_force = self.force();
+        point.contacts = self.summaries();
+    }
+
     /// Harmonics X_0, X_1, … of the observed DOFs and the contact displacements, row after row.
     pub(super) fn displacement(&self) -> Vec<c64> {
         let (observed, contacts) = self.shapes.split_at(self.shapes.len() - self.system.points());
@@ -185,7 +198,7 @@ impl<'a> Survey<'a> {
     }
 
     /// Harmonics of the contact forces, contact displacement after contact displacement.
-    pub(super) fn force(&self) -> Vec<c64> {
+    fn force(&self) -> Vec<c64> {
         let modes = self.system.modes();
         let columns = modes + self.system.points();
         let mut out = vec![c64::new(0.0, 0.0); self.system.displacements() * self.orders];
@@ -198,7 +211,7 @@ impl<'a> Survey<'a> {
     }
 
     /// What the contact displacements do.
-    pub(super) fn summaries(&self) -> Vec<PointSummary> {
+    fn summaries(&self) -> Vec<PointSummary> {
         self.system.contact_summaries(&self.contacts)
     }
 }
