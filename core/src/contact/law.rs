@@ -5,7 +5,7 @@
 //! find q alone; it vanishes while a contact sticks.
 
 use super::{Describing, Parameter};
-use crate::fourier::SampleTable;
+use crate::fourier::{Harmonics, SampleTable};
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
@@ -72,6 +72,16 @@ impl SlipLoad {
             self.tangent.resize(size * size, 0.0);
         }
         self.active = false;
+    }
+
+    /// See [`Harmonics::halve_means`]; the derivative follows.
+    pub(super) fn halve_means(&mut self, harmonics: &Harmonics) {
+        harmonics.halve_means(&mut self.value);
+        let size = self.value.len();
+        if harmonics.has_mean() && !self.tangent.is_empty() {
+            let means = self.tangent.chunks_exact_mut(size).step_by(harmonics.slots());
+            means.flatten().for_each(|entry| *entry *= 0.5);
+        }
     }
 }
 

@@ -6,7 +6,7 @@
 use super::periodic_march::PeriodicMarch;
 use super::slider_integrals::Bounds;
 use super::{Motion, SlipLoad};
-use crate::fourier::{Harmonics, IntervalSums};
+use crate::fourier::IntervalSums;
 use faer::Mat;
 
 /// Writes the series of the slip load of a passage and, if it carries rates, its tangent.
@@ -65,28 +65,6 @@ pub(super) fn write(
                     entries.zip(rate).for_each(|(entry, rate)| *entry += integral * rate);
                 }
             }
-        }
-    }
-}
-
-/// The mean of a series is its integral over the period, not twice that.
-pub(super) fn halve_mean(harmonics: &Harmonics, series: &mut [f64]) {
-    if harmonics.has_mean() {
-        series.iter_mut().step_by(harmonics.slots()).for_each(|mean| *mean *= 0.5);
-    }
-}
-
-/// As [`halve_mean`], of the slip loads of all points and their derivative.
-pub(super) fn halve_means(harmonics: &Harmonics, points: usize, out: &mut SlipLoad) {
-    if !harmonics.has_mean() {
-        return;
-    }
-    let slots = harmonics.slots();
-    let size = points * slots;
-    for mean in (0..points).map(|i| i * slots) {
-        out.value[mean] *= 0.5;
-        if let Some(row) = out.tangent.get_mut(mean * size..(mean + 1) * size) {
-            row.iter_mut().for_each(|entry| *entry *= 0.5);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::derivative::Derivative;
 use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement as _};
 use super::periodic_march::{PeriodicMarch, Stretch};
-use super::slip_series::{self, halve_means};
+use super::slip_series;
 use super::{
     ContactLaw, Motion, Parameter, Phase, PointState, PointSummary, SlipLoad, StructuralDamper,
 };
@@ -126,7 +126,7 @@ impl HarmonicForce for StructuralDamper {
         out.active = passage.slipped || self.limits.contains(&0.0);
         if out.active {
             slip_series::write(&passage, &self.stiffness, motion, out);
-            halve_means(motion.table.harmonics(), self.limits.len(), out);
+            out.halve_means(motion.table.harmonics());
         }
     }
 

@@ -11,7 +11,6 @@ use super::derivative::Derivative;
 use super::law::HarmonicForce as _;
 use super::periodic_march::PeriodicMarch;
 use super::slider_integrals::Bounds;
-use super::slip_series::halve_mean;
 use super::{Elastic, Motion, Parameter, SlipLoad, StructuralDamper};
 use crate::Error;
 use faer::Mat;
@@ -88,7 +87,7 @@ impl StructuralDamper {
                 series.iter_mut().zip(&integral).for_each(|(s, integral)| *s += rate * integral);
             }
         }
-        halve_mean(harmonics, out);
+        harmonics.halve_means(out);
     }
 
     /// Series of `∂f/∂a`, where the damper has been given the stiffness aD.

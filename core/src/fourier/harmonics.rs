@@ -94,6 +94,14 @@ impl Harmonics {
         }
     }
 
+    /// Halves the means of series, one after the other: by the quadrature of their harmonics they are
+    /// integrals over the period, not twice those.
+    pub(crate) fn halve_means(&self, series: &mut [f64]) {
+        if self.has_mean() {
+            series.iter_mut().step_by(self.slots()).for_each(|mean| *mean *= 0.5);
+        }
+    }
+
     /// Modulus of the fundamental.
     #[must_use]
     pub fn fundamental(&self, series: &[f64]) -> f64 {

@@ -2,7 +2,9 @@
 //! of free motions.
 
 mod basin;
+mod bodies;
 mod classification;
+mod damping;
 mod flow;
 mod history;
 mod modal_system;

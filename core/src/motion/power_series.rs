@@ -4,7 +4,8 @@
 //! ones before. The series needs no decomposition per set of sticking contacts, has no defective
 //! cases, and hands displacements and forces over as polynomials whose zeros are the events.
 
-use super::modal_system::{dot, ContactState, Damping, ModalSystem};
+use super::damping::Damping;
+use super::modal_system::{dot, ContactState, ModalSystem};
 use super::polynomial;
 use super::state::State;
 

@@ -1,6 +1,7 @@
 //! The state of a motion: modal displacements and velocities, contact forces.
 
-use super::modal_system::{Body, ModalSystem};
+use super::bodies::Body;
+use super::modal_system::ModalSystem;
 use crate::contact::PointState;
 use crate::error::brief;
 use crate::Error;

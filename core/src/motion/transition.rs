@@ -6,7 +6,7 @@
 //! saltation matrix).
 
 use super::flow::FlowEvent;
-use super::modal_system::{ContactState, Damping, ModalSystem};
+use super::modal_system::{ContactState, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
 use faer::Mat;
@@ -278,18 +278,9 @@ impl<'a> Transition<'a> {
             a[(j, modes + j)] = duration * self.weight[j];
             a[(modes + j, j)] = -duration * self.system.omega_squared()[j] / self.weight[j];
         }
-        match &self.system.damping {
-            Damping::Diagonal(damping) => {
-                for (j, c) in damping.iter().enumerate() {
-                    a[(modes + j, modes + j)] = -duration * c;
-                }
-            }
-            Damping::Full(damping) => {
-                for j in 0..modes {
-                    for i in 0..modes {
-                        a[(modes + i, modes + j)] = -duration * damping[(i, j)];
-                    }
-                }
+        for j in 0..modes {
+            for i in 0..modes {
+                a[(modes + i, modes + j)] = -duration * self.system.damping.entry(i, j);
             }
         }
         for body in self.system.bodies() {
