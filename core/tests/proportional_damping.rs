@@ -4,7 +4,7 @@
 
 use faer::{c64, Mat};
 use stickslip_core::structure::{
-    compliance, real_modes, Compliance, DirectCompliance, FlutterCompliance, HarmonicLoad, Ports,
+    compliance, modes, Compliance, DirectCompliance, FlutterCompliance, HarmonicLoad, Ports,
     Receptance, Structure,
 };
 
@@ -33,7 +33,7 @@ fn chain(springs: &[f64]) -> Mat<f64> {
 
 /// `M Φ diag(2 ζ_j ω_j) Φᵀ M`.
 fn modal(mass: &Mat<f64>, stiffness: &Mat<f64>, ratio: impl Fn(usize) -> f64) -> Mat<f64> {
-    let modes = real_modes(mass.as_ref(), stiffness.as_ref()).unwrap();
+    let modes = modes(mass.as_ref(), stiffness.as_ref()).unwrap();
     let shapes = mass * &modes.shapes;
     let omega = modes.frequencies();
     let scaled = Mat::from_fn(shapes.nrows(), shapes.ncols(), |i, j| {

@@ -6,6 +6,7 @@ mod adaptive;
 mod condensed;
 mod cycle_point;
 mod cycle_start;
+mod enough;
 mod evaluation;
 mod forced;
 mod from_orbit;

@@ -223,54 +223,30 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
     }
 }
 
-/// Evaluates a law's own form, or the sampled one where there is none.
-macro_rules! evaluated {
-    ($law:expr, $call:ident($($argument:expr),*)) => {
-        match $law.closed_form() {
-            Some(exact) => exact.$call($($argument),*),
-            None => Aft { law: $law, samples: UNCONTROLLED }.$call($($argument),*),
-        }
+/// Evaluates a law by its own form, or by samples where there is none.
+macro_rules! by_form_or_samples {
+    ($($method:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => {
+        $(
+            #[doc = concat!("See [`HarmonicForce::", stringify!($method), "`].")]
+            pub fn $method(&self, $($argument: $type),*) $(-> $returned)? {
+                match self.closed_form() {
+                    Some(exact) => exact.$method($($argument),*),
+                    None => Aft { law: self, samples: UNCONTROLLED }.$method($($argument),*),
+                }
+            }
+        )*
     };
 }
 
 /// Every law has the harmonics of a periodic motion: by its closed form, or by samples.
 impl dyn ContactLaw + '_ {
-    /// See [`HarmonicForce::slip_load`].
-    pub fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
-        evaluated!(self, slip_load(motion, tangent, out));
-    }
-
-    /// See [`HarmonicForce::resolves`].
-    #[must_use]
-    pub fn resolves(&self) -> usize {
-        evaluated!(self, resolves())
-    }
-
-    /// See [`HarmonicForce::summary`].
-    pub fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
-        evaluated!(self, summary(motion, out));
-    }
-
-    /// See [`HarmonicForce::state_history`].
-    #[must_use]
-    pub fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        evaluated!(self, state_history(motion, samples))
-    }
-
-    /// See [`HarmonicForce::force_history`].
-    #[must_use]
-    pub fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        evaluated!(self, force_history(motion, samples))
-    }
-
-    /// See [`HarmonicForce::phases`].
-    #[must_use]
-    pub fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
-        evaluated!(self, phases(motion))
-    }
-
-    /// See [`HarmonicForce::parameter_slope`].
-    pub fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
-        evaluated!(self, parameter_slope(motion, index, out));
+    by_form_or_samples! {
+        slip_load(motion: Motion<'_>, tangent: bool, out: &mut SlipLoad);
+        resolves() -> usize;
+        summary(motion: Motion<'_>, out: &mut [PointSummary]);
+        state_history(motion: Motion<'_>, samples: usize) -> Vec<f64>;
+        force_history(motion: Motion<'_>, samples: usize) -> Vec<f64>;
+        phases(motion: Motion<'_>) -> Vec<Phase>;
+        parameter_slope(motion: Motion<'_>, index: usize, out: &mut [f64]);
     }
 }

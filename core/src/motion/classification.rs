@@ -269,10 +269,7 @@ impl Classifier {
         state.time = 0.0;
         flow.run(state, span, &mut |passage| {
             let FlowEvent::Segment(arc) = passage else { return };
-            for (shape, range) in shapes.iter().zip(&mut survey.range) {
-                arc.series.project(shape.iter().copied(), arc.length, &mut extremes.series);
-                extremes.widen(range);
-            }
+            extremes.follow(&arc, &shapes, &mut survey.range);
             let end = arc.start + arc.duration();
             while next < samples && next * instant < end {
                 arc.series.motion_at(

@@ -4,7 +4,7 @@ use super::bodies::{elements, limits_of, Body};
 use super::damping::Damping;
 use crate::contact::{PointState, PointSummary};
 use crate::model::Model;
-use crate::structure::{real_modes, ModalDamping, RealModes};
+use crate::structure::{modes, ModalDamping, RealModes};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 
@@ -45,7 +45,7 @@ impl ModalSystem {
             return Err(Error::TravellingWave);
         }
         let structure = model.structure();
-        let modes = real_modes(structure.mass(), structure.stiffness())?;
+        let modes = modes(structure.mass(), structure.stiffness())?;
         let damping = modes.damping(structure.damping());
         let size = modes.omega_squared.len();
         let rows = &model.ports().rows * &modes.shapes;

@@ -1,6 +1,6 @@
 //! What a time integration hands out: samples, ranges and events, period after period.
 
-use super::flow::{Event, Flow, FlowEvent, Halt};
+use super::flow::{Event, Flow, FlowEvent, FlowSegment, Halt};
 use super::history::{History, Trace, TransientSettings};
 use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{sign_changes, value};
@@ -72,19 +72,11 @@ impl<'a> Output<'a> {
                 let end = arc.start + arc.duration();
                 while sample <= self.settings.samples && self.instant(sample) <= end + slack {
                     let tau = (self.instant(sample) - arc.start) * arc.series.rate();
-                    arc.series.motion_at(tau, &mut x, &mut v);
-                    for (point, f) in f.iter_mut().enumerate() {
-                        let limit = self.system.limits()[point];
-                        *f = arc.series.force_at(point, tau).clamp(-limit, limit);
-                    }
+                    arc.series.state_at(tau, self.system.limits(), [&mut x, &mut v, &mut f]);
                     self.push(begin + self.instant(sample), &x, &v, &f, trace);
                     sample += 1;
                 }
-                for (shape, range) in self.shapes.iter().zip(&mut range) {
-                    let shape = shape.iter().copied();
-                    arc.series.project(shape, arc.length, &mut extremes.series);
-                    extremes.widen(range);
-                }
+                extremes.follow(&arc, &self.shapes, &mut range);
             }
             FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
@@ -195,14 +187,27 @@ impl<'a> Output<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Extremes {
     /// Coefficients of the polynomial.
-    pub(crate) series: Vec<f64>,
+    series: Vec<f64>,
     slope: Vec<f64>,
     zeros: Vec<f64>,
 }
 
 impl Extremes {
+    /// Widens the range of each of the shapes by its values on a stretch of the motion.
+    pub(crate) fn follow(
+        &mut self,
+        arc: &FlowSegment<'_>,
+        shapes: &[Vec<f64>],
+        ranges: &mut [[f64; 2]],
+    ) {
+        for (shape, range) in shapes.iter().zip(ranges) {
+            arc.series.project(shape.iter().copied(), arc.length, &mut self.series);
+            self.widen(range);
+        }
+    }
+
     /// Widens a range by the values of the polynomial.
-    pub(crate) fn widen(&mut self, range: &mut [f64; 2]) {
+    fn widen(&mut self, range: &mut [f64; 2]) {
         let series = &self.series;
         let mut include = |value: f64| {
             range[0] = range[0].min(value);

@@ -173,7 +173,7 @@ impl PowerSeries {
     }
 
     /// Modal displacements and velocities [1/s] at τ.
-    pub(crate) fn motion_at(&self, tau: f64, displacement: &mut [f64], velocity: &mut [f64]) {
+    pub fn motion_at(&self, tau: f64, displacement: &mut [f64], velocity: &mut [f64]) {
         let n = self.modes;
         displacement.fill(0.0);
         velocity.fill(0.0);
@@ -200,6 +200,14 @@ impl PowerSeries {
     /// Force of a contact point at τ [N].
     pub(crate) fn force_at(&self, point: usize, tau: f64) -> f64 {
         polynomial::value(self.force(point), tau)
+    }
+
+    /// [`PowerSeries::motion_at`] with the contact forces, kept within their limits.
+    pub(crate) fn state_at(&self, tau: f64, limits: &[f64], [x, v, f]: [&mut [f64]; 3]) {
+        self.motion_at(tau, x, v);
+        for (point, (force, limit)) in f.iter_mut().zip(limits).enumerate() {
+            *force = self.force_at(point, tau).clamp(-limit, *limit);
+        }
     }
 
     /// Writes the coefficients of `Σ_j shape_j η_j` over the window `[0, length]` of τ, scaled to

@@ -83,11 +83,7 @@ impl Returns {
                 if self.rises && !rises {
                     let tau = from * arc.length;
                     let mut state = State::rest(system);
-                    arc.series.motion_at(tau, &mut state.displacement, &mut state.velocity);
-                    for (point, f) in state.force.iter_mut().enumerate() {
-                        let limit = system.limits()[point];
-                        *f = arc.series.force_at(point, tau).clamp(-limit, limit);
-                    }
+                    arc.series.state_at(tau, system.limits(), state.parts());
                     let time = begin + arc.start + tau / arc.series.rate();
                     let (size, error) = self.add(time, coordinates.coordinates(&state));
                     told(size, error);

@@ -152,6 +152,11 @@ impl State {
         free
     }
 
+    /// Displacements, velocities and forces.
+    pub(crate) fn parts(&mut self) -> [&mut [f64]; 3] {
+        [&mut self.displacement, &mut self.velocity, &mut self.force]
+    }
+
     /// Whether every number is finite and of a size whose square is.
     #[must_use]
     pub fn is_bounded(&self) -> bool {

@@ -152,9 +152,7 @@ fn renew(state: &mut State, start: &State, side: f64) {
 
 /// The mirror image of a state.
 fn mirror(state: &mut State) {
-    for values in [&mut state.displacement, &mut state.velocity, &mut state.force] {
-        values.iter_mut().for_each(|v| *v = -*v);
-    }
+    state.parts().into_iter().flatten().for_each(|v| *v = -*v);
     state.points.iter_mut().for_each(|point| *point = point.mirrored());
 }
 

@@ -67,7 +67,7 @@ impl<'a> Survey<'a> {
         match passage {
             FlowEvent::Segment(arc) => {
                 self.integrate(arc);
-                self.widen(arc);
+                self.extremes.follow(arc, &self.shapes, &mut self.range);
                 self.follow_slip(arc);
             }
             FlowEvent::Event { event, .. } => {
@@ -114,15 +114,6 @@ impl<'a> Survey<'a> {
                 }
                 rotation *= stride;
             }
-        }
-    }
-
-    /// Widens the ranges by the extremes on an arc.
-    fn widen(&mut self, arc: &FlowSegment<'_>) {
-        for (shape, range) in self.shapes.iter().zip(&mut self.range) {
-            let shape = shape.iter().copied();
-            arc.series.project(shape, arc.length, &mut self.extremes.series);
-            self.extremes.widen(range);
         }
     }
 

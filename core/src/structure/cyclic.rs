@@ -5,7 +5,7 @@
 //! disk at nodal diameter kE mod n. That is exact, friction between the sectors included.
 
 use super::modal::Wave;
-use super::modes::hermitian_modes;
+use super::modes::modes;
 use super::ports::{forced_harmonics, Ports};
 use super::proportional::follows_mass;
 use super::{
@@ -137,7 +137,7 @@ impl CyclicStructure {
         let delta = self.phase(diameter);
         let rows = wave_rows(own, next, delta);
         let restrained = restrained(&self.stiffness.wave(delta), &rows, stiffness);
-        Ok(hermitian_modes(self.mass.wave(delta).as_ref(), restrained.as_ref())?.frequencies())
+        Ok(modes(self.mass.wave(delta).as_ref(), restrained.as_ref())?.frequencies())
     }
 }
 
@@ -261,8 +261,8 @@ impl CyclicCompliance {
         let (mass, damping) = (structure.mass.wave(delta), structure.damping.wave(delta));
         let free_stiffness = structure.stiffness.wave(delta);
         let stuck_stiffness = restrained(&free_stiffness, &rows, self.ports.stiffness.as_ref());
-        let stuck = hermitian_modes(mass.as_ref(), stuck_stiffness.as_ref())?;
-        let free = hermitian_modes(mass.as_ref(), free_stiffness.as_ref())?;
+        let stuck = modes(mass.as_ref(), stuck_stiffness.as_ref())?;
+        let free = modes(mass.as_ref(), free_stiffness.as_ref())?;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
         let loads = self.loads_at(diameter);
         let wave = Wave {

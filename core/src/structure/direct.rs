@@ -1,7 +1,7 @@
 //! Compliance by one factorisation per frequency, for structures whose complex modes are
 //! defective. Slower than modes, never wrong.
 
-use super::modes::{complex, real_modes};
+use super::modes::{complex, modes};
 use super::ports::{forced_harmonics, HarmonicLoad};
 use super::restraint::store;
 use super::{Compliance, Ports, Quantity, Receptance, Request, Structure};
@@ -33,8 +33,8 @@ impl DirectCompliance {
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
         let direct = Self::of(structure, ports, restrained.as_ref());
-        let stuck = real_modes(structure.mass(), restrained.as_ref())?.frequencies();
-        let free = real_modes(structure.mass(), structure.stiffness())?.frequencies();
+        let stuck = modes(structure.mass(), restrained.as_ref())?.frequencies();
+        let free = modes(structure.mass(), structure.stiffness())?.frequencies();
         Ok(direct.with_frequencies(stuck, free))
     }
 

@@ -7,7 +7,7 @@
 //! | any other; a travelling wave | one complex factorisation per harmonic |
 
 use super::cyclic::CyclicStructure;
-use super::modes::{complex, hermitian_modes, real_modes, RealModes};
+use super::modes::{complex, modes, RealModes};
 use super::{Compliance, DirectCompliance, ModalCompliance, Receptance, Request, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -67,7 +67,7 @@ impl FlutterCompliance {
         law: bool,
     ) -> Result<Self, Error> {
         check(complex(negative).as_ref(), structure.dofs())?;
-        let free = real_modes(structure.mass(), structure.stiffness())?;
+        let free = modes(structure.mass(), structure.stiffness())?;
         let whole = Arc::new(Matrices {
             mass: complex(structure.mass()),
             damping: complex(structure.damping()),
@@ -161,7 +161,7 @@ impl FlutterCompliance {
     pub fn stuck_modes(&self, stiffness: MatRef<'_, f64>) -> Result<Vec<StuckMode>, Error> {
         let matrices = self.matrices(1);
         let restrained = matrices.restrained(&complex(stiffness));
-        let modes = hermitian_modes(matrices.mass.as_ref(), restrained.as_ref())?;
+        let modes = modes(matrices.mass.as_ref(), restrained.as_ref())?;
         let [damping, negative] =
             [&matrices.damping, &matrices.negative].map(|c| modes.project(c.as_ref()));
         let contacts = &matrices.rows * &modes.shapes;

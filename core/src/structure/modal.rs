@@ -7,7 +7,7 @@
 //! | any other, also unsymmetric | complex, stuck | directly |
 
 use super::flexibility::Flexibility;
-use super::modes::{complex, real_modes, HermitianModes, RealModes};
+use super::modes::{complex, modes, HermitianModes, RealModes};
 use super::ports::{HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
 use super::restraint::restrain;
@@ -104,11 +104,11 @@ impl ModalCompliance {
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
         let (mass, damping) = (structure.mass(), structure.damping());
-        let free = real_modes(mass, structure.stiffness())?;
+        let free = modes(mass, structure.stiffness())?;
         let stuck = if restrained.as_ref() == structure.stiffness() {
             free.clone()
         } else {
-            real_modes(mass, restrained.as_ref())?
+            modes(mass, restrained.as_ref())?
         };
         let wave = Wave {
             law: structure.is_proportional() && !follows_mass(damping, mass),

@@ -5,7 +5,7 @@
 //! DOFs of their coupling alone, so that a response of the whole disk takes one cyclic block
 //! tridiagonal solution in these DOFs: the effort grows with the number of sectors.
 
-use super::modes::real_modes;
+use super::modes::modes;
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::ring_order::{RingLayout, RingOrder};
 use super::{compliance, Compliance, Receptance, Structure};
@@ -249,7 +249,7 @@ impl Ring {
                 } else {
                     structure.stiffness().to_owned()
                 };
-                Ok(real_modes(structure.mass(), stiffness.as_ref())?.frequencies())
+                Ok(modes(structure.mass(), stiffness.as_ref())?.frequencies())
             };
             // The sectors have been decomposed; a disk that cannot be has no stops in a range.
             [true, false].map(|stuck| frequencies(stuck).unwrap_or_default())
