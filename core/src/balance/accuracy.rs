@@ -85,7 +85,7 @@ impl Extension {
     }
 }
 
-/// About the time of a balance on a common processor [ns]; its ratios count.
+/// About the time of a balance on a common processor \[ns\]; its ratios count.
 struct Effort<'a> {
     model: &'a Model,
     half_wave: bool,
@@ -121,7 +121,7 @@ impl Effort<'_> {
 }
 
 /// Sum over all harmonics of the change that the extended balance would bring to each observed
-/// DOF [m]; infinite where a discarded harmonic meets a resonance that nothing damps. `solved` are
+/// DOF \[m\]; infinite where a discarded harmonic meets a resonance that nothing damps. `solved` are
 /// the equations that were solved, if they are at hand. Nothing if the analysis is to end.
 #[allow(clippy::too_many_arguments)]
 pub(super) fn errors(

@@ -12,7 +12,7 @@ impl CycleBalance<'_> {
     /// Motion, forces and friction work at a point of the curve, with t = 0 at the maximum of the
     /// DOF `phase`.
     pub fn point(&mut self, z: &[f64], phase: usize) -> Point {
-        let compliance = self.family.destabilised();
+        let compliance = self.family.compliance();
         let observe: Vec<usize> = (0..compliance.dofs()).collect();
         let (u, omega) = (&z[..z.len() - 2], z[z.len() - 2]);
         let recovered = self
@@ -27,10 +27,10 @@ impl CycleBalance<'_> {
         point
     }
 
-    /// What harmonics above those kept would change at every DOF [m]: one Newton step of a balance
+    /// What harmonics above those kept would change at every DOF \[m\]: one Newton step of a balance
     /// extended by them, across the curve.
     pub fn errors(&self, z: &[f64], along: &[f64], extended: &SampleTable) -> Vec<f64> {
-        let dofs = self.family.destabilised().dofs();
+        let dofs = self.family.compliance().dofs();
         let infinite = vec![f64::INFINITY; dofs];
         let (from, to) = (self.table.harmonics(), extended.harmonics());
         let recast = |z: &[f64]| -> Vec<f64> {
@@ -75,7 +75,7 @@ impl CycleBalance<'_> {
     }
 
     fn displacements(&mut self, z: &[f64]) -> Vec<(usize, Vec<c64>)> {
-        let dofs: Vec<usize> = (0..self.family.destabilised().dofs()).collect();
+        let dofs: Vec<usize> = (0..self.family.compliance().dofs()).collect();
         let Some(Evaluation { equations, .. }) = self.evaluate(z) else { return Vec::new() };
         let motion = [&z[..z.len() - 2], &equations.slip_load()];
         let mut out = Vec::new();

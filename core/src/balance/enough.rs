@@ -12,7 +12,7 @@ use crate::Error;
 #[derive(Default)]
 struct Climb {
     iterations: usize,
-    /// The last rung that was solved.
+    /// The last level that was solved.
     below: Option<Point>,
     stalled: bool,
     from_below: bool,
@@ -31,8 +31,8 @@ impl ForcedBalance<'_> {
     /// # Errors
     /// The loads themselves excite an undamped resonance.
     pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
-        let mut resolution = self.ladder.first();
-        if self.ladder.is_fixed() {
+        let mut resolution = self.control.first();
+        if self.control.is_fixed() {
             return self.solve_with(resolution, omega, start);
         }
         let mut start = start.cloned();
@@ -67,8 +67,8 @@ impl ForcedBalance<'_> {
         }
     }
 
-    /// The way on from a point that stalled: the exact orbit, once a rung more, which may be what it
-    /// lacks, or the rungs below. What is below stands if nothing helps.
+    /// The way on from a point that stalled: the exact orbit, once a level more, which may be what it
+    /// lacks, or the levels below. What is below stands if nothing helps.
     fn past(&mut self, point: &Point, at: Resolution, climb: &mut Climb) -> Way {
         let solved = climb.below.as_ref().unwrap_or(point);
         if let Some(exact) = self.orbit_below(solved, f64::INFINITY) {
@@ -77,9 +77,9 @@ impl ForcedBalance<'_> {
         let easy = self.is_worth_a_homotopy(at.harmonics);
         if climb.below.is_none() && !easy && !climb.from_below {
             climb.from_below = true;
-            return Way::On(self.ladder.start_over());
+            return Way::On(self.control.start_over());
         }
-        match (self.ladder.above(at).filter(|_| easy && !climb.stalled), &climb.below) {
+        match (self.control.above(at).filter(|_| easy && !climb.stalled), &climb.below) {
             (Some(above), _) => {
                 climb.stalled = true;
                 Way::On(above)
@@ -95,7 +95,7 @@ impl ForcedBalance<'_> {
     /// A point that ends the climb; the next one begins with the harmonics at which it ended.
     fn ended(&mut self, mut point: Point, at: Resolution, climb: &Climb) -> Point {
         let dear = point.status == PointStatus::EffortLimit;
-        self.ladder.stay(if dear { point.resolution() } else { at });
+        self.control.stay(if dear { point.resolution() } else { at });
         point.iterations = climb.iterations;
         point
     }
@@ -106,10 +106,10 @@ impl ForcedBalance<'_> {
         let scale = &self.scale;
         let of_samples = scale.relative(point, OF_HARMONICS, point.sampling_error.iter().copied());
         // Nothing can be done about samples that were given.
-        let climb = self.ladder.samples_climb();
+        let climb = self.control.samples_climb();
         let errors = point.error_estimate.iter().zip(&point.sampling_error);
         let counted = |(all, sampling): (&f64, &f64)| if climb { *all } else { all - sampling };
         let error = scale.relative(point, OF_HARMONICS, errors.map(counted));
-        self.ladder.judge(point.resolution(), error, of_samples)
+        self.control.judge(point.resolution(), error, of_samples)
     }
 }

@@ -29,7 +29,7 @@ pub struct ForcedBalance<'a> {
     forced: Vec<usize>,
     tables: BTreeMap<usize, Arc<SampleTable>>,
     evaluations: Evaluations<'a>,
-    pub(super) ladder: ResolutionControl,
+    pub(super) control: ResolutionControl,
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
@@ -38,12 +38,12 @@ pub struct ForcedBalance<'a> {
     pub(super) profile: Profile,
 }
 
-/// What passes from one balance to the next: sample tables, the rung that automatic harmonics and
+/// What passes from one balance to the next: sample tables, the level that automatic harmonics and
 /// samples start from, and the account of the work.
 #[derive(Default)]
 pub(crate) struct WarmStart {
     tables: BTreeMap<usize, Arc<SampleTable>>,
-    rung: Level,
+    level: Level,
     half_wave: bool,
     pub(crate) profile: Profile,
 }
@@ -69,7 +69,7 @@ impl<'a> ForcedBalance<'a> {
             settings,
             observe,
             half_wave,
-            ladder: ResolutionControl::new(settings, &forced),
+            control: ResolutionControl::new(settings, &forced),
             forced,
             tables: BTreeMap::new(),
             evaluations: Evaluations::new(model),
@@ -127,9 +127,9 @@ impl<'a> ForcedBalance<'a> {
     /// Takes over what another balance of the same contacts has learnt.
     #[must_use]
     pub(crate) fn remembering(mut self, memory: WarmStart) -> Self {
-        let WarmStart { tables, rung, half_wave, profile } = memory;
+        let WarmStart { tables, level, half_wave, profile } = memory;
         if half_wave == self.half_wave {
-            (self.tables, self.ladder.rung) = (tables, rung);
+            (self.tables, self.control.level) = (tables, level);
         }
         self.profile = profile;
         self
@@ -137,8 +137,8 @@ impl<'a> ForcedBalance<'a> {
 
     /// What a balance of the same contacts can use again.
     pub(crate) fn into_memory(self) -> WarmStart {
-        let Self { tables, ladder, half_wave, profile, .. } = self;
-        WarmStart { tables, rung: ladder.rung, half_wave, profile }
+        let Self { tables, control, half_wave, profile, .. } = self;
+        WarmStart { tables, level: control.level, half_wave, profile }
     }
 
     /// Whether only odd harmonics are solved for.
@@ -224,7 +224,7 @@ impl<'a> ForcedBalance<'a> {
         }
         let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
         // Where harmonics are chosen an orbit is the answer.
-        let answered = orbit && self.ladder.only_harmonics_climb();
+        let answered = orbit && self.control.only_harmonics_climb();
         if has_failed(&report) && !answered && patient {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);

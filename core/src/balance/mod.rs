@@ -7,6 +7,7 @@ mod condensed;
 mod cycle_point;
 mod cycle_start;
 mod enough;
+mod estimate;
 mod evaluation;
 mod forced;
 mod from_orbit;
@@ -16,7 +17,7 @@ mod linear;
 mod linearised;
 mod peak;
 mod price;
-mod recovery;
+
 mod resolution_control;
 mod ring_newton;
 mod ring_series;

@@ -28,7 +28,7 @@ pub(super) fn finer_than(samples: usize) -> usize {
 }
 
 /// Sum over all harmonics of the change that the laws of `finer` would bring to each observed DOF
-/// [m]; `solved` are the equations of the solution `x`.
+/// \[m\]; `solved` are the equations of the solution `x`.
 pub(super) fn sampling_errors(
     solved: &mut Condensed<'_>,
     finer: &Model,

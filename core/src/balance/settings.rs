@@ -98,15 +98,14 @@ pub struct Settings {
     pub newton: NewtonSettings,
 }
 
-/// Highest order that may be asked for: its tables grow with the square, and a period with more
-/// turning points is no vibration.
+/// Highest order that may be asked for: its tables grow with the square of it.
 pub const HIGHEST_ORDER: usize = 1000;
 /// Most samples that may be asked for: their sampling error is that of rounding.
 const MOST_SAMPLES: usize = 1 << 20;
 /// Finest tolerance: the solvers end at 1e-11 of the contact displacements.
 const FINEST_TOLERANCE: f64 = 1e-8;
 
-/// Fewest automatic samples: fewer make no loop to speak of.
+/// Fewest automatic samples: fewer do not show the hysteresis loop.
 pub(super) const FEWEST_SAMPLES: usize = 32;
 
 impl Default for Settings {

@@ -58,9 +58,9 @@ pub struct Point {
     pub contact_displacement: Vec<c64>,
     /// Amplitudes F_k of the contact forces, laid out likewise.
     pub contact_force: Vec<c64>,
-    /// What the discarded harmonics, and more samples, could change at each observed DOF [m].
+    /// What the discarded harmonics, and more samples, could change at each observed DOF \[m\].
     pub error_estimate: Vec<f64>,
-    /// The part of it that is due to the samples; zero of laws evaluated as they are [m].
+    /// The part of it that is due to the samples; zero of laws evaluated as they are \[m\].
     pub sampling_error: Vec<f64>,
     /// Slip share and friction work per contact point.
     pub contacts: Vec<PointSummary>,

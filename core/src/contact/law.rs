@@ -18,7 +18,7 @@ pub enum Residual {
     Centred,
     /// The load was raised slowly from rest with an unloaded contact.
     FromRest,
-    /// A given force [N], reduced where it would make the contact slip.
+    /// A given force \[N\], reduced where it would make the contact slip.
     Value(f64),
 }
 
@@ -54,7 +54,7 @@ pub struct Motion<'a> {
 /// Fourier coefficients of the slip load of one contact, and their derivative.
 #[derive(Debug, Clone, Default)]
 pub struct SlipLoad {
-    /// q, laid out as the displacement [N].
+    /// q, laid out as the displacement \[N\].
     pub value: Vec<f64>,
     /// ∂q/∂u, row by row, empty unless it was asked for [N/m].
     pub tangent: Vec<f64>,
@@ -90,7 +90,7 @@ impl SlipLoad {
 pub struct PointSummary {
     /// Share of the period in slip.
     pub slip_fraction: f64,
-    /// Friction work per period [J].
+    /// Friction work per period \[J\].
     pub dissipation: f64,
 }
 
@@ -215,7 +215,7 @@ impl ReturnMapJacobian {
 
 /// A law between one or several relative displacements and as many contact forces.
 ///
-/// A law needs no more than what has no default here: the sampled evaluation ([`Aft`]) then gives
+/// A law needs no more than what has no default here: the sampled evaluation ([`super::Aft`]) then gives
 /// its harmonics. A new law is one file in this folder and one line in its registry.
 pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// Name in messages and in the registry.
@@ -241,11 +241,11 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// all are has one steady motion.
     fn is_monotone(&self) -> bool;
 
-    /// Largest force that every component can have [N]: 0 if it never carries any, infinite if it
+    /// Largest force that every component can have \[N\]: 0 if it never carries any, infinite if it
     /// never slips.
     fn limits(&self) -> Vec<f64>;
 
-    /// Force of every component at which slip begins [N].
+    /// Force of every component at which slip begins \[N\].
     fn onsets(&self) -> Vec<f64> {
         self.limits()
     }
@@ -328,7 +328,7 @@ pub trait HarmonicForce {
     /// States at `samples` equidistant instants, instant after instant.
     fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
 
-    /// Contact forces at `samples` equidistant instants, instant after instant [N].
+    /// Contact forces at `samples` equidistant instants, instant after instant \[N\].
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
 
     /// What the components do over a period, from change to change.
@@ -354,7 +354,7 @@ pub trait SlipElement: Send + Sync + std::fmt::Debug {
     /// Stiffness of the stuck element, points × points [N/m].
     fn stiffness(&self) -> Mat<f64>;
 
-    /// Slip limit of every point [N].
+    /// Slip limit of every point \[N\].
     fn limits(&self) -> Vec<f64>;
 
     /// `∂f/∂u` while the points are in these states, points × points [N/m].

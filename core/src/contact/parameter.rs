@@ -20,7 +20,7 @@ impl Parameter {
     /// Name of a slip limit.
     pub const SLIP_FORCE: &'static str = "slip_force";
 
-    /// Slip limit of a point [N].
+    /// Slip limit of a point \[N\].
     pub(super) fn slip_force(point: usize, value: f64) -> Self {
         Self { name: Self::SLIP_FORCE, point: Some(point), value, factor: false }
     }

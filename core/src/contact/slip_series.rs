@@ -1,4 +1,4 @@
-//! Fourier coefficients of the slip load of a passage, and their derivative, exact integrals both.
+//! Fourier coefficients of the slip load of a march, and their derivative, exact integrals both.
 //!
 //! On a stretch `q = (D − T) u + κ`. Products of basis functions are summed over all stretches of
 //! the same slip set at once; moving transitions add nothing, because f is continuous.
@@ -9,9 +9,9 @@ use super::{Motion, SlipLoad};
 use crate::fourier::IntervalSums;
 use faer::Mat;
 
-/// Writes the series of the slip load of a passage and, if it carries rates, its tangent.
+/// Writes the series of the slip load of a march and, if it carries rates, its tangent.
 pub(super) fn write(
-    passage: &PeriodicMarch,
+    march: &PeriodicMarch,
     stiffness: &Mat<f64>,
     motion: Motion<'_>,
     out: &mut SlipLoad,
@@ -21,19 +21,19 @@ pub(super) fn write(
     let size = points * slots;
     let weight = 2.0 / harmonics.span();
     let with_tangent = !out.tangent.is_empty();
-    for (index, set) in passage.sets.iter().enumerate() {
+    for (index, set) in march.sets.iter().enumerate() {
         if !set.slips.contains(&true) {
             continue;
         }
         let mut sums = IntervalSums::new(harmonics);
-        for stretch in passage.stretches.iter().filter(|stretch| stretch.set == index) {
+        for stretch in march.stretches.iter().filter(|stretch| stretch.set == index) {
             sums.add(stretch.start, stretch.end);
         }
         let mut products = vec![0.0; slots * slots];
         sums.products(harmonics, weight, |row, column, v| products[row * slots + column] = v);
         for i in 0..points {
             for j in 0..points {
-                let lost = stiffness[(i, j)] - set.sliding.tangent[(i, j)];
+                let lost = stiffness[(i, j)] - set.reduced.tangent[(i, j)];
                 if lost == 0.0 {
                     continue;
                 }
@@ -52,7 +52,7 @@ pub(super) fn write(
     }
     let mut bounds = Bounds::new(harmonics);
     let mut integral = vec![0.0; slots];
-    for stretch in &passage.stretches {
+    for stretch in &march.stretches {
         integral.fill(0.0);
         bounds.add_integral(harmonics, stretch.start, stretch.end, weight, &mut integral);
         for i in 0..points {

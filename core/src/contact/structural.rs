@@ -4,7 +4,7 @@
 //! `f = D (u − s)`, `|f_i| ≤ F_i`, and the slip s_i moves along `f_i = ±F_i` alone. The dissertation's
 //! explicit update finds the slip of a step from the states of the step before; it is of first
 //! order and overshoots the limits. Here a periodic motion is followed from transition to
-//! transition, each located exactly (`passage`), and an increment solves the implicit problem
+//! transition, each located exactly (`periodic_march`), and an increment solves the implicit problem
 //! (`increment`).
 
 use super::elastic::{Elastic, ReducedStiffness};
@@ -33,7 +33,7 @@ pub struct StructuralDamper {
 }
 
 impl StructuralDamper {
-    /// A damper of stiffness D [N/m], points × points, and slip limits F [N]; infinite ones never
+    /// A damper of stiffness D [N/m], points × points, and slip limits F \[N\]; infinite ones never
     /// slip, those of 0 are without friction.
     ///
     /// # Errors
@@ -113,11 +113,11 @@ impl StructuralDamper {
         Self::new(stiffness.as_ref(), limits)
     }
 
-    fn sliding(&self, states: &[PointState]) -> ReducedStiffness {
+    fn reduced(&self, states: &[PointState]) -> ReducedStiffness {
         let moves = states.iter().zip(&self.limits);
         let slips: Vec<bool> =
             moves.map(|(state, limit)| *state != PointState::Stuck || *limit == 0.0).collect();
-        self.elastic.sliding(&slips)
+        self.elastic.reduced(&slips)
     }
 }
 
@@ -131,11 +131,11 @@ impl SlipElement for StructuralDamper {
     }
 
     fn tangent(&self, points: &[PointState]) -> Mat<f64> {
-        self.sliding(points).tangent
+        self.reduced(points).tangent
     }
 
     fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
-        self.sliding(points).slip_rate
+        self.reduced(points).slip_rate
     }
 
     fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {

@@ -1,4 +1,4 @@
-//! The structure-like damper as a contact law: its harmonics from the passage through one period.
+//! The structure-like damper as a contact law: its harmonics from the march through one period.
 
 use super::derivative::Derivative;
 use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement as _};
@@ -114,18 +114,18 @@ impl HarmonicForce for StructuralDamper {
         if motion.displacement.iter().any(|u| !u.is_finite()) {
             return;
         }
-        let passage = PeriodicMarch::new(
+        let march = PeriodicMarch::new(
             self,
             motion,
             if tangent { Derivative::Coefficients } else { Derivative::None },
         );
-        if !passage.resolved {
+        if !march.resolved {
             out.value.fill(f64::NAN);
             return;
         }
-        out.active = passage.slipped || self.limits.contains(&0.0);
+        out.active = march.slipped || self.limits.contains(&0.0);
         if out.active {
-            slip_series::write(&passage, &self.stiffness, motion, out);
+            slip_series::write(&march, &self.stiffness, motion, out);
             out.halve_means(motion.table.harmonics());
         }
     }
@@ -134,13 +134,13 @@ impl HarmonicForce for StructuralDamper {
         out.fill(PointSummary::default());
         let harmonics = motion.table.harmonics();
         let span = harmonics.span();
-        let passage = PeriodicMarch::new(self, motion, Derivative::None);
+        let march = PeriodicMarch::new(self, motion, Derivative::None);
         let displacement = |theta: f64| -> Vec<f64> {
             let series = motion.displacement.chunks_exact(harmonics.slots());
             series.map(|series| harmonics.jet(series, theta)[0]).collect()
         };
-        for stretch in &passage.stretches {
-            let rate = &passage.sets[stretch.set].sliding.slip_rate;
+        for stretch in &march.stretches {
+            let rate = &march.sets[stretch.set].reduced.slip_rate;
             let (from, to) = (displacement(stretch.start), displacement(stretch.end));
             for (i, summary) in out.iter_mut().enumerate() {
                 if stretch.states[i] == PointState::Stuck {
@@ -166,7 +166,7 @@ impl HarmonicForce for StructuralDamper {
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
         let harmonics = motion.table.harmonics();
         let span = harmonics.span();
-        let passage = PeriodicMarch::new(self, motion, Derivative::None);
+        let march = PeriodicMarch::new(self, motion, Derivative::None);
         let mut history = Vec::with_capacity(samples * self.limits.len());
         for n in 0..samples {
             let theta = TAU * n as f64 / samples as f64;
@@ -177,8 +177,8 @@ impl HarmonicForce for StructuralDamper {
                 .chunks_exact(harmonics.slots())
                 .map(|series| harmonics.jet(series, folded)[0])
                 .collect();
-            let Some(stretch) = passage.at(folded) else { continue };
-            let tangent = &passage.sets[stretch.set].sliding.tangent;
+            let Some(stretch) = march.at(folded) else { continue };
+            let tangent = &march.sets[stretch.set].reduced.tangent;
             history.extend((0..u.len()).map(|i| {
                 let force = (0..u.len()).map(|j| tangent[(i, j)] * u[j]).sum::<f64>();
                 sign * (force - stretch.offset[i]).clamp(-self.limits[i], self.limits[i])
@@ -188,10 +188,10 @@ impl HarmonicForce for StructuralDamper {
     }
 
     fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
-        let passage = PeriodicMarch::new(self, motion, Derivative::None);
+        let march = PeriodicMarch::new(self, motion, Derivative::None);
         let phase =
             |stretch: &Stretch| Phase { start: stretch.start, states: stretch.states.clone() };
-        let mut phases: Vec<Phase> = passage.stretches.iter().map(phase).collect();
+        let mut phases: Vec<Phase> = march.stretches.iter().map(phase).collect();
         let span = motion.table.harmonics().span();
         if motion.table.harmonics().half_wave() {
             let mirrored: Vec<Phase> = phases

@@ -40,7 +40,7 @@ pub struct PeakQuery {
 pub struct GlobalPeak {
     /// Its frequency; of a missing summit, where nothing bounds the response, if that is why [rad/s].
     pub omega: f64,
-    /// Its amplitude [m].
+    /// Its amplitude \[m\].
     pub amplitude: f64,
     /// Position of its DOF in the group.
     pub member: usize,
@@ -49,7 +49,7 @@ pub struct GlobalPeak {
     pub status: PointStatus,
     /// Highest harmonic kept.
     pub harmonics: usize,
-    /// What the discarded harmonics, and more samples, could change in its amplitude [m].
+    /// What the discarded harmonics, and more samples, could change in its amplitude \[m\].
     pub error_estimate: f64,
     /// Whether it lies at an end of the range.
     pub at_edge: bool,

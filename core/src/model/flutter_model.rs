@@ -25,7 +25,7 @@ pub enum NegativeDamping {
 pub struct FlutterModel<'a> {
     model: &'a Model,
     negative: NegativeDamping,
-    destabilised: FlutterCompliance,
+    compliance: FlutterCompliance,
     ratio: f64,
     variation: Variation,
     changes: Vec<Change>,
@@ -55,7 +55,7 @@ impl<'a> FlutterModel<'a> {
             return Err(Error::value("contacts", 0.0, remedy));
         }
         let rows = model.ports().rows.as_ref();
-        let destabilised = match (&negative, &model.body) {
+        let compliance = match (&negative, &model.body) {
             (
                 NegativeDamping::Whole(matrix) | NegativeDamping::Proportional(matrix),
                 Body::Whole | Body::Ring(_),
@@ -82,7 +82,7 @@ impl<'a> FlutterModel<'a> {
             return Err(Error::value("level", ratio, remedy));
         }
         let changes = variation.changes(model)?;
-        Ok(Self { model, negative, destabilised, ratio, variation, changes })
+        Ok(Self { model, negative, compliance, ratio, variation, changes })
     }
 
     /// The model as it is given.
@@ -99,8 +99,8 @@ impl<'a> FlutterModel<'a> {
 
     /// The compliance.
     #[must_use]
-    pub fn destabilised(&self) -> &FlutterCompliance {
-        &self.destabilised
+    pub fn compliance(&self) -> &FlutterCompliance {
+        &self.compliance
     }
 
     /// The negative damping of a whole structure; nothing of a travelling wave, which has no
@@ -148,8 +148,8 @@ impl<'a> FlutterModel<'a> {
             ports: Arc::new(ports),
             laws,
             points: given.points.clone(),
-            compliance: self.destabilised.at(self.ratio_at(value), stiffness),
-            modal_base: self.destabilised.name(),
+            compliance: self.compliance.at(self.ratio_at(value), stiffness),
+            modal_base: self.compliance.name(),
             body: given.body.clone(),
             states: Arc::clone(&given.states),
         })

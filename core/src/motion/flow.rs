@@ -21,7 +21,7 @@ const CHANGES: usize = 8;
 /// A contact point changes from stick to slip or back.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// Time in the period [s].
+    /// Time in the period \[s\].
     pub time: f64,
     /// Contact point.
     pub point: usize,
@@ -34,7 +34,7 @@ pub struct Event {
 pub struct FlowSegment<'a> {
     /// Motion as a power series.
     pub series: &'a PowerSeries,
-    /// Time at its start [s].
+    /// Time at its start \[s\].
     pub start: f64,
     /// Length in τ of the series.
     pub length: f64,
@@ -43,7 +43,7 @@ pub struct FlowSegment<'a> {
 }
 
 impl FlowSegment<'_> {
-    /// Length [s].
+    /// Length \[s\].
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.length / self.series.rate()
@@ -147,7 +147,7 @@ impl<'a> Flow<'a> {
         self.steps >= self.granted
     }
 
-    /// Moves a state on to the time `until` [s].
+    /// Moves a state on to the time `until` \[s\].
     ///
     /// # Errors
     /// The motion becomes unbounded, contacts do not settle on a state, the steps are spent, or the

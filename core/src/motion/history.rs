@@ -64,15 +64,15 @@ impl TransientSettings {
 /// Motion of the observed DOFs and the contacts, instant after instant.
 #[derive(Debug, Clone, Default)]
 pub struct Trace {
-    /// Instants [s].
+    /// Instants \[s\].
     pub time: Vec<f64>,
-    /// Displacements of the observed DOFs [m].
+    /// Displacements of the observed DOFs \[m\].
     pub displacement: Vec<f64>,
     /// Their velocities [m/s].
     pub velocity: Vec<f64>,
-    /// Relative displacements at the contacts [m].
+    /// Relative displacements at the contacts \[m\].
     pub contact_displacement: Vec<f64>,
-    /// Contact forces [N].
+    /// Contact forces \[N\].
     pub force: Vec<f64>,
 }
 
@@ -84,7 +84,7 @@ pub struct History {
     /// State at the start and after each period: displacements and velocities of all DOFs,
     /// contact forces.
     pub poincare: Vec<Vec<f64>>,
-    /// Lowest and highest displacement of each observed DOF, period after period [m].
+    /// Lowest and highest displacement of each observed DOF, period after period \[m\].
     pub range: Vec<[f64; 2]>,
     /// Change of the state over each period, relative to the largest state at its ends, in the
     /// norm of energy.

@@ -28,7 +28,7 @@ pub struct ModalSystem {
     pub(super) loads: Vec<(usize, Vec<c64>)>,
     /// Highest rate of the motion [1/s]: the unit of time of a power series.
     rate: f64,
-    /// Slip limits of all points [N].
+    /// Slip limits of all points \[N\].
     pub(super) limits: Vec<f64>,
     /// The elements of the contacts.
     bodies: Vec<Body>,
@@ -273,7 +273,7 @@ impl ModalSystem {
         &self.omega_squared
     }
 
-    /// Slip limits of all points of the elements [N].
+    /// Slip limits of all points of the elements \[N\].
     #[must_use]
     pub fn limits(&self) -> &[f64] {
         &self.limits

@@ -44,12 +44,12 @@ impl<'a> Output<'a> {
         trace.force.extend(self.system.contact_forces(force));
     }
 
-    /// Time of an output instant within the period [s].
+    /// Time of an output instant within the period \[s\].
     fn instant(&self, sample: usize) -> f64 {
         TAU / self.settings.omega * sample as f64 / self.settings.samples as f64
     }
 
-    /// Follows the exact flow over one period that begins at `begin` [s]. `false` if the caller has
+    /// Follows the exact flow over one period that begins at `begin` \[s\]. `false` if the caller has
     /// ended the run, which then keeps whole periods alone.
     pub(super) fn follow(
         &self,
@@ -68,15 +68,15 @@ impl<'a> Output<'a> {
         let mut extremes = Extremes::default();
         let (trace, events) = (&mut history.trace, &mut history.events);
         let run = flow.run(state, until, &mut |passage| match passage {
-            FlowEvent::Segment(arc) => {
-                let end = arc.start + arc.duration();
+            FlowEvent::Segment(segment) => {
+                let end = segment.start + segment.duration();
                 while sample <= self.settings.samples && self.instant(sample) <= end + slack {
-                    let tau = (self.instant(sample) - arc.start) * arc.series.rate();
-                    arc.series.state_at(tau, self.system.limits(), [&mut x, &mut v, &mut f]);
+                    let tau = (self.instant(sample) - segment.start) * segment.series.rate();
+                    segment.series.state_at(tau, self.system.limits(), [&mut x, &mut v, &mut f]);
                     self.push(begin + self.instant(sample), &x, &v, &f, trace);
                     sample += 1;
                 }
-                extremes.follow(&arc, &self.shapes, &mut range);
+                extremes.follow(&segment, &self.shapes, &mut range);
             }
             FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
@@ -92,7 +92,7 @@ impl<'a> Output<'a> {
         run.map(|()| true)
     }
 
-    /// Takes the Runge-Kutta steps of one period that begins at `begin` [s]. Between steps, motions
+    /// Takes the Runge-Kutta steps of one period that begins at `begin` \[s\]. Between steps, motions
     /// are cubic, from displacements and velocities at both ends. `false` if the caller has ended the
     /// run, which then keeps whole periods alone.
     pub(super) fn step_through(
@@ -196,12 +196,12 @@ impl Extremes {
     /// Widens the range of each of the shapes by its values on a stretch of the motion.
     pub(crate) fn follow(
         &mut self,
-        arc: &FlowSegment<'_>,
+        segment: &FlowSegment<'_>,
         shapes: &[Vec<f64>],
         ranges: &mut [[f64; 2]],
     ) {
         for (shape, range) in shapes.iter().zip(ranges) {
-            arc.series.project(shape.iter().copied(), arc.length, &mut self.series);
+            segment.series.project(shape.iter().copied(), segment.length, &mut self.series);
             self.widen(range);
         }
     }

@@ -197,7 +197,7 @@ impl PowerSeries {
         &self.contact[point * (DEGREE + 1)..(point + 1) * (DEGREE + 1)]
     }
 
-    /// Force of a contact point at τ [N].
+    /// Force of a contact point at τ \[N\].
     pub(crate) fn force_at(&self, point: usize, tau: f64) -> f64 {
         polynomial::value(self.force(point), tau)
     }

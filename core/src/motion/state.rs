@@ -21,13 +21,13 @@ const FLIPS: usize = 8;
 /// State at an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
-    /// Time since the start of the period [s].
+    /// Time since the start of the period \[s\].
     pub time: f64,
     /// Modal displacements η.
     pub displacement: Vec<f64>,
     /// Modal velocities η' [1/s].
     pub velocity: Vec<f64>,
-    /// Contact forces [N].
+    /// Contact forces \[N\].
     pub force: Vec<f64>,
     /// What each contact point does.
     pub points: Vec<PointState>,

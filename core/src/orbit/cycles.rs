@@ -105,12 +105,12 @@ pub struct Cycle {
     pub slipping: bool,
     /// Motion, forces, error estimate, slip and friction work.
     pub response: Point,
-    /// Lowest and highest displacement of every DOF [m]; of exact orbits only.
+    /// Lowest and highest displacement of every DOF \[m\]; of exact orbits only.
     pub range: Vec<[f64; 2]>,
     /// State at the start of the period: displacements and velocities of all DOFs, contact
     /// forces; of exact orbits only.
     pub state: Vec<f64>,
-    /// Work lost to viscous damping per period [J], negative where it feeds the motion; of exact
+    /// Work lost to viscous damping per period \[J\], negative where it feeds the motion; of exact
     /// orbits only.
     pub viscous: f64,
     /// Events of the period; of exact orbits only.

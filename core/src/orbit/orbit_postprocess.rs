@@ -45,7 +45,7 @@ pub(super) fn postprocess(
 
 /// Where a pass over half a period begins.
 struct Begin {
-    /// Time after the start of the motion [s].
+    /// Time after the start of the motion \[s\].
     time: f64,
     /// −1 where it begins with the mirror image of the motion, otherwise 1.
     side: f64,

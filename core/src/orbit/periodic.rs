@@ -34,7 +34,7 @@ const CLOSED: f64 = 1e-10;
 pub struct Orbit {
     /// Harmonics, status, slip and friction work, as of a harmonic balance.
     pub response: Point,
-    /// Lowest and highest displacement of each observed DOF [m].
+    /// Lowest and highest displacement of each observed DOF \[m\].
     pub range: Vec<[f64; 2]>,
     /// State at the start of the period: displacements and velocities of all DOFs, contact forces.
     pub state: Vec<f64>,
@@ -43,9 +43,9 @@ pub struct Orbit {
     /// Number of neutral multipliers, of exactly 1: a contact that never slips keeps its mean force,
     /// and a structure that nothing holds stays or drifts where it is pushed.
     pub neutral: usize,
-    /// Work of the external forces per period [J].
+    /// Work of the external forces per period \[J\].
     pub work: f64,
-    /// Work lost to viscous damping per period [J].
+    /// Work lost to viscous damping per period \[J\].
     pub viscous: f64,
     /// Events of the period, in order of time.
     pub events: Vec<Event>,
@@ -359,7 +359,7 @@ impl<'a> PeriodicOrbits<'a> {
         orbit
     }
 
-    /// Displacement error of the observed DOFs that the closing error leaves [m].
+    /// Displacement error of the observed DOFs that the closing error leaves \[m\].
     fn left_error(&self, shooting: &Shooting<'_>, system: &ModalSystem, left: &[f64]) -> Vec<f64> {
         let (error, _) = shooting.coordinates.state(left);
         self.observe

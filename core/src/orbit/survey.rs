@@ -7,7 +7,7 @@ use crate::motion::{value, Event, Extremes, FlowEvent, FlowSegment, ModalSystem}
 use faer::c64;
 use std::f64::consts::TAU;
 
-/// Quadrature nodes per arc beyond those that the highest harmonic needs: power series of an arc
+/// Quadrature nodes per segment beyond those that the highest harmonic needs: power series of an segment
 /// have few significant terms.
 const NODES: usize = 20;
 
@@ -65,10 +65,10 @@ impl<'a> Survey<'a> {
     /// Takes a passage of the flow into account.
     pub(super) fn include(&mut self, passage: &FlowEvent<'_>) {
         match passage {
-            FlowEvent::Segment(arc) => {
-                self.integrate(arc);
-                self.extremes.follow(arc, &self.shapes, &mut self.range);
-                self.follow_slip(arc);
+            FlowEvent::Segment(segment) => {
+                self.integrate(segment);
+                self.extremes.follow(segment, &self.shapes, &mut self.range);
+                self.follow_slip(segment);
             }
             FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
@@ -77,26 +77,26 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn integrate(&mut self, arc: &FlowSegment<'_>) {
+    fn integrate(&mut self, segment: &FlowSegment<'_>) {
         let (modes, points) = (self.system.modes(), self.system.points());
-        let angle = self.omega * arc.duration();
+        let angle = self.omega * segment.duration();
         let count = NODES + (0.5 * angle * self.orders as f64).ceil() as usize;
         let mut motion = vec![0.0; modes + points];
         let (mut velocity, mut damping, mut load) =
             (vec![0.0; modes], vec![0.0; modes], vec![0.0; modes]);
         let step = if self.half_wave { 2 } else { 1 };
         for &(x, weight) in self.quadrature.rule(count) {
-            let tau = x * arc.length;
-            arc.series.motion_at(tau, &mut motion[..modes], &mut velocity);
+            let tau = x * segment.length;
+            segment.series.motion_at(tau, &mut motion[..modes], &mut velocity);
             for point in 0..points {
-                motion[modes + point] = arc.series.force_at(point, tau);
+                motion[modes + point] = segment.series.force_at(point, tau);
             }
-            let phase = self.omega * arc.start + x * angle;
+            let phase = self.omega * segment.start + x * angle;
             damping.fill(0.0);
             self.system.add_damping(&velocity, 1.0, &mut damping);
             load.fill(0.0);
             self.system.add_load(phase, 1.0, &mut load);
-            let time = weight * arc.duration();
+            let time = weight * segment.duration();
             for j in 0..modes {
                 self.viscous += time * damping[j] * velocity[j];
                 self.work += time * load[j] * velocity[j];
@@ -117,21 +117,21 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn follow_slip(&mut self, arc: &FlowSegment<'_>) {
-        let share = self.omega * arc.duration() / TAU;
+    fn follow_slip(&mut self, segment: &FlowSegment<'_>) {
+        let share = self.omega * segment.duration() / TAU;
         for (point, summary) in self.contacts.iter_mut().enumerate() {
             let limit = self.system.limits()[point];
             if limit == 0.0 {
                 summary.slip_fraction += share;
             }
-            let state = arc.regime.points[point];
+            let state = segment.regime.points[point];
             if state == PointState::Stuck {
                 continue;
             }
-            let travel: f64 = (0..arc.regime.points.len())
+            let travel: f64 = (0..segment.regime.points.len())
                 .map(|other| {
-                    let u = arc.series.contact(other);
-                    arc.regime.slip_rate[(point, other)] * (value(u, arc.length) - u[0])
+                    let u = segment.series.contact(other);
+                    segment.regime.slip_rate[(point, other)] * (value(u, segment.length) - u[0])
                 })
                 .sum();
             summary.slip_fraction += share;

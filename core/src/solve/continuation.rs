@@ -34,8 +34,8 @@ impl Default for Steps {
 const EASY: usize = 4;
 /// … and by how much.
 const GROWTH: f64 = 1.6;
-/// Cosine between successive secants below which a step is too long to follow the curve: with more
-/// freedom walks change over to neighbouring parts of winding curves, …
+/// Cosine between successive secants below which a step is too long: longer steps may land on another
+/// part of a winding curve, …
 const BEND: f64 = 0.95;
 /// … unless it is so short, against the longest, that the bend must be a corner.
 const CORNER: f64 = 2e-3;

@@ -51,7 +51,7 @@ impl CyclicMatrix {
 /// A cyclic structure under a travelling wave.
 #[derive(Debug, Clone)]
 pub struct CyclicStructure {
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub mass: CyclicMatrix,
     /// Damping [kg/s].
     pub damping: CyclicMatrix,

@@ -41,7 +41,7 @@ use faer::c64;
 pub struct Receptance {
     /// `G_k = B (K_s + ikωC − (kω)²M)⁻¹ Bᵀ`, column by column, contacts × contacts [m/N].
     pub contact: Vec<c64>,
-    /// `B G P_k`: displacement of the contacts under the external load [m].
+    /// `B G P_k`: displacement of the contacts under the external load \[m\].
     pub stuck: Vec<c64>,
     /// Derivatives of the two in ω, if asked for.
     pub slope: Option<(Vec<c64>, Vec<c64>)>,
@@ -71,9 +71,9 @@ pub struct Request<'a> {
     pub omega: f64,
     /// What is asked for.
     pub quantity: Quantity,
-    /// Contact displacements that belong to the loads [m].
+    /// Contact displacements that belong to the loads \[m\].
     pub contact: &'a [c64],
-    /// Slip loads [N].
+    /// Slip loads \[N\].
     pub slip_load: &'a [c64],
     /// DOFs whose displacements are asked for.
     pub observe: &'a [usize],
@@ -82,9 +82,9 @@ pub struct Request<'a> {
 /// What a displacement is due to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// To the external load and the slip loads [m].
+    /// To the external load and the slip loads \[m\].
     Whole,
-    /// To the slip loads alone, linear in them and in the contact displacements [m].
+    /// To the slip loads alone, linear in them and in the contact displacements \[m\].
     OfSlip,
     /// Derivative of the whole in ω at fixed contact displacements and slip loads [m s].
     Slope,
@@ -116,7 +116,7 @@ pub trait Compliance: Send + Sync {
     fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error>;
 
     /// About the times that the receptance of one harmonic and the displacements of `observed` DOFs
-    /// take on a common processor [ns].
+    /// take on a common processor \[ns\].
     fn effort(&self, _observed: usize) -> [f64; 2] {
         [0.0; 2]
     }

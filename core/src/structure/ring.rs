@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 /// force on sector i is `A_1 x_{i+1} + A_1ᵀ x_{i−1}`.
 #[derive(Debug, Clone)]
 pub struct RingCoupling {
-    /// Mass block [kg].
+    /// Mass block \[kg\].
     pub mass: Mat<f64>,
     /// Damping block [kg/s].
     pub damping: Mat<f64>,

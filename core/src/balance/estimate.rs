@@ -49,7 +49,7 @@ impl ForcedBalance<'_> {
             return Ok(true);
         }
         // Few samples, as long as nobody insists on them, must not hide harmonics.
-        let climb = self.ladder.samples_climb();
+        let climb = self.control.samples_climb();
         let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
         let observed = self.observe.len();
         let extension = Extension::new(harmonics, point.omega, self.model, slipping, observed);
