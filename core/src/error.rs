@@ -131,4 +131,19 @@ impl Error {
     pub(crate) fn value(entry: impl Into<String>, value: f64, remedy: &str) -> Self {
         Self::Value { entry: entry.into(), value, remedy: remedy.to_owned() }
     }
+
+    /// Refuses to observe a DOF that a structure of `dofs` of them does not have.
+    pub(crate) fn check_dofs(observe: &[usize], dofs: usize) -> Result<(), Self> {
+        observe.iter().find(|&&dof| dof >= dofs).map_or(Ok(()), |&dof| {
+            Err(Self::value("observe", dof as f64, &format!("the structure has {dofs} DOFs")))
+        })
+    }
+
+    /// Refuses an order of harmonics that cannot be had.
+    pub(crate) fn check_order(entry: &str, order: usize, highest: usize) -> Result<(), Self> {
+        if (1..=highest).contains(&order) {
+            return Ok(());
+        }
+        Err(Self::value(entry, order as f64, &format!("must lie between 1 and {highest}")))
+    }
 }

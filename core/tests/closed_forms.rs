@@ -1,8 +1,11 @@
 //! The Jenkins element under a harmonic displacement has closed forms (Griffin 1980; Guillen
 //! 1999, eqs. 2.12-2.14 with the sign of 2.13 corrected).
 
+use faer::c64;
 use std::f64::consts::PI;
-use stickslip_core::contact::{HarmonicForce, Jenkins, Motion, PointSummary, Residual, SlipLoad};
+use stickslip_core::contact::{
+    Describing, HarmonicForce, Jenkins, Motion, PointSummary, Residual, SlipLoad,
+};
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
 const STIFFNESS: f64 = 3.0e5;
@@ -105,4 +108,34 @@ fn the_force_history_closes_its_loop_and_matches_its_series() {
             assert!((series[1] - mean(&f64::sin)).abs() < 1e-6 * SLIP_FORCE);
         }
     }
+}
+
+#[test]
+fn slopes_are_those_of_the_stiffness_and_both_are_continuous_at_slip() {
+    let (k, f) = (3.0, 1.2);
+    let delta = f / k;
+    for ratio in [1.001, 1.3, 2.0, 7.0, 900.0] {
+        let (amplitude, h) = (ratio * delta, 1e-6 * delta);
+        let at = |a| Describing::of_jenkins(k, f, a).stiffness;
+        let slope = (at(amplitude + h) - at(amplitude - h)) / (2.0 * h);
+        let exact = Describing::of_jenkins(k, f, amplitude).slope;
+        assert!((slope - exact).norm() < 1e-5 * k / delta, "{ratio}: {slope} {exact}");
+    }
+    let (before, after) =
+        (Describing::of_jenkins(k, f, delta), Describing::of_jenkins(k, f, delta * (1.0 + 1e-12)));
+    assert!((before.stiffness - after.stiffness).norm() < 1e-11 * k);
+    assert_eq!((before.slip_fraction, before.stiffness.re), (0.0, k));
+}
+
+#[test]
+fn elements_without_friction_or_spring_carry_nothing() {
+    let zero = c64::new(0.0, 0.0);
+    for amplitude in [0.0, 2.0] {
+        for (k, f) in [(3.0, 0.0), (0.0, 1.0)] {
+            let found = Describing::of_jenkins(k, f, amplitude);
+            assert_eq!((found.stiffness, found.slope), (zero, zero), "{k} {f} {amplitude}");
+        }
+    }
+    let found = Describing::of_jenkins(3.0, f64::INFINITY, 1.0);
+    assert_eq!(found.stiffness, c64::new(3.0, 0.0));
 }

@@ -7,8 +7,8 @@ mod common;
 use common::{beam_pair, snecma_beam, System};
 use faer::{c64, mat, Mat};
 use stickslip_core::structure::{
-    compliance, natural_frequencies, Compliance, DirectCompliance, HarmonicLoad, Ports, Receptance,
-    Structure,
+    compliance, natural_frequencies, Compliance, DirectCompliance, HarmonicLoad, Ports, Quantity,
+    Receptance, Request, Structure,
 };
 use stickslip_core::Error;
 
@@ -72,8 +72,11 @@ fn every_modal_base_reproduces_the_direct_solution() {
                 .collect();
             let mut x = vec![c64::new(0.0, 0.0); observe.len()];
             let mut y = x.clone();
-            modal.displacement(harmonic, omega, &contact, &slip, &observe, &mut x).unwrap();
-            direct.displacement(harmonic, omega, &contact, &slip, &observe, &mut y).unwrap();
+            let (contact, slip_load, observe) = (&contact[..], &slip[..], &observe[..]);
+            let quantity = Quantity::Whole;
+            let request = Request { harmonic, omega, quantity, contact, slip_load, observe };
+            modal.displacement(&request, &mut x).unwrap();
+            direct.displacement(&request, &mut y).unwrap();
             let (x, y): (Vec<_>, Vec<_>) = if harmonic == 0 {
                 (
                     x.iter().map(|z| c64::new(z.re, 0.0)).collect(),

@@ -14,7 +14,8 @@ use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
 use stickslip_core::model::{Contact, Model, SectorContact};
 use stickslip_core::structure::{
-    CyclicMatrix, CyclicStructure, HarmonicLoad, Receptance, RingCoupling, Structure,
+    CyclicMatrix, CyclicStructure, HarmonicLoad, Quantity, Receptance, Request, RingCoupling,
+    Structure,
 };
 
 const COUPLING: f64 = 1e5;
@@ -234,13 +235,16 @@ fn other_laws_and_slopes_of_rings_are_those_of_the_whole_disk() {
     let contact: Vec<c64> = (0..contacts)
         .map(|i| (0..contacts).map(|j| receptance.contact[j * contacts + i] * slip[j]).sum())
         .collect();
-    let values = |model: &Model| {
-        let compliance = model.compliance();
-        let mut out = [[zero; 3]; 3];
-        compliance.displacement(3, 190.0, &contact, &slip, &observe, &mut out[0]).unwrap();
-        compliance.slip_displacement(3, 190.0, &contact, &slip, &observe, &mut out[1]).unwrap();
-        compliance.displacement_slope(3, 190.0, &contact, &slip, &observe, &mut out[2]).unwrap();
+    let displacement = |model: &Model, quantity, omega: f64| {
+        let (contact, slip_load, observe) = (&contact[..], &slip[..], &observe[..]);
+        let request = Request { harmonic: 3, omega, quantity, contact, slip_load, observe };
+        let mut out = [zero; 3];
+        model.compliance().displacement(&request, &mut out).unwrap();
         out
+    };
+    let values = |model: &Model| {
+        [Quantity::Whole, Quantity::OfSlip, Quantity::Slope]
+            .map(|quantity| displacement(model, quantity, 190.0))
     };
     for (ours, theirs) in values(&ring).iter().zip(&values(&whole)).take(2) {
         for (a, b) in ours.iter().zip(theirs) {
@@ -249,12 +253,7 @@ fn other_laws_and_slopes_of_rings_are_those_of_the_whole_disk() {
     }
     // At fixed slip load the whole motion changes; differences say by how much.
     let h = 1e-3;
-    let at = |omega: f64| {
-        let mut out = [zero; 3];
-        let compliance = ring.compliance();
-        compliance.displacement(3, omega, &contact, &slip, &observe, &mut out).unwrap();
-        out
-    };
+    let at = |omega: f64| displacement(&ring, Quantity::Whole, omega);
     let (ahead, behind) = (at(190.0 + h), at(190.0 - h));
     for (i, slope) in values(&ring)[2].iter().enumerate() {
         let difference = (ahead[i] - behind[i]) / (2.0 * h);

@@ -17,6 +17,7 @@ use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::System as _;
+use crate::structure::Quantity;
 use crate::Error;
 use faer::c64;
 
@@ -87,7 +88,7 @@ impl Extension {
     }
 }
 
-/// About the time of a balance on a common processor [ns]; its ratios count.
+/// About the time of a balance on a common processor \[ns\]; its ratios count.
 struct Effort<'a> {
     model: &'a Model,
     half_wave: bool,
@@ -123,7 +124,7 @@ impl Effort<'_> {
 }
 
 /// Sum over all harmonics of the change that the extended balance would bring to each observed
-/// DOF [m]; infinite where a discarded harmonic meets a resonance that nothing damps. `solved` are
+/// DOF \[m\]; infinite where a discarded harmonic meets a resonance that nothing damps. `solved` are
 /// the equations that were solved, if they are at hand. Nothing if the analysis is to end.
 #[allow(clippy::too_many_arguments)]
 pub(super) fn errors(
@@ -185,7 +186,7 @@ fn changes(
 ) -> Result<Vec<f64>, Error> {
     let mut sums = vec![0.0; observe.len()];
     let orders = point.harmonics + 1;
-    extended.displacements(x, slip_load, observe, |order, observed, _, _| {
+    extended.displacements(Quantity::Whole, [x, slip_load], observe, |order, observed, _, _| {
         for (dof, sum) in sums.iter_mut().enumerate() {
             let before = if order < orders {
                 point.displacement[dof * orders + order]

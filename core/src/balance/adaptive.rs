@@ -144,7 +144,7 @@ fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<
     let table = balance.table(unknowns.harmonics.highest());
     let residual = balance.settings.residual;
     let model = balance.evaluated(last.samples).ok()?;
-    let mut equations = Condensed::new(&model, &table, residual, true);
+    let mut equations = Condensed::new(model, &table, residual, true);
     equations.set_omega(last.omega).ok()?;
     let (mut ignored, mut rate) = (vec![0.0; equations.size()], vec![0.0; equations.size()]);
     equations.residual(&unknowns.values, &mut ignored);

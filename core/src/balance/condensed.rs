@@ -1,10 +1,12 @@
 //! The condensed equations at one frequency: `R(U) = U − μ U^stuck − G Q(U)`.
 
+use super::evaluation::Evaluated;
 use super::linear::{Factor, Linear};
+use super::solution::{Point, PointStatus};
 use super::unknowns::gather;
-use crate::contact::{ContactLaw, Motion, Residual, SlipLoad};
+use crate::contact::{ContactLaw, Motion, PointSummary, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
-use crate::model::Model;
+use crate::structure::{Quantity, Request};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -20,7 +22,7 @@ pub enum Path {
 
 /// The equations at one frequency and set of harmonics.
 pub struct Condensed<'a> {
-    pub(super) model: &'a Model,
+    pub(super) model: Evaluated<'a>,
     pub(super) table: &'a SampleTable,
     pub(super) residual: Residual,
     pub(super) linear: Linear,
@@ -44,20 +46,22 @@ pub struct Condensed<'a> {
 
 impl<'a> Condensed<'a> {
     /// Equations of a model in the harmonics of a table; call [`Condensed::set_omega`] next.
-    pub fn new(model: &'a Model, table: &'a SampleTable, residual: Residual, slopes: bool) -> Self {
-        let linear = match model.compliance().ring() {
-            Some(_) => Linear::Ring { orders: Vec::new(), slopes },
-            None => Linear::dense(table, slopes),
-        };
+    pub fn new(
+        model: impl Into<Evaluated<'a>>,
+        table: &'a SampleTable,
+        residual: Residual,
+        slopes: bool,
+    ) -> Self {
+        let model = model.into();
         Self {
+            linear: Linear::new(model.compliance(), table, slopes),
+            loads: vec![SlipLoad::default(); model.laws().len()],
+            values: vec![SlipLoad::default(); model.laws().len()],
             model,
             table,
             residual,
-            linear,
             omega: f64::NAN,
             stuck: Vec::new(),
-            loads: vec![SlipLoad::default(); model.laws().len()],
-            values: vec![SlipLoad::default(); model.laws().len()],
             moved_on: false,
             path: Path::Load,
             load_scale: 1.0,
@@ -91,7 +95,7 @@ impl<'a> Condensed<'a> {
         self.stuck.resize(contacts * slots, 0.0);
         self.factor = None;
         self.omega = omega;
-        let (linear, stuck, model) = (&mut self.linear, &mut self.stuck, self.model);
+        let (linear, stuck, model) = (&mut self.linear, &mut self.stuck, &self.model);
         Profile::time(&mut self.profile.compliance, || {
             let known = other.map(|other| (&other.linear, other.harmonics()));
             linear.evaluate(model.compliance(), harmonics, omega, known, stuck)
@@ -100,77 +104,88 @@ impl<'a> Condensed<'a> {
 
     /// Takes the dense receptance also of a ring, for methods that need the whole Jacobian.
     pub(super) fn densify(&mut self) {
-        if let Linear::Ring { slopes, .. } = self.linear {
-            self.linear = Linear::dense(self.table, slopes);
-        }
+        self.linear.densify(self.table);
     }
 
-    /// Displacements of the DOFs `observe` at every kept order, handed to `store(order, values)`,
-    /// with the contact displacements `x` and slip loads that belong to them.
+    /// Displacements of the DOFs `observe` at every kept order, handed to
+    /// `store(order, values, u, q)`, with the contact displacements and slip loads that belong to them:
+    /// the amplitudes of the series `x` and `slip_load`. Slopes are those of equations with slopes.
     ///
     /// # Errors
     /// As [`Condensed::set_omega`].
     pub(super) fn displacements(
         &self,
-        x: &[f64],
-        slip_load: &[f64],
+        quantity: Quantity,
+        [x, slip_load]: [&[f64]; 2],
         observe: &[usize],
         mut store: impl FnMut(usize, &[c64], &[c64], &[c64]),
     ) -> Result<(), Error> {
-        let harmonics = self.table.harmonics();
-        let compliance = self.model.compliance();
+        let (harmonics, omega) = (self.table.harmonics(), self.omega);
         let (mut u, mut q) = (Vec::new(), Vec::new());
         let mut observed = vec![c64::new(0.0, 0.0); observe.len()];
-        for (index, order) in harmonics.orders().enumerate() {
-            gather(harmonics, order, x, &mut u);
-            gather(harmonics, order, slip_load, &mut q);
-            let at = (index, order);
-            self.linear.displacement(compliance, at, self.omega, &u, &q, observe, &mut observed)?;
-            store(order, &observed, &u, &q);
+        for (index, harmonic) in harmonics.orders().enumerate() {
+            gather(harmonics, harmonic, x, &mut u);
+            gather(harmonics, harmonic, slip_load, &mut q);
+            let (contact, slip_load) = (&u, &q);
+            let request = Request { harmonic, omega, quantity, contact, slip_load, observe };
+            self.linear.displacement(self.model.compliance(), index, &request, &mut observed)?;
+            store(harmonic, &observed, &u, &q);
         }
         Ok(())
     }
 
-    /// Displacements of the DOFs `observe` and their derivatives in ω at every kept order, handed to
-    /// `store(order, values, rates)`, from contact displacements and slip loads and their rates;
-    /// for equations with slopes.
+    /// Displacements, contact forces and slip shares of a solution, whose slip loads are those
+    /// evaluated last.
     ///
     /// # Errors
     /// As [`Condensed::set_omega`].
-    pub(super) fn jets(
+    pub(super) fn recover(
         &self,
-        solution: [&[f64]; 2],
-        rates: [&[f64]; 2],
+        x: &[f64],
         observe: &[usize],
-        mut store: impl FnMut(usize, &[c64], &[c64]),
-    ) -> Result<(), Error> {
-        let harmonics = self.table.harmonics();
-        let compliance = self.model.compliance();
-        let zero = c64::new(0.0, 0.0);
-        let (mut values, mut slopes) = (vec![zero; observe.len()], vec![zero; observe.len()]);
-        let gathered = |order: usize, series: &[f64]| {
-            let mut amplitudes = Vec::new();
-            gather(harmonics, order, series, &mut amplitudes);
-            amplitudes
-        };
-        for (index, order) in harmonics.orders().enumerate() {
-            let [u, q] = solution.map(|series| gathered(order, series));
-            let [du, dq] = rates.map(|series| gathered(order, series));
-            let at = (index, order);
-            self.linear.displacement(compliance, at, self.omega, &u, &q, observe, &mut values)?;
-            let (solution, rates) = ([&u[..], &q[..]], [&du[..], &dq[..]]);
-            self.linear.displacement_rate(
-                compliance,
-                at,
-                self.omega,
-                solution,
-                rates,
-                observe,
-                &mut slopes,
-            )?;
-            store(order, &values, &slopes);
+        status: PointStatus,
+    ) -> Result<Point, Error> {
+        let (harmonics, model) = (self.harmonics(), &self.model);
+        let contacts = model.compliance().contacts();
+        let mut point = Point::empty(self.omega, status, observe.len(), contacts);
+        point.keep(harmonics.highest());
+        let orders = harmonics.highest() + 1;
+        let stiffness = model.contact_stiffness();
+        let solution = [x, &self.slip_load()];
+        self.displacements(Quantity::Whole, solution, observe, |order, observed, u, q| {
+            for (i, value) in observed.iter().enumerate() {
+                point.displacement[i * orders + order] = *value;
+            }
+            // A contact's stiffness couples its own points alone.
+            let points = model.points().iter().flat_map(|p| p.clone().map(move |i| (i, p)));
+            for (i, own) in points {
+                let stuck: c64 = own.clone().map(|j| u[j] * stiffness[(i, j)]).sum();
+                point.contact_displacement[i * orders + order] = u[i];
+                point.contact_force[i * orders + order] = stuck - q[i];
+            }
+        })?;
+        point.contacts.fill(PointSummary::default());
+        for (index, law) in model.laws().iter().enumerate() {
+            let range = model.points()[index].clone();
+            law.summary(self.motion(index, x), &mut point.contacts[range]);
         }
-        Ok(())
+        Ok(point)
+    }
+
+    /// Adds `share` times the derivative of the contact forces in a parameter of a law at fixed
+    /// displacements `x`.
+    pub(super) fn add_force_rate(
+        &self,
+        [contact, parameter]: [usize; 2],
+        x: &[f64],
+        share: f64,
+        out: &mut [f64],
+    ) {
+        let (slots, points) = (self.table.harmonics().slots(), &self.model.points()[contact]);
+        let own = &mut out[points.start * slots..points.end * slots];
+        let mut slope = vec![0.0; own.len()];
+        self.model.laws()[contact].parameter_slope(self.motion(contact, x), parameter, &mut slope);
+        own.iter_mut().zip(slope).for_each(|(rate, slope)| *rate += share * slope);
     }
 
     /// Has the iterations ask whether to end the analysis.
@@ -229,6 +244,13 @@ impl<'a> Condensed<'a> {
         rate
     }
 
+    /// The same with the ratio r of negative damping.
+    pub fn ratio_rate(&self) -> Vec<f64> {
+        let mut rate = vec![0.0; self.stuck.len()];
+        self.linear.add_ratio_rate(self.table.harmonics(), &self.slip_load(), &mut rate);
+        rate
+    }
+
     /// `out += ∂Q x` at the unknowns whose tangents were evaluated last.
     pub fn add_tangent_product(&self, x: &[f64], out: &mut [f64]) {
         let slots = self.table.harmonics().slots();
@@ -270,20 +292,4 @@ impl<'a> Condensed<'a> {
         }
         load.active = true;
     }
-}
-
-/// Amplitudes of all points as a column.
-pub(super) fn gathered_load(amplitudes: &[c64]) -> faer::Mat<c64> {
-    faer::Mat::from_fn(amplitudes.len(), 1, |i, _| amplitudes[i])
-}
-
-/// Writes a column of amplitudes at one order into a real layout.
-pub(super) fn scattered(
-    harmonics: &Harmonics,
-    order: usize,
-    column: &faer::Mat<c64>,
-    out: &mut [f64],
-) {
-    let amplitudes: Vec<c64> = (0..column.nrows()).map(|i| column[(i, 0)]).collect();
-    super::unknowns::scatter(harmonics, order, &amplitudes, out);
 }

@@ -1,11 +1,10 @@
 //! What is read off a limit cycle of the harmonic balance: displacements, forces, error.
 
-use super::limit_cycle::CycleBalance;
+use super::limit_cycle::{CycleBalance, Evaluation};
 use super::solution::{Point, PointStatus};
-use super::unknowns::gather;
-use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::solve::Curve as _;
+use crate::structure::Quantity;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
 
@@ -13,82 +12,25 @@ impl CycleBalance<'_> {
     /// Motion, forces and friction work at a point of the curve, with t = 0 at the maximum of the
     /// DOF `phase`.
     pub fn point(&mut self, z: &[f64], phase: usize) -> Point {
-        let (dofs, contacts) = {
-            let compliance = self.family.destabilised();
-            (compliance.dofs(), compliance.contacts())
+        let compliance = self.family.compliance();
+        let observe: Vec<usize> = (0..compliance.dofs()).collect();
+        let (u, omega) = (&z[..z.len() - 2], z[z.len() - 2]);
+        let recovered = self
+            .evaluate(z)
+            .and_then(|at| at.equations.recover(u, &observe, PointStatus::Converged).ok());
+        let Some(mut point) = recovered else {
+            let contacts = compliance.contacts();
+            return Point::empty(omega, PointStatus::Stalled, observe.len(), contacts);
         };
-        let [.., omega, _] = z else {
-            return Point::empty(f64::NAN, PointStatus::Stalled, dofs, contacts);
-        };
-        if !self.evaluate(z) {
-            return Point::empty(*omega, PointStatus::Stalled, dofs, contacts);
-        }
-        let harmonics = self.table.harmonics();
-        let orders = harmonics.highest() + 1;
-        let mut point = Point::empty(*omega, PointStatus::Converged, dofs, contacts);
-        point.harmonics = harmonics.highest();
-        point.displacement = vec![c64::new(0.0, 0.0); dofs * orders];
-        point.contact_displacement = vec![c64::new(0.0, 0.0); contacts * orders];
-        point.contact_force = vec![c64::new(0.0, 0.0); contacts * orders];
-        point.error_estimate = vec![f64::NAN; dofs];
-        let u = &z[..z.len() - 2];
-        let load = self.slip_load();
-        for (order, x, u, f) in self.amplitudes(*omega, u, &load) {
-            for (series, values) in [
-                (&mut point.displacement, x),
-                (&mut point.contact_displacement, u),
-                (&mut point.contact_force, f),
-            ] {
-                for (row, value) in values.into_iter().enumerate() {
-                    series[row * orders + order] = value;
-                }
-            }
-        }
-        if let Some(at) = &self.at {
-            for (index, law) in at.laws.iter().enumerate() {
-                let range = self.family.model().points()[index].clone();
-                let mut summary = vec![PointSummary::default(); range.len()];
-                law.summary(self.motion(index, u), &mut summary);
-                point.contacts[range].copy_from_slice(&summary);
-            }
-        }
         point.unknowns = Some(self.series(z));
         turn(&mut point, self.table, phase);
         point
     }
 
-    /// Displacements of the DOFs and the contacts and contact forces, harmonic by harmonic.
-    #[allow(clippy::type_complexity)]
-    fn amplitudes(
-        &self,
-        omega: f64,
-        u: &[f64],
-        load: &[f64],
-    ) -> Vec<(usize, Vec<c64>, Vec<c64>, Vec<c64>)> {
-        let Some(at) = &self.at else { return Vec::new() };
-        let harmonics = self.table.harmonics();
-        let compliance = self.family.destabilised();
-        let (mut own, mut q) = (Vec::new(), Vec::new());
-        let mut out = Vec::new();
-        for order in harmonics.orders() {
-            gather(harmonics, order, u, &mut own);
-            gather(harmonics, order, load, &mut q);
-            let stiffness = at.stiffness.as_ref();
-            let x = compliance.displacement(order, omega, at.ratio, stiffness, &own, &q);
-            let force = |i: usize| -> c64 {
-                let stuck: c64 = (0..own.len()).map(|j| own[j] * stiffness[(i, j)]).sum();
-                stuck - q[i]
-            };
-            let f = (0..own.len()).map(force).collect();
-            out.push((order, x, own.clone(), f));
-        }
-        out
-    }
-
-    /// What harmonics above those kept would change at every DOF [m]: one Newton step of a balance
+    /// What harmonics above those kept would change at every DOF \[m\]: one Newton step of a balance
     /// extended by them, across the curve.
     pub fn errors(&self, z: &[f64], along: &[f64], extended: &SampleTable) -> Vec<f64> {
-        let dofs = self.family.destabilised().dofs();
+        let dofs = self.family.compliance().dofs();
         let infinite = vec![f64::INFINITY; dofs];
         let (from, to) = (self.table.harmonics(), extended.harmonics());
         let recast = |z: &[f64]| -> Vec<f64> {
@@ -133,16 +75,19 @@ impl CycleBalance<'_> {
     }
 
     fn displacements(&mut self, z: &[f64]) -> Vec<(usize, Vec<c64>)> {
-        let [u @ .., omega, _] = z else { return Vec::new() };
-        if !self.evaluate(z) {
-            return Vec::new();
+        let dofs: Vec<usize> = (0..self.family.compliance().dofs()).collect();
+        let Some(Evaluation { equations, .. }) = self.evaluate(z) else { return Vec::new() };
+        let motion = [&z[..z.len() - 2], &equations.slip_load()];
+        let mut out = Vec::new();
+        let store = |order: usize, x: &[c64], _: &[c64], _: &[c64]| out.push((order, x.to_vec()));
+        match equations.displacements(Quantity::Whole, motion, &dofs, store) {
+            Ok(()) => out,
+            Err(_) => Vec::new(),
         }
-        let load = self.slip_load();
-        self.amplitudes(*omega, u, &load).into_iter().map(|(order, x, ..)| (order, x)).collect()
     }
 }
 
-/// ParameterMode harmonics of a series laid out for one set, in another.
+/// Common harmonics of a series laid out for one set, in another.
 pub(super) fn recast(from: &Harmonics, to: &Harmonics, values: &[f64]) -> Vec<f64> {
     super::Unknowns::new(from.clone(), values.to_vec()).recast(to)
 }

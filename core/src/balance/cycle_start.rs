@@ -35,7 +35,7 @@ pub struct Onset {
     pub point: usize,
     /// Its law, if that has a describing function.
     law: Option<Arc<dyn ContactLaw>>,
-    /// Force at which it begins to slip [N].
+    /// Force at which it begins to slip \[N\].
     pub limit: f64,
     /// DOF that moves most, of those that no contact restrains, if there are any.
     pub dof: usize,
@@ -50,13 +50,9 @@ impl Onset {
     pub fn new(family: &FlutterModel<'_>, mode: usize, value: f64) -> Result<Self, Error> {
         let laws = family.laws_at(value)?;
         let model = family.model();
-        let mut stiffness = model.contact_stiffness().clone();
-        let mut limits = Vec::new();
-        for (law, range) in laws.iter().zip(model.points()) {
-            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
-            limits.extend(law.onsets());
-        }
-        let modes = family.destabilised().stuck_modes(stiffness.as_ref())?;
+        let stiffness = model.stiffness_of(&laws);
+        let limits: Vec<f64> = laws.iter().flat_map(|law| law.onsets()).collect();
+        let modes = family.compliance().stuck_modes(stiffness.as_ref())?;
         let largest = modes.iter().flat_map(|m| &m.contact).map(|u| u.norm()).fold(0.0, f64::max);
         let Some(own) = modes.get(mode) else {
             let remedy = format!("the structure has modes 0 to {}", modes.len().saturating_sub(1));

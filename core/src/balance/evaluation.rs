@@ -11,8 +11,14 @@ use std::sync::Arc;
 pub(crate) enum Evaluated<'a> {
     /// As it was given.
     Given(&'a Model),
-    /// With marched laws.
-    Marched(Arc<Model>),
+    /// Made of it: with marched laws, or at another value of what is varied.
+    Made(Arc<Model>),
+}
+
+impl<'a> From<&'a Model> for Evaluated<'a> {
+    fn from(model: &'a Model) -> Self {
+        Self::Given(model)
+    }
 }
 
 impl Deref for Evaluated<'_> {
@@ -21,7 +27,7 @@ impl Deref for Evaluated<'_> {
     fn deref(&self) -> &Model {
         match self {
             Self::Given(model) => model,
-            Self::Marched(model) => model,
+            Self::Made(model) => model,
         }
     }
 }
@@ -45,10 +51,10 @@ impl<'a> Evaluations<'a> {
     pub(super) fn with(&mut self, samples: Option<usize>) -> Result<Evaluated<'a>, Error> {
         let Some(samples) = samples else { return Ok(Evaluated::Given(self.model)) };
         if let Some(known) = self.marched.get(&samples) {
-            return Ok(Evaluated::Marched(Arc::clone(known)));
+            return Ok(Evaluated::Made(Arc::clone(known)));
         }
         let marched = Arc::new(self.model.marched(samples)?);
         self.marched.insert(samples, Arc::clone(&marched));
-        Ok(Evaluated::Marched(marched))
+        Ok(Evaluated::Made(marched))
     }
 }

@@ -2,9 +2,9 @@
 
 use super::condensed::{Condensed, Path};
 use super::evaluation::{Evaluated, Evaluations};
-use super::resolution_control::{Decision, Level, Resolution, ResolutionControl};
-use super::scale::{Scale, OF_HARMONICS};
-use super::settings::{Method, Settings};
+use super::resolution_control::{Level, ResolutionControl};
+use super::scale::Scale;
+use super::settings::{Method, Resolution, Settings};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
 use super::{ExactOrbits, Kept, Progress};
@@ -29,7 +29,7 @@ pub struct ForcedBalance<'a> {
     forced: Vec<usize>,
     tables: BTreeMap<usize, Arc<SampleTable>>,
     evaluations: Evaluations<'a>,
-    pub(super) ladder: ResolutionControl,
+    pub(super) control: ResolutionControl,
     pub(super) scale: Scale,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
@@ -38,30 +38,14 @@ pub struct ForcedBalance<'a> {
     pub(super) profile: Profile,
 }
 
-/// What passes from one balance to the next: sample tables, the rung that automatic harmonics and
+/// What passes from one balance to the next: sample tables, the level that automatic harmonics and
 /// samples start from, and the account of the work.
 #[derive(Default)]
 pub(crate) struct WarmStart {
     tables: BTreeMap<usize, Arc<SampleTable>>,
-    rung: Level,
+    level: Level,
     half_wave: bool,
     pub(crate) profile: Profile,
-}
-
-/// A point on its way to enough harmonics and samples.
-#[derive(Default)]
-struct Climb {
-    iterations: usize,
-    /// The last rung that was solved.
-    below: Option<Point>,
-    stalled: bool,
-    from_below: bool,
-}
-
-/// Where a climb goes on.
-enum Way {
-    On(Resolution),
-    End(Box<Point>),
 }
 
 impl<'a> ForcedBalance<'a> {
@@ -74,11 +58,7 @@ impl<'a> ForcedBalance<'a> {
         let forced = model.compliance().forced_harmonics();
         settings.check(&forced)?;
         settings.check_resolution(model.resolves())?;
-        let known = model.compliance().dofs();
-        if let Some(&dof) = observe.iter().find(|&&dof| dof >= known) {
-            let remedy = format!("the structure has {known} DOFs");
-            return Err(Error::value("observe", dof as f64, &remedy));
-        }
+        Error::check_dofs(observe, model.compliance().dofs())?;
         let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
         if !half_wave {
             let mut receptance = crate::structure::Receptance::default();
@@ -89,7 +69,7 @@ impl<'a> ForcedBalance<'a> {
             settings,
             observe,
             half_wave,
-            ladder: ResolutionControl::new(settings, &forced),
+            control: ResolutionControl::new(settings, &forced),
             forced,
             tables: BTreeMap::new(),
             evaluations: Evaluations::new(model),
@@ -147,9 +127,9 @@ impl<'a> ForcedBalance<'a> {
     /// Takes over what another balance of the same contacts has learnt.
     #[must_use]
     pub(crate) fn remembering(mut self, memory: WarmStart) -> Self {
-        let WarmStart { tables, rung, half_wave, profile } = memory;
+        let WarmStart { tables, level, half_wave, profile } = memory;
         if half_wave == self.half_wave {
-            (self.tables, self.ladder.rung) = (tables, rung);
+            (self.tables, self.control.level) = (tables, level);
         }
         self.profile = profile;
         self
@@ -157,8 +137,8 @@ impl<'a> ForcedBalance<'a> {
 
     /// What a balance of the same contacts can use again.
     pub(crate) fn into_memory(self) -> WarmStart {
-        let Self { tables, ladder, half_wave, profile, .. } = self;
-        WarmStart { tables, rung: ladder.rung, half_wave, profile }
+        let Self { tables, control, half_wave, profile, .. } = self;
+        WarmStart { tables, level: control.level, half_wave, profile }
     }
 
     /// Whether only odd harmonics are solved for.
@@ -184,95 +164,7 @@ impl<'a> ForcedBalance<'a> {
         self.evaluations.with(samples)
     }
 
-    /// Solves at one frequency [rad/s] from a start, or from the stuck response: with more and more
-    /// of what is chosen automatically, until what is left out matters less than the tolerance.
-    ///
-    /// # Errors
-    /// The loads themselves excite an undamped resonance.
-    pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
-        let mut resolution = self.ladder.first();
-        if self.ladder.is_fixed() {
-            return self.solve_with(resolution, omega, start);
-        }
-        let mut start = start.cloned();
-        let mut climb = Climb::default();
-        loop {
-            let mut point = self.solve_with(resolution, omega, start.as_ref())?;
-            climb.iterations += point.iterations;
-            point.iterations = climb.iterations;
-            resolution = match point.status {
-                PointStatus::Converged => match self.judge(&point) {
-                    Decision::Enough => return Ok(point),
-                    Decision::Limit(limit) => {
-                        let exact = self.orbit_beyond(&point, limit);
-                        point.status = limit;
-                        return Ok(self.ended(exact.unwrap_or(point), resolution, &climb));
-                    }
-                    Decision::More(more) => {
-                        if let Some(last) = self.instead_of(more, &point) {
-                            return Ok(self.ended(last, resolution, &climb));
-                        }
-                        start.clone_from(&point.unknowns);
-                        climb.below = Some(point);
-                        more
-                    }
-                },
-                PointStatus::Stalled => match self.past(&point, resolution, &mut climb) {
-                    Way::On(next) => next,
-                    Way::End(last) => return Ok(self.ended(*last, resolution, &climb)),
-                },
-                _ => return Ok(point),
-            };
-        }
-    }
-
-    /// The way on from a point that stalled: the exact orbit, once a rung more, which may be what it
-    /// lacks, or the rungs below. What is below stands if nothing helps.
-    fn past(&mut self, point: &Point, at: Resolution, climb: &mut Climb) -> Way {
-        let solved = climb.below.as_ref().unwrap_or(point);
-        if let Some(exact) = self.orbit_below(solved, f64::INFINITY) {
-            return Way::End(Box::new(exact));
-        }
-        let easy = self.is_worth_a_homotopy(at.harmonics);
-        if climb.below.is_none() && !easy && !climb.from_below {
-            climb.from_below = true;
-            return Way::On(self.ladder.start_over());
-        }
-        match (self.ladder.above(at).filter(|_| easy && !climb.stalled), &climb.below) {
-            (Some(above), _) => {
-                climb.stalled = true;
-                Way::On(above)
-            }
-            (None, Some(below)) => {
-                let status = PointStatus::EffortLimit;
-                Way::End(Box::new(Point { status, ..below.clone() }))
-            }
-            (None, None) => Way::End(Box::new(point.clone())),
-        }
-    }
-
-    /// A point that ends the climb; the next one begins with the harmonics at which it ended.
-    fn ended(&mut self, mut point: Point, at: Resolution, climb: &Climb) -> Point {
-        let dear = point.status == PointStatus::EffortLimit;
-        self.ladder.stay(if dear { point.resolution() } else { at });
-        point.iterations = climb.iterations;
-        point
-    }
-
-    /// What the errors of a solution ask for.
-    fn judge(&mut self, point: &Point) -> Decision {
-        self.scale.include(point);
-        let scale = &self.scale;
-        let of_samples = scale.relative(point, OF_HARMONICS, point.sampling_error.iter().copied());
-        // Nothing can be done about samples that were given.
-        let climb = self.ladder.samples_climb();
-        let errors = point.error_estimate.iter().zip(&point.sampling_error);
-        let counted = |(all, sampling): (&f64, &f64)| if climb { *all } else { all - sampling };
-        let error = scale.relative(point, OF_HARMONICS, errors.map(counted));
-        self.ladder.judge(point.resolution(), error, of_samples)
-    }
-
-    fn solve_with(
+    pub(super) fn solve_with(
         &mut self,
         resolution: Resolution,
         omega: f64,
@@ -281,7 +173,7 @@ impl<'a> ForcedBalance<'a> {
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
         let interrupted = self.interruption();
-        let mut equations = Condensed::new(&model, &table, self.settings.residual, false);
+        let mut equations = Condensed::new(model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
         if self.settings.method != Method::Newton {
             equations.densify();
@@ -332,7 +224,7 @@ impl<'a> ForcedBalance<'a> {
         }
         let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
         // Where harmonics are chosen an orbit is the answer.
-        let answered = orbit && self.ladder.only_harmonics_climb();
+        let answered = orbit && self.control.only_harmonics_climb();
         if has_failed(&report) && !answered && patient {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
@@ -346,7 +238,7 @@ impl<'a> ForcedBalance<'a> {
             Outcome::Singular => PointStatus::Singular,
         };
         let start = std::time::Instant::now();
-        let mut point = self.recover(equations, omega, &x, status)?;
+        let mut point = equations.recover(&x, self.observe, status)?;
         point.samples = samples;
         self.profile.recovery += start.elapsed();
         // Without an observed DOF there is nothing whose error could be estimated.

@@ -3,9 +3,8 @@
 
 use super::forced::ForcedBalance;
 use super::price::{Price, TRIFLE};
-use super::resolution_control::Resolution;
 use super::scale::OF_HARMONICS;
-use super::settings::HIGHEST_ORDER;
+use super::settings::{Resolution, HIGHEST_ORDER};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
 use crate::contact::Motion;
@@ -41,7 +40,7 @@ impl ForcedBalance<'_> {
     /// or an exact orbit may be had for less.
     pub(super) fn is_worth_a_homotopy(&self, order: usize) -> bool {
         let price = self.price(self.model.compliance().contacts());
-        !self.ladder.only_harmonics_climb() || price.allows_homotopy(order)
+        !self.control.only_harmonics_climb() || price.allows_homotopy(order)
     }
 
     /// The exact orbit with harmonics up to `order` as a start, if it is affordable where harmonics
@@ -49,7 +48,7 @@ impl ForcedBalance<'_> {
     pub(super) fn orbit_to_start_from(&self, omega: f64, order: usize) -> Option<Point> {
         let contacts = self.model.compliance().contacts();
         let orbits = self.rescue?;
-        if self.ladder.only_harmonics_climb() {
+        if self.control.only_harmonics_climb() {
             let price = orbits.price(omega, USUAL_EVENTS * contacts, order)?;
             if price > self.price(contacts).affordable() {
                 return None;
@@ -59,13 +58,13 @@ impl ForcedBalance<'_> {
     }
 
     fn price(&self, slipping: usize) -> Price<'_> {
-        let lowest = self.ladder.lowest_order();
+        let lowest = self.control.lowest_order();
         Price { model: self.model, half_wave: self.half_wave(), slipping, lowest }
     }
 
     /// The exact orbit, if it costs less than `most` operations with the events of a solution.
     pub(super) fn orbit_below(&mut self, solved: &Point, most: f64) -> Option<Point> {
-        let orbits = self.rescue.filter(|_| self.ladder.only_harmonics_climb())?;
+        let orbits = self.rescue.filter(|_| self.control.only_harmonics_climb())?;
         let events = self.events(solved);
         let price = orbits.price(solved.omega, events, self.orbit_order())?;
         if price > most {
@@ -98,7 +97,7 @@ impl ForcedBalance<'_> {
     fn point_of_orbit(&mut self, omega: f64, least: usize) -> Option<Point> {
         let orbit = self.rescue?.orbit(omega, self.orbit_order())?;
         let mut truncated = None;
-        for order in self.ladder.orders_from(least) {
+        for order in self.control.orders_from(least) {
             let mut point = truncate(&orbit, order, self.half_wave());
             self.scale.include(&point);
             let errors = point.error_estimate.iter().copied();

@@ -64,6 +64,12 @@ impl Condensed<'_> {
         matrix
     }
 
+    /// Assembles `I − G ∂Q` of all points.
+    pub(super) fn assemble_all(&mut self) -> Mat<f64> {
+        self.active = (0..self.model.compliance().contacts()).collect();
+        self.assemble()
+    }
+
     /// Assembles and factors `I − G_AA ∂Q_A` of the active points.
     fn factorise(&mut self) {
         self.active.clear();
@@ -164,14 +170,13 @@ impl System for Condensed<'_> {
     fn jacobian(&mut self, x: &[f64], residual: &mut [f64], out: &mut Mat<f64>) {
         self.evaluate(x, true, residual);
         let start = std::time::Instant::now();
-        self.active = (0..self.model.compliance().contacts()).collect();
-        *out = self.assemble();
+        *out = self.assemble_all();
         self.profile.linear_solve += start.elapsed();
     }
 
     fn relative_size(&self, step: &[f64], x: &[f64]) -> f64 {
         let slots = self.table.harmonics().slots();
-        contactwise(self.model, slots, &self.slip_load(), step, x)
+        contactwise(&self.model, slots, &self.slip_load(), step, x)
     }
 
     fn interrupted(&self) -> bool {

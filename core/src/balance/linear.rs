@@ -4,7 +4,7 @@
 use super::ring_newton::RingNewton;
 use super::unknowns::{gather, scatter};
 use crate::fourier::{Harmonics, SampleTable};
-use crate::structure::{Compliance, Receptance, RingOrder};
+use crate::structure::{Compliance, Receptance, Request, RingOrder};
 use crate::Error;
 use faer::c64;
 use faer::linalg::solvers::PartialPivLu;
@@ -32,9 +32,23 @@ pub(super) enum Factor {
 }
 
 impl Linear {
-    pub(super) fn dense(table: &SampleTable, slopes: bool) -> Self {
+    pub(super) fn new(compliance: &dyn Compliance, table: &SampleTable, slopes: bool) -> Self {
+        match compliance.ring() {
+            Some(_) => Self::Ring { orders: Vec::new(), slopes },
+            None => Self::dense(table, slopes),
+        }
+    }
+
+    fn dense(table: &SampleTable, slopes: bool) -> Self {
         let blank = Receptance { slope: slopes.then(Default::default), ..Receptance::default() };
         Self::Dense(vec![blank; table.harmonics().orders().count()])
+    }
+
+    /// Takes dense receptances also of a ring.
+    pub(super) fn densify(&mut self, table: &SampleTable) {
+        if let Self::Ring { slopes, .. } = self {
+            *self = Self::dense(table, *slopes);
+        }
     }
 
     /// Evaluates the compliances at a frequency, and the response of the stuck structure; `known`
@@ -83,47 +97,20 @@ impl Linear {
         Ok(())
     }
 
-    /// Displacements of the DOFs `observe` at the harmonic of position `index`, `order`.
-    #[allow(clippy::too_many_arguments)]
+    /// Displacements at the harmonic of position `index`.
     pub(super) fn displacement(
         &self,
         compliance: &dyn Compliance,
-        (index, order): (usize, usize),
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
+        index: usize,
+        request: &Request<'_>,
         out: &mut [c64],
     ) -> Result<(), Error> {
         match (self, compliance.ring()) {
             (Self::Ring { orders, .. }, Some(ring)) => {
-                ring.displacement_of(&orders[index], order, omega, slip_load, observe, out)
+                ring.displacement_of(&orders[index], request, out)
             }
-            _ => compliance.displacement(order, omega, contact, slip_load, observe, out),
+            _ => compliance.displacement(request, out),
         }
-    }
-
-    /// Derivatives in ω of [`Linear::displacement`], with slip loads and contact displacements
-    /// (`solution`: u, q) that change at `rates`; for equations with slopes.
-    #[allow(clippy::too_many_arguments)]
-    pub(super) fn displacement_rate(
-        &self,
-        compliance: &dyn Compliance,
-        (index, order): (usize, usize),
-        omega: f64,
-        [u, q]: [&[c64]; 2],
-        [du, dq]: [&[c64]; 2],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        if let (Self::Ring { orders, .. }, Some(ring)) = (self, compliance.ring()) {
-            return ring.displacement_rate_of(&orders[index], order, omega, [q, dq], observe, out);
-        }
-        let mut moved = vec![c64::new(0.0, 0.0); observe.len()];
-        compliance.displacement_slope(order, omega, u, q, observe, out)?;
-        compliance.slip_displacement(order, omega, du, dq, observe, &mut moved)?;
-        out.iter_mut().zip(moved).for_each(|(out, moved)| *out += moved);
-        Ok(())
     }
 
     /// `out += G q`.
@@ -164,6 +151,13 @@ impl Linear {
                     add(harmonics, order, &rate.contact, out);
                 }
             }
+        }
+    }
+
+    /// `out += dG/dr q` of the ratio r of negative damping.
+    pub(super) fn add_ratio_rate(&self, harmonics: &Harmonics, slip_load: &[f64], out: &mut [f64]) {
+        if let Self::Dense(receptances) = self {
+            add_product(receptances, harmonics, slip_load, out, |r| &r.by_ratio);
         }
     }
 }

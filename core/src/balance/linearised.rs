@@ -13,14 +13,14 @@
 //! that only their heights count, not where they move.
 
 use super::condensed::Condensed;
-use super::unknowns::{gather, scatter, Unknowns};
+use super::unknowns::{scatter, Unknowns};
 use crate::contact::Residual;
 use crate::fourier::{amplitude, amplitude_gradient, Measure, SampleTable};
 use crate::model::Model;
 use crate::solve::System as _;
+use crate::structure::Quantity;
 use crate::timing::Profile;
 use crate::Error;
-use faer::c64;
 
 /// What a solution is differentiated by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,7 +41,6 @@ pub enum Cause {
 /// The balance at a solution, with its Jacobian.
 pub struct Linearised<'a> {
     equations: Condensed<'a>,
-    omega: f64,
     x: Vec<f64>,
     slip_load: Vec<f64>,
 }
@@ -64,7 +63,7 @@ impl<'a> Linearised<'a> {
         let mut ignored = vec![0.0; equations.size()];
         equations.residual(&x, &mut ignored);
         let slip_load = equations.slip_load();
-        Ok(Self { equations, omega, x, slip_load })
+        Ok(Self { equations, x, slip_load })
     }
 
     /// Work done so far.
@@ -94,78 +93,55 @@ impl<'a> Linearised<'a> {
     fn explicit(&self, cause: Cause) -> Vec<f64> {
         let mut force = vec![0.0; self.x.len()];
         if let Cause::Law { contact, parameter } = cause {
-            let slots = self.equations.harmonics().slots();
-            let points = self.equations.model.points()[contact].clone();
-            let motion = self.equations.motion(contact, &self.x);
-            self.equations.model.laws()[contact].parameter_slope(
-                motion,
-                parameter,
-                &mut force[points.start * slots..points.end * slots],
-            );
+            self.equations.add_force_rate([contact, parameter], &self.x, 1.0, &mut force);
         }
         force
     }
 
-    /// Series of the displacement of one DOF.
+    /// Series of the displacements of DOFs, one after the other.
     ///
     /// # Errors
     /// As [`Linearised::new`].
-    pub fn displacement(&self, dof: usize) -> Result<Vec<f64>, Error> {
-        let compliance = self.equations.model.compliance();
-        self.series(&self.x, &self.slip_load, |order, u, q, out| {
-            compliance.displacement(order, self.omega, u, q, &[dof], out)
-        })
+    pub fn displacement(&self, dofs: &[usize]) -> Result<Vec<f64>, Error> {
+        self.series(Quantity::Whole, [&self.x, &self.slip_load], dofs)
     }
 
-    /// Derivative of the series of the displacement of one DOF, from that of the contacts.
+    /// Derivatives of the series of the displacements of DOFs, from that of the contacts.
     ///
     /// # Errors
     /// As [`Linearised::new`].
     pub fn displacement_rate(
         &self,
-        dof: usize,
+        dofs: &[usize],
         cause: Cause,
         contact_rate: &[f64],
     ) -> Result<Vec<f64>, Error> {
-        let compliance = self.equations.model.compliance();
         // The force that leaves the structure: what its stuck spring does not carry, less what the
         // parameter does by itself.
         let mut slip_rate = self.explicit(cause);
         slip_rate.iter_mut().for_each(|f| *f = -*f);
         self.equations.add_tangent_product(contact_rate, &mut slip_rate);
-        let loaded = cause == Cause::Load;
-        let mut rate = self.series(contact_rate, &slip_rate, |order, u, q, out| {
-            if loaded {
-                compliance.displacement(order, self.omega, u, q, &[dof], out)
-            } else {
-                compliance.slip_displacement(order, self.omega, u, q, &[dof], out)
-            }
-        })?;
+        let quantity = if cause == Cause::Load { Quantity::Whole } else { Quantity::OfSlip };
+        let mut rate = self.series(quantity, [contact_rate, &slip_rate], dofs)?;
         if cause == Cause::Frequency {
-            let slope = self.series(&self.x, &self.slip_load, |order, u, q, out| {
-                compliance.displacement_slope(order, self.omega, u, q, &[dof], out)
-            })?;
+            let slope = self.series(Quantity::Slope, [&self.x, &self.slip_load], dofs)?;
             rate.iter_mut().zip(&slope).for_each(|(r, s)| *r += s);
         }
         Ok(rate)
     }
 
-    /// Builds a series order by order from contact displacements and slip loads.
+    /// Builds series order by order from contact displacements and slip loads.
     fn series(
         &self,
-        x: &[f64],
-        slip_load: &[f64],
-        of: impl Fn(usize, &[c64], &[c64], &mut [c64]) -> Result<(), Error>,
+        quantity: Quantity,
+        motion: [&[f64]; 2],
+        dofs: &[usize],
     ) -> Result<Vec<f64>, Error> {
         let harmonics = self.equations.harmonics();
-        let mut series = vec![0.0; harmonics.slots()];
-        let (mut u, mut q, mut out) = (Vec::new(), Vec::new(), [c64::new(0.0, 0.0)]);
-        for order in harmonics.orders() {
-            gather(harmonics, order, x, &mut u);
-            gather(harmonics, order, slip_load, &mut q);
-            of(order, &u, &q, &mut out)?;
-            scatter(harmonics, order, &out, &mut series);
-        }
+        let mut series = vec![0.0; dofs.len() * harmonics.slots()];
+        self.equations.displacements(quantity, motion, dofs, |order, values, _, _| {
+            scatter(harmonics, order, values, &mut series);
+        })?;
         Ok(series)
     }
 
@@ -180,12 +156,15 @@ impl<'a> Linearised<'a> {
         measure: Measure,
         causes: &[Cause],
     ) -> Result<(f64, Vec<f64>), Error> {
-        let series = self.displacement(dof)?;
+        let series = self.displacement(&[dof])?;
         let gradient = amplitude_gradient(self.equations.table, &series, measure);
         let mut slopes = Vec::with_capacity(causes.len());
         for &cause in causes {
             slopes.push(match self.contact_rate(cause) {
-                Some(rate) => self.slope(dof, &gradient, cause, &rate)?,
+                Some(rate) => {
+                    let rate = self.displacement_rate(&[dof], cause, &rate)?;
+                    gradient.iter().zip(&rate).map(|(g, r)| g * r).sum()
+                }
                 None => f64::NAN,
             });
         }
@@ -204,36 +183,16 @@ impl<'a> Linearised<'a> {
         measure: Measure,
     ) -> Result<Option<(Vec<(f64, f64)>, Vec<f64>)>, Error> {
         let Some(rate) = self.contact_rate(Cause::Frequency) else { return Ok(None) };
-        let mut slip_rate = vec![0.0; self.x.len()];
-        self.equations.add_tangent_product(&rate, &mut slip_rate);
-        let harmonics = self.equations.harmonics();
-        let slots = harmonics.slots();
-        let (mut series, mut slopes) =
-            (vec![0.0; dofs.len() * slots], vec![0.0; dofs.len() * slots]);
-        let solution = [self.x.as_slice(), self.slip_load.as_slice()];
-        let change = [rate.as_slice(), slip_rate.as_slice()];
-        self.equations.jets(solution, change, dofs, |order, values, rates| {
-            scatter(harmonics, order, values, &mut series);
-            scatter(harmonics, order, rates, &mut slopes);
-        })?;
-        let jets = series.chunks_exact(slots).zip(slopes.chunks_exact(slots));
-        let jets = jets.map(|(series, slopes)| {
+        let slots = self.equations.harmonics().slots();
+        let series = self.displacement(dofs)?;
+        let slopes = self.displacement_rate(dofs, Cause::Frequency, &rate)?;
+        let both = series.chunks_exact(slots).zip(slopes.chunks_exact(slots));
+        let amplitudes = both.map(|(series, slopes)| {
             let table = self.equations.table;
             let gradient = amplitude_gradient(table, series, measure);
             let slope = gradient.iter().zip(slopes).map(|(g, s)| g * s).sum();
             (amplitude(table, series, measure), slope)
         });
-        Ok(Some((jets.collect(), rate)))
-    }
-
-    fn slope(
-        &self,
-        dof: usize,
-        gradient: &[f64],
-        cause: Cause,
-        contact_rate: &[f64],
-    ) -> Result<f64, Error> {
-        let rate = self.displacement_rate(dof, cause, contact_rate)?;
-        Ok(gradient.iter().zip(&rate).map(|(g, r)| g * r).sum())
+        Ok(Some((amplitudes.collect(), rate)))
     }
 }

@@ -6,6 +6,8 @@ mod adaptive;
 mod condensed;
 mod cycle_point;
 mod cycle_start;
+mod enough;
+mod estimate;
 mod evaluation;
 mod forced;
 mod from_orbit;
@@ -15,7 +17,7 @@ mod linear;
 mod linearised;
 mod peak;
 mod price;
-mod recovery;
+
 mod resolution_control;
 mod ring_newton;
 mod ring_series;
@@ -35,12 +37,13 @@ pub use limit_cycle::CycleBalance;
 pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;
-pub use resolution_control::Resolution;
-pub use settings::{Evaluation, HarmonicChoice, Method, SampleChoice, Settings, HIGHEST_ORDER};
+pub use settings::{
+    Evaluation, HarmonicChoice, Method, Resolution, SampleChoice, Settings, HIGHEST_ORDER,
+};
 pub use single_harmonic::single_harmonic;
 pub use solution::{Point, PointStatus, Solution};
-pub(crate) use sweep::check_frequency;
 pub use sweep::sweep;
+pub(crate) use sweep::{check_bracket, check_frequency, over_frequencies};
 pub use unknowns::Unknowns;
 
 /// Exact orbits that a balance may turn to.

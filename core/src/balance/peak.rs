@@ -1,9 +1,8 @@
 //! The true maximum of a curve between its grid points.
 
 use super::forced::ForcedBalance;
-use super::resolution_control::Resolution;
-use super::settings::Settings;
-use super::sweep::check_frequency;
+use super::settings::{Resolution, Settings};
+use super::sweep::check_bracket;
 use super::unknowns::Unknowns;
 use super::Progress;
 use crate::fourier::{amplitude, Measure};
@@ -30,11 +29,7 @@ pub fn refine_peak(
     [low, guess, high]: [f64; 3],
     progress: &Progress<'_>,
 ) -> Result<(f64, f64), Error> {
-    check_frequency("peak: lower bound", low)?;
-    check_frequency("peak: upper bound", high)?;
-    if !(low <= guess && guess <= high) {
-        return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
-    }
+    check_bracket([low, guess, high])?;
     let observe = [dof];
     let (settings, mut start) = with_one_resolution(model, settings, &observe, [low, high, guess])?;
     let mut balance = ForcedBalance::new(model, settings, &observe)?.watched(progress);

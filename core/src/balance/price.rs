@@ -6,7 +6,7 @@
 
 use crate::model::Model;
 
-/// Newton iterations with a new Jacobian that one more rung usually takes.
+/// Newton iterations with a new Jacobian that one more level usually takes.
 const ITERATIONS: f64 = 10.0;
 /// What an operation of a factorisation counts among those of scalars: it works in blocks.
 const IN_BLOCKS: f64 = 0.2;
@@ -16,11 +16,11 @@ const PER_LAW: f64 = 40.0;
 pub(super) const TRIFLE: f64 = 1e7;
 /// Operations that a point may ask for at once, some seconds, …
 const AFFORDABLE: f64 = 5e9;
-/// … or this multiple of the lowest rung, if already that is much: four times its harmonics.
+/// … or this multiple of the lowest level, if already that is much: four times its harmonics.
 const MULTIPLE: f64 = 64.0;
-/// A homotopy takes as much as so many rungs: it must be affordable, …
+/// A homotopy takes as much as so many levels: it must be affordable, …
 const HOMOTOPY: f64 = 200.0;
-/// … or belong to less than twice the harmonics of the lowest rung.
+/// … or belong to less than twice the harmonics of the lowest level.
 const TWICE: f64 = 8.0;
 
 /// Price of the balance equations of a model with some slipping points.

@@ -1,20 +1,22 @@
-//! The ladders that automatic harmonics and samples climb.
+//! The levels of resolution that automatic harmonics and samples go through.
 //!
 //! The errors say which of the two a point lacks: what the discarded harmonics could change, and
 //! what a march through more samples could. Samples climb first, because a coarse march knows too
-//! little of the discarded harmonics. The next point begins where the last one has ended, a rung
+//! little of the discarded harmonics. The next point begins where the last one has ended, a level
 //! lower if that was generous.
 
-use super::settings::{Evaluation, HarmonicChoice, SampleChoice, Settings};
+use super::settings::{
+    resolving, Evaluation, HarmonicChoice, Resolution, SampleChoice, Settings, FEWEST_SAMPLES,
+};
 use super::solution::PointStatus;
 
-/// Orders that automatic harmonics climb: half as many again from rung to rung.
+/// Orders that automatic harmonics climb: half as many again from level to level.
 const ORDERS: [usize; 17] = [1, 3, 5, 7, 9, 13, 19, 27, 39, 57, 83, 121, 177, 261, 387, 575, 857];
 /// Below this order the friction force has no shape that an estimate could start from.
 const LOWEST_ORDER: usize = 3;
-/// First rung: enough for a smooth slip cycle.
+/// First level: enough for a smooth slip cycle.
 const FIRST_RUNG: usize = 3;
-/// An estimate this far below the tolerance lets the next point try one rung less.
+/// An estimate this far below the tolerance lets the next point try one level less.
 const GENEROUS: f64 = 0.05;
 /// Share of the tolerance that the sampling error may take: it leaves most to the discarded
 /// harmonics, which cost more, for twice the samples that the whole tolerance would ask for.
@@ -22,33 +24,6 @@ const OF_SAMPLES: f64 = 0.25;
 /// A sampling error this far below its share lets the next point try half the samples, which err
 /// four times as much.
 const GENEROUS_SAMPLES: f64 = 0.125;
-/// Fewest automatic samples: fewer make no loop to speak of.
-const FEWEST_SAMPLES: usize = 32;
-
-/// What a balance resolves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Resolution {
-    /// Highest harmonic kept.
-    pub harmonics: usize,
-    /// Samples per period of marched laws; none if they are evaluated as they are.
-    pub samples: Option<usize>,
-}
-
-impl Resolution {
-    /// Enough for both.
-    #[must_use]
-    pub fn or_finer(self, other: Self) -> Self {
-        Self {
-            harmonics: self.harmonics.max(other.harmonics),
-            samples: self.samples.max(other.samples),
-        }
-    }
-}
-
-/// Samples that resolve harmonics up to `highest`, and as many beyond: a power of two.
-pub(super) fn resolving(highest: usize) -> usize {
-    (4 * (highest + 1)).next_power_of_two().max(FEWEST_SAMPLES)
-}
 
 /// Where the next point begins.
 #[derive(Debug, Clone, Copy)]
@@ -72,29 +47,29 @@ pub(super) enum Decision {
     Limit(PointStatus),
 }
 
-/// The rungs that the settings allow.
+/// The levels that the settings allow.
 #[derive(Debug, Clone)]
 pub(super) struct ResolutionControl {
     settings: Settings,
     orders: Vec<usize>,
     lowest: usize,
-    pub(super) rung: Level,
+    pub(super) level: Level,
 }
 
 impl ResolutionControl {
-    /// The ladder of a model with loads at the harmonics `forced`.
+    /// The resolution of a model with loads at the harmonics `forced`.
     pub(super) fn new(settings: Settings, forced: &[usize]) -> Self {
         let limit = settings.max_harmonics;
         let least = forced.last().copied().unwrap_or(1).max(1);
         let orders: Vec<usize> = match settings.harmonics {
             HarmonicChoice::Fixed(highest) => vec![highest],
             HarmonicChoice::Auto => {
-                let rungs = ORDERS.iter().copied().filter(|&h| h >= least && h < limit);
-                rungs.chain([limit]).collect()
+                let levels = ORDERS.iter().copied().filter(|&h| h >= least && h < limit);
+                levels.chain([limit]).collect()
             }
         };
         let lowest = orders.iter().position(|&h| h >= LOWEST_ORDER).unwrap_or(0);
-        Self { settings, orders, lowest, rung: Level::default() }
+        Self { settings, orders, lowest, level: Level::default() }
     }
 
     /// Whether there is nothing to choose.
@@ -109,11 +84,11 @@ impl ResolutionControl {
 
     /// What the next point begins with.
     pub(super) fn first(&self) -> Resolution {
-        let harmonics = self.orders[self.rung.order.min(self.orders.len() - 1)];
+        let harmonics = self.orders[self.level.order.min(self.orders.len() - 1)];
         let samples = match self.settings.evaluation {
             Evaluation::Direct => None,
             Evaluation::Marched(SampleChoice::Fixed(samples)) => Some(samples),
-            Evaluation::Marched(SampleChoice::Auto) => Some(self.rung.samples),
+            Evaluation::Marched(SampleChoice::Auto) => Some(self.level.samples),
         };
         self.allowed(harmonics, samples)
     }
@@ -123,39 +98,39 @@ impl ResolutionControl {
     pub(super) fn judge(&mut self, at: Resolution, error: f64, of_samples: f64) -> Decision {
         let tolerance = self.settings.tolerance;
         let target = OF_SAMPLES * tolerance;
-        let mut verdict = Decision::Enough;
+        let mut decision = Decision::Enough;
         let mut left = error;
         if let Some(samples) = at.samples.filter(|_| self.samples_climb()) {
-            self.rung.samples = samples;
+            self.level.samples = samples;
             if of_samples > target {
                 let finer = self.allowed(at.harmonics, finer(at.samples, of_samples / target));
                 if finer != at {
                     return Decision::More(finer);
                 }
                 // More harmonics bring the rest of the error down all the same.
-                verdict = Decision::Limit(PointStatus::SamplesLimit);
+                decision = Decision::Limit(PointStatus::SamplesLimit);
                 left -= of_samples;
             } else if of_samples <= GENEROUS_SAMPLES * target {
-                self.rung.samples = samples / 2;
+                self.level.samples = samples / 2;
             }
         }
         if self.settings.harmonics != HarmonicChoice::Auto {
-            return verdict;
+            return decision;
         }
         let order = self.position(at);
         if left > tolerance {
             let Some(&more) = self.orders.get(order + 1) else {
-                self.rung.order = order;
+                self.level.order = order;
                 return Decision::Limit(PointStatus::HarmonicsLimit);
             };
             return Decision::More(self.allowed(more, at.samples));
         }
         let generous = left <= GENEROUS * tolerance;
-        self.rung.order = (order - usize::from(generous && order > 0)).max(self.lowest);
-        verdict
+        self.level.order = (order - usize::from(generous && order > 0)).max(self.lowest);
+        decision
     }
 
-    /// A rung more of all that is chosen automatically, if there is one.
+    /// A level more of all that is chosen automatically, if there is one.
     pub(super) fn above(&self, at: Resolution) -> Option<Resolution> {
         let harmonics = self.orders.get(self.position(at) + 1).copied().unwrap_or(at.harmonics);
         let samples = if self.samples_climb() { finer(at.samples, 1.0) } else { at.samples };
@@ -164,7 +139,7 @@ impl ResolutionControl {
 
     /// Has the next point begin with the harmonics of this one.
     pub(super) fn stay(&mut self, at: Resolution) {
-        self.rung.order = self.position(at);
+        self.level.order = self.position(at);
     }
 
     /// Whether harmonics are chosen, for laws that are evaluated as they are.
@@ -183,9 +158,9 @@ impl ResolutionControl {
         self.orders[self.lowest.min(self.orders.len() - 1)]
     }
 
-    /// As [`ResolutionControl::first`], from the lowest rung on.
+    /// As [`ResolutionControl::first`], from the lowest level on.
     pub(super) fn start_over(&mut self) -> Resolution {
-        self.rung.order = self.lowest;
+        self.level.order = self.lowest;
         self.first()
     }
 
@@ -208,7 +183,7 @@ impl ResolutionControl {
 
 /// The next power of two whose error, of second order, is about `excess` times less.
 fn finer(samples: Option<usize>, excess: f64) -> Option<usize> {
-    // A coarse march misjudges its error: no more than three rungs at once.
-    let rungs = (0.5 * excess.log2()).round().clamp(1.0, 3.0) as u32;
-    samples.map(|samples| samples.next_power_of_two() << rungs)
+    // A coarse march misjudges its error: no more than three levels at once.
+    let levels = (0.5 * excess.log2()).round().clamp(1.0, 3.0) as u32;
+    samples.map(|samples| samples.next_power_of_two() << levels)
 }

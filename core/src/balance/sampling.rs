@@ -12,6 +12,7 @@ use super::condensed::Condensed;
 use super::solution::Point;
 use crate::model::Model;
 use crate::solve::System as _;
+use crate::structure::Quantity;
 use crate::Error;
 use faer::c64;
 
@@ -27,7 +28,7 @@ pub(super) fn finer_than(samples: usize) -> usize {
 }
 
 /// Sum over all harmonics of the change that the laws of `finer` would bring to each observed DOF
-/// [m]; `solved` are the equations of the solution `x`.
+/// \[m\]; `solved` are the equations of the solution `x`.
 pub(super) fn sampling_errors(
     solved: &mut Condensed<'_>,
     finer: &Model,
@@ -55,11 +56,16 @@ pub(super) fn sampling_errors(
     solved.add_tangent_product(&step, &mut slip_load);
     let corrected: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
     let orders = point.harmonics + 1;
-    solved.displacements(&corrected, &slip_load, observe, |order, observed, _, _| {
-        for (dof, error) in errors.iter_mut().enumerate() {
-            let before: c64 = point.displacement[dof * orders + order];
-            *error += CAUTION * (observed[dof] - before).norm();
-        }
-    })?;
+    solved.displacements(
+        Quantity::Whole,
+        [&corrected, &slip_load],
+        observe,
+        |order, observed, _, _| {
+            for (dof, error) in errors.iter_mut().enumerate() {
+                let before: c64 = point.displacement[dof * orders + order];
+                *error += CAUTION * (observed[dof] - before).norm();
+            }
+        },
+    )?;
     Ok(errors)
 }

@@ -1,6 +1,5 @@
 //! Settings of a forced response, each with its default.
 
-use super::resolution_control::{resolving, Resolution};
 use crate::contact::Residual;
 use crate::solve::{FirstJacobian, NewtonSettings};
 use crate::Error;
@@ -12,6 +11,16 @@ pub enum HarmonicChoice {
     Fixed(usize),
     /// As many at each point as the tolerance demands.
     Auto,
+}
+
+impl HarmonicChoice {
+    /// Highest order that may be kept, `most` of automatic harmonics, with the name of its setting.
+    pub(crate) fn highest(self, most: usize) -> (&'static str, usize) {
+        match self {
+            Self::Fixed(highest) => ("harmonics", highest),
+            Self::Auto => ("max_harmonics", most),
+        }
+    }
 }
 
 /// What solves the equations at each point.
@@ -43,6 +52,31 @@ pub enum SampleChoice {
     Auto,
 }
 
+/// What a balance resolves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Resolution {
+    /// Highest harmonic kept.
+    pub harmonics: usize,
+    /// Samples per period of marched laws; none if they are evaluated as they are.
+    pub samples: Option<usize>,
+}
+
+impl Resolution {
+    /// Enough for both.
+    #[must_use]
+    pub fn or_finer(self, other: Self) -> Self {
+        Self {
+            harmonics: self.harmonics.max(other.harmonics),
+            samples: self.samples.max(other.samples),
+        }
+    }
+}
+
+/// Samples that resolve harmonics up to `highest`, and as many beyond: a power of two.
+pub(super) fn resolving(highest: usize) -> usize {
+    (4 * (highest + 1)).next_power_of_two().max(FEWEST_SAMPLES)
+}
+
 /// Settings of a forced response.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -64,13 +98,15 @@ pub struct Settings {
     pub newton: NewtonSettings,
 }
 
-/// Highest order that may be asked for: its tables grow with the square, and a period with more
-/// turning points is no vibration.
+/// Highest order that may be asked for: its tables grow with the square of it.
 pub const HIGHEST_ORDER: usize = 1000;
 /// Most samples that may be asked for: their sampling error is that of rounding.
 const MOST_SAMPLES: usize = 1 << 20;
 /// Finest tolerance: the solvers end at 1e-11 of the contact displacements.
 const FINEST_TOLERANCE: f64 = 1e-8;
+
+/// Fewest automatic samples: fewer do not show the hysteresis loop.
+pub(super) const FEWEST_SAMPLES: usize = 32;
 
 impl Default for Settings {
     fn default() -> Self {
@@ -94,10 +130,7 @@ impl Settings {
     /// A setting outside its range, or a load at a harmonic that would not be kept.
     pub fn check(&self, forced: &[usize]) -> Result<(), Error> {
         let highest_forced = forced.last().copied().unwrap_or(0).max(1);
-        let (entry, kept) = match self.harmonics {
-            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
-            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
-        };
+        let (entry, kept) = self.harmonics.highest(self.max_harmonics);
         if kept < highest_forced {
             return Err(Error::value(
                 entry,
@@ -118,12 +151,7 @@ impl Settings {
         if self.newton.max_iterations == 0 {
             return Err(Error::value("max_iterations", 0.0, "must be at least 1"));
         }
-        if let Residual::Value(force) = self.residual {
-            if !force.is_finite() {
-                return Err(Error::value("residual", force, "must be a finite force in N"));
-            }
-        }
-        Ok(())
+        self.residual.check()
     }
 
     /// The same settings with what is chosen automatically fixed.
@@ -158,10 +186,7 @@ impl Settings {
     /// # Errors
     /// Too few samples for the harmonics that may be kept.
     pub fn check_resolution(&self, resolved: usize) -> Result<(), Error> {
-        let (entry, kept) = match self.harmonics {
-            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
-            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
-        };
+        let (entry, kept) = self.harmonics.highest(self.max_harmonics);
         let resolved = match self.evaluation {
             Evaluation::Direct => resolved,
             Evaluation::Marched(SampleChoice::Fixed(samples)) => (samples / 2).saturating_sub(1),

@@ -14,7 +14,7 @@ use crate::contact::Describing;
 use crate::fourier::Harmonics;
 use crate::model::Model;
 use crate::solve::{newton, Outcome, Report, System};
-use crate::structure::Receptance;
+use crate::structure::{Quantity, Receptance, Request};
 use crate::timing::Profile;
 use crate::Error;
 use faer::linalg::solvers::Solve as _;
@@ -133,15 +133,14 @@ impl<'a> Equations<'a> {
         let zero = c64::new(0.0, 0.0);
         let (observe, contacts) = (balance.observe, self.describing.len());
         let mut point = Point::empty(omega, PointStatus::Converged, observe.len(), contacts);
-        point.harmonics = 1;
-        point.displacement = vec![zero; 2 * observe.len()];
-        point.contact_displacement = vec![zero; 2 * contacts];
-        point.contact_force = vec![zero; 2 * contacts];
+        point.keep(1);
         let (mut u, mut q) = (Vec::new(), Vec::new());
         gather(&self.harmonics, 1, x, &mut u);
         gather(&self.harmonics, 1, &self.slip_load, &mut q);
         let mut observed = vec![zero; observe.len()];
-        self.model.compliance().displacement(1, omega, &u, &q, observe, &mut observed)?;
+        let (contact, slip_load, quantity) = (&u[..], &q[..], Quantity::Whole);
+        let request = Request { harmonic: 1, omega, quantity, contact, slip_load, observe };
+        self.model.compliance().displacement(&request, &mut observed)?;
         for (i, value) in observed.into_iter().enumerate() {
             point.displacement[2 * i + 1] = value;
         }

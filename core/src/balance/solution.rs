@@ -1,6 +1,6 @@
 //! What a forced response returns.
 
-use super::resolution_control::Resolution;
+use super::settings::Resolution;
 use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
 use crate::timing::Profile;
@@ -58,9 +58,9 @@ pub struct Point {
     pub contact_displacement: Vec<c64>,
     /// Amplitudes F_k of the contact forces, laid out likewise.
     pub contact_force: Vec<c64>,
-    /// What the discarded harmonics, and more samples, could change at each observed DOF [m].
+    /// What the discarded harmonics, and more samples, could change at each observed DOF \[m\].
     pub error_estimate: Vec<f64>,
-    /// The part of it that is due to the samples; zero of laws evaluated as they are [m].
+    /// The part of it that is due to the samples; zero of laws evaluated as they are \[m\].
     pub sampling_error: Vec<f64>,
     /// Slip share and friction work per contact point.
     pub contacts: Vec<PointSummary>,
@@ -84,6 +84,16 @@ impl Point {
     #[must_use]
     pub fn resolution(&self) -> Resolution {
         Resolution { harmonics: self.harmonics, samples: self.samples }
+    }
+
+    /// Makes room for harmonics up to `highest`.
+    pub(super) fn keep(&mut self, highest: usize) {
+        self.harmonics = highest;
+        for series in
+            [&mut self.displacement, &mut self.contact_displacement, &mut self.contact_force]
+        {
+            *series = vec![c64::new(0.0, 0.0); series.len() * (highest + 1)];
+        }
     }
 
     pub(crate) fn empty(omega: f64, status: PointStatus, observed: usize, contacts: usize) -> Self {

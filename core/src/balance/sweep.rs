@@ -1,9 +1,9 @@
 //! A curve over given frequencies.
 
 use super::forced::ForcedBalance;
-use super::keep;
 use super::solution::{Point, PointStatus, Solution};
 use super::unknowns::Unknowns;
+use super::{keep, Kept};
 use crate::timing::Profile;
 use crate::Error;
 use std::sync::Arc;
@@ -25,29 +25,48 @@ pub(super) fn sweep_with<'a>(
     mut solve: impl FnMut(&mut ForcedBalance<'a>, f64, Option<&Unknowns>) -> Result<Point, Error>,
 ) -> Result<Solution, Error> {
     let start = Instant::now();
-    for (index, &frequency) in omega.iter().enumerate() {
-        check_frequency(&format!("omega[{index}]"), frequency)?;
-    }
-    let mut points: Vec<Arc<Point>> = Vec::new();
-    let mut interrupted = false;
-    for (index, &frequency) in omega.iter().enumerate() {
-        interrupted = !balance.report(index as f64 / omega.len() as f64);
-        if interrupted {
-            break;
-        }
-        let guess = predict(&points, frequency);
-        let point = Arc::new(solve(&mut balance, frequency, guess.as_ref())?);
-        interrupted = point.status == PointStatus::NotComputed;
-        if interrupted {
-            break;
-        }
-        keep(balance.kept, &point);
-        points.push(point);
-    }
+    let kept = balance.kept;
+    let (mut points, interrupted) = over_frequencies(
+        &mut balance,
+        omega,
+        kept,
+        ForcedBalance::report,
+        |balance, points, frequency| {
+            let guess = predict(points, frequency);
+            let point = solve(balance, frequency, guess.as_ref())?;
+            Ok(Some(point).filter(|point| point.status != PointStatus::NotComputed))
+        },
+    )?;
     if points.is_empty() {
         points.extend(omega.first().map(|&first| Arc::new(balance.not_computed(first))));
     }
     Ok(finish(balance, points, interrupted, start))
+}
+
+/// Points at the frequencies `omega` [rad/s] in the order given, each found from those before it by
+/// `find`, and whether the analysis was ended: `report` says so before a point, nothing found says so
+/// at it.
+pub(crate) fn over_frequencies<A, P>(
+    analysis: &mut A,
+    omega: &[f64],
+    kept: Option<&Kept<P>>,
+    report: impl Fn(&mut A, f64) -> bool,
+    mut find: impl FnMut(&mut A, &[Arc<P>], f64) -> Result<Option<P>, Error>,
+) -> Result<(Vec<Arc<P>>, bool), Error> {
+    for (index, &frequency) in omega.iter().enumerate() {
+        check_frequency(&format!("omega[{index}]"), frequency)?;
+    }
+    let mut points: Vec<Arc<P>> = Vec::new();
+    for (index, &frequency) in omega.iter().enumerate() {
+        if !report(analysis, index as f64 / omega.len() as f64) {
+            return Ok((points, true));
+        }
+        let Some(point) = find(analysis, &points, frequency)? else { return Ok((points, true)) };
+        let point = Arc::new(point);
+        keep(kept, &point);
+        points.push(point);
+    }
+    Ok((points, false))
 }
 
 pub(crate) fn check_frequency(entry: &str, omega: f64) -> Result<(), Error> {
@@ -56,6 +75,16 @@ pub(crate) fn check_frequency(entry: &str, omega: f64) -> Result<(), Error> {
         return Ok(());
     }
     Err(Error::value(entry, omega, "must be a finite, positive angular frequency in rad/s"))
+}
+
+/// Refuses a bracket of a peak that is not ordered.
+pub(crate) fn check_bracket([low, guess, high]: [f64; 3]) -> Result<(), Error> {
+    check_frequency("peak: lower bound", low)?;
+    check_frequency("peak: upper bound", high)?;
+    if low <= guess && guess <= high {
+        return Ok(());
+    }
+    Err(Error::value("peak: guess", guess, "must lie between its bounds"))
 }
 
 pub(super) fn finish(

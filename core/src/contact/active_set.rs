@@ -7,7 +7,7 @@ use faer::Mat;
 #[derive(Debug)]
 pub(super) struct ActiveSet {
     pub(super) slips: Vec<bool>,
-    pub(super) sliding: ReducedStiffness,
+    pub(super) reduced: ReducedStiffness,
     /// Series of `T u` and of the slip `R u`, point after point.
     pub(super) force: Vec<f64>,
     pub(super) slip: Vec<f64>,
@@ -19,14 +19,14 @@ pub(super) struct ActiveSet {
 impl ActiveSet {
     /// The set of the points marked in `slips`, and the series that those of all displacements,
     /// point after point, give in it.
-    pub(super) fn new(slips: Vec<bool>, sliding: ReducedStiffness, series: &[f64]) -> Self {
+    pub(super) fn new(slips: Vec<bool>, reduced: ReducedStiffness, series: &[f64]) -> Self {
         let points = slips.len();
         let rows = |matrix: &Mat<f64>| -> Vec<f64> {
             (0..points * points).map(|at| matrix[(at / points, at % points)]).collect()
         };
-        let (tangent, slip_rate) = (rows(&sliding.tangent), rows(&sliding.slip_rate));
+        let (tangent, slip_rate) = (rows(&reduced.tangent), rows(&reduced.slip_rate));
         let (force, slip) = (combined(&tangent, series), combined(&slip_rate, series));
-        Self { slips, sliding, force, slip, tangent, slip_rate }
+        Self { slips, reduced, force, slip, tangent, slip_rate }
     }
 
     /// Force on a point, or its rate, as the displacements, or theirs, make it.

@@ -8,7 +8,6 @@
 
 use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::samples::Samples;
-use super::slip_series::halve_means;
 use super::{
     ContactLaw, Describing, Element, Motion, Parameter, Phase, PointSummary, Residual, SlipLoad,
 };
@@ -20,6 +19,8 @@ use std::ops::Deref;
 const FEWEST: usize = 8;
 /// Most samples: as many as memory holds with ease.
 const MOST: usize = 1 << 20;
+/// Samples per period where nothing controls their error.
+const UNCONTROLLED: usize = 1024;
 /// Step of differences in a parameter, relative to it.
 const DIFFERENCE: f64 = 1e-5;
 
@@ -94,7 +95,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
         if tangent {
             self.differentiate(&samples, &round.averaged, slots, &mut out.tangent);
         }
-        halve_means(harmonics, count, out);
+        out.halve_means(harmonics);
     }
 
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
@@ -166,41 +167,30 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
     }
 }
 
+/// Methods that a sampled law has from the law itself.
+macro_rules! of_the_law {
+    ($($method:ident($($argument:ident: $type:ty),*) -> $returned:ty;)*) => {
+        $(fn $method(&self, $($argument: $type),*) -> $returned {
+            self.law.$method($($argument),*)
+        })*
+    };
+}
+
 impl ContactLaw for Aft<Box<dyn ContactLaw>> {
-    fn name(&self) -> &'static str {
-        self.law.name()
-    }
-
-    fn displacements(&self) -> usize {
-        self.law.displacements()
-    }
-
-    fn state_size(&self) -> usize {
-        self.law.state_size()
-    }
-
-    fn stiffness(&self) -> Mat<f64> {
-        self.law.stiffness()
-    }
-
-    fn state_stiffness(&self) -> Mat<f64> {
-        self.law.state_stiffness()
-    }
-
-    fn is_odd(&self) -> bool {
-        self.law.is_odd()
-    }
-
-    fn is_monotone(&self) -> bool {
-        self.law.is_monotone()
-    }
-
-    fn limits(&self) -> Vec<f64> {
-        self.law.limits()
-    }
-
-    fn onsets(&self) -> Vec<f64> {
-        self.law.onsets()
+    of_the_law! {
+        name() -> &'static str;
+        displacements() -> usize;
+        state_size() -> usize;
+        stiffness() -> Mat<f64>;
+        state_stiffness() -> Mat<f64>;
+        is_odd() -> bool;
+        is_monotone() -> bool;
+        limits() -> Vec<f64>;
+        onsets() -> Vec<f64>;
+        stuck_load(residual: Residual, low: f64, high: f64) -> Option<[f64; 3]>;
+        parameters() -> Vec<Parameter>;
+        elements() -> Option<Vec<Element>>;
+        describing(amplitude: f64) -> Option<Describing>;
     }
 
     fn return_map(
@@ -214,10 +204,6 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         self.law.return_map(before, after, state, force, jacobian);
     }
 
-    fn stuck_load(&self, residual: Residual, low: f64, high: f64) -> Option<[f64; 3]> {
-        self.law.stuck_load(residual, low, high)
-    }
-
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
         let law = self.law.with_scaled_stiffness(share);
         Box::new(Self { law, samples: self.samples })
@@ -225,10 +211,6 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
 
     fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
         Box::new(Self { law: self.law.with_scaled_forces(factor), samples: self.samples })
-    }
-
-    fn parameters(&self) -> Vec<Parameter> {
-        self.law.parameters()
     }
 
     fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn ContactLaw>, Error> {
@@ -239,12 +221,32 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
     fn closed_form(&self) -> Option<&dyn HarmonicForce> {
         Some(self)
     }
+}
 
-    fn elements(&self) -> Option<Vec<Element>> {
-        self.law.elements()
-    }
+/// Evaluates a law by its own form, or by samples where there is none.
+macro_rules! by_form_or_samples {
+    ($($method:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => {
+        $(
+            #[doc = concat!("See [`HarmonicForce::", stringify!($method), "`].")]
+            pub fn $method(&self, $($argument: $type),*) $(-> $returned)? {
+                match self.closed_form() {
+                    Some(exact) => exact.$method($($argument),*),
+                    None => Aft { law: self, samples: UNCONTROLLED }.$method($($argument),*),
+                }
+            }
+        )*
+    };
+}
 
-    fn describing(&self, amplitude: f64) -> Option<Describing> {
-        self.law.describing(amplitude)
+/// Every law has the harmonics of a periodic motion: by its closed form, or by samples.
+impl dyn ContactLaw + '_ {
+    by_form_or_samples! {
+        slip_load(motion: Motion<'_>, tangent: bool, out: &mut SlipLoad);
+        resolves() -> usize;
+        summary(motion: Motion<'_>, out: &mut [PointSummary]);
+        state_history(motion: Motion<'_>, samples: usize) -> Vec<f64>;
+        force_history(motion: Motion<'_>, samples: usize) -> Vec<f64>;
+        phases(motion: Motion<'_>) -> Vec<Phase>;
+        parameter_slope(motion: Motion<'_>, index: usize, out: &mut [f64]);
     }
 }

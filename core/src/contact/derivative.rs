@@ -1,8 +1,8 @@
-//! What the forces of a passage are differentiated in, and with what that begins.
+//! What the forces of a march are differentiated in, and with what that begins.
 
 use super::StructuralDamper;
 
-/// What the forces of a passage are differentiated in.
+/// What the forces of a march are differentiated in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Derivative {
     /// Nothing.

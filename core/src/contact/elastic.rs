@@ -122,7 +122,7 @@ impl Elastic {
     }
 
     /// What the body does while the points marked in `slips` slip.
-    pub(crate) fn sliding(&self, slips: &[bool]) -> ReducedStiffness {
+    pub(crate) fn reduced(&self, slips: &[bool]) -> ReducedStiffness {
         let (points, rank) = (self.root.nrows(), self.rank());
         let slipping: Vec<usize> = (0..points).filter(|&i| slips[i]).collect();
         let held = self.directions(&slipping);
@@ -230,13 +230,13 @@ mod tests {
     fn slipping_points_are_condensed() {
         let d = mat![[5.0, -2.0, -1.0], [-2.0, 4.0, -1.0], [-1.0, -1.0, 2.0]];
         let elastic = Elastic::new(d.as_ref()).unwrap();
-        let sliding = elastic.sliding(&[true, false, false]);
+        let reduced = elastic.reduced(&[true, false, false]);
         for (i, j) in [(1, 1), (1, 2), (2, 2)] {
             let expected = d[(i, j)] - d[(i, 0)] * d[(0, j)] / d[(0, 0)];
-            assert!((sliding.tangent[(i, j)] - expected).abs() < 1e-13);
+            assert!((reduced.tangent[(i, j)] - expected).abs() < 1e-13);
         }
         for j in 0..3 {
-            assert!((sliding.slip_rate[(0, j)] - d[(0, j)] / d[(0, 0)]).abs() < 1e-13);
+            assert!((reduced.slip_rate[(0, j)] - d[(0, j)] / d[(0, 0)]).abs() < 1e-13);
         }
     }
 
@@ -244,13 +244,13 @@ mod tests {
     fn a_floating_body_that_slips_everywhere_slips_least() {
         let elastic = Elastic::new(mat![[3.0, -3.0], [-3.0, 3.0]].as_ref()).unwrap();
         assert_eq!(elastic.rank(), 1);
-        let sliding = elastic.sliding(&[true, true]);
-        assert_eq!(sliding.tangent, Mat::<f64>::zeros(2, 2));
+        let reduced = elastic.reduced(&[true, true]);
+        assert_eq!(reduced.tangent, Mat::<f64>::zeros(2, 2));
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let expected = if i == j { 0.5 } else { -0.5 };
-            assert!((sliding.slip_rate[(i, j)] - expected).abs() < 1e-14);
+            assert!((reduced.slip_rate[(i, j)] - expected).abs() < 1e-14);
         }
-        let one = elastic.sliding(&[false, true]);
+        let one = elastic.reduced(&[false, true]);
         assert_eq!(one.tangent, Mat::<f64>::zeros(2, 2));
     }
 
@@ -286,7 +286,7 @@ mod tests {
         ];
         let elastic = Elastic::new(d.as_ref()).unwrap();
         assert_eq!(elastic.rank(), 3);
-        let rate = elastic.sliding(&[true, true, true, false]).slip_rate;
+        let rate = elastic.reduced(&[true, true, true, false]).slip_rate;
         for i in 0..3 {
             for j in 0..4 {
                 let expected = f64::from(u8::from(i == j)) - f64::from(u8::from(j == 3));

@@ -10,7 +10,7 @@
 //! however many elements there are.
 
 use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement as _};
-use super::registry::numbers;
+use super::parameter::numbers;
 use super::slider_integrals::add_slipping;
 use super::stick_slip::{Path, StickSlipIntervals};
 use super::{

@@ -4,14 +4,11 @@
 //! which is what slip takes off it. The stuck structure carries D, so that the balance has to
 //! find q alone; it vanishes while a contact sticks.
 
-use super::{Aft, Describing, Parameter};
-use crate::fourier::SampleTable;
+use super::{Describing, Parameter};
+use crate::fourier::{Harmonics, SampleTable};
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
-
-/// Samples per period where nothing controls their error.
-const UNCONTROLLED: usize = 1024;
 
 /// Force at mid-range of a contact that never slips. Its steady motion does not determine it: it
 /// is what the past has left, and has to be assumed.
@@ -21,7 +18,7 @@ pub enum Residual {
     Centred,
     /// The load was raised slowly from rest with an unloaded contact.
     FromRest,
-    /// A given force [N], reduced where it would make the contact slip.
+    /// A given force \[N\], reduced where it would make the contact slip.
     Value(f64),
 }
 
@@ -30,6 +27,16 @@ impl Residual {
     #[must_use]
     pub fn is_symmetric(self) -> bool {
         !matches!(self, Self::Value(value) if value != 0.0)
+    }
+
+    /// Refuses a force that is not finite.
+    pub(crate) fn check(self) -> Result<(), Error> {
+        match self {
+            Self::Value(force) if !force.is_finite() => {
+                Err(Error::value("residual", force, "must be a finite force in N"))
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -47,7 +54,7 @@ pub struct Motion<'a> {
 /// Fourier coefficients of the slip load of one contact, and their derivative.
 #[derive(Debug, Clone, Default)]
 pub struct SlipLoad {
-    /// q, laid out as the displacement [N].
+    /// q, laid out as the displacement \[N\].
     pub value: Vec<f64>,
     /// ∂q/∂u, row by row, empty unless it was asked for [N/m].
     pub tangent: Vec<f64>,
@@ -66,6 +73,16 @@ impl SlipLoad {
         }
         self.active = false;
     }
+
+    /// See [`Harmonics::halve_means`]; the derivative follows.
+    pub(super) fn halve_means(&mut self, harmonics: &Harmonics) {
+        harmonics.halve_means(&mut self.value);
+        let size = self.value.len();
+        if harmonics.has_mean() && !self.tangent.is_empty() {
+            let means = self.tangent.chunks_exact_mut(size).step_by(harmonics.slots());
+            means.flatten().for_each(|entry| *entry *= 0.5);
+        }
+    }
 }
 
 /// What one point of a contact does over a period.
@@ -73,7 +90,7 @@ impl SlipLoad {
 pub struct PointSummary {
     /// Share of the period in slip.
     pub slip_fraction: f64,
-    /// Friction work per period [J].
+    /// Friction work per period \[J\].
     pub dissipation: f64,
 }
 
@@ -198,7 +215,7 @@ impl ReturnMapJacobian {
 
 /// A law between one or several relative displacements and as many contact forces.
 ///
-/// A law needs no more than what has no default here: the sampled evaluation ([`Aft`]) then gives
+/// A law needs no more than what has no default here: the sampled evaluation ([`super::Aft`]) then gives
 /// its harmonics. A new law is one file in this folder and one line in its registry.
 pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// Name in messages and in the registry.
@@ -224,11 +241,11 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// all are has one steady motion.
     fn is_monotone(&self) -> bool;
 
-    /// Largest force that every component can have [N]: 0 if it never carries any, infinite if it
+    /// Largest force that every component can have \[N\]: 0 if it never carries any, infinite if it
     /// never slips.
     fn limits(&self) -> Vec<f64>;
 
-    /// Force of every component at which slip begins [N].
+    /// Force of every component at which slip begins \[N\].
     fn onsets(&self) -> Vec<f64> {
         self.limits()
     }
@@ -294,58 +311,6 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// Evaluates a law's own form, or the sampled one where there is none.
-macro_rules! evaluated {
-    ($law:expr, $call:ident($($argument:expr),*)) => {
-        match $law.closed_form() {
-            Some(exact) => exact.$call($($argument),*),
-            None => Aft { law: $law, samples: UNCONTROLLED }.$call($($argument),*),
-        }
-    };
-}
-
-/// Every law has the harmonics of a periodic motion: by its closed form, or by samples.
-impl dyn ContactLaw + '_ {
-    /// See [`HarmonicForce::slip_load`].
-    pub fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
-        evaluated!(self, slip_load(motion, tangent, out));
-    }
-
-    /// See [`HarmonicForce::resolves`].
-    #[must_use]
-    pub fn resolves(&self) -> usize {
-        evaluated!(self, resolves())
-    }
-
-    /// See [`HarmonicForce::summary`].
-    pub fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
-        evaluated!(self, summary(motion, out));
-    }
-
-    /// See [`HarmonicForce::state_history`].
-    #[must_use]
-    pub fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        evaluated!(self, state_history(motion, samples))
-    }
-
-    /// See [`HarmonicForce::force_history`].
-    #[must_use]
-    pub fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        evaluated!(self, force_history(motion, samples))
-    }
-
-    /// See [`HarmonicForce::phases`].
-    #[must_use]
-    pub fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
-        evaluated!(self, phases(motion))
-    }
-
-    /// See [`HarmonicForce::parameter_slope`].
-    pub fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
-        evaluated!(self, parameter_slope(motion, index, out));
-    }
-}
-
 /// The harmonics of the contact force of a periodic motion, and what belongs to them.
 pub trait HarmonicForce {
     /// Slip load of a periodic motion and, if asked for, its tangent. Both belong to each other
@@ -363,7 +328,7 @@ pub trait HarmonicForce {
     /// States at `samples` equidistant instants, instant after instant.
     fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
 
-    /// Contact forces at `samples` equidistant instants, instant after instant [N].
+    /// Contact forces at `samples` equidistant instants, instant after instant \[N\].
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64>;
 
     /// What the components do over a period, from change to change.
@@ -389,7 +354,7 @@ pub trait SlipElement: Send + Sync + std::fmt::Debug {
     /// Stiffness of the stuck element, points × points [N/m].
     fn stiffness(&self) -> Mat<f64>;
 
-    /// Slip limit of every point [N].
+    /// Slip limit of every point \[N\].
     fn limits(&self) -> Vec<f64>;
 
     /// `∂f/∂u` while the points are in these states, points × points [N/m].

@@ -21,6 +21,7 @@ mod slider_parameters;
 mod slip_series;
 mod stick_slip;
 mod structural;
+mod structural_law;
 mod structural_parameters;
 mod transitions;
 
@@ -32,7 +33,7 @@ pub use law::{
     ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary, Residual,
     ReturnMapJacobian, SlipElement, SlipLoad,
 };
-pub use parameter::Parameter;
-pub use registry::{law, Parameters};
+pub use parameter::{Parameter, Parameters};
+pub use registry::law;
 pub use slider::Slider;
 pub use structural::StructuralDamper;

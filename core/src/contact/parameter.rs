@@ -1,4 +1,7 @@
-//! The numbers of a law that can be varied.
+//! The numbers of a law: those that it is built of, and those of them that can be varied.
+
+use crate::Error;
+use std::collections::BTreeMap;
 
 /// A number of a law that can be varied.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,7 +20,7 @@ impl Parameter {
     /// Name of a slip limit.
     pub const SLIP_FORCE: &'static str = "slip_force";
 
-    /// Slip limit of a point [N].
+    /// Slip limit of a point \[N\].
     pub(super) fn slip_force(point: usize, value: f64) -> Self {
         Self { name: Self::SLIP_FORCE, point: Some(point), value, factor: false }
     }
@@ -26,4 +29,17 @@ impl Parameter {
     pub(super) fn stiffness(value: f64) -> Self {
         Self { name: "stiffness", point: None, value, factor: false }
     }
+}
+
+/// Parameters of a law by name.
+pub type Parameters = BTreeMap<String, Vec<f64>>;
+
+/// The numbers a law expects under `name`.
+pub(super) fn numbers<'a>(
+    law: &str,
+    parameters: &'a Parameters,
+    name: &str,
+) -> Result<&'a [f64], Error> {
+    let found = parameters.get(name).map(Vec::as_slice);
+    found.ok_or_else(|| Error::shape(&format!("{law}: {name}"), "numbers", "nothing"))
 }

@@ -1,4 +1,4 @@
-//! The passage of a massless elastic damper through one period, from transition to transition.
+//! The march of a massless elastic damper through one period, from transition to transition.
 //!
 //! While the set of slipping points stays what it is the forces are affine in the displacements,
 //! `f = T u − κ`, and the slip follows from them: both are trigonometric series, whose limits and
@@ -14,7 +14,7 @@ use super::{Motion, PointState, SlipElement as _};
 use crate::fourier::Harmonics;
 use std::borrow::Cow;
 
-/// Rounds after which a passage is taken as it is: its forces repeat after a few.
+/// Rounds after which a march is taken as it is: its forces repeat after a few.
 const MOST_ROUNDS: usize = 200;
 /// Change of the forces over a round, relative to the largest, that counts as none.
 const PERIODIC: f64 = 1e-13;
@@ -246,7 +246,7 @@ impl<'a> March<'a> {
         if self.derivative == Derivative::Limits {
             return;
         }
-        let tangent = &self.sets[self.here.set].sliding.tangent;
+        let tangent = &self.sets[self.here.set].reduced.tangent;
         let size = tangent.nrows() * basis.len();
         for (i, row) in out.chunks_exact_mut(size).enumerate() {
             for (j, block) in row.chunks_exact_mut(basis.len()).enumerate() {
@@ -268,8 +268,8 @@ impl<'a> March<'a> {
         if let Some(known) = self.sets.iter().position(|set| set.slips == slips) {
             return known;
         }
-        let sliding = self.law.elastic.sliding(&slips);
-        self.sets.push(ActiveSet::new(slips, sliding, self.series));
+        let reduced = self.law.elastic.reduced(&slips);
+        self.sets.push(ActiveSet::new(slips, reduced, self.series));
         self.sets.len() - 1
     }
 
@@ -301,7 +301,7 @@ impl<'a> March<'a> {
             let old: Vec<f64> = (0..points).map(|r| self.tangent_row(r, jet.slope())).collect();
             let onset = self.here.states[i] == PointState::Stuck;
             let column: Vec<f64> = {
-                let tangent = &self.sets[self.here.set].sliding.tangent;
+                let tangent = &self.sets[self.here.set].reduced.tangent;
                 (0..points).map(|r| tangent[(r, i)]).collect()
             };
             self.here.states[i] =

@@ -12,12 +12,12 @@ use std::f64::consts::TAU;
 pub struct Slider {
     /// k_d [N/m].
     pub stiffness: f64,
-    /// F_d [N].
+    /// F_d \[N\].
     pub slip_force: f64,
 }
 
 impl Slider {
-    /// An element of stiffness k_d [N/m] and slip force F_d [N]; an infinite slip force never
+    /// An element of stiffness k_d [N/m] and slip force F_d \[N\]; an infinite slip force never
     /// slips.
     ///
     /// # Errors

@@ -65,7 +65,7 @@ pub(super) fn add_slipping(
     if tangent {
         turns.add_anchors(harmonics, matrix);
     }
-    halve_mean_row(harmonics, size, out, tangent);
+    out.halve_means(harmonics);
 }
 
 /// Basis integrals over intervals, from the antiderivatives at their two ends.
@@ -159,15 +159,5 @@ impl Turns {
 fn add_difference(end: &[f64], start: &[f64], factor: f64, out: &mut [f64]) {
     for ((out, end), start) in out.iter_mut().zip(end).zip(start) {
         *out += factor * (end - start);
-    }
-}
-
-/// The mean of a series is its integral over the period, not twice that.
-fn halve_mean_row(harmonics: &Harmonics, size: usize, out: &mut SlipLoad, tangent: bool) {
-    if harmonics.has_mean() {
-        out.value[0] *= 0.5;
-        if tangent {
-            out.tangent[..size].iter_mut().for_each(|entry| *entry *= 0.5);
-        }
     }
 }

@@ -38,7 +38,7 @@ impl Slider {
                     let anchor = path.turns[stick.anchor].value;
                     bounds.add_integral(harmonics, stick.start, stick.end, -weight * anchor, out);
                 }
-                halve_mean(harmonics, out);
+                harmonics.halve_means(out);
             }
         }
     }
@@ -61,7 +61,7 @@ impl Slider {
             }
             StickSlipIntervals::Slipping { sticks, slips } => {
                 self.add_signs(harmonics, path, &sticks, &slips, out);
-                halve_mean(harmonics, out);
+                harmonics.halve_means(out);
             }
         }
     }
@@ -122,12 +122,5 @@ fn add_direction(motion: Motion<'_>, path: &Path<'_>, out: &mut [f64]) {
         let sign = (ends[1].value - ends[0].value).signum();
         bounds.add_integral(harmonics, ends[0].theta, ends[1].theta, weight * sign, out);
     }
-    halve_mean(harmonics, out);
-}
-
-/// The mean of a series is its integral over the period, not twice that.
-fn halve_mean(harmonics: &Harmonics, out: &mut [f64]) {
-    if harmonics.has_mean() {
-        out[0] *= 0.5;
-    }
+    harmonics.halve_means(out);
 }

@@ -1,4 +1,4 @@
-//! Fourier coefficients of the slip load of a passage, and their derivative, exact integrals both.
+//! Fourier coefficients of the slip load of a march, and their derivative, exact integrals both.
 //!
 //! On a stretch `q = (D − T) u + κ`. Products of basis functions are summed over all stretches of
 //! the same slip set at once; moving transitions add nothing, because f is continuous.
@@ -6,12 +6,12 @@
 use super::periodic_march::PeriodicMarch;
 use super::slider_integrals::Bounds;
 use super::{Motion, SlipLoad};
-use crate::fourier::{Harmonics, IntervalSums};
+use crate::fourier::IntervalSums;
 use faer::Mat;
 
-/// Writes the series of the slip load of a passage and, if it carries rates, its tangent.
+/// Writes the series of the slip load of a march and, if it carries rates, its tangent.
 pub(super) fn write(
-    passage: &PeriodicMarch,
+    march: &PeriodicMarch,
     stiffness: &Mat<f64>,
     motion: Motion<'_>,
     out: &mut SlipLoad,
@@ -21,19 +21,19 @@ pub(super) fn write(
     let size = points * slots;
     let weight = 2.0 / harmonics.span();
     let with_tangent = !out.tangent.is_empty();
-    for (index, set) in passage.sets.iter().enumerate() {
+    for (index, set) in march.sets.iter().enumerate() {
         if !set.slips.contains(&true) {
             continue;
         }
         let mut sums = IntervalSums::new(harmonics);
-        for stretch in passage.stretches.iter().filter(|stretch| stretch.set == index) {
+        for stretch in march.stretches.iter().filter(|stretch| stretch.set == index) {
             sums.add(stretch.start, stretch.end);
         }
         let mut products = vec![0.0; slots * slots];
         sums.products(harmonics, weight, |row, column, v| products[row * slots + column] = v);
         for i in 0..points {
             for j in 0..points {
-                let lost = stiffness[(i, j)] - set.sliding.tangent[(i, j)];
+                let lost = stiffness[(i, j)] - set.reduced.tangent[(i, j)];
                 if lost == 0.0 {
                     continue;
                 }
@@ -52,7 +52,7 @@ pub(super) fn write(
     }
     let mut bounds = Bounds::new(harmonics);
     let mut integral = vec![0.0; slots];
-    for stretch in &passage.stretches {
+    for stretch in &march.stretches {
         integral.fill(0.0);
         bounds.add_integral(harmonics, stretch.start, stretch.end, weight, &mut integral);
         for i in 0..points {
@@ -65,28 +65,6 @@ pub(super) fn write(
                     entries.zip(rate).for_each(|(entry, rate)| *entry += integral * rate);
                 }
             }
-        }
-    }
-}
-
-/// The mean of a series is its integral over the period, not twice that.
-pub(super) fn halve_mean(harmonics: &Harmonics, series: &mut [f64]) {
-    if harmonics.has_mean() {
-        series.iter_mut().step_by(harmonics.slots()).for_each(|mean| *mean *= 0.5);
-    }
-}
-
-/// As [`halve_mean`], of the slip loads of all points and their derivative.
-pub(super) fn halve_means(harmonics: &Harmonics, points: usize, out: &mut SlipLoad) {
-    if !harmonics.has_mean() {
-        return;
-    }
-    let slots = harmonics.slots();
-    let size = points * slots;
-    for mean in (0..points).map(|i| i * slots) {
-        out.value[mean] *= 0.5;
-        if let Some(row) = out.tangent.get_mut(mean * size..(mean + 1) * size) {
-            row.iter_mut().for_each(|entry| *entry *= 0.5);
         }
     }
 }

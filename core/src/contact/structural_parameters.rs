@@ -1,8 +1,8 @@
 //! How the forces of a structure-like damper depend on its parameters at fixed displacements.
 //!
 //! Its parameters are the slip limits F, one per point, and a factor a on its stiffness D. The
-//! passage carries `∂f/∂F` through the transitions as it carries the derivative in the displacements
-//! (see `passage`). The factor needs nothing of its own: forces are homogeneous of degree one,
+//! march carries `∂f/∂F` through the transitions as it carries the derivative in the displacements
+//! (see `periodic_march`). The factor needs nothing of its own: forces are homogeneous of degree one,
 //! `f(u; aD, F) = a f(u; D, F/a)`, so that at a = 1
 //!
 //! `∂f/∂a = f − Σ F_i ∂f/∂F_i`.
@@ -11,7 +11,6 @@ use super::derivative::Derivative;
 use super::law::HarmonicForce as _;
 use super::periodic_march::PeriodicMarch;
 use super::slider_integrals::Bounds;
-use super::slip_series::halve_mean;
 use super::{Elastic, Motion, Parameter, SlipLoad, StructuralDamper};
 use crate::Error;
 use faer::Mat;
@@ -70,8 +69,8 @@ impl StructuralDamper {
             }
             return;
         }
-        let passage = PeriodicMarch::new(self, motion, Derivative::Limits);
-        if !passage.resolved {
+        let march = PeriodicMarch::new(self, motion, Derivative::Limits);
+        if !march.resolved {
             out.fill(f64::NAN);
             return;
         }
@@ -79,7 +78,7 @@ impl StructuralDamper {
         let mut bounds = Bounds::new(harmonics);
         let weight = 2.0 / harmonics.span();
         let mut integral = vec![0.0; harmonics.slots()];
-        for stretch in &passage.stretches {
+        for stretch in &march.stretches {
             integral.fill(0.0);
             bounds.add_integral(harmonics, stretch.start, stretch.end, weight, &mut integral);
             for (point, series) in out.chunks_exact_mut(integral.len()).enumerate() {
@@ -88,7 +87,7 @@ impl StructuralDamper {
                 series.iter_mut().zip(&integral).for_each(|(s, integral)| *s += rate * integral);
             }
         }
-        halve_mean(harmonics, out);
+        harmonics.halve_means(out);
     }
 
     /// Series of `∂f/∂a`, where the damper has been given the stiffness aD.

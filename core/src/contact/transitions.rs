@@ -21,7 +21,7 @@ impl March<'_> {
         if !(limit > 0.0 && limit.is_finite()) {
             return false;
         }
-        let set = &self.sets[self.here.set].sliding;
+        let set = &self.sets[self.here.set].reduced;
         let (matrix, sign) = match self.here.states[i] {
             PointState::Stuck if force[i].abs() < limit => return false,
             PointState::Stuck => (&set.tangent, force[i].signum()),
@@ -107,7 +107,7 @@ impl March<'_> {
             [sign * jet[1], sign * jet[2]]
         };
         let parts = to.slope().iter().enumerate();
-        let size: f64 = parts.map(|(j, x)| (set.sliding.slip_rate[(i, j)] * x).abs()).sum();
+        let size: f64 = parts.map(|(j, x)| (set.reduced.slip_rate[(i, j)] * x).abs()).sum();
         if end < -AT_REST * size {
             return Some(root([from.theta, to.theta], &slope));
         }

@@ -34,7 +34,7 @@ pub struct Peak {
     pub value: f64,
     /// Frequency of the peak [rad/s].
     pub omega: f64,
-    /// Its amplitude [m].
+    /// Its amplitude \[m\].
     pub amplitude: f64,
     /// Derivative of its amplitude in the parameter.
     pub slope: f64,
@@ -43,7 +43,7 @@ pub struct Peak {
     pub status: PointStatus,
     /// Highest harmonic kept.
     pub harmonics: usize,
-    /// What the discarded harmonics, and more samples, could change in its amplitude [m].
+    /// What the discarded harmonics, and more samples, could change in its amplitude \[m\].
     pub error_estimate: f64,
     /// Whether it lies at an end of the range.
     pub at_edge: bool,

@@ -1,7 +1,7 @@
 //! Where a search for the highest point looks first.
 
 use super::samples::Sample;
-use super::search::Aim;
+use crate::fourier::Measure;
 use crate::model::{Model, Resonance};
 use crate::Error;
 
@@ -12,6 +12,30 @@ const INTERVALS: [usize; 2] = [8, 24];
 const BANDWIDTHS: f64 = 3.0;
 /// Maxima from this share of the highest are looked at again in the next response.
 const RIVAL: f64 = 0.7;
+
+/// When a top is known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Precision {
+    /// Gain in height, relative, that is not worth another point.
+    pub(super) gain: f64,
+    /// The same in the last steps to where the slope vanishes: the frequency errs by the root of it,
+    /// in bandwidths.
+    pub(super) flat: f64,
+}
+
+/// What is looked for.
+#[derive(Debug, Clone)]
+pub(super) struct Aim {
+    /// DOFs, group by group; the highest of each group is sought.
+    pub(super) groups: Vec<Vec<usize>>,
+    /// Measure of their amplitudes.
+    pub(super) measure: Measure,
+    /// Range of frequencies [rad/s].
+    pub(super) span: (f64, f64),
+    pub(super) precision: Precision,
+    /// Points after which a search ends in any case.
+    pub(super) most_points: usize,
+}
 
 /// A resonance inside the range.
 #[derive(Debug, Clone)]

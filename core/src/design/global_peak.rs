@@ -1,9 +1,9 @@
 //! The highest point that any DOF of a group reaches over a range of frequencies: the most loaded
 //! blade of a disk, and where.
 
-use super::first_look::FirstLook;
+use super::first_look::{Aim, FirstLook, Precision};
 use super::samples::Sample;
-use super::search::{Aim, Found, Precision, Search};
+use super::search::{Found, Search};
 use crate::balance::{
     Evaluation, ForcedBalance, HarmonicChoice, PointStatus, Progress, Resolution, Settings,
     WarmStart,
@@ -39,7 +39,7 @@ pub struct PeakQuery {
 pub struct GlobalPeak {
     /// Its frequency; of a missing summit, where nothing bounds the response, if that is why [rad/s].
     pub omega: f64,
-    /// Its amplitude [m].
+    /// Its amplitude \[m\].
     pub amplitude: f64,
     /// Position of its DOF in the group.
     pub member: usize,
@@ -48,7 +48,7 @@ pub struct GlobalPeak {
     pub status: PointStatus,
     /// Highest harmonic kept.
     pub harmonics: usize,
-    /// What the discarded harmonics, and more samples, could change in its amplitude [m].
+    /// What the discarded harmonics, and more samples, could change in its amplitude \[m\].
     pub error_estimate: f64,
     /// Whether it lies at an end of the range.
     pub at_edge: bool,

@@ -13,7 +13,7 @@ use faer::Mat;
 /// damping ratios; couplings (index c) do not deviate.
 #[derive(Debug)]
 pub struct TunedDisk {
-    /// Mass M of a sector with what couplings add [kg].
+    /// Mass M of a sector with what couplings add \[kg\].
     pub mass: Mat<f64>,
     /// Stiffness K of a sector by itself [N/m].
     pub stiffness: Mat<f64>,

@@ -8,12 +8,11 @@
 //! is followed by itself.
 
 use super::envelope::{is_shortest, Envelope, Gap};
-use super::first_look::{Candidate, FirstLook};
+use super::first_look::{Aim, Candidate, FirstLook};
 use super::interpolant::Knot;
 use super::samples::{predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
 use crate::contact::Residual;
-use crate::fourier::Measure;
 use crate::Error;
 
 /// Points without a solution after which an interval is closed without another attempt.
@@ -37,30 +36,6 @@ const OVERLAID: f64 = 10.0;
 const UNRESOLVED: f64 = 1e-3;
 /// Steps that bring a top to where its slope vanishes.
 const STEPS: usize = 3;
-
-/// When a top is known.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Precision {
-    /// Gain in height, relative, that is not worth another point.
-    pub(super) gain: f64,
-    /// The same in the last steps to where the slope vanishes: the frequency errs by the root of it,
-    /// in bandwidths.
-    pub(super) flat: f64,
-}
-
-/// What is looked for.
-#[derive(Debug, Clone)]
-pub(super) struct Aim {
-    /// DOFs, group by group; the highest of each group is sought.
-    pub(super) groups: Vec<Vec<usize>>,
-    /// Measure of their amplitudes.
-    pub(super) measure: Measure,
-    /// Range of frequencies [rad/s].
-    pub(super) span: (f64, f64),
-    pub(super) precision: Precision,
-    /// Points after which a search ends in any case.
-    pub(super) most_points: usize,
-}
 
 /// The highest point of a group.
 #[derive(Debug, Clone, Copy)]

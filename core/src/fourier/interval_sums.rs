@@ -89,36 +89,3 @@ impl IntervalSums {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn products_agree_with_quadrature() {
-        for half_wave in [false, true] {
-            let harmonics = Harmonics::new(5, half_wave);
-            let size = harmonics.slots();
-            let (start, end) = (0.4, 2.9);
-            let mut sums = IntervalSums::new(&harmonics);
-            sums.add(start, end);
-            let mut matrix = vec![vec![0.0; size]; size];
-            sums.products(&harmonics, 1.0, |i, j, v| matrix[i][j] = v);
-            let samples = 4000;
-            let h = (end - start) / samples as f64;
-            let mut expected = vec![vec![0.0; size]; size];
-            let mut basis = vec![0.0; size];
-            for n in 0..samples {
-                harmonics.basis(start + (n as f64 + 0.5) * h, &mut basis);
-                for (i, a) in basis.iter().enumerate() {
-                    for (j, b) in basis.iter().enumerate() {
-                        expected[i][j] += h * a * b;
-                    }
-                }
-            }
-            for (got, want) in matrix.iter().flatten().zip(expected.iter().flatten()) {
-                assert!((got - want).abs() < 1e-6, "{got} {want}");
-            }
-        }
-    }
-}

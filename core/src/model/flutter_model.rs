@@ -1,11 +1,13 @@
 //! A family of self-excited models: a structure with friction and the damping `C + r C_neg`, in r or
 //! in a parameter of its contacts.
 
-use super::{Body, Change, Model, ParameterMode, Variation};
+use super::body::Body;
+use super::{Change, Model, ParameterMode, Variation};
 use crate::contact::ContactLaw;
-use crate::structure::FlutterCompliance;
+use crate::structure::{FlutterCompliance, Ports};
 use crate::Error;
 use faer::{c64, Mat};
+use std::sync::Arc;
 
 /// The negative damping of a model.
 #[derive(Debug, Clone)]
@@ -23,7 +25,7 @@ pub enum NegativeDamping {
 pub struct FlutterModel<'a> {
     model: &'a Model,
     negative: NegativeDamping,
-    destabilised: FlutterCompliance,
+    compliance: FlutterCompliance,
     ratio: f64,
     variation: Variation,
     changes: Vec<Change>,
@@ -53,7 +55,7 @@ impl<'a> FlutterModel<'a> {
             return Err(Error::value("contacts", 0.0, remedy));
         }
         let rows = model.ports().rows.as_ref();
-        let destabilised = match (&negative, &model.body) {
+        let compliance = match (&negative, &model.body) {
             (
                 NegativeDamping::Whole(matrix) | NegativeDamping::Proportional(matrix),
                 Body::Whole | Body::Ring(_),
@@ -80,7 +82,7 @@ impl<'a> FlutterModel<'a> {
             return Err(Error::value("level", ratio, remedy));
         }
         let changes = variation.changes(model)?;
-        Ok(Self { model, negative, destabilised, ratio, variation, changes })
+        Ok(Self { model, negative, compliance, ratio, variation, changes })
     }
 
     /// The model as it is given.
@@ -97,8 +99,8 @@ impl<'a> FlutterModel<'a> {
 
     /// The compliance.
     #[must_use]
-    pub fn destabilised(&self) -> &FlutterCompliance {
-        &self.destabilised
+    pub fn compliance(&self) -> &FlutterCompliance {
+        &self.compliance
     }
 
     /// The negative damping of a whole structure; nothing of a travelling wave, which has no
@@ -127,6 +129,30 @@ impl<'a> FlutterModel<'a> {
     /// A value that a law refuses.
     pub fn laws_at(&self, value: f64) -> Result<Vec<Box<dyn ContactLaw>>, Error> {
         self.variation.laws(self.model, value)
+    }
+
+    /// The model without loads at a value of the number that is varied.
+    ///
+    /// # Errors
+    /// A value that a law refuses.
+    pub fn at(&self, value: f64) -> Result<Model, Error> {
+        let (given, laws) = (self.model, self.laws_at(value)?);
+        let stiffness = given.stiffness_of(&laws);
+        let ports = Ports {
+            rows: given.ports.rows.clone(),
+            stiffness: stiffness.clone(),
+            loads: Vec::new(),
+        };
+        Ok(Model {
+            structure: Arc::clone(&given.structure),
+            ports: Arc::new(ports),
+            laws,
+            points: given.points.clone(),
+            compliance: self.compliance.at(self.ratio_at(value), stiffness),
+            modal_base: self.compliance.name(),
+            body: given.body.clone(),
+            states: Arc::clone(&given.states),
+        })
     }
 
     /// The parameters of the laws that it changes; none of the ratio.

@@ -1,6 +1,8 @@
 //! A structure with its contacts and loads: the problem, before any setting or solver.
 
+mod body;
 mod contact_assembly;
+mod contact_states;
 mod flutter_model;
 mod resonances;
 mod slipping;
@@ -12,13 +14,13 @@ pub use variation::{Change, ParameterMode, Variation};
 
 use crate::contact::{Aft, ContactLaw, Parameter};
 use crate::structure::{
-    compliance, Compliance, CyclicCompliance, CyclicPorts, CyclicStructure, HarmonicLoad, Ports,
-    Ring, RingCoupling, RingSector, Structure,
+    Compliance, CyclicStructure, HarmonicLoad, Ports, Ring, RingCoupling, RingSector, Structure,
 };
 use crate::Error;
+use body::Body;
 use contact_assembly::ContactAssembly;
+use contact_states::{slip_kinds, States};
 use faer::Mat;
-use resonances::{slip_kinds, States};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -56,48 +58,6 @@ pub struct Model {
     modal_base: &'static str,
     body: Body,
     states: Arc<States>,
-}
-
-/// How the structure of a model is given.
-#[derive(Clone)]
-enum Body {
-    /// By its matrices.
-    Whole,
-    /// As one sector of a disk in a travelling wave, with the rows of B on the next sector.
-    Wave { cyclic: Arc<CyclicStructure>, next: Arc<Mat<f64>> },
-    /// As a ring of sectors that may differ.
-    Ring(Arc<Ring>),
-}
-
-impl Body {
-    /// The compliance of the body with contacts of the stiffness in `ports`, and its name.
-    fn compliance(
-        &self,
-        structure: &Structure,
-        ports: &Ports,
-    ) -> Result<(Arc<dyn Compliance>, &'static str), Error> {
-        match self {
-            Self::Whole => {
-                let (compliance, name) = compliance(structure, ports)?;
-                Ok((compliance.into(), name))
-            }
-            Self::Wave { cyclic, next } => {
-                let ports = CyclicPorts {
-                    own: ports.rows.clone(),
-                    next: Mat::clone(next),
-                    stiffness: ports.stiffness.clone(),
-                    loads: ports.loads.clone(),
-                };
-                Ok((
-                    Arc::new(CyclicCompliance::new(CyclicStructure::clone(cyclic), ports)?),
-                    "waves",
-                ))
-            }
-            Self::Ring(ring) => {
-                Ok((Arc::new(ring.with_contact_stiffness(ports.stiffness.as_ref())?), "sectors"))
-            }
-        }
-    }
 }
 
 impl Model {
@@ -225,10 +185,7 @@ impl Model {
         if expected != got {
             return Err(Error::shape("laws", format!("{expected:?} points"), format!("{got:?}")));
         }
-        let mut stiffness = self.ports.stiffness.clone();
-        for (law, range) in laws.iter().zip(&self.points) {
-            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
-        }
+        let stiffness = self.stiffness_of(&laws);
         let (structure, points) = (Arc::clone(&self.structure), self.points.clone());
         let (mut ports, mut compliance) = (Arc::clone(&self.ports), Arc::clone(&self.compliance));
         let (mut modal_base, body) = (self.modal_base, self.body.clone());
@@ -243,6 +200,15 @@ impl Model {
             states = Arc::new(States::of(&body, structure.dofs()));
         }
         Ok(Self { structure, ports, laws, points, compliance, modal_base, body, states })
+    }
+
+    /// Stiffness D of all points under other laws [N/m].
+    pub(crate) fn stiffness_of(&self, laws: &[Box<dyn ContactLaw>]) -> Mat<f64> {
+        let mut stiffness = self.ports.stiffness.clone();
+        for (law, range) in laws.iter().zip(&self.points) {
+            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
+        }
+        stiffness
     }
 
     /// Whether this is one sector of a disk in a travelling wave.

@@ -5,19 +5,14 @@
 //! state in which every point does one or the other, or where the little that slipping points still
 //! carry moves it from there.
 
-use super::{Body, Model};
-use crate::contact::ContactLaw;
+use super::body::Body;
+use super::contact_states::{slip_sets, State};
+use super::Model;
 use crate::structure::Poles;
 use crate::Error;
 use faer::{c64, Mat};
 use std::f64::consts::PI;
-use std::sync::OnceLock;
 
-/// States of the contacts, at most: all of a few points; of more the stuck and the slipping one, and
-/// those in which one point differs from all others.
-const MOST_STATES: usize = 16;
-/// DOFs above which only stuck and free natural frequencies are known.
-const MOST_DOFS: usize = 400;
 /// Decay, over the highest natural frequency, that is rounding of none.
 const UNDAMPED: f64 = 1e-14;
 /// Bisections of an amplitude over up to twelve decades.
@@ -39,36 +34,6 @@ pub struct Resonance {
     pub unbounded: bool,
     /// Whether the load itself excites that harmonic.
     pub forced: bool,
-}
-
-/// Poles of a state, by what load and slip forces do to them and what the DOFs show of them.
-#[derive(Debug)]
-struct State {
-    poles: Poles,
-    /// Effect of a unit force at every contact point on every pole, none of points that stick, and
-    /// what the point shows of it.
-    contacts: Vec<Vec<[f64; 2]>>,
-    /// Which points slip.
-    slips: Vec<bool>,
-    /// Whether all points that can slip do.
-    all: bool,
-}
-
-/// The states of a model per nodal diameter, found when they are first needed.
-#[derive(Debug)]
-pub(super) struct States {
-    diameters: Vec<OnceLock<Result<Vec<State>, Error>>>,
-}
-
-impl States {
-    pub(super) fn of(body: &Body, dofs: usize) -> Self {
-        let count = match body {
-            Body::Wave { cyclic, .. } => cyclic.sectors,
-            Body::Whole if dofs <= MOST_DOFS => 1,
-            Body::Whole | Body::Ring(_) => 0,
-        };
-        Self { diameters: (0..count).map(|_| OnceLock::new()).collect() }
-    }
 }
 
 impl Model {
@@ -348,31 +313,4 @@ where
     }
     let carried = |one: &SlippingPoint| one.effect * one.seen * one.describing(one.seen * low)[0];
     Some(points.iter().map(carried).sum())
-}
-
-/// Which points always slip, and which never do: what the states of a model depend on.
-pub(super) fn slip_kinds(laws: &[Box<dyn ContactLaw>]) -> Vec<(bool, bool)> {
-    let limits = laws.iter().flat_map(|law| law.limits());
-    limits.map(|limit| (limit == 0.0, limit.is_infinite())).collect()
-}
-
-/// The points that slip in each state that matters: those without friction always do, those without
-/// a limit never.
-fn slip_sets(limits: &[f64]) -> Vec<Vec<bool>> {
-    let either: Vec<usize> =
-        (0..limits.len()).filter(|&i| limits[i] > 0.0 && limits[i].is_finite()).collect();
-    let state = |slips: &dyn Fn(usize) -> bool| -> Vec<bool> {
-        let mut state: Vec<bool> = limits.iter().map(|limit| *limit == 0.0).collect();
-        either.iter().enumerate().for_each(|(position, &i)| state[i] = slips(position));
-        state
-    };
-    let count = either.len();
-    if count < usize::BITS as usize && 1 << count <= MOST_STATES {
-        return (0..1 << count).map(|mask: usize| state(&|i| mask >> i & 1 == 1)).collect();
-    }
-    let mut sets = vec![state(&|_| false), state(&|_| true)];
-    if 2 * (count + 1) <= 2 * MOST_STATES {
-        sets.extend((0..count).flat_map(|one| [state(&|i| i == one), state(&|i| i != one)]));
-    }
-    sets
 }

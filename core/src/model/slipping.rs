@@ -1,6 +1,7 @@
 //! Natural frequencies with some contact points slipping and all others stuck.
 
-use super::{Body, Model};
+use super::body::Body;
+use super::Model;
 use crate::solve::hermitian_eigen;
 use crate::structure::natural_frequencies;
 use crate::Error;

@@ -68,9 +68,9 @@ pub struct Classification {
     pub share: f64,
     /// Angular frequency of a settled motion [rad/s]; not-a-number otherwise.
     pub omega: f64,
-    /// Half the range of every DOF at the end [m].
+    /// Half the range of every DOF at the end \[m\].
     pub amplitude: Vec<f64>,
-    /// When it was decided [s].
+    /// When it was decided \[s\].
     pub time: f64,
     /// State then: displacements, velocities, contact forces.
     pub state: Vec<f64>,
@@ -97,7 +97,7 @@ pub struct Classifier {
     passive: bool,
     /// Stuck modes in coordinates η, one per column.
     modes: Mat<f64>,
-    /// Period of the lowest stuck mode [s].
+    /// Period of the lowest stuck mode \[s\].
     slow: f64,
     /// Frequency of the highest stuck mode [rad/s].
     fast: f64,
@@ -189,10 +189,16 @@ impl Classifier {
             }
             state.time = 0.0;
             let run = flow.run(&mut state, self.slow, &mut |passage| {
-                if let FlowEvent::Segment(arc) = passage {
-                    returns.follow(&arc, begin, &self.system, &coordinates, &mut |size, error| {
-                        trend.add(quarter, size, error);
-                    });
+                if let FlowEvent::Segment(segment) = passage {
+                    returns.follow(
+                        &segment,
+                        begin,
+                        &self.system,
+                        &coordinates,
+                        &mut |size, error| {
+                            trend.add(quarter, size, error);
+                        },
+                    );
                 }
             });
             match run {
@@ -247,7 +253,7 @@ impl Classifier {
         (0..self.modes.nrows()).map(|j| self.modes[(j, mode)]).collect()
     }
 
-    /// Follows a motion over a span [s]: ranges of the DOFs, kinetic energies of the stuck modes.
+    /// Follows a motion over a span \[s\]: ranges of the DOFs, kinetic energies of the stuck modes.
     fn survey(
         &self,
         state: &mut State,
@@ -268,15 +274,12 @@ impl Classifier {
         let (mut x, mut v) = (vec![0.0; n], vec![0.0; n]);
         state.time = 0.0;
         flow.run(state, span, &mut |passage| {
-            let FlowEvent::Segment(arc) = passage else { return };
-            for (shape, range) in shapes.iter().zip(&mut survey.range) {
-                arc.series.project(shape.iter().copied(), arc.length, &mut extremes.series);
-                extremes.widen(range);
-            }
-            let end = arc.start + arc.duration();
+            let FlowEvent::Segment(segment) = passage else { return };
+            extremes.follow(&segment, &shapes, &mut survey.range);
+            let end = segment.start + segment.duration();
             while next < samples && next * instant < end {
-                arc.series.motion_at(
-                    (next * instant - arc.start) * arc.series.rate(),
+                segment.series.motion_at(
+                    (next * instant - segment.start) * segment.series.rate(),
                     &mut x,
                     &mut v,
                 );

@@ -21,7 +21,7 @@ const CHANGES: usize = 8;
 /// A contact point changes from stick to slip or back.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// Time in the period [s].
+    /// Time in the period \[s\].
     pub time: f64,
     /// Contact point.
     pub point: usize,
@@ -34,7 +34,7 @@ pub struct Event {
 pub struct FlowSegment<'a> {
     /// Motion as a power series.
     pub series: &'a PowerSeries,
-    /// Time at its start [s].
+    /// Time at its start \[s\].
     pub start: f64,
     /// Length in τ of the series.
     pub length: f64,
@@ -43,7 +43,7 @@ pub struct FlowSegment<'a> {
 }
 
 impl FlowSegment<'_> {
-    /// Length [s].
+    /// Length \[s\].
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.length / self.series.rate()
@@ -147,7 +147,7 @@ impl<'a> Flow<'a> {
         self.steps >= self.granted
     }
 
-    /// Moves a state on to the time `until` [s].
+    /// Moves a state on to the time `until` \[s\].
     ///
     /// # Errors
     /// The motion becomes unbounded, contacts do not settle on a state, the steps are spent, or the
@@ -225,11 +225,7 @@ impl<'a> Flow<'a> {
     }
 
     fn move_on(&self, state: &mut State, length: f64) {
-        self.series.motion_at(length, &mut state.displacement, &mut state.velocity);
-        for (point, force) in state.force.iter_mut().enumerate() {
-            let limit = self.system.limits[point];
-            *force = self.series.force_at(point, length).clamp(-limit, limit);
-        }
+        self.series.state_at(length, &self.system.limits, state.parts());
         state.time += length / self.series.rate();
     }
 
@@ -327,80 +323,5 @@ fn rescale(a: &mut [f64], length: f64) {
     for a in a {
         *a *= scale;
         scale *= length;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::contact::StructuralDamper;
-    use crate::model::{Contact, Model};
-    use crate::structure::Structure;
-    use faer::{mat, Mat};
-
-    /// Three masses on springs, joined by a damper that touches all of them.
-    fn masses() -> Model {
-        let mass = Mat::<f64>::identity(3, 3);
-        let stiffness = mat![[1.0, 0.0, 0.0], [0.0, 1.7, 0.0], [0.0, 0.0, 2.9]];
-        let structure =
-            Structure::new(mass.as_ref(), Mat::zeros(3, 3).as_ref(), stiffness.as_ref()).unwrap();
-        let damper = mat![[3.0, -2.4, -0.5], [-2.4, 3.4, -0.8], [-0.5, -0.8, 1.5]];
-        let law = StructuralDamper::new(damper.as_ref(), &[0.2, 0.5, 0.3]).unwrap();
-        let contacts = vec![Contact { law: Box::new(law), rows: Mat::identity(3, 3) }];
-        Model::new(structure, contacts, Vec::new()).unwrap()
-    }
-
-    #[test]
-    fn no_point_slips_against_its_force() {
-        let model = masses();
-        let system = ModalSystem::new(&model).unwrap();
-        let mut turned_back = 0;
-        for start in 0..40 {
-            let mut state = State::rest(&system);
-            for (j, v) in state.velocity.iter_mut().enumerate() {
-                *v = 2.0 * (f64::from(start) * (1.3 + j as f64)).sin();
-            }
-            let mut begun = f64::NAN;
-            Flow::new(&system, 1.0)
-                .run(&mut state, 20.0, &mut |passage| match passage {
-                    FlowEvent::Segment(arc) => {
-                        let (mut x, mut v) = (vec![0.0; 3], vec![0.0; 3]);
-                        arc.series.motion_at(0.5 * arc.length, &mut x, &mut v);
-                        let speed = system.contact_displacement(&v);
-                        for (i, point) in arc.regime.points.iter().enumerate() {
-                            let slip: f64 =
-                                (0..3).map(|j| arc.regime.slip_rate[(i, j)] * speed[j]).sum();
-                            assert!(slip * point.sign() >= -1e-9, "{start}: {i} at {slip}");
-                        }
-                    }
-                    FlowEvent::Event { event, .. } if event.state != PointState::Stuck => {
-                        begun = event.time;
-                    }
-                    FlowEvent::Event { event, .. } => {
-                        turned_back += usize::from(event.time == begun);
-                    }
-                })
-                .unwrap();
-        }
-        assert!(turned_back > 0);
-    }
-
-    #[test]
-    fn a_flow_takes_the_steps_that_it_is_granted_and_asks_whether_to_end() {
-        let model = masses();
-        let system = ModalSystem::new(&model).unwrap();
-        let mut state = State::rest(&system);
-        state.velocity[0] = 1.0;
-        let mut flow = Flow::new(&system, 1.0).granted(7);
-        let run = flow.run(&mut state.clone(), 1e6, &mut |_| {});
-        assert_eq!((run, flow.steps, flow.is_spent()), (Err(Halt::Steps), 7, true));
-        let asked = std::cell::Cell::new(0);
-        let interrupted = || {
-            asked.set(asked.get() + 1);
-            asked.get() > 3
-        };
-        let mut flow = Flow::new(&system, 1.0).watched(&interrupted);
-        let run = flow.run(&mut state, 1e6, &mut |_| {});
-        assert_eq!((run, flow.steps), (Err(Halt::Interrupted), 3 * LOOK));
     }
 }

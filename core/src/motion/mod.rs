@@ -2,8 +2,11 @@
 //! of free motions.
 
 mod basin;
+mod bodies;
 mod classification;
+mod damping;
 mod flow;
+mod history;
 mod modal_system;
 mod output;
 mod phase;
@@ -19,11 +22,12 @@ mod transition;
 pub use basin::fates;
 pub use classification::{Classification, ClassificationSettings, Classifier, Reason};
 pub use flow::{Event, Flow, FlowEvent, FlowSegment, Halt};
+pub use history::{History, Scheme, Trace, TransientSettings};
 pub use modal_system::{ContactState, ModalSystem};
 pub(crate) use output::Extremes;
 pub(crate) use polynomial::value;
 pub use power_series::PowerSeries;
 pub use runge_kutta::RungeKutta;
 pub use state::State;
-pub use transient::{transient, History, Scheme, Trace, TransientSettings};
+pub use transient::transient;
 pub(crate) use transition::{LinearPhase, Transition};

@@ -1,34 +1,12 @@
 //! The equations of motion in the modes of the structure without contacts.
 
-use crate::contact::{Elastic, PointState, PointSummary, SlipElement};
+use super::bodies::{elements, limits_of, Body};
+use super::damping::Damping;
+use crate::contact::{PointState, PointSummary};
 use crate::model::Model;
-use crate::structure::{real_modes, ModalDamping, RealModes};
+use crate::structure::{modes, ModalDamping, RealModes};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
-use std::ops::Range;
-use std::sync::Arc;
-
-/// Modal damping.
-#[derive(Debug, Clone)]
-pub(super) enum Damping {
-    /// One coefficient per mode: the damping is proportional.
-    Diagonal(Vec<f64>),
-    /// A full modal matrix.
-    Full(Mat<f64>),
-}
-
-/// An element of a contact: its law, its points and what deforms in it.
-#[derive(Debug, Clone)]
-pub(crate) struct Body {
-    pub(crate) law: Arc<dyn SlipElement>,
-    /// Position of its contact.
-    pub(crate) contact: usize,
-    /// Its points among those of all elements.
-    pub(crate) points: Range<usize>,
-    /// Its strains among those of the model.
-    pub(crate) strains: Range<usize>,
-    pub(crate) elastic: Elastic,
-}
 
 /// `η'' + Φᵀ C Φ η' + Ω² η + (B Φ)ᵀ f = Φᵀ P(t)`, with `x = Φ η` and `u = B Φ η`.
 ///
@@ -50,7 +28,7 @@ pub struct ModalSystem {
     pub(super) loads: Vec<(usize, Vec<c64>)>,
     /// Highest rate of the motion [1/s]: the unit of time of a power series.
     rate: f64,
-    /// Slip limits of all points [N].
+    /// Slip limits of all points \[N\].
     pub(super) limits: Vec<f64>,
     /// The elements of the contacts.
     bodies: Vec<Body>,
@@ -67,7 +45,7 @@ impl ModalSystem {
             return Err(Error::TravellingWave);
         }
         let structure = model.structure();
-        let modes = real_modes(structure.mass(), structure.stiffness())?;
+        let modes = modes(structure.mass(), structure.stiffness())?;
         let damping = modes.damping(structure.damping());
         let size = modes.omega_squared.len();
         let rows = &model.ports().rows * &modes.shapes;
@@ -281,20 +259,7 @@ impl ModalSystem {
 
     /// `Φᵀ C Φ η'`, times `factor`, added to `out`.
     pub(crate) fn add_damping(&self, velocity: &[f64], factor: f64, out: &mut [f64]) {
-        match &self.damping {
-            Damping::Diagonal(damping) => {
-                for ((out, c), v) in out.iter_mut().zip(damping).zip(velocity) {
-                    *out += factor * c * v;
-                }
-            }
-            Damping::Full(damping) => {
-                for (j, v) in velocity.iter().enumerate() {
-                    for (i, out) in out.iter_mut().enumerate() {
-                        *out += factor * damping[(i, j)] * v;
-                    }
-                }
-            }
-        }
+        self.damping.add_product(velocity, factor, out);
     }
 
     /// Whether each mode is damped by itself.
@@ -308,7 +273,7 @@ impl ModalSystem {
         &self.omega_squared
     }
 
-    /// Slip limits of all points of the elements [N].
+    /// Slip limits of all points of the elements \[N\].
     #[must_use]
     pub fn limits(&self) -> &[f64] {
         &self.limits
@@ -323,26 +288,6 @@ impl ModalSystem {
     pub(crate) fn strains(&self) -> usize {
         self.bodies.last().map_or(0, |body| body.strains.end)
     }
-}
-
-/// The elements of all contacts, and the contact displacement that each of their points acts on.
-fn elements(model: &Model) -> Result<(Vec<Body>, Vec<usize>), Error> {
-    let (mut bodies, mut components) = (Vec::<Body>::new(), Vec::new());
-    for (contact, (law, range)) in model.laws().iter().zip(model.points()).enumerate() {
-        let elements = law
-            .elements()
-            .ok_or_else(|| Error::NoEvents { contact: contact + 1, law: law.name().to_owned() })?;
-        for element in elements {
-            let elastic = Elastic::new(element.law.stiffness().as_ref())?;
-            let first = bodies.last().map_or(0, |body| body.strains.end);
-            let strains = first..first + elastic.rank();
-            let start = components.len();
-            components.extend(element.components.iter().map(|own| range.start + own));
-            let points = start..components.len();
-            bodies.push(Body { law: element.law, contact, points, strains, elastic });
-        }
-    }
-    Ok((bodies, components))
 }
 
 /// `∂f/∂u` and slip per displacement of all contacts in given states.
@@ -377,30 +322,10 @@ impl ContactState {
     }
 }
 
-impl Damping {
-    /// From a damping in the modes of the structure.
-    fn of(modal: &ModalDamping) -> Self {
-        if modal.is_diagonal() {
-            Self::Diagonal(modal.diagonal())
-        } else {
-            Self::Full(real(modal))
-        }
-    }
-}
-
-fn real(modal: &ModalDamping) -> Mat<f64> {
-    let matrix = modal.matrix();
-    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].re)
-}
-
 /// Fastest rate of the free motion [1/s].
 fn rate_of(model: &Model, damping: &ModalDamping) -> f64 {
     model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0)
         + damping.matrix().norm_l2()
-}
-
-fn limits_of(bodies: &[Body]) -> Vec<f64> {
-    bodies.iter().flat_map(|body| body.law.limits()).collect()
 }
 
 fn is_zero(load: &[c64]) -> bool {

@@ -1,11 +1,11 @@
 //! What a time integration hands out: samples, ranges and events, period after period.
 
-use super::flow::{Event, Flow, FlowEvent, Halt};
+use super::flow::{Event, Flow, FlowEvent, FlowSegment, Halt};
+use super::history::{History, Trace, TransientSettings};
 use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{sign_changes, value};
 use super::runge_kutta::RungeKutta;
 use super::state::State;
-use super::transient::{History, Trace, TransientSettings};
 use std::f64::consts::TAU;
 
 /// Share of a sampling interval by which rounding may miss an instant.
@@ -44,12 +44,12 @@ impl<'a> Output<'a> {
         trace.force.extend(self.system.contact_forces(force));
     }
 
-    /// Time of an output instant within the period [s].
+    /// Time of an output instant within the period \[s\].
     fn instant(&self, sample: usize) -> f64 {
         TAU / self.settings.omega * sample as f64 / self.settings.samples as f64
     }
 
-    /// Follows the exact flow over one period that begins at `begin` [s]. `false` if the caller has
+    /// Follows the exact flow over one period that begins at `begin` \[s\]. `false` if the caller has
     /// ended the run, which then keeps whole periods alone.
     pub(super) fn follow(
         &self,
@@ -68,23 +68,15 @@ impl<'a> Output<'a> {
         let mut extremes = Extremes::default();
         let (trace, events) = (&mut history.trace, &mut history.events);
         let run = flow.run(state, until, &mut |passage| match passage {
-            FlowEvent::Segment(arc) => {
-                let end = arc.start + arc.duration();
+            FlowEvent::Segment(segment) => {
+                let end = segment.start + segment.duration();
                 while sample <= self.settings.samples && self.instant(sample) <= end + slack {
-                    let tau = (self.instant(sample) - arc.start) * arc.series.rate();
-                    arc.series.motion_at(tau, &mut x, &mut v);
-                    for (point, f) in f.iter_mut().enumerate() {
-                        let limit = self.system.limits()[point];
-                        *f = arc.series.force_at(point, tau).clamp(-limit, limit);
-                    }
+                    let tau = (self.instant(sample) - segment.start) * segment.series.rate();
+                    segment.series.state_at(tau, self.system.limits(), [&mut x, &mut v, &mut f]);
                     self.push(begin + self.instant(sample), &x, &v, &f, trace);
                     sample += 1;
                 }
-                for (shape, range) in self.shapes.iter().zip(&mut range) {
-                    let shape = shape.iter().copied();
-                    arc.series.project(shape, arc.length, &mut extremes.series);
-                    extremes.widen(range);
-                }
+                extremes.follow(&segment, &self.shapes, &mut range);
             }
             FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
@@ -100,7 +92,7 @@ impl<'a> Output<'a> {
         run.map(|()| true)
     }
 
-    /// Takes the Runge-Kutta steps of one period that begins at `begin` [s]. Between steps, motions
+    /// Takes the Runge-Kutta steps of one period that begins at `begin` \[s\]. Between steps, motions
     /// are cubic, from displacements and velocities at both ends. `false` if the caller has ended the
     /// run, which then keeps whole periods alone.
     pub(super) fn step_through(
@@ -195,14 +187,27 @@ impl<'a> Output<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Extremes {
     /// Coefficients of the polynomial.
-    pub(crate) series: Vec<f64>,
+    series: Vec<f64>,
     slope: Vec<f64>,
     zeros: Vec<f64>,
 }
 
 impl Extremes {
+    /// Widens the range of each of the shapes by its values on a stretch of the motion.
+    pub(crate) fn follow(
+        &mut self,
+        segment: &FlowSegment<'_>,
+        shapes: &[Vec<f64>],
+        ranges: &mut [[f64; 2]],
+    ) {
+        for (shape, range) in shapes.iter().zip(ranges) {
+            segment.series.project(shape.iter().copied(), segment.length, &mut self.series);
+            self.widen(range);
+        }
+    }
+
     /// Widens a range by the values of the polynomial.
-    pub(crate) fn widen(&mut self, range: &mut [f64; 2]) {
+    fn widen(&mut self, range: &mut [f64; 2]) {
         let series = &self.series;
         let mut include = |value: f64| {
             range[0] = range[0].min(value);

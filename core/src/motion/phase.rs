@@ -4,7 +4,7 @@
 //! force within the slip limits keeps an unstable mode of the slipping structure from growing. And
 //! a motion that the stuck structure damps, below the onset of slip, stays below it.
 
-use super::modal_system::{dot, ContactState, Damping, ModalSystem};
+use super::modal_system::{dot, ContactState, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
 use crate::solve::hermitian_eigen;
@@ -56,21 +56,11 @@ impl Phase {
         let scale: Vec<f64> = (0..n)
             .map(|i| stiffness[(i, i)].abs().sqrt().max(1e-4 * highest).max(f64::MIN_POSITIVE))
             .collect();
-        let damping = |i: usize, j: usize| match &system.damping {
-            Damping::Diagonal(c) => {
-                if i == j {
-                    c[i]
-                } else {
-                    0.0
-                }
-            }
-            Damping::Full(c) => c[(i, j)],
-        };
         let state = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
             (true, true) => 0.0,
             (true, false) => scale[i] * f64::from(u8::from(i == j - n)),
             (false, true) => -stiffness[(i - n, j)] / scale[j],
-            (false, false) => -damping(i - n, j - n),
+            (false, false) => -system.damping.entry(i - n, j - n),
         });
         let failed = || Error::Eigenvalues("damping".to_owned());
         let eigen = state.eigen().map_err(|_| failed())?;

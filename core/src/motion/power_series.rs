@@ -4,7 +4,8 @@
 //! ones before. The series needs no decomposition per set of sticking contacts, has no defective
 //! cases, and hands displacements and forces over as polynomials whose zeros are the events.
 
-use super::modal_system::{dot, ContactState, Damping, ModalSystem};
+use super::damping::Damping;
+use super::modal_system::{dot, ContactState, ModalSystem};
 use super::polynomial;
 use super::state::State;
 
@@ -172,7 +173,7 @@ impl PowerSeries {
     }
 
     /// Modal displacements and velocities [1/s] at τ.
-    pub(crate) fn motion_at(&self, tau: f64, displacement: &mut [f64], velocity: &mut [f64]) {
+    pub fn motion_at(&self, tau: f64, displacement: &mut [f64], velocity: &mut [f64]) {
         let n = self.modes;
         displacement.fill(0.0);
         velocity.fill(0.0);
@@ -196,9 +197,17 @@ impl PowerSeries {
         &self.contact[point * (DEGREE + 1)..(point + 1) * (DEGREE + 1)]
     }
 
-    /// Force of a contact point at τ [N].
+    /// Force of a contact point at τ \[N\].
     pub(crate) fn force_at(&self, point: usize, tau: f64) -> f64 {
         polynomial::value(self.force(point), tau)
+    }
+
+    /// [`PowerSeries::motion_at`] with the contact forces, kept within their limits.
+    pub(crate) fn state_at(&self, tau: f64, limits: &[f64], [x, v, f]: [&mut [f64]; 3]) {
+        self.motion_at(tau, x, v);
+        for (point, (force, limit)) in f.iter_mut().zip(limits).enumerate() {
+            *force = self.force_at(point, tau).clamp(-limit, *limit);
+        }
     }
 
     /// Writes the coefficients of `Σ_j shape_j η_j` over the window `[0, length]` of τ, scaled to

@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-11;
 /// A motion that closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Closed {
-    /// Period [s].
+    /// Period \[s\].
     pub(super) period: f64,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Returns {
     tolerance: f64,
     /// Whether the coordinate rises.
     rises: bool,
-    /// Time [s] and coordinates of the last returns.
+    /// Time \[s\] and coordinates of the last returns.
     last: VecDeque<(f64, Vec<f64>)>,
     /// Closing errors over the last periods, per number of returns in a period.
     errors: Vec<VecDeque<f64>>,
@@ -59,17 +59,17 @@ impl Returns {
         }
     }
 
-    /// Finds the returns on an arc that begins `begin` [s] after the start of the motion, less its
+    /// Finds the returns on an segment that begins `begin` \[s\] after the start of the motion, less its
     /// own start. `told` hears of each: size of the motion, least closing error.
     pub(super) fn follow(
         &mut self,
-        arc: &FlowSegment<'_>,
+        segment: &FlowSegment<'_>,
         begin: f64,
         system: &ModalSystem,
         coordinates: &Transition<'_>,
         told: &mut dyn FnMut(f64, f64),
     ) {
-        arc.series.project(self.shape.iter().copied(), arc.length, &mut self.series);
+        segment.series.project(self.shape.iter().copied(), segment.length, &mut self.series);
         self.slope.clear();
         self.slope.extend(self.series[1..].iter().enumerate().map(|(n, a)| (n + 1) as f64 * a));
         let mut zeros = std::mem::take(&mut self.zeros);
@@ -77,18 +77,14 @@ impl Returns {
         let mut from = 0.0;
         for &to in zeros.iter().chain(&[1.0]) {
             // A contact sticks where it turns: the maximum may be an event, and the slope of the
-            // arcs on either side is rounding there.
-            if (to - from) * arc.length > TURN {
+            // segments on either side is rounding there.
+            if (to - from) * segment.length > TURN {
                 let rises = value(&self.slope, 0.5 * (from + to)) > 0.0;
                 if self.rises && !rises {
-                    let tau = from * arc.length;
+                    let tau = from * segment.length;
                     let mut state = State::rest(system);
-                    arc.series.motion_at(tau, &mut state.displacement, &mut state.velocity);
-                    for (point, f) in state.force.iter_mut().enumerate() {
-                        let limit = system.limits()[point];
-                        *f = arc.series.force_at(point, tau).clamp(-limit, limit);
-                    }
-                    let time = begin + arc.start + tau / arc.series.rate();
+                    segment.series.state_at(tau, system.limits(), state.parts());
+                    let time = begin + segment.start + tau / segment.series.rate();
                     let (size, error) = self.add(time, coordinates.coordinates(&state));
                     told(size, error);
                 }

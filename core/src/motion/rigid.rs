@@ -1,7 +1,7 @@
 //! Rigid-body motion that nothing answers to: the structure may stand or drift elsewhere, and its
 //! vibration is the same.
 
-use super::modal_system::{Damping, ModalSystem};
+use super::modal_system::ModalSystem;
 use super::transition::Transition;
 use crate::solve::norm;
 
@@ -23,24 +23,14 @@ impl ModalSystem {
     fn answers(&self) -> Vec<Vec<f64>> {
         let felt = (0..self.points()).filter(|&i| self.limits()[i] > 0.0);
         let mut rows: Vec<Vec<f64>> = felt.map(|i| scaled(self.contact_shape(i))).collect();
-        match &self.damping {
-            Damping::Diagonal(damping) => {
-                let largest = damping.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-                rows.extend(damping.iter().enumerate().map(|(j, c)| {
-                    let mut row = vec![0.0; damping.len()];
-                    row[j] = if largest > 0.0 { c / largest } else { 0.0 };
-                    row
-                }));
-            }
-            Damping::Full(damping) => {
-                // ψᵀ C = 0, column by column.
-                let scale = damping.norm_max().recip();
-                rows.extend(
-                    (0..damping.ncols())
-                        .map(|j| (0..damping.nrows()).map(|i| scale * damping[(i, j)]).collect()),
-                );
-            }
-        }
+        // ψᵀ C = 0, column by column.
+        let modes = self.modes();
+        let entry = |(i, j): (usize, usize)| self.damping.entry(i, j);
+        let entries = (0..modes).flat_map(|i| (0..modes).map(move |j| (i, j))).map(entry);
+        let largest = entries.fold(0.0_f64, |m, c| m.max(c.abs()));
+        let scale = if largest > 0.0 { largest.recip() } else { 0.0 };
+        let column = |j: usize| (0..modes).map(|i| scale * entry((i, j))).collect();
+        rows.extend((0..modes).map(column));
         rows
     }
 }

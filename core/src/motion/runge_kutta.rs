@@ -51,7 +51,7 @@ impl<'a> RungeKutta<'a> {
         self.steps
     }
 
-    /// Length of a step [s].
+    /// Length of a step \[s\].
     #[must_use]
     pub fn step(&self) -> f64 {
         self.step

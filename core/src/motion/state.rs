@@ -1,6 +1,7 @@
 //! The state of a motion: modal displacements and velocities, contact forces.
 
-use super::modal_system::{Body, ModalSystem};
+use super::bodies::Body;
+use super::modal_system::ModalSystem;
 use crate::contact::PointState;
 use crate::error::brief;
 use crate::Error;
@@ -20,13 +21,13 @@ const FLIPS: usize = 8;
 /// State at an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
-    /// Time since the start of the period [s].
+    /// Time since the start of the period \[s\].
     pub time: f64,
     /// Modal displacements η.
     pub displacement: Vec<f64>,
     /// Modal velocities η' [1/s].
     pub velocity: Vec<f64>,
-    /// Contact forces [N].
+    /// Contact forces \[N\].
     pub force: Vec<f64>,
     /// What each contact point does.
     pub points: Vec<PointState>,
@@ -149,6 +150,11 @@ impl State {
             }
         }
         free
+    }
+
+    /// Displacements, velocities and forces.
+    pub(crate) fn parts(&mut self) -> [&mut [f64]; 3] {
+        [&mut self.displacement, &mut self.velocity, &mut self.force]
     }
 
     /// Whether every number is finite and of a size whose square is.

@@ -6,7 +6,7 @@
 //! saltation matrix).
 
 use super::flow::FlowEvent;
-use super::modal_system::{ContactState, Damping, ModalSystem};
+use super::modal_system::{ContactState, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
 use faer::Mat;
@@ -18,7 +18,7 @@ const SMALL: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub(crate) struct LinearPhase {
     regime: ContactState,
-    /// Duration [s].
+    /// Duration \[s\].
     duration: f64,
     onset: Option<Onset>,
 }
@@ -34,31 +34,33 @@ struct Onset {
 }
 
 impl LinearPhase {
-    /// Adds what an observer of the flow sees to the legs so far.
-    pub(crate) fn record(legs: &mut Vec<Self>, passage: &FlowEvent<'_>) {
+    /// Adds what an observer of the flow sees to the phases so far.
+    pub(crate) fn record(phases: &mut Vec<Self>, passage: &FlowEvent<'_>) {
         match passage {
-            FlowEvent::Segment(arc) => match legs.last_mut() {
-                Some(leg) if leg.onset.is_none() && leg.regime.points == arc.regime.points => {
-                    leg.duration += arc.duration();
+            FlowEvent::Segment(segment) => match phases.last_mut() {
+                Some(phase)
+                    if phase.onset.is_none() && phase.regime.points == segment.regime.points =>
+                {
+                    phase.duration += segment.duration();
                 }
-                _ => legs.push(Self {
-                    regime: arc.regime.clone(),
-                    duration: arc.duration(),
+                _ => phases.push(Self {
+                    regime: segment.regime.clone(),
+                    duration: segment.duration(),
                     onset: None,
                 }),
             },
-            // Changes before the first arc find the states to begin with.
-            FlowEvent::Event { .. } if legs.is_empty() => {}
+            // Changes before the first segment find the states to begin with.
+            FlowEvent::Event { .. } if phases.is_empty() => {}
             FlowEvent::Event { event, speed, before, after } => {
                 let rate = |regime: &ContactState, i: usize| -> f64 {
                     speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
                 };
                 let jumps = (0..speed.len()).map(|i| rate(after, i) - rate(before, i));
-                let last = legs.last_mut();
+                let last = phases.last_mut();
                 if event.state == PointState::Stuck {
                     // Ordinarily the rates do not jump here; at the onset of slip of a coupled
                     // point they do.
-                    if let Some(onset) = last.and_then(|leg| leg.onset.as_mut()) {
+                    if let Some(onset) = last.and_then(|phase| phase.onset.as_mut()) {
                         if onset.rate != 0.0 {
                             let own = onset.rate;
                             onset.jump.iter_mut().zip(jumps).for_each(|(to, by)| *to += by / own);
@@ -68,10 +70,12 @@ impl LinearPhase {
                 }
                 let onset = Some(Onset::new(event.point, rate(before, event.point), before));
                 match last {
-                    Some(leg) if leg.onset.is_none() && leg.regime.points == before.points => {
-                        leg.onset = onset;
+                    Some(phase)
+                        if phase.onset.is_none() && phase.regime.points == before.points =>
+                    {
+                        phase.onset = onset;
                     }
-                    _ => legs.push(Self { regime: (*before).clone(), duration: 0.0, onset }),
+                    _ => phases.push(Self { regime: (*before).clone(), duration: 0.0, onset }),
                 }
             }
         }
@@ -206,14 +210,14 @@ impl<'a> Transition<'a> {
         forms
     }
 
-    /// Derivative of the end state in the start state along the legs of a motion.
-    pub(crate) fn along(&self, legs: &[LinearPhase], free: &[bool]) -> Mat<f64> {
-        let mut total = self.start(legs, free);
-        for leg in legs {
-            if leg.duration > 0.0 {
-                total = self.exponential(&leg.regime, leg.duration) * total;
+    /// Derivative of the end state in the start state along the phases of a motion.
+    pub(crate) fn along(&self, phases: &[LinearPhase], free: &[bool]) -> Mat<f64> {
+        let mut total = self.start(phases, free);
+        for phase in phases {
+            if phase.duration > 0.0 {
+                total = self.exponential(&phase.regime, phase.duration) * total;
             }
-            if let Some(onset) = &leg.onset {
+            if let Some(onset) = &phase.onset {
                 self.jump(onset, &mut total);
             }
         }
@@ -221,12 +225,12 @@ impl<'a> Transition<'a> {
     }
 
     /// Derivative at the start: points that slip, and forces that their limits hold, do not vary.
-    fn start(&self, legs: &[LinearPhase], free: &[bool]) -> Mat<f64> {
+    fn start(&self, phases: &[LinearPhase], free: &[bool]) -> Mat<f64> {
         let (size, first) = (self.size(), 2 * self.weight.len());
         let mut total = Mat::<f64>::identity(size, size);
         for body in self.system.bodies() {
             let slips = |i: usize| {
-                legs.first().is_some_and(|leg| leg.regime.points[i] != PointState::Stuck)
+                phases.first().is_some_and(|phase| phase.regime.points[i] != PointState::Stuck)
             };
             let held: Vec<bool> = body
                 .points
@@ -270,7 +274,7 @@ impl<'a> Transition<'a> {
         }
     }
 
-    /// Exponential of the linear equations over a duration [s], by scaling and squaring.
+    /// Exponential of the linear equations over a duration \[s\], by scaling and squaring.
     fn exponential(&self, regime: &ContactState, duration: f64) -> Mat<f64> {
         let (size, modes) = (self.size(), self.weight.len());
         let mut a = Mat::<f64>::zeros(size, size);
@@ -278,18 +282,9 @@ impl<'a> Transition<'a> {
             a[(j, modes + j)] = duration * self.weight[j];
             a[(modes + j, j)] = -duration * self.system.omega_squared()[j] / self.weight[j];
         }
-        match &self.system.damping {
-            Damping::Diagonal(damping) => {
-                for (j, c) in damping.iter().enumerate() {
-                    a[(modes + j, modes + j)] = -duration * c;
-                }
-            }
-            Damping::Full(damping) => {
-                for j in 0..modes {
-                    for i in 0..modes {
-                        a[(modes + i, modes + j)] = -duration * damping[(i, j)];
-                    }
-                }
+        for j in 0..modes {
+            for i in 0..modes {
+                a[(modes + i, modes + j)] = -duration * self.system.damping.entry(i, j);
             }
         }
         for body in self.system.bodies() {

@@ -1,8 +1,8 @@
 //! The branch of limit cycles of a mode: from the stuck limit through the fold to the slipping side.
 
-use super::cycle_survey::{odd_table, survey};
 use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
+use super::orbit_postprocess::{odd_table, postprocess};
 use super::quadrature::Quadrature;
 use super::stability::{judge, Judge, TRACING};
 use super::traced::{extreme, joined, value, Traced};
@@ -188,13 +188,13 @@ impl Finder<'_> {
             if late {
                 break;
             }
-            let found = survey(&curve, &z, self.onset.dof, &reported, &mut quadrature);
-            let Some(found) = found else { continue };
-            let mut cycle = self.cycle(&z, slipping, found.response);
-            cycle.range = found.range;
-            cycle.state = found.state;
-            cycle.viscous = found.viscous;
-            cycle.events = found.events;
+            let blank = Point::empty(f64::NAN, PointStatus::Stalled, 0, 0);
+            let cycle = self.cycle(&z, slipping, blank);
+            let dof = self.onset.dof;
+            let Some(cycle) = postprocess(&curve, &z, dof, &reported, &mut quadrature, cycle)
+            else {
+                continue;
+            };
             cycles.push(cycle);
             points.push(Some(z));
         }
@@ -255,7 +255,7 @@ impl Finder<'_> {
         self.trace(&mut of_ratio, &mut curve, start)
     }
 
-    /// Walks along the branch: in r at once, or in r to the ratio asked for and from there to both
+    /// Follows the branch: in r at once, or in r to the ratio asked for and from there to both
     /// sides in the other scalar.
     fn trace(
         &self,
@@ -273,7 +273,7 @@ impl Finder<'_> {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);
             let bounds =
                 Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
-            let mut branch = Branch::walk(curve, start, 1.0, steps, &bounds);
+            let mut branch = Branch::continue_branch(curve, start, 1.0, steps, &bounds);
             let limit = extreme(&branch, 1.0);
             let ends = [End::Range, branch.end];
             // What lies below the range served to get started.
@@ -287,7 +287,7 @@ impl Finder<'_> {
                     *fold < branch.points.len()
                 });
             }
-            // Where the walk has come back, a farther turn may have been missed.
+            // Where the branch has come back, a farther turn may have been missed.
             let limit = extreme(&branch, 1.0).filter(|_| branch.end != End::Returned);
             return Ok(Traced { branch, limit, ends });
         }
@@ -302,7 +302,7 @@ impl Finder<'_> {
         let wanted = self.ratio;
         let reached = |z: &[f64]| value(z) >= wanted;
         let bounds = Bounds { range: (0.0, f64::INFINITY), most: settings.most, ends: &reached };
-        let to_ratio = Branch::walk(of_ratio, start, 1.0, steps, &bounds);
+        let to_ratio = Branch::continue_branch(of_ratio, start, 1.0, steps, &bounds);
         let Some((_, mut z)) = to_ratio.at(of_ratio, wanted).into_iter().next() else {
             let largest = to_ratio.points.iter().map(|z| value(z)).fold(0.0, f64::max);
             let remedy = format!("the mode has limit cycles up to r = {largest:.6} only");
@@ -315,8 +315,8 @@ impl Finder<'_> {
         let low = values.clone().fold(settings.range.0, f64::min).min(own);
         let high = values.fold(settings.range.1, f64::max).max(own);
         let bounds = Bounds { range: (low, high), most: settings.most, ends: &endless };
-        let up = Branch::walk(curve, z.clone(), 1.0, steps, &bounds);
-        let down = Branch::walk(curve, z, -1.0, steps, &bounds);
+        let up = Branch::continue_branch(curve, z.clone(), 1.0, steps, &bounds);
+        let down = Branch::continue_branch(curve, z, -1.0, steps, &bounds);
         Ok(joined(up, down))
     }
 

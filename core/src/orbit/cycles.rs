@@ -1,7 +1,6 @@
 //! Limit cycles as the caller has them: settings, cycles along a branch, where it turns and where
 //! its stability changes.
 
-use super::stability::Change;
 use crate::balance::{HarmonicChoice, Point, HIGHEST_ORDER};
 use crate::motion::Event;
 use crate::solve::End;
@@ -74,15 +73,9 @@ impl CycleSettings {
     /// # Errors
     /// A setting outside its range.
     pub fn check(&self) -> Result<(), Error> {
-        let (entry, kept) = match self.harmonics {
-            HarmonicChoice::Fixed(highest) => ("harmonics", highest),
-            HarmonicChoice::Auto => ("max_harmonics", self.max_harmonics),
-        };
+        let (entry, kept) = self.harmonics.highest(self.max_harmonics);
         for (entry, order) in [(entry, kept), ("harmonics", self.reported)] {
-            if !(1..=HIGHEST_ORDER).contains(&order) {
-                let remedy = format!("must lie between 1 and {HIGHEST_ORDER}");
-                return Err(Error::value(entry, order as f64, &remedy));
-            }
+            Error::check_order(entry, order, HIGHEST_ORDER)?;
         }
         let (low, high) = self.range;
         if !(low > 0.0 && low < high) {
@@ -112,12 +105,12 @@ pub struct Cycle {
     pub slipping: bool,
     /// Motion, forces, error estimate, slip and friction work.
     pub response: Point,
-    /// Lowest and highest displacement of every DOF [m]; of exact orbits only.
+    /// Lowest and highest displacement of every DOF \[m\]; of exact orbits only.
     pub range: Vec<[f64; 2]>,
     /// State at the start of the period: displacements and velocities of all DOFs, contact
     /// forces; of exact orbits only.
     pub state: Vec<f64>,
-    /// Work lost to viscous damping per period [J], negative where it feeds the motion; of exact
+    /// Work lost to viscous damping per period \[J\], negative where it feeds the motion; of exact
     /// orbits only.
     pub viscous: f64,
     /// Events of the period; of exact orbits only.
@@ -194,4 +187,32 @@ pub(super) fn relative(point: &Point) -> f64 {
     let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let errors = point.error_estimate.iter().zip(&sizes);
     errors.map(|(error, size)| error / size.max(0.02 * largest)).fold(0.0, f64::max)
+}
+
+/// What happens where stability changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A multiplier passes 1: the branch turns.
+    Fold,
+    /// A complex pair passes the unit circle: quasi-periodic motion branches off.
+    ComplexPair,
+    /// A multiplier passes 1 with motion that breaks the half-wave symmetry.
+    Symmetry,
+    /// A multiplier jumps: a contact begins or ceases to slip at a further place of the period.
+    Grazing,
+}
+
+/// A change of stability.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Value of the scalar.
+    pub value: f64,
+    /// Frequency [rad/s].
+    pub omega: f64,
+    /// Position of the cycle before it.
+    pub after: usize,
+    /// What happens.
+    pub kind: ChangeKind,
+    /// Multipliers outside the unit circle before and after.
+    pub unstable: (usize, usize),
 }

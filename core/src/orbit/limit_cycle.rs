@@ -7,12 +7,14 @@
 //! never fails, and reported orbits begin at a maximum of the DOF that moves most.
 
 use super::periodic::FASTEST;
-use super::segments::{follow, halved, product_eigenvalues, suited, Segment, Suited};
+use super::segments::{
+    follow, halved, product_eigenvalues, segmentation, Member, Segment, Segmentation,
+};
 use super::shooting::Shooting;
 use super::start::start_of;
 use crate::balance::Point;
 use crate::contact::Residual;
-use crate::model::{FlutterModel, Model};
+use crate::model::FlutterModel;
 use crate::motion::{ContactState, ModalSystem, State, Transition};
 use crate::solve::{norm, Curve};
 use crate::structure::ModalDamping;
@@ -31,19 +33,6 @@ pub struct CycleOrbits<'a> {
     /// Modal damping and modal negative damping.
     damping: ModalDamping,
     negative: ModalDamping,
-}
-
-/// A member of the family.
-pub(super) struct Member<'a> {
-    own: Option<Model>,
-    given: &'a Model,
-    pub(super) system: ModalSystem,
-}
-
-impl Member<'_> {
-    pub(super) fn model(&self) -> &Model {
-        self.own.as_ref().unwrap_or(self.given)
-    }
 }
 
 impl<'a> CycleOrbits<'a> {
@@ -124,11 +113,11 @@ impl<'a> CycleOrbits<'a> {
     pub(super) fn start(&self, point: &Point, value: f64, reference: f64) -> Option<Vec<f64>> {
         let mut z = self.unknowns(point, value, reference, 1).ok()?;
         loop {
-            let wanted = OrbitCurve::new(self, reference, &z, &|| false).wanted(&z);
-            if wanted <= z.len() {
+            let suitable = OrbitCurve::new(self, reference, &z, &|| false).suitable_unknowns(&z);
+            if suitable <= z.len() {
                 return Some(z);
             }
-            z = self.unknowns(point, value, reference, (wanted - 2) / self.size()).ok()?;
+            z = self.unknowns(point, value, reference, (suitable - 2) / self.size()).ok()?;
         }
     }
 }
@@ -276,6 +265,14 @@ impl Curve for OrbitCurve<'_> {
         self.reference.len()
     }
 
+    fn parameter(&self, z: &[f64]) -> usize {
+        z.len() - 1
+    }
+
+    fn scalars(&self, z: &[f64]) -> usize {
+        z.len() - 2
+    }
+
     fn residual(&mut self, z: &[f64], out: &mut [f64]) {
         if !self.evaluate(z, false) {
             out.fill(f64::NAN);
@@ -350,17 +347,17 @@ impl Curve for OrbitCurve<'_> {
         self.drift = drift.iter().map(|d| d / speed).collect();
     }
 
-    fn wanted(&mut self, z: &[f64]) -> usize {
+    fn suitable_unknowns(&mut self, z: &[f64]) -> usize {
         let states = z.len().saturating_sub(2);
         let known = self.evaluate(z, true).then_some(self.at.as_ref()).flatten();
-        match known.map(|at| suited(&at.segments)) {
-            Some(Suited::More) => 2 * states + 2,
-            Some(Suited::Fewer) => states / 2 + 2,
-            Some(Suited::These) | None => states + 2,
+        match known.map(|at| segmentation(&at.segments)) {
+            Some(Segmentation::Double) => 2 * states + 2,
+            Some(Segmentation::Halve) => states / 2 + 2,
+            Some(Segmentation::Keep) | None => states + 2,
         }
     }
 
-    fn converted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
+    fn resample(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
         let (y, last) = z.split_at(z.len().checked_sub(2)?);
         let mut y = y.to_vec();
         while y.len() + 2 < unknowns {

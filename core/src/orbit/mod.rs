@@ -2,9 +2,9 @@
 //! harmonic is discarded, so that they judge the harmonic balance.
 
 mod cycle_branch;
-mod cycle_survey;
 mod cycles;
 mod limit_cycle;
+mod orbit_postprocess;
 mod periodic;
 mod price;
 mod quadrature;
@@ -21,11 +21,10 @@ mod sweep;
 mod traced;
 
 pub use cycle_branch::limit_cycles;
-pub use cycles::{Cycle, CycleSettings, LimitCycles, Turn};
+pub use cycles::{Change, ChangeKind, Cycle, CycleSettings, LimitCycles, Turn};
 pub use limit_cycle::{CycleOrbits, OrbitCurve};
 pub use periodic::{Orbit, PeriodicOrbits};
 pub use rescue::OrbitInitialGuess;
 pub use rotation::Rotation;
 pub use settings::OrbitSettings;
-pub use stability::{Change, ChangeKind};
 pub use sweep::{orbit_peak, orbit_sweep, Orbits};

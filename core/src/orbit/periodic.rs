@@ -34,7 +34,7 @@ const CLOSED: f64 = 1e-10;
 pub struct Orbit {
     /// Harmonics, status, slip and friction work, as of a harmonic balance.
     pub response: Point,
-    /// Lowest and highest displacement of each observed DOF [m].
+    /// Lowest and highest displacement of each observed DOF \[m\].
     pub range: Vec<[f64; 2]>,
     /// State at the start of the period: displacements and velocities of all DOFs, contact forces.
     pub state: Vec<f64>,
@@ -43,9 +43,9 @@ pub struct Orbit {
     /// Number of neutral multipliers, of exactly 1: a contact that never slips keeps its mean force,
     /// and a structure that nothing holds stays or drifts where it is pushed.
     pub neutral: usize,
-    /// Work of the external forces per period [J].
+    /// Work of the external forces per period \[J\].
     pub work: f64,
-    /// Work lost to viscous damping per period [J].
+    /// Work lost to viscous damping per period \[J\].
     pub viscous: f64,
     /// Events of the period, in order of time.
     pub events: Vec<Event>,
@@ -83,10 +83,7 @@ impl<'a> PeriodicOrbits<'a> {
     ) -> Result<Self, Error> {
         settings.check()?;
         let system = Arc::new(ModalSystem::new(model)?);
-        if let Some(&dof) = observe.iter().find(|&&dof| dof >= system.modes()) {
-            let remedy = format!("the structure has {} DOFs", system.modes());
-            return Err(Error::value("observe", dof as f64, &remedy));
-        }
+        Error::check_dofs(observe, system.modes())?;
         Ok(Self {
             model,
             everywhere: (0..system.modes()).collect(),
@@ -352,13 +349,7 @@ impl<'a> PeriodicOrbits<'a> {
                 state = moved;
                 continue;
             }
-            let displacement = survey.displacement();
-            let orders = highest + 1;
-            orbit.response.harmonics = highest;
-            orbit.response.displacement = displacement[..observed * orders].to_vec();
-            orbit.response.contact_displacement = displacement[observed * orders..].to_vec();
-            orbit.response.contact_force = survey.force();
-            orbit.response.contacts = survey.summaries();
+            survey.write(&mut orbit.response);
             orbit.range = survey.range[..observed].to_vec();
             (orbit.work, orbit.viscous) = (survey.work, survey.viscous);
             orbit.events = std::mem::take(&mut survey.events);
@@ -368,7 +359,7 @@ impl<'a> PeriodicOrbits<'a> {
         orbit
     }
 
-    /// Displacement error of the observed DOFs that the closing error leaves [m].
+    /// Displacement error of the observed DOFs that the closing error leaves \[m\].
     fn left_error(&self, shooting: &Shooting<'_>, system: &ModalSystem, left: &[f64]) -> Vec<f64> {
         let (error, _) = shooting.coordinates.state(left);
         self.observe

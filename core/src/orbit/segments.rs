@@ -6,9 +6,9 @@
 //! cyclic matrix of all segments, which keeps the small ones that their product loses (Kressner
 //! 2006, section 2).
 
-use super::limit_cycle::Member;
 use super::shooting::Shooting;
-use crate::motion::ContactState;
+use crate::model::Model;
+use crate::motion::{ContactState, ModalSystem};
 use faer::{c64, Mat};
 
 /// Growth of a small change over a segment, as the Frobenius norm of its transition matrix, beyond
@@ -69,29 +69,29 @@ pub(super) fn halved(shooting: &mut Shooting<'_>, starts: &[f64]) -> Option<Vec<
 }
 
 /// How many segments suit a motion.
-pub(super) enum Suited {
+pub(super) enum Segmentation {
     /// As many.
-    These,
+    Keep,
     /// Twice as many.
-    More,
+    Double,
     /// Half as many.
-    Fewer,
+    Halve,
 }
 
 /// Judges segments by how much changes grow over each, or over two of them.
-pub(super) fn suited(segments: &[Segment]) -> Suited {
+pub(super) fn segmentation(segments: &[Segment]) -> Segmentation {
     let count = segments.len();
     if count < MOST && segments.iter().any(|one| one.derivative.norm_l2() > GROWTH) {
-        return Suited::More;
+        return Segmentation::Double;
     }
     let mild = |pair: &[Segment]| match pair {
         [one, next] => (&next.derivative * &one.derivative).norm_l2() < MILD * GROWTH,
         _ => false,
     };
     if count > 1 && segments.chunks(2).all(mild) {
-        return Suited::Fewer;
+        return Segmentation::Halve;
     }
-    Suited::These
+    Segmentation::Keep
 }
 
 /// Eigenvalues of the product `A_m … A_2 A_1` of square matrices, from those of their cyclic
@@ -132,6 +132,19 @@ pub(super) fn product_eigenvalues(factors: Vec<Mat<f64>>) -> Option<Vec<c64>> {
         found.push(same / count as f64);
     }
     Some(found)
+}
+
+/// A member of the family.
+pub(super) struct Member<'a> {
+    pub(super) own: Option<Model>,
+    pub(super) given: &'a Model,
+    pub(super) system: ModalSystem,
+}
+
+impl Member<'_> {
+    pub(super) fn model(&self) -> &Model {
+        self.own.as_ref().unwrap_or(self.given)
+    }
 }
 
 #[cfg(test)]

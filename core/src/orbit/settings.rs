@@ -27,18 +27,10 @@ impl OrbitSettings {
     /// # Errors
     /// A setting outside its range.
     pub fn check(&self) -> Result<(), Error> {
-        if !(1..=HIGHEST_ORDER).contains(&self.harmonics) {
-            let remedy = format!("must lie between 1 and {HIGHEST_ORDER}");
-            return Err(Error::value("harmonics", self.harmonics as f64, &remedy));
-        }
+        Error::check_order("harmonics", self.harmonics, HIGHEST_ORDER)?;
         if self.max_iterations == 0 {
             return Err(Error::value("max_iterations", 0.0, "must be at least 1"));
         }
-        match self.residual {
-            Residual::Value(force) if !force.is_finite() => {
-                Err(Error::value("residual", force, "must be a finite force in N"))
-            }
-            _ => Ok(()),
-        }
+        self.residual.check()
     }
 }

@@ -29,9 +29,9 @@ pub(super) struct Shooting<'a> {
     period: f64,
     span: f64,
     interrupted: Option<&'a dyn Fn() -> bool>,
-    /// Of the last evaluation: legs, forces that were free to vary at the start, points that
+    /// Of the last evaluation: phases, forces that were free to vary at the start, points that
     /// have slipped.
-    legs: Vec<LinearPhase>,
+    phases: Vec<LinearPhase>,
     free: Vec<bool>,
     slipped: Vec<bool>,
     /// State after the span.
@@ -76,7 +76,7 @@ impl<'a> Shooting<'a> {
             period,
             span: if half_wave { 0.5 * period } else { period },
             interrupted,
-            legs: Vec::new(),
+            phases: Vec::new(),
             free: Vec::new(),
             slipped: Vec::new(),
             end: None,
@@ -112,14 +112,14 @@ impl<'a> Shooting<'a> {
     pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
         let (mut state, free) = self.coordinates.state(y);
         self.free = free;
-        self.legs.clear();
+        self.phases.clear();
         self.derivative = None;
-        let legs = &mut self.legs;
+        let phases = &mut self.phases;
         let run = self
             .flow
-            .run(&mut state, self.span, &mut |passage| LinearPhase::record(legs, &passage));
+            .run(&mut state, self.span, &mut |passage| LinearPhase::record(phases, &passage));
         self.slipped = (0..self.limits.len())
-            .map(|i| !self.free[i] || self.legs.iter().any(|leg| leg.slips(i)))
+            .map(|i| !self.free[i] || self.phases.iter().any(|phase| phase.slips(i)))
             .collect();
         if let Some((rotation, _)) = &self.rotation {
             rotation.spread(&mut self.slipped);
@@ -156,7 +156,7 @@ impl<'a> Shooting<'a> {
             return derivative.clone();
         }
         self.matrices += 1;
-        let along = self.coordinates.along(&self.legs, &self.free);
+        let along = self.coordinates.along(&self.phases, &self.free);
         let derivative = match &self.rotation {
             Some((_, matrix)) => matrix * along,
             None if self.half_wave => faer::Scale(-1.0) * along,

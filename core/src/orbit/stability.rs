@@ -1,6 +1,6 @@
 //! Floquet multipliers along a branch of limit cycles, and where its stability changes.
 
-use super::cycles::LimitCycles;
+use super::cycles::{Change, ChangeKind, LimitCycles};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
 use crate::solve::{across, at_parameter, Curve as _};
 use faer::c64;
@@ -18,34 +18,6 @@ const HALVINGS: usize = 26;
 const JUMP: f64 = 1e-3;
 /// Angle off the real axis within which a multiplier counts as real.
 const REAL: f64 = 1e-6;
-
-/// What happens where stability changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ChangeKind {
-    /// A multiplier passes 1: the branch turns.
-    Fold,
-    /// A complex pair passes the unit circle: quasi-periodic motion branches off.
-    ComplexPair,
-    /// A multiplier passes 1 with motion that breaks the half-wave symmetry.
-    Symmetry,
-    /// A multiplier jumps: a contact begins or ceases to slip at a further place of the period.
-    Grazing,
-}
-
-/// A change of stability.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Change {
-    /// Value of the scalar.
-    pub value: f64,
-    /// Frequency [rad/s].
-    pub omega: f64,
-    /// Position of the cycle before it.
-    pub after: usize,
-    /// What happens.
-    pub kind: ChangeKind,
-    /// Multipliers outside the unit circle before and after.
-    pub unstable: (usize, usize),
-}
 
 /// Multipliers of a cycle with the unknowns of its exact orbit.
 #[derive(Debug, Clone)]

@@ -1,12 +1,13 @@
 //! What is read off a closed orbit: harmonics, extremes, energies, slip and events.
 
 use super::quadrature::Quadrature;
+use crate::balance::Point;
 use crate::contact::{PointState, PointSummary};
 use crate::motion::{value, Event, Extremes, FlowEvent, FlowSegment, ModalSystem};
 use faer::c64;
 use std::f64::consts::TAU;
 
-/// Quadrature nodes per arc beyond those that the highest harmonic needs: power series of an arc
+/// Quadrature nodes per segment beyond those that the highest harmonic needs: power series of an segment
 /// have few significant terms.
 const NODES: usize = 20;
 
@@ -64,10 +65,10 @@ impl<'a> Survey<'a> {
     /// Takes a passage of the flow into account.
     pub(super) fn include(&mut self, passage: &FlowEvent<'_>) {
         match passage {
-            FlowEvent::Segment(arc) => {
-                self.integrate(arc);
-                self.widen(arc);
-                self.follow_slip(arc);
+            FlowEvent::Segment(segment) => {
+                self.integrate(segment);
+                self.extremes.follow(segment, &self.shapes, &mut self.range);
+                self.follow_slip(segment);
             }
             FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
@@ -76,26 +77,26 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn integrate(&mut self, arc: &FlowSegment<'_>) {
+    fn integrate(&mut self, segment: &FlowSegment<'_>) {
         let (modes, points) = (self.system.modes(), self.system.points());
-        let angle = self.omega * arc.duration();
+        let angle = self.omega * segment.duration();
         let count = NODES + (0.5 * angle * self.orders as f64).ceil() as usize;
         let mut motion = vec![0.0; modes + points];
         let (mut velocity, mut damping, mut load) =
             (vec![0.0; modes], vec![0.0; modes], vec![0.0; modes]);
         let step = if self.half_wave { 2 } else { 1 };
         for &(x, weight) in self.quadrature.rule(count) {
-            let tau = x * arc.length;
-            arc.series.motion_at(tau, &mut motion[..modes], &mut velocity);
+            let tau = x * segment.length;
+            segment.series.motion_at(tau, &mut motion[..modes], &mut velocity);
             for point in 0..points {
-                motion[modes + point] = arc.series.force_at(point, tau);
+                motion[modes + point] = segment.series.force_at(point, tau);
             }
-            let phase = self.omega * arc.start + x * angle;
+            let phase = self.omega * segment.start + x * angle;
             damping.fill(0.0);
             self.system.add_damping(&velocity, 1.0, &mut damping);
             load.fill(0.0);
             self.system.add_load(phase, 1.0, &mut load);
-            let time = weight * arc.duration();
+            let time = weight * segment.duration();
             for j in 0..modes {
                 self.viscous += time * damping[j] * velocity[j];
                 self.work += time * load[j] * velocity[j];
@@ -116,30 +117,21 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// Widens the ranges by the extremes on an arc.
-    fn widen(&mut self, arc: &FlowSegment<'_>) {
-        for (shape, range) in self.shapes.iter().zip(&mut self.range) {
-            let shape = shape.iter().copied();
-            arc.series.project(shape, arc.length, &mut self.extremes.series);
-            self.extremes.widen(range);
-        }
-    }
-
-    fn follow_slip(&mut self, arc: &FlowSegment<'_>) {
-        let share = self.omega * arc.duration() / TAU;
+    fn follow_slip(&mut self, segment: &FlowSegment<'_>) {
+        let share = self.omega * segment.duration() / TAU;
         for (point, summary) in self.contacts.iter_mut().enumerate() {
             let limit = self.system.limits()[point];
             if limit == 0.0 {
                 summary.slip_fraction += share;
             }
-            let state = arc.regime.points[point];
+            let state = segment.regime.points[point];
             if state == PointState::Stuck {
                 continue;
             }
-            let travel: f64 = (0..arc.regime.points.len())
+            let travel: f64 = (0..segment.regime.points.len())
                 .map(|other| {
-                    let u = arc.series.contact(other);
-                    arc.regime.slip_rate[(point, other)] * (value(u, arc.length) - u[0])
+                    let u = segment.series.contact(other);
+                    segment.regime.slip_rate[(point, other)] * (value(u, segment.length) - u[0])
                 })
                 .sum();
             summary.slip_fraction += share;
@@ -170,6 +162,18 @@ impl<'a> Survey<'a> {
         self.events.extend(mirrored);
     }
 
+    /// Writes harmonics, slip and friction work into a point.
+    pub(super) fn write(&self, point: &mut Point) {
+        let displacement = self.displacement();
+        let observed = self.shapes.len() - self.system.points();
+        let (dofs, contacts) = displacement.split_at(observed * self.orders);
+        point.harmonics = self.orders - 1;
+        point.displacement = dofs.to_vec();
+        point.contact_displacement = contacts.to_vec();
+        point.contact_force = self.force();
+        point.contacts = self.summaries();
+    }
+
     /// Harmonics X_0, X_1, … of the observed DOFs and the contact displacements, row after row.
     pub(super) fn displacement(&self) -> Vec<c64> {
         let (observed, contacts) = self.shapes.split_at(self.shapes.len() - self.system.points());
@@ -185,7 +189,7 @@ impl<'a> Survey<'a> {
     }
 
     /// Harmonics of the contact forces, contact displacement after contact displacement.
-    pub(super) fn force(&self) -> Vec<c64> {
+    fn force(&self) -> Vec<c64> {
         let modes = self.system.modes();
         let columns = modes + self.system.points();
         let mut out = vec![c64::new(0.0, 0.0); self.system.displacements() * self.orders];
@@ -198,7 +202,7 @@ impl<'a> Survey<'a> {
     }
 
     /// What the contact displacements do.
-    pub(super) fn summaries(&self) -> Vec<PointSummary> {
+    fn summaries(&self) -> Vec<PointSummary> {
         self.system.contact_summaries(&self.contacts)
     }
 }

@@ -1,7 +1,7 @@
 //! Exact orbits over frequency, and their true maximum.
 
 use super::periodic::{Orbit, PeriodicOrbits};
-use crate::balance::{brent, check_frequency, keep, PointStatus};
+use crate::balance::{brent, check_bracket, over_frequencies, PointStatus};
 use crate::fourier::Measure;
 use crate::motion::State;
 use crate::timing::Profile;
@@ -33,25 +33,17 @@ pub struct Orbits {
 /// A frequency that is not positive, or as [`PeriodicOrbits::solve`].
 pub fn orbit_sweep(mut orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, Error> {
     let start = Instant::now();
-    for (index, &frequency) in omega.iter().enumerate() {
-        check_frequency(&format!("omega[{index}]"), frequency)?;
-    }
-    let mut points: Vec<Arc<Orbit>> = Vec::new();
-    let mut interrupted = false;
-    for (index, &frequency) in omega.iter().enumerate() {
-        interrupted = !orbits.report(index as f64 / omega.len() as f64);
-        if interrupted {
-            break;
-        }
-        let guess = predict(&points, frequency);
-        let orbit = Arc::new(orbits.solve(frequency, guess.as_ref())?);
-        interrupted = orbit.response.status == PointStatus::NotComputed;
-        if interrupted {
-            break;
-        }
-        keep(orbits.kept, &orbit);
-        points.push(orbit);
-    }
+    let kept = orbits.kept;
+    let (mut points, interrupted) = over_frequencies(
+        &mut orbits,
+        omega,
+        kept,
+        PeriodicOrbits::report,
+        |orbits, points, frequency| {
+            let orbit = orbits.solve(frequency, predict(points, frequency).as_ref())?;
+            Ok(Some(orbit).filter(|orbit| orbit.response.status != PointStatus::NotComputed))
+        },
+    )?;
     if points.is_empty() {
         let empty = |&first| Arc::new(orbits.empty(first, PointStatus::NotComputed));
         points.extend(omega.first().map(empty));
@@ -102,11 +94,7 @@ pub fn orbit_peak(
     measure: Measure,
     [low, guess, high]: [f64; 3],
 ) -> Result<(f64, f64), Error> {
-    check_frequency("peak: lower bound", low)?;
-    check_frequency("peak: upper bound", high)?;
-    if !(low <= guess && guess <= high) {
-        return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
-    }
+    check_bracket([low, guess, high])?;
     orbits.report_up_to(1);
     let mut start: Option<(f64, State)> = None;
     let mut height = |omega: f64| -> Result<f64, Error> {

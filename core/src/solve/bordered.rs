@@ -1,12 +1,15 @@
 //! Newton's method on a curve of solutions, held by one more condition.
 
 use super::curve::Curve;
+use super::line_search::LineSearch;
 use super::norm;
 use faer::linalg::solvers::Solve as _;
 use faer::Mat;
 
 /// Weighted step after which one more is taken as the last: Newton's method squares it.
 const CLOSE: f64 = 1e-8;
+/// Decrease of the residual, relative to the share of a step taken, that counts as one.
+const DECREASE: f64 = 0.1;
 /// Shortest damped step.
 const SHORTEST: f64 = 1.0 / 64.0;
 /// Weighted step beyond which the equations say nothing about the point looked for.
@@ -39,6 +42,7 @@ impl Bordered<'_> {
         let size = z.len();
         let mut residual = vec![0.0; size];
         let mut matrix = Mat::<f64>::zeros(size, size);
+        let mut trial = LineSearch::new(size);
         self.evaluate(curve, z, &mut residual);
         for iteration in 1..=self.max_iterations {
             let failed = BorderedReport { converged: false, iterations: iteration };
@@ -55,22 +59,19 @@ impl Bordered<'_> {
             if !length.is_finite() {
                 return failed;
             }
-            let mut share = (FAR / length).min(1.0);
-            loop {
-                let trial: Vec<f64> = z.iter().zip(&step).map(|(z, s)| z - share * s).collect();
-                self.evaluate(curve, &trial, &mut residual);
-                let after = norm(&residual);
-                // A step this short is rounding, and the residual with it.
-                if after <= (1.0 - 0.1 * share) * before || (after.is_finite() && length <= CLOSE) {
-                    z.copy_from_slice(&trial);
-                    break;
-                }
-                share *= 0.5;
-                if share < SHORTEST {
-                    return failed;
-                }
+            let longest = (FAR / length).min(1.0);
+            let evaluate = |z: &[f64], out: &mut [f64]| self.evaluate(curve, z, out);
+            // A step this short is rounding, and the residual with it.
+            let accepts = |share: f64, after: f64| {
+                after <= (1.0 - DECREASE * share) * before || (after.is_finite() && length <= CLOSE)
+            };
+            let shares = [longest, SHORTEST.min(longest)];
+            if !trial.along(evaluate, [z, &step], shares, accepts) {
+                return failed;
             }
-            if share == 1.0 && length <= CLOSE {
+            z.copy_from_slice(&trial.x);
+            std::mem::swap(&mut residual, &mut trial.residual);
+            if trial.length == 1.0 && length <= CLOSE {
                 return BorderedReport { converged: true, iterations: iteration };
             }
         }

@@ -1,4 +1,4 @@
-//! A whole curve of solutions: walked along from a start to the end of a range of the parameter,
+//! A whole curve of solutions: continued from a start to the end of a range of the parameter,
 //! with its folds, and read off at given values.
 
 use super::bordered::{Bordered, Condition};
@@ -52,21 +52,21 @@ const ITERATIONS: usize = 25;
 /// Accuracy along the curve to which a fold is located, relative to its surroundings: the
 /// parameter is accurate to the square of it.
 const AT_FOLD: f64 = 1e-7;
-/// Relative difference of the last two unknowns of two folds that are the same.
+/// Relative difference of the scalars of two folds that are the same.
 const SAME_FOLD: f64 = 1e-7;
 /// Golden section.
 const GOLDEN: f64 = 0.381_966_011_250_105;
 
 impl Branch {
-    /// Walks along a curve from `start` in the direction of `sign` in the parameter.
-    pub fn walk(
+    /// Continues a curve from `start` in the direction of `sign` in the parameter.
+    pub fn continue_branch(
         curve: &mut dyn Curve,
         start: Vec<f64>,
         sign: f64,
         steps: Steps,
         bounds: &Bounds<'_>,
     ) -> Self {
-        let start = suited(curve, start);
+        let start = resampled(curve, start);
         let mut branch = Self {
             points: vec![start.clone()],
             folds: Vec::new(),
@@ -81,7 +81,7 @@ impl Branch {
                 Advance::Interrupted => break End::Interrupted,
                 Advance::Point => {}
             }
-            let value = parameter(&walk.point);
+            let value = parameter(curve, &walk.point);
             let (low, high) = bounds.range;
             if value < low || value > high {
                 let edge = if value < low { low } else { high };
@@ -90,7 +90,7 @@ impl Branch {
             }
             branch.push(curve, walk.point.clone());
             curve.accept(&walk.point);
-            if branch.returned() {
+            if branch.returned(curve) {
                 break End::Returned;
             }
             if (bounds.ends)(&walk.point) {
@@ -99,11 +99,11 @@ impl Branch {
             if branch.points.len() >= bounds.most {
                 break End::Points;
             }
-            let wanted = curve.wanted(&walk.point);
-            if wanted != walk.point.len() {
+            let suitable = curve.suitable_unknowns(&walk.point);
+            if suitable != walk.point.len() {
                 let [.., before, last] = &mut branch.points[..] else { break End::Stalled };
-                let Some(known) = curve.converted(before, wanted) else { break End::Stalled };
-                let Some(point) = curve.converted(last, wanted) else { break End::Stalled };
+                let Some(known) = curve.resample(before, suitable) else { break End::Stalled };
+                let Some(point) = curve.resample(last, suitable) else { break End::Stalled };
                 walk.restart(curve, &known, &point);
                 (*before, *last) = (known, point);
             }
@@ -116,10 +116,10 @@ impl Branch {
     /// Adds a point, and the fold before it if the parameter has turned.
     fn push(&mut self, curve: &mut dyn Curve, point: Vec<f64>) {
         if let [.., before, last] = &self.points[..] {
-            let (a, b, c) = (parameter(before), parameter(last), parameter(&point));
+            let [a, b, c] = [before, last, &point].map(|z| parameter(curve, z));
             if (b - a) * (c - b) < 0.0 && self.folds.last() != Some(&(self.points.len() - 1)) {
                 if let Some(fold) = self.turn(curve, before, last, &point) {
-                    let nearer = distance(&fold, before) < distance(last, before);
+                    let nearer = distance(curve, &fold, before) < distance(curve, last, before);
                     let at = self.points.len() - usize::from(nearer);
                     self.points.insert(at, fold);
                     self.folds.push(at);
@@ -132,16 +132,16 @@ impl Branch {
     }
 
     /// Whether the last fold has been met before. What was walked backwards is cut off.
-    fn returned(&mut self) -> bool {
+    fn returned(&mut self, curve: &dyn Curve) -> bool {
         let Some((&last, earlier)) = self.folds.split_last() else { return false };
         // A point behind the fold has just been added; look once.
         if last + 2 != self.points.len() && last + 3 != self.points.len() {
             return false;
         }
-        // The last two unknowns tell: periodic motions may have been shifted in time since.
-        let pair = |at: usize| self.points[at].iter().rev().take(2);
+        // The scalars tell: periodic motions may have been shifted in time since.
+        let scalars = |at: usize| &self.points[at][curve.scalars(&self.points[at])..];
         let apart = |at: usize| {
-            let ways = pair(at).zip(pair(last)).map(|(a, b)| (a / b - 1.0).abs());
+            let ways = scalars(at).iter().zip(scalars(last)).map(|(a, b)| (a / b - 1.0).abs());
             ways.fold(0.0, f64::max)
         };
         let Some(first) = earlier.iter().position(|at| apart(*at) <= SAME_FOLD) else {
@@ -169,7 +169,8 @@ impl Branch {
     ) -> Option<Vec<f64>> {
         curve.accept(middle);
         let weights = curve.weights(middle);
-        let sign = (parameter(middle) - parameter(before)).signum();
+        let sign = (parameter(curve, middle) - parameter(curve, before)).signum();
+        let height = |curve: &dyn Curve, z: &[f64]| sign * parameter(curve, z);
         let chord: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
         let squared = |a: &[f64], b: &[f64]| -> f64 {
             (0..a.len()).map(|i| weights[i].powi(2) * a[i] * b[i]).sum()
@@ -190,14 +191,14 @@ impl Branch {
                 break;
             }
             let best = (1..known.len() - 1).max_by(|&i, &j| {
-                (sign * parameter(&known[i].1)).total_cmp(&(sign * parameter(&known[j].1)))
+                height(curve, &known[i].1).total_cmp(&height(curve, &known[j].1))
             })?;
             let [left, here, right] = [&known[best - 1], &known[best], &known[best + 1]];
             let (low, high) = (left.0, right.0);
             if high - low <= AT_FOLD * length {
                 break;
             }
-            let vertex = vertex([left, here, right].map(|(s, z)| (*s, parameter(z))));
+            let vertex = vertex([left, here, right].map(|(s, z)| (*s, parameter(curve, z))));
             let gap = 0.01 * (high - low);
             let golden = if high - here.0 > here.0 - low {
                 here.0 + GOLDEN * (high - here.0)
@@ -224,16 +225,15 @@ impl Branch {
             let position = known.partition_point(|(s, _)| *s < at);
             known.insert(position, (at, z));
         }
-        let (_, fold) = known
-            .into_iter()
-            .max_by(|a, b| (sign * parameter(&a.1)).total_cmp(&(sign * parameter(&b.1))))?;
+        let (_, fold) =
+            known.into_iter().max_by(|a, b| height(curve, &a.1).total_cmp(&height(curve, &b.1)))?;
         Some(fold)
     }
 
     /// Ends the branch exactly at the edge of the range, before a point beyond it.
     fn end_at(&mut self, curve: &mut dyn Curve, beyond: &[f64], edge: f64) {
         let Some(last) = self.points.last() else { return };
-        if parameter(last) == edge {
+        if parameter(curve, last) == edge {
             return;
         }
         if let Some((point, iterations)) = between(curve, last, beyond, edge) {
@@ -246,7 +246,7 @@ impl Branch {
     pub fn at(&self, curve: &mut dyn Curve, value: f64) -> Vec<(usize, Vec<f64>)> {
         let mut found = Vec::new();
         for (position, pair) in self.points.windows(2).enumerate() {
-            let (a, b) = (parameter(&pair[0]) - value, parameter(&pair[1]) - value);
+            let [a, b] = [0, 1].map(|i| parameter(curve, &pair[i]) - value);
             if a == 0.0 {
                 found.push((position, pair[0].clone()));
             } else if a * b < 0.0 {
@@ -257,7 +257,7 @@ impl Branch {
             }
         }
         if let Some(last) = self.points.last() {
-            if parameter(last) == value {
+            if parameter(curve, last) == value {
                 found.push((self.points.len() - 1, last.clone()));
             }
         }
@@ -266,11 +266,11 @@ impl Branch {
 }
 
 /// A point in as many unknowns as the equations need there.
-fn suited(curve: &mut dyn Curve, mut point: Vec<f64>) -> Vec<f64> {
+fn resampled(curve: &mut dyn Curve, mut point: Vec<f64>) -> Vec<f64> {
     loop {
-        let wanted = curve.wanted(&point);
-        match curve.converted(&point, wanted) {
-            Some(more) if wanted > point.len() => point = more,
+        let suitable = curve.suitable_unknowns(&point);
+        match curve.resample(&point, suitable) {
+            Some(more) if suitable > point.len() => point = more,
             _ => return point,
         }
     }
@@ -278,16 +278,17 @@ fn suited(curve: &mut dyn Curve, mut point: Vec<f64>) -> Vec<f64> {
 
 /// The point with the parameter at `value` between two others.
 fn between(curve: &mut dyn Curve, a: &[f64], b: &[f64], value: f64) -> Option<(Vec<f64>, usize)> {
-    let share = (value - parameter(a)) / (parameter(b) - parameter(a));
+    let [from, to] = [a, b].map(|z| parameter(curve, z));
+    let share = (value - from) / (to - from);
     let mixed =
         |share: f64| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect() };
-    let size = distance(a, b).max(f64::MIN_POSITIVE);
+    let size = distance(curve, a, b).max(f64::MIN_POSITIVE);
     for start in [mixed(share), a.to_vec(), b.to_vec()] {
         curve.accept(&start);
         if let Some((z, iterations)) = at_parameter(curve, &start, value, ITERATIONS) {
             // Newton's method may lead to another branch at the same parameter.
             let near = mixed(share);
-            if distance(&z, &near) <= 2.0 * size {
+            if distance(curve, &z, &near) <= 2.0 * size {
                 return Some((z, iterations));
             }
         }
@@ -295,14 +296,13 @@ fn between(curve: &mut dyn Curve, a: &[f64], b: &[f64], value: f64) -> Option<(V
     None
 }
 
-/// The last unknown.
-fn parameter(z: &[f64]) -> f64 {
-    z.last().copied().unwrap_or(f64::NAN)
+fn parameter(curve: &dyn Curve, z: &[f64]) -> f64 {
+    z[curve.parameter(z)]
 }
 
-/// Distance of two points, each unknown but the last two against the whole of them.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let motion = a.len().saturating_sub(2);
+/// Distance of two points, each scalar by itself and the motion against the whole of it.
+fn distance(curve: &dyn Curve, a: &[f64], b: &[f64]) -> f64 {
+    let motion = curve.scalars(a);
     let size = |x: &[f64]| x[..motion].iter().map(|v| v * v).sum::<f64>().sqrt();
     let way: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
     let scale = size(a).max(size(b)).max(f64::MIN_POSITIVE);
@@ -318,50 +318,4 @@ fn vertex([a, b, c]: [(f64, f64); 3]) -> Option<f64> {
     let q = left * (b.1 - c.1) - right * (b.1 - a.1);
     let at = b.0 - 0.5 * p / q;
     at.is_finite().then_some(at)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use faer::Mat;
-
-    /// `(ω − 2)² + p² = 1` about p = 2: a closed loop, with a motion that does not matter.
-    struct Loop;
-
-    impl Curve for Loop {
-        fn unknowns(&self) -> usize {
-            3
-        }
-
-        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
-            out[0] = z[0] - 1.0;
-            out[1] = (z[1] - 2.0).powi(2) + (z[2] - 2.0).powi(2) - 1.0;
-        }
-
-        fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-            out.fill(0.0);
-            out[(0, 0)] = 1.0;
-            out[(1, 1)] = 2.0 * (z[1] - 2.0);
-            out[(1, 2)] = 2.0 * (z[2] - 2.0);
-        }
-
-        fn weights(&self, _: &[f64]) -> Vec<f64> {
-            vec![1.0; 3]
-        }
-
-        fn accept(&mut self, _: &[f64]) {}
-    }
-
-    #[test]
-    fn a_walk_round_a_loop_ends_where_it_comes_back() {
-        let bounds = Bounds { range: (0.0, 10.0), most: 1000, ends: &|_| false };
-        let branch = Branch::walk(&mut Loop, vec![1.0, 1.0, 2.0], 1.0, Steps::default(), &bounds);
-        assert_eq!(branch.end, End::Returned);
-        // What was walked after the second turn is not known to be new.
-        let last = branch.points.len() - 1;
-        let turns = branch.folds.iter().chain([&last]);
-        let turns: Vec<f64> = turns.map(|at| branch.points[*at][2]).collect();
-        assert!((turns[0] - 3.0).abs() < 1e-9 && (turns[1] - 1.0).abs() < 1e-9, "{turns:?}");
-        assert!(branch.points.len() < 200);
-    }
 }

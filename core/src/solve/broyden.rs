@@ -1,9 +1,9 @@
 //! Broyden's method: Newton's method with a Jacobian that is never taken anew while it serves, but
 //! corrected along every step (Guillen 1999, section 3.4.2).
 
-use super::line_search::LineSearch;
+use super::line_search::{falls, LineSearch};
 use super::qr::Qr;
-use super::{norm, NewtonSettings, Outcome, Report, System};
+use super::{differences, norm, NewtonSettings, Outcome, Report, System};
 use faer::Mat;
 
 /// Where the first Jacobian, and that of every restart, comes from.
@@ -25,8 +25,6 @@ pub struct BroydenEffort {
     pub updates: usize,
 }
 
-/// Relative step of the forward differences: half the digits.
-const DIFFERENCE: f64 = 1.5e-8;
 /// Shortest step along a direction: below it it is no descent direction in practice.
 const SHORTEST_STEP: f64 = 1.0 / 256.0;
 /// Shortest step along a direction of an updated Jacobian, which a fresh one replaces rather than
@@ -82,7 +80,9 @@ pub fn broyden(
         let close = relative_step <= settings.tolerance;
         let shortest = if fresh { SHORTEST_STEP } else { SHORTEST_UPDATED_STEP };
         let evaluate = |x: &[f64], out: &mut [f64]| system.value(x, out);
-        if !trial.along(evaluate, x, &step, size_of_residual, shortest, close) {
+        // At rounding level the residual need not fall any more.
+        let accepts = |length, size| close || falls(size, size_of_residual, length);
+        if !trial.along(evaluate, [x, &step], [1.0, shortest], accepts) {
             if fresh {
                 // What the caller reads from the last evaluation belongs to `x` again.
                 system.value(x, &mut residual);
@@ -91,7 +91,7 @@ pub fn broyden(
             factors = None;
             continue;
         }
-        let contraction = trial.contraction(size_of_residual);
+        let contraction = trial.size / size_of_residual.max(f64::MIN_POSITIVE);
         // Steps that shrink by a constant factor c leave c/(1 − c) of the last one.
         let left = relative_step * (contraction / (1.0 - contraction).max(0.1)).min(1.0);
         x.copy_from_slice(&trial.x);
@@ -115,112 +115,4 @@ pub fn broyden(
     let residual = size_of_residual / norm(x).max(f64::MIN_POSITIVE);
     let iterations = settings.max_iterations;
     (Report { outcome: Outcome::Stalled, iterations, residual }, effort)
-}
-
-/// Residual and Jacobian by forward differences. Each unknown is moved by a small share of the
-/// group of unknowns that must be accurate by itself.
-pub(super) fn differences<S: System + ?Sized>(
-    system: &mut S,
-    x: &[f64],
-    residual: &mut [f64],
-    out: &mut Mat<f64>,
-) {
-    let size = x.len();
-    system.value(x, residual);
-    let mut unit = vec![0.0; size];
-    let steps: Vec<f64> = (0..size)
-        .map(|column| {
-            unit[column] = 1.0;
-            let step = DIFFERENCE / system.relative_size(&unit, x);
-            unit[column] = 0.0;
-            step
-        })
-        .collect();
-    let (mut moved, mut ahead) = (x.to_vec(), vec![0.0; size]);
-    for (column, step) in steps.into_iter().enumerate() {
-        moved[column] = x[column] + step;
-        let step = moved[column] - x[column];
-        system.value(&moved, &mut ahead);
-        for (row, (a, r)) in ahead.iter().zip(&*residual).enumerate() {
-            out[(row, column)] = (a - r) / step;
-        }
-        moved[column] = x[column];
-    }
-    // What `relative_size` reads from the last evaluation belongs to `x` again.
-    system.value(x, residual);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Two coupled equations with the roots (±1, ±1) of equal sign.
-    struct Pair;
-
-    impl System for Pair {
-        fn size(&self) -> usize {
-            2
-        }
-
-        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
-            self.value(x, out);
-        }
-
-        fn value(&mut self, x: &[f64], out: &mut [f64]) {
-            out[0] = x[0] * x[0] + x[1] * x[1] - 2.0;
-            out[1] = x[0] - x[1].powi(3);
-        }
-
-        fn solve(&mut self, _: &[f64], _: &mut [f64]) -> bool {
-            false
-        }
-    }
-
-    #[test]
-    fn a_pair_of_equations_is_solved_from_one_jacobian() {
-        let mut x = [1.4, 1.2];
-        let settings = NewtonSettings::default();
-        let (report, effort) = broyden(&mut Pair, &mut x, settings, FirstJacobian::Differences);
-        assert_eq!(report.outcome, Outcome::Converged);
-        assert_eq!(effort.jacobians, 1);
-        assert_eq!(effort.updates, report.iterations - 1);
-        assert!((x[0] - 1.0).abs() < 1e-10 && (x[1] - 1.0).abs() < 1e-10, "{x:?}");
-    }
-
-    #[test]
-    fn a_far_start_is_damped_and_restarted() {
-        let mut x = [8.0, 3.0];
-        let settings = NewtonSettings::default();
-        let (report, effort) = broyden(&mut Pair, &mut x, settings, FirstJacobian::Exact);
-        assert_eq!(report.outcome, Outcome::Converged);
-        assert!(effort.jacobians > 1);
-        assert!((x[0].abs() - 1.0).abs() < 1e-9, "{x:?}");
-    }
-
-    struct Rootless;
-
-    impl System for Rootless {
-        fn size(&self) -> usize {
-            1
-        }
-
-        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
-            self.value(x, out);
-        }
-
-        fn value(&mut self, x: &[f64], out: &mut [f64]) {
-            out[0] = 1.0 + x[0] * x[0];
-        }
-
-        fn solve(&mut self, _: &[f64], _: &mut [f64]) -> bool {
-            false
-        }
-    }
-
-    #[test]
-    fn a_system_without_root_is_reported() {
-        let settings = NewtonSettings::default();
-        let (report, _) = broyden(&mut Rootless, &mut [0.3], settings, FirstJacobian::Exact);
-        assert_ne!(report.outcome, Outcome::Converged);
-    }
 }

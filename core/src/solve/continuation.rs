@@ -1,6 +1,6 @@
 //! Continuation of a curve of solutions by arclength, around folds and past corners.
 //!
-//! The curve is given as a [`Curve`]: one equation less than unknowns, of which the last one is the
+//! The curve is given as a [`Curve`]: one equation less than unknowns, of which one is the
 //! parameter. Where the equations are only piecewise smooth the curve has corners: its tangent
 //! jumps, by more than a right angle too. What stays is the orientation: the sign of the determinant
 //! of the equations bordered by the tangent is the same all along a curve, around folds and past
@@ -34,8 +34,8 @@ impl Default for Steps {
 const EASY: usize = 4;
 /// … and by how much.
 const GROWTH: f64 = 1.6;
-/// Cosine between successive secants below which a step is too long to follow the curve: with more
-/// freedom walks change over to neighbouring parts of winding curves, …
+/// Cosine between successive secants below which a step is too long: longer steps may land on another
+/// part of a winding curve, …
 const BEND: f64 = 0.95;
 /// … unless it is so short, against the longest, that the bend must be a corner.
 const CORNER: f64 = 2e-3;
@@ -85,7 +85,7 @@ impl Continuation {
         curve.accept(&start);
         let weights = curve.weights(&start);
         let mut ahead = vec![0.0; start.len()];
-        *ahead.last_mut()? = sign;
+        ahead[curve.parameter(&start)] = sign;
         let (direction, orientation) =
             oriented(curve, &start, &weights, &ahead).unwrap_or((ahead, 1.0));
         let first = steps.first;
@@ -306,10 +306,10 @@ pub fn at_parameter(
 ) -> Option<(Vec<f64>, usize)> {
     let weights = curve.weights(start);
     let mut z = start.to_vec();
-    let last = z.len().checked_sub(1)?;
-    z[last] = value;
+    let at = curve.parameter(start);
+    z[at] = value;
     let mut normal = vec![0.0; z.len()];
-    normal[last] = weights[last].recip();
+    normal[at] = weights[at].recip();
     let condition = Condition::Plane { normal: &normal, at: &z.clone() };
     let report = Bordered { weights: &weights, condition, max_iterations }.solve(curve, &mut z);
     report.converged.then_some((z, report.iterations))
@@ -325,131 +325,4 @@ pub fn across(curve: &mut dyn Curve, a: &[f64], b: &[f64], share: f64) -> Option
     let condition = Condition::Plane { normal: &normal, at: &z.clone() };
     let report = Bordered { weights: &weights, condition, max_iterations: 25 }.solve(curve, &mut z);
     report.converged.then_some(z)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use faer::Mat;
-
-    /// `p = 1 − |x| − x²/4`: a fold at a corner; with `smooth`, `p = 1 − x²`.
-    struct Fold {
-        smooth: bool,
-    }
-
-    impl Curve for Fold {
-        fn unknowns(&self) -> usize {
-            2
-        }
-
-        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
-            let x = z[0];
-            let height = if self.smooth { x * x } else { x.abs() + 0.25 * x * x };
-            out[0] = z[1] - 1.0 + height;
-        }
-
-        fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-            let x = z[0];
-            out[(0, 0)] = if self.smooth { 2.0 * x } else { x.signum() + 0.5 * x };
-            out[(0, 1)] = 1.0;
-        }
-
-        fn weights(&self, _: &[f64]) -> Vec<f64> {
-            vec![1.0, 1.0]
-        }
-
-        fn accept(&mut self, _: &[f64]) {}
-    }
-
-    fn walk(smooth: bool) -> Vec<Vec<f64>> {
-        let mut curve = Fold { smooth };
-        let height = if smooth { 1.0 } else { 1.25 };
-        let start = vec![-1.0, 1.0 - height];
-        let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default()).unwrap();
-        let mut points = Vec::new();
-        while walk.point[0] < 1.0 && points.len() < 500 {
-            assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
-            points.push(walk.point.clone());
-        }
-        points
-    }
-
-    #[test]
-    fn a_walk_goes_around_smooth_folds_and_corners() {
-        for smooth in [true, false] {
-            let points = walk(smooth);
-            assert!(points.len() < 200);
-            assert!(points.windows(2).all(|pair| pair[1][0] > pair[0][0]));
-            let top = points.iter().map(|p| p[1]).fold(f64::MIN, f64::max);
-            assert!(top > 0.9 && top <= 1.0, "{top}");
-        }
-    }
-
-    #[test]
-    fn a_point_is_found_at_a_parameter() {
-        let mut curve = Fold { smooth: true };
-        let (z, _) = at_parameter(&mut curve, &[-0.8, 0.4], 0.19, 20).unwrap();
-        assert!((z[0] + 0.9).abs() < 1e-12);
-        assert!(at_parameter(&mut curve, &[-0.3, 0.9], 1.1, 20).is_none());
-    }
-
-    /// One equation in `x` and the parameter.
-    struct Plane<F: Fn(f64, f64) -> [f64; 3]>(F);
-
-    impl<F: Fn(f64, f64) -> [f64; 3]> Curve for Plane<F> {
-        fn unknowns(&self) -> usize {
-            2
-        }
-
-        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
-            out[0] = self.0(z[0], z[1])[0];
-        }
-
-        fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-            let [_, by_x, by_p] = self.0(z[0], z[1]);
-            (out[(0, 0)], out[(0, 1)]) = (by_x, by_p);
-        }
-
-        fn weights(&self, _: &[f64]) -> Vec<f64> {
-            vec![1.0, 1.0]
-        }
-
-        fn accept(&mut self, _: &[f64]) {}
-    }
-
-    /// `p = −1 … 0` on `x = 0`, and back along `x = p/4`: the boundary of a wedge.
-    #[test]
-    fn a_walk_passes_a_corner_that_turns_by_more_than_a_right_angle() {
-        let wedge = |x: f64, p: f64| {
-            let (a, b) = (-x, x - 0.25 * p);
-            if a < b {
-                [a, -1.0, 0.0]
-            } else {
-                [b, 1.0, -0.25]
-            }
-        };
-        let mut curve = Plane(wedge);
-        let mut walk =
-            Continuation::new(&mut curve, vec![0.0, -1.0], 1.0, Steps::default()).unwrap();
-        for _ in 0..200 {
-            assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
-            if walk.point[1] < -0.9 && walk.point[0] < -0.1 {
-                return;
-            }
-        }
-        panic!("{:?}", walk.point);
-    }
-
-    /// `x² − p² = ε²`: two branches that nearly cross, and are left to either side of each other.
-    #[test]
-    fn a_walk_does_not_change_over_to_a_branch_that_comes_near() {
-        let hyperbola = |x: f64, p: f64| [x * x - p * p - 1e-6, 2.0 * x, -2.0 * p];
-        let mut curve = Plane(hyperbola);
-        let start = vec![-(1.0_f64 + 1e-6).sqrt(), -1.0];
-        let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default()).unwrap();
-        while walk.point[1] < 1.0 {
-            assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
-            assert!(walk.point[0] < 0.0, "{:?}", walk.point);
-        }
-    }
 }

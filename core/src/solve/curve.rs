@@ -1,4 +1,4 @@
-//! A curve of solutions as equations: what a walk along it asks of them.
+//! A curve of solutions as equations: what a continuation asks of them.
 
 use faer::Mat;
 
@@ -6,6 +6,15 @@ use faer::Mat;
 pub trait Curve {
     /// Number of unknowns, one more than equations.
     fn unknowns(&self) -> usize;
+
+    /// Position of the parameter among the unknowns of `z`.
+    fn parameter(&self, z: &[f64]) -> usize;
+
+    /// Position from which on the unknowns of `z` are compared one by one, the parameter among them;
+    /// those before are one motion, compared as a whole and wherever it begins in time.
+    fn scalars(&self, z: &[f64]) -> usize {
+        self.parameter(z)
+    }
 
     /// Residual at `z`, of the order of the relative error of the unknowns; not a number where it
     /// is not defined.
@@ -22,19 +31,19 @@ pub trait Curve {
 
     /// Number of unknowns that suits the equations about the point `z`: more than it has where they
     /// are too sensitive to those.
-    fn wanted(&mut self, z: &[f64]) -> usize {
+    fn suitable_unknowns(&mut self, z: &[f64]) -> usize {
         z.len()
     }
 
-    /// The same point in another number of unknowns; the last two keep their meaning.
-    fn converted(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
+    /// The same point in another number of unknowns.
+    fn resample(&mut self, z: &[f64], unknowns: usize) -> Option<Vec<f64>> {
         (z.len() == unknowns).then(|| z.to_vec())
     }
 
     /// Two points in the same unknowns, as many as the larger number of them.
     fn matched(&mut self, a: &[f64], b: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let unknowns = a.len().max(b.len());
-        Some((self.converted(a, unknowns)?, self.converted(b, unknowns)?))
+        Some((self.resample(a, unknowns)?, self.resample(b, unknowns)?))
     }
 
     /// Whether the caller wants to end the analysis.

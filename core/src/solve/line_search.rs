@@ -21,35 +21,32 @@ impl LineSearch {
         Self { x: vec![0.0; size], residual: vec![0.0; size], ..Self::default() }
     }
 
-    /// Halves the step from `x` until it lowers the residual below `size`; `false` if none does
-    /// down to the length `shortest`. At rounding level, where a step is `close`, the residual need
-    /// not fall any more.
+    /// Halves the step from `x`, at first `longest` of it, until `accepts(length, residual)`; `false` if
+    /// no length down to `shortest` is.
     pub(super) fn along(
         &mut self,
         mut evaluate: impl FnMut(&[f64], &mut [f64]),
-        x: &[f64],
-        step: &[f64],
-        size: f64,
-        shortest: f64,
-        close: bool,
+        [x, step]: [&[f64]; 2],
+        [longest, shortest]: [f64; 2],
+        accepts: impl Fn(f64, f64) -> bool,
     ) -> bool {
-        self.length = 1.0;
+        self.length = longest;
         while self.length >= shortest {
             for ((trial, x), s) in self.x.iter_mut().zip(x).zip(step) {
                 *trial = x - self.length * s;
             }
             evaluate(&self.x, &mut self.residual);
             self.size = norm(&self.residual);
-            if close || self.size <= (1.0 - DECREASE * self.length) * size {
+            if accepts(self.length, self.size) {
                 return true;
             }
             self.length *= 0.5;
         }
         false
     }
+}
 
-    /// Factor by which the residual has fallen.
-    pub(super) fn contraction(&self, size: f64) -> f64 {
-        self.size / size.max(f64::MIN_POSITIVE)
-    }
+/// Whether a residual of the size `after` a step of some length is less than that before.
+pub(super) fn falls(after: f64, before: f64, length: f64) -> bool {
+    after <= (1.0 - DECREASE * length) * before
 }

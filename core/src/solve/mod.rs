@@ -41,7 +41,7 @@ pub trait System {
 
     /// Residual and whole Jacobian at `x`; by forward differences unless the system knows better.
     fn jacobian(&mut self, x: &[f64], residual: &mut [f64], out: &mut Mat<f64>) {
-        broyden::differences(self, x, residual, out);
+        differences(self, x, residual, out);
     }
 
     /// Size of `step` relative to `x`: the largest over all groups of unknowns that must be
@@ -72,4 +72,40 @@ pub fn norm(x: &[f64]) -> f64 {
         return sum;
     }
     largest * x.iter().map(|v| (v / largest).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Relative step of the forward differences: half the digits.
+const DIFFERENCE: f64 = 1.5e-8;
+
+/// Residual and Jacobian by forward differences. Each unknown is moved by a small share of the
+/// group of unknowns that must be accurate by itself.
+pub(super) fn differences<S: System + ?Sized>(
+    system: &mut S,
+    x: &[f64],
+    residual: &mut [f64],
+    out: &mut Mat<f64>,
+) {
+    let size = x.len();
+    system.value(x, residual);
+    let mut unit = vec![0.0; size];
+    let steps: Vec<f64> = (0..size)
+        .map(|column| {
+            unit[column] = 1.0;
+            let step = DIFFERENCE / system.relative_size(&unit, x);
+            unit[column] = 0.0;
+            step
+        })
+        .collect();
+    let (mut moved, mut ahead) = (x.to_vec(), vec![0.0; size]);
+    for (column, step) in steps.into_iter().enumerate() {
+        moved[column] = x[column] + step;
+        let step = moved[column] - x[column];
+        system.value(&moved, &mut ahead);
+        for (row, (a, r)) in ahead.iter().zip(&*residual).enumerate() {
+            out[(row, column)] = (a - r) / step;
+        }
+        moved[column] = x[column];
+    }
+    // What `relative_size` reads from the last evaluation belongs to `x` again.
+    system.value(x, residual);
 }

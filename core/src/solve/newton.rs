@@ -2,7 +2,7 @@
 //! not; the last steps, which are small, share one Jacobian.
 
 use super::damping::{Damped, Damping};
-use super::line_search::LineSearch;
+use super::line_search::falls;
 use super::{norm, System};
 
 /// When to stop.
@@ -55,201 +55,196 @@ const SERVES_AGAIN: f64 = 1e-3;
 /// stiff contacts are small differences, which an error of the unknowns reaches many times over.
 const OF_KEPT: f64 = 1e-2;
 
+/// Relative step at which rounding hides what a step leaves.
+const CLOSE: f64 = 1e-9;
+
 /// Solves `system = 0` from `x`, which holds the best point found on return.
 pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings) -> Report {
-    let size = system.size();
-    let (mut residual, mut step) = (vec![0.0; size], vec![0.0; size]);
-    let mut trial = LineSearch::new(size);
-    let mut damping = Damping::new(size);
-    // Whether a full step has failed.
-    let mut damped = false;
-    system.residual(x, &mut residual);
-    let mut size_of_residual = norm(&residual);
-    // Whether the Jacobian is that at x.
-    let mut fresh = true;
-    // Whether the tolerance is met, and only rounding may be in the way of more.
-    let mut within = false;
-    for iteration in 0..settings.max_iterations {
-        let report = |outcome, residual: f64, x: &[f64]| Report {
-            outcome,
-            iterations: iteration + 1,
-            residual: residual / norm(x).max(f64::MIN_POSITIVE),
+    let mut newton = Newton::init(system, x, settings);
+    for iteration in 1..=settings.max_iterations {
+        let Some(checkpoint) = newton.step() else { continue };
+        if let Some(outcome) = newton.terminate(checkpoint) {
+            return newton.report(outcome, iteration);
+        }
+    }
+    newton.report(Outcome::Stalled, settings.max_iterations)
+}
+
+/// Where an iteration stands that does not simply go on with the next step.
+enum Checkpoint {
+    /// The caller asks to end.
+    Interrupted,
+    /// There is no Newton direction.
+    NoDirection,
+    /// No part of the step leaves a smaller one.
+    NoLength,
+    /// The full step does not lower the residual.
+    Rejected,
+    /// The full step was taken, and leaves about this error; the residual fell by this factor.
+    Accepted { left: f64, contraction: f64 },
+}
+
+/// Newton's method on its way.
+struct Newton<'a, S> {
+    system: &'a mut S,
+    x: &'a mut [f64],
+    tolerance: f64,
+    residual: Vec<f64>,
+    size_of_residual: f64,
+    step: Vec<f64>,
+    relative_step: f64,
+    /// The point that a full step leads to, and its residual.
+    trial: [Vec<f64>; 2],
+    damping: Damping,
+    /// Whether a full step has failed, so that steps are damped.
+    damped: bool,
+    /// Whether the Jacobian is that at x.
+    fresh: bool,
+    /// Whether the tolerance is met, and only rounding may be in the way of more.
+    within: bool,
+}
+
+impl<'a, S: System> Newton<'a, S> {
+    fn init(system: &'a mut S, x: &'a mut [f64], settings: NewtonSettings) -> Self {
+        let size = system.size();
+        let zeros = || vec![0.0; size];
+        let mut newton = Self {
+            system,
+            x,
+            tolerance: settings.tolerance,
+            residual: zeros(),
+            size_of_residual: f64::NAN,
+            step: zeros(),
+            relative_step: f64::INFINITY,
+            trial: [zeros(), zeros()],
+            damping: Damping::new(size),
+            damped: false,
+            fresh: true,
+            within: false,
         };
-        if system.interrupted() {
-            return report(Outcome::Interrupted, size_of_residual, x);
+        newton.linearise();
+        newton
+    }
+
+    /// Residual and Jacobian at x.
+    fn linearise(&mut self) {
+        self.system.residual(self.x, &mut self.residual);
+        self.size_of_residual = norm(&self.residual);
+        self.fresh = true;
+    }
+
+    /// Whether the step is so small that its Jacobian serves again.
+    fn serves_again(&self) -> bool {
+        self.relative_step <= SERVES_AGAIN
+    }
+
+    /// Takes the Newton step, or a part of it; nothing is to be decided behind a damped one.
+    fn step(&mut self) -> Option<Checkpoint> {
+        if self.system.interrupted() {
+            return Some(Checkpoint::Interrupted);
         }
-        if !size_of_residual.is_finite() || !system.solve(&residual, &mut step) {
-            return report(Outcome::Singular, size_of_residual, x);
+        let solvable = self.size_of_residual.is_finite()
+            && self.system.solve(&self.residual, &mut self.step)
+            && norm(&self.step).is_finite();
+        if !solvable {
+            return Some(Checkpoint::NoDirection);
         }
-        let size_of_step = norm(&step);
-        if !size_of_step.is_finite() {
-            return report(Outcome::Singular, size_of_residual, x);
+        self.relative_step = self.system.relative_size(&self.step, self.x);
+        if self.damped && self.relative_step > CLOSE {
+            return self.damped_step();
         }
-        let relative_step = system.relative_size(&step, x);
-        let close = relative_step <= 1e-9;
-        let keep = relative_step <= SERVES_AGAIN;
-        if damped && !close {
-            let taken = damping.advance(system, x, &step);
-            system.residual(x, &mut residual);
-            size_of_residual = norm(&residual);
-            match taken {
-                Damped::Full(left) => damped = !keep || left > CONTRACTS,
-                Damped::Part => {}
-                Damped::Stuck => return report(Outcome::Stalled, size_of_residual, x),
-            }
-            continue;
+        Some(self.full_step())
+    }
+
+    fn damped_step(&mut self) -> Option<Checkpoint> {
+        let taken = self.damping.advance(self.system, self.x, &self.step);
+        self.linearise();
+        match taken {
+            Damped::Full(left) => self.damped = !self.serves_again() || left > CONTRACTS,
+            Damped::Part => {}
+            Damped::Stuck => return Some(Checkpoint::NoLength),
         }
-        let evaluate = |x: &[f64], out: &mut [f64]| {
-            if keep {
-                system.value(x, out);
-            } else {
-                system.residual(x, out);
-            }
-        };
-        if !trial.along(evaluate, x, &step, size_of_residual, 1.0, close) {
-            // The Jacobian at x again, for damped steps if it was not to blame.
-            system.residual(x, &mut residual);
-            if fresh && within {
-                return report(Outcome::Converged, size_of_residual, x);
-            }
-            if fresh {
-                damping.forget();
-                damped = true;
-            }
-            fresh = true;
-            continue;
+        None
+    }
+
+    fn full_step(&mut self) -> Checkpoint {
+        let serves_again = self.serves_again();
+        let [x, residual] = &mut self.trial;
+        for ((trial, x), s) in x.iter_mut().zip(&*self.x).zip(&self.step) {
+            *trial = x - s;
+        }
+        if serves_again {
+            self.system.value(x, residual);
+        } else {
+            self.system.residual(x, residual);
+        }
+        let size = norm(residual);
+        // At rounding level the residual need not fall any more.
+        if self.relative_step > CLOSE && !falls(size, self.size_of_residual, 1.0) {
+            return Checkpoint::Rejected;
         }
         // Where Newton's method converges, the error shrinks as the residual does: the error left
         // is the step times the contraction just seen.
-        let contraction = trial.contraction(size_of_residual);
-        let left = relative_step * contraction.min(1.0);
-        x.copy_from_slice(&trial.x);
-        std::mem::swap(&mut residual, &mut trial.residual);
-        size_of_residual = trial.size;
+        let contraction = size / self.size_of_residual.max(f64::MIN_POSITIVE);
+        self.x.copy_from_slice(x);
+        std::mem::swap(&mut self.residual, residual);
+        self.size_of_residual = size;
+        Checkpoint::Accepted { left: self.relative_step * contraction.min(1.0), contraction }
+    }
+
+    /// Ends the iteration, or chooses the Jacobian and the kind of the next step.
+    fn terminate(&mut self, checkpoint: Checkpoint) -> Option<Outcome> {
+        match checkpoint {
+            Checkpoint::Interrupted => Some(Outcome::Interrupted),
+            Checkpoint::NoDirection => Some(Outcome::Singular),
+            Checkpoint::NoLength => Some(Outcome::Stalled),
+            Checkpoint::Rejected => {
+                // The Jacobian at x again, for damped steps if it was not to blame.
+                let blameless = self.fresh;
+                self.linearise();
+                if blameless && self.within {
+                    return Some(Outcome::Converged);
+                }
+                if blameless {
+                    self.damping.forget();
+                    self.damped = true;
+                }
+                None
+            }
+            Checkpoint::Accepted { left, contraction } => self.judge(left, contraction),
+        }
+    }
+
+    /// Whether the error left by a full step is small enough.
+    fn judge(&mut self, left: f64, contraction: f64) -> Option<Outcome> {
+        let kept = self.serves_again();
         // Rounding hides the contraction of the last steps; behind one with a Jacobian of its own
         // the error is that of rounding.
-        if close && fresh {
-            return report(Outcome::Converged, size_of_residual, x);
+        if self.relative_step <= CLOSE && self.fresh {
+            return Some(Outcome::Converged);
         }
-        let before = within;
-        within = left <= settings.tolerance;
-        if within {
+        let before = std::mem::replace(&mut self.within, left <= self.tolerance);
+        if self.within {
             // Newton's own last step would leave hardly more than rounding. One with a Jacobian
             // kept leaves what the step that would follow tells, at the price of a substitution;
             // it is taken once.
-            let enough = OF_KEPT * settings.tolerance;
-            let known = keep && !before && system.solve(&residual, &mut step);
-            if !keep || before || (known && system.relative_size(&step, x) <= enough) {
-                return report(Outcome::Converged, size_of_residual, x);
+            let enough = OF_KEPT * self.tolerance;
+            let known = kept && !before && self.system.solve(&self.residual, &mut self.step);
+            if !kept || before || (known && self.system.relative_size(&self.step, self.x) <= enough)
+            {
+                return Some(Outcome::Converged);
             }
         }
-        fresh = !keep;
+        self.fresh = !kept;
         // Two more steps with the same Jacobian cost less than a new one; three do not.
-        if keep && left * contraction * contraction > settings.tolerance {
-            system.residual(x, &mut residual);
-            fresh = true;
+        if kept && left * contraction * contraction > self.tolerance {
+            self.linearise();
         }
-    }
-    Report {
-        outcome: Outcome::Stalled,
-        iterations: settings.max_iterations,
-        residual: size_of_residual / norm(x).max(f64::MIN_POSITIVE),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    struct Arctangent(f64);
-
-    impl System for Arctangent {
-        fn size(&self) -> usize {
-            1
-        }
-
-        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
-            self.0 = 1.0 / (1.0 + x[0] * x[0]);
-            self.value(x, out);
-        }
-
-        fn value(&mut self, x: &[f64], out: &mut [f64]) {
-            out[0] = x[0].atan() - 0.5;
-        }
-
-        fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
-            step[0] = rhs[0] / self.0;
-            true
-        }
+        None
     }
 
-    #[test]
-    fn damping_saves_a_start_from_which_full_steps_diverge() {
-        let mut x = [8.0];
-        let report = newton(&mut Arctangent(0.0), &mut x, NewtonSettings::default());
-        assert_eq!(report.outcome, Outcome::Converged);
-        assert!((x[0] - 0.5_f64.tan()).abs() < 1e-12);
-    }
-
-    /// A narrow valley along a parabola: the first equation weighs a million times the second.
-    struct Valley(f64);
-
-    impl System for Valley {
-        fn size(&self) -> usize {
-            2
-        }
-
-        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
-            self.0 = x[0];
-            self.value(x, out);
-        }
-
-        fn value(&mut self, x: &[f64], out: &mut [f64]) {
-            out[0] = 1e6 * (x[1] - x[0] * x[0]);
-            out[1] = x[0] - 1.0;
-        }
-
-        fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
-            step[0] = rhs[1];
-            step[1] = 1e-6 * rhs[0] + 2.0 * self.0 * rhs[1];
-            true
-        }
-    }
-
-    /// Along steps that lower the residual the way takes three million iterations.
-    #[test]
-    fn steps_are_judged_by_the_error_and_not_by_the_residual() {
-        let mut x = [-5.0, 25.0];
-        let report = newton(&mut Valley(0.0), &mut x, NewtonSettings::default());
-        assert_eq!(report.outcome, Outcome::Converged);
-        assert!((x[0] - 1.0).abs() < 1e-12 && (x[1] - 1.0).abs() < 1e-12, "{x:?}");
-        assert!(report.iterations <= 5, "{}", report.iterations);
-    }
-
-    struct Rootless;
-
-    impl System for Rootless {
-        fn size(&self) -> usize {
-            1
-        }
-
-        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
-            self.value(x, out);
-        }
-
-        fn value(&mut self, x: &[f64], out: &mut [f64]) {
-            out[0] = 1.0 + x[0] * x[0];
-        }
-
-        fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
-            step[0] = rhs[0];
-            true
-        }
-    }
-
-    #[test]
-    fn a_system_without_root_is_reported() {
-        let report = newton(&mut Rootless, &mut [0.3], NewtonSettings::default());
-        assert_ne!(report.outcome, Outcome::Converged);
+    fn report(&self, outcome: Outcome, iterations: usize) -> Report {
+        let residual = self.size_of_residual / norm(self.x).max(f64::MIN_POSITIVE);
+        Report { outcome, iterations, residual }
     }
 }

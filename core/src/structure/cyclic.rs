@@ -5,11 +5,12 @@
 //! disk at nodal diameter kE mod n. That is exact, friction between the sectors included.
 
 use super::modal::Wave;
-use super::modes::hermitian_modes;
+use super::modes::modes;
 use super::ports::{forced_harmonics, Ports};
 use super::proportional::follows_mass;
 use super::{
-    compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Receptance, Structure,
+    compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Receptance, Request,
+    Structure,
 };
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -50,7 +51,7 @@ impl CyclicMatrix {
 /// A cyclic structure under a travelling wave.
 #[derive(Debug, Clone)]
 pub struct CyclicStructure {
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub mass: CyclicMatrix,
     /// Damping [kg/s].
     pub damping: CyclicMatrix,
@@ -136,7 +137,7 @@ impl CyclicStructure {
         let delta = self.phase(diameter);
         let rows = wave_rows(own, next, delta);
         let restrained = restrained(&self.stiffness.wave(delta), &rows, stiffness);
-        Ok(hermitian_modes(self.mass.wave(delta).as_ref(), restrained.as_ref())?.frequencies())
+        Ok(modes(self.mass.wave(delta).as_ref(), restrained.as_ref())?.frequencies())
     }
 }
 
@@ -148,7 +149,7 @@ fn wave_rows(own: MatRef<'_, f64>, next: MatRef<'_, f64>, delta: f64) -> Mat<c64
 
 /// `K + Bᴴ D B`.
 fn restrained(stiffness: &Mat<c64>, rows: &Mat<c64>, contacts: MatRef<'_, f64>) -> Mat<c64> {
-    stiffness + rows.adjoint() * (super::modal::complex(contacts) * rows)
+    stiffness + rows.adjoint() * (super::modes::complex(contacts) * rows)
 }
 
 /// The compliance of a sector in a travelling wave.
@@ -260,8 +261,8 @@ impl CyclicCompliance {
         let (mass, damping) = (structure.mass.wave(delta), structure.damping.wave(delta));
         let free_stiffness = structure.stiffness.wave(delta);
         let stuck_stiffness = restrained(&free_stiffness, &rows, self.ports.stiffness.as_ref());
-        let stuck = hermitian_modes(mass.as_ref(), stuck_stiffness.as_ref())?;
-        let free = hermitian_modes(mass.as_ref(), free_stiffness.as_ref())?;
+        let stuck = modes(mass.as_ref(), stuck_stiffness.as_ref())?;
+        let free = modes(mass.as_ref(), free_stiffness.as_ref())?;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
         let loads = self.loads_at(diameter);
         let wave = Wave {
@@ -313,40 +314,8 @@ impl Compliance for CyclicCompliance {
         self.wave(harmonic)?.receptance(harmonic, omega, out)
     }
 
-    fn displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        self.wave(harmonic)?.displacement(harmonic, omega, contact, slip_load, observe, out)
-    }
-
-    fn slip_displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        self.wave(harmonic)?.slip_displacement(harmonic, omega, contact, slip_load, observe, out)
-    }
-
-    fn displacement_slope(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        self.wave(harmonic)?.displacement_slope(harmonic, omega, contact, slip_load, observe, out)
+    fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
+        self.wave(request.harmonic)?.displacement(request, out)
     }
 
     fn stuck_frequencies(&self) -> &[f64] {

@@ -1,10 +1,10 @@
 //! Compliance by one factorisation per frequency, for structures whose complex modes are
 //! defective. Slower than modes, never wrong.
 
-use super::modal::complex;
-use super::modes::real_modes;
+use super::modes::{complex, modes};
 use super::ports::{forced_harmonics, HarmonicLoad};
-use super::{Compliance, Ports, Receptance, Structure};
+use super::restraint::store;
+use super::{Compliance, Ports, Quantity, Receptance, Request, Structure};
 use crate::Error;
 use faer::linalg::solvers::{PartialPivLu, Solve as _};
 use faer::{c64, Mat, MatRef};
@@ -17,6 +17,8 @@ pub struct DirectCompliance {
     restrained: Mat<c64>,
     rows: Mat<c64>,
     loads: Vec<HarmonicLoad>,
+    /// C_neg of a damping `C + r C_neg`, if there is one.
+    negative: Option<Mat<c64>>,
     stuck_frequencies: Vec<f64>,
     free_frequencies: Vec<f64>,
 }
@@ -31,8 +33,8 @@ impl DirectCompliance {
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
         let direct = Self::of(structure, ports, restrained.as_ref());
-        let stuck = real_modes(structure.mass(), restrained.as_ref())?.frequencies();
-        let free = real_modes(structure.mass(), structure.stiffness())?.frequencies();
+        let stuck = modes(structure.mass(), restrained.as_ref())?.frequencies();
+        let free = modes(structure.mass(), structure.stiffness())?.frequencies();
         Ok(direct.with_frequencies(stuck, free))
     }
 
@@ -49,7 +51,22 @@ impl DirectCompliance {
         loads: Vec<HarmonicLoad>,
     ) -> Self {
         let (stuck_frequencies, free_frequencies) = (Vec::new(), Vec::new());
-        Self { mass, damping, restrained, rows, loads, stuck_frequencies, free_frequencies }
+        let negative = None;
+        Self {
+            mass,
+            damping,
+            restrained,
+            rows,
+            loads,
+            negative,
+            stuck_frequencies,
+            free_frequencies,
+        }
+    }
+
+    /// With a part of the damping whose size is free.
+    pub(super) fn with_negative(self, negative: Mat<c64>) -> Self {
+        Self { negative: Some(negative), ..self }
     }
 
     /// With the natural frequencies of the stuck and of the free structure.
@@ -141,61 +158,32 @@ impl Compliance for DirectCompliance {
             }
             out.stuck[column] = (rows.row(column) * of_load.col(0)) as c64;
         }
+        // dG = −G dA G, with dA = ikC − 2k²ωM in ω and ikω C_neg in r.
         if let Some((contact_slope, stuck_slope)) = &mut out.slope {
-            // dG = −G (ikC − 2k²ωM) G
             let change = self.softening(harmonic, omega);
-            let contact_change = rows * lu.solve(&change * &of_contacts);
-            let load_change = rows * lu.solve(&change * &of_load);
-            for column in 0..contacts {
-                for row in 0..contacts {
-                    contact_slope[column * contacts + row] = contact_change[(row, column)];
-                }
-                stuck_slope[column] = load_change[(column, 0)];
-            }
+            store((rows * lu.solve(&change * &of_contacts)).as_ref(), contact_slope);
+            store((rows * lu.solve(&change * &of_load)).as_ref(), stuck_slope);
+        }
+        if let Some(negative) = &self.negative {
+            let driving = faer::Scale(c64::new(0.0, -(harmonic as f64) * omega)) * negative;
+            out.by_ratio.resize(contacts * contacts, c64::new(0.0, 0.0));
+            store((rows * lu.solve(driving * &of_contacts)).as_ref(), &mut out.by_ratio);
         }
         Ok(())
     }
 
-    fn displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        _contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        let load = self.load(harmonic) + self.of_slip(slip_load);
-        observed(self.factor(harmonic, omega)?.solve(load).as_ref(), observe, out);
-        Ok(())
-    }
-
-    fn slip_displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        _contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        let x = self.factor(harmonic, omega)?.solve(self.of_slip(slip_load));
-        observed(x.as_ref(), observe, out);
-        Ok(())
-    }
-
-    fn displacement_slope(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        _contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
+    fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
+        let Request { harmonic, omega, quantity, .. } = *request;
         let lu = self.factor(harmonic, omega)?;
-        let x = lu.solve(self.load(harmonic) + self.of_slip(slip_load));
-        observed(lu.solve(self.softening(harmonic, omega) * x).as_ref(), observe, out);
+        let slip = self.of_slip(request.slip_load);
+        let loaded = quantity != Quantity::OfSlip;
+        let mut x = lu.solve(if loaded { self.load(harmonic) + slip } else { slip });
+        if quantity == Quantity::Slope {
+            x = lu.solve(self.softening(harmonic, omega) * x);
+        }
+        for (value, &dof) in out.iter_mut().zip(request.observe) {
+            *value = x[(dof, 0)];
+        }
         Ok(())
     }
 
@@ -215,11 +203,5 @@ impl Compliance for DirectCompliance {
     fn narrowest_bandwidth(&self) -> f64 {
         // No mode is known; a hundredth of the lowest frequency resolves ordinary damping.
         self.stuck_frequencies.iter().copied().find(|w| *w > 0.0).unwrap_or(1.0) * 0.01
-    }
-}
-
-fn observed(x: MatRef<'_, c64>, observe: &[usize], out: &mut [c64]) {
-    for (value, &dof) in out.iter_mut().zip(observe) {
-        *value = x[(dof, 0)];
     }
 }

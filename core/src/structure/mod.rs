@@ -22,14 +22,14 @@ mod system;
 
 pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
 pub use direct::DirectCompliance;
-pub use flutter_compliance::{CompliancePartials, FlutterCompliance, StuckMode};
+pub use flutter_compliance::{FlutterCompliance, StuckMode};
 pub use modal::{compliance, ModalBase, ModalCompliance};
-pub use modes::{natural_frequencies, real_modes, RealModes};
+pub use modes::{modes, natural_frequencies, HermitianModes, Modes, RealModes};
 pub use poles::Poles;
 pub use ports::{HarmonicLoad, Ports};
 pub(crate) use proportional::ModalDamping;
-pub use ring::{Ring, RingCoupling, RingLayout, RingSector};
-pub use ring_order::{RingMotion, RingOrder};
+pub use ring::{Ring, RingCoupling, RingSector};
+pub use ring_order::{RingLayout, RingMotion, RingOrder};
 pub use system::Structure;
 
 use crate::Error;
@@ -41,28 +41,53 @@ use faer::c64;
 pub struct Receptance {
     /// `G_k = B (K_s + ikωC − (kω)²M)⁻¹ Bᵀ`, column by column, contacts × contacts [m/N].
     pub contact: Vec<c64>,
-    /// `B G P_k`: displacement of the contacts under the external load [m].
+    /// `B G P_k`: displacement of the contacts under the external load \[m\].
     pub stuck: Vec<c64>,
     /// Derivatives of the two in ω, if asked for.
     pub slope: Option<(Vec<c64>, Vec<c64>)>,
+    /// Derivative of `contact` in the ratio r of negative damping; empty where there is none.
+    pub by_ratio: Vec<c64>,
 }
 
 impl Receptance {
     pub(crate) fn reset(&mut self, contacts: usize) {
-        let zero = c64::new(0.0, 0.0);
-        for (buffer, size) in
-            [(&mut self.contact, contacts * contacts), (&mut self.stuck, contacts)]
-        {
-            buffer.clear();
-            buffer.resize(size, zero);
+        let (own, slope) = ((&mut self.contact, &mut self.stuck), self.slope.as_mut());
+        for (contact, stuck) in [own].into_iter().chain(slope.map(|(a, b)| (a, b))) {
+            for (buffer, size) in [(contact, contacts * contacts), (stuck, contacts)] {
+                buffer.clear();
+                buffer.resize(size, c64::new(0.0, 0.0));
+            }
         }
-        if let Some((contact, stuck)) = &mut self.slope {
-            contact.clear();
-            contact.resize(contacts * contacts, zero);
-            stuck.clear();
-            stuck.resize(contacts, zero);
-        }
+        self.by_ratio.clear();
     }
+}
+
+/// What is to be displaced, and by what, at a harmonic of a motion.
+#[derive(Debug, Clone, Copy)]
+pub struct Request<'a> {
+    /// Harmonic k.
+    pub harmonic: usize,
+    /// Frequency of the motion [rad/s].
+    pub omega: f64,
+    /// What is asked for.
+    pub quantity: Quantity,
+    /// Contact displacements that belong to the loads \[m\].
+    pub contact: &'a [c64],
+    /// Slip loads \[N\].
+    pub slip_load: &'a [c64],
+    /// DOFs whose displacements are asked for.
+    pub observe: &'a [usize],
+}
+
+/// What a displacement is due to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// To the external load and the slip loads \[m\].
+    Whole,
+    /// To the slip loads alone, linear in them and in the contact displacements \[m\].
+    OfSlip,
+    /// Derivative of the whole in ω at fixed contact displacements and slip loads [m s].
+    Slope,
 }
 
 /// The linear structure with all contacts stuck, seen from its contacts and observed DOFs.
@@ -74,7 +99,9 @@ pub trait Compliance: Send + Sync {
     fn dofs(&self) -> usize;
 
     /// Harmonics with an external load, ascending.
-    fn forced_harmonics(&self) -> Vec<usize>;
+    fn forced_harmonics(&self) -> Vec<usize> {
+        Vec::new()
+    }
 
     /// Receptance of the contacts for harmonic `harmonic` of a motion at `omega` [rad/s].
     ///
@@ -82,24 +109,17 @@ pub trait Compliance: Send + Sync {
     /// The static stiffness is singular (harmonic 0), or nothing damps the resonance met.
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error>;
 
-    /// Displacement amplitudes of the DOFs `observe` under the external load and the slip loads
-    /// `slip_load`, given the contact displacements `contact` that belong to them.
+    /// Displacement amplitudes that are asked for.
     ///
     /// # Errors
     /// As [`Compliance::receptance`].
-    fn displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error>;
+    fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error>;
 
     /// About the times that the receptance of one harmonic and the displacements of `observed` DOFs
-    /// take on a common processor [ns].
-    fn effort(&self, observed: usize) -> [f64; 2];
+    /// take on a common processor \[ns\].
+    fn effort(&self, _observed: usize) -> [f64; 2] {
+        [0.0; 2]
+    }
 
     /// Whether a frequency costs a factorisation per harmonic, of the whole or of a part.
     fn is_direct(&self) -> bool {
@@ -111,46 +131,23 @@ pub trait Compliance: Send + Sync {
         None
     }
 
-    /// Displacement amplitudes under the slip loads alone: [`Compliance::displacement`] without
-    /// the external load, linear in `contact` and `slip_load`.
-    ///
-    /// # Errors
-    /// As [`Compliance::receptance`].
-    fn slip_displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error>;
-
-    /// Derivative of [`Compliance::displacement`] in ω at fixed `contact` and `slip_load` [m s].
-    ///
-    /// # Errors
-    /// As [`Compliance::receptance`].
-    fn displacement_slope(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error>;
-
-    /// Natural frequencies of the stuck structure, ascending [rad/s].
-    fn stuck_frequencies(&self) -> &[f64];
+    /// Natural frequencies of the stuck structure, ascending, where they are known [rad/s].
+    fn stuck_frequencies(&self) -> &[f64] {
+        &[]
+    }
 
     /// Highest natural frequency of the stuck structure, or about it [rad/s].
     fn highest_frequency(&self) -> f64 {
         self.stuck_frequencies().last().copied().unwrap_or(0.0)
     }
 
-    /// Natural frequencies with all contacts removed, ascending [rad/s].
-    fn free_frequencies(&self) -> &[f64];
+    /// Natural frequencies with all contacts removed, ascending, where they are known [rad/s].
+    fn free_frequencies(&self) -> &[f64] {
+        &[]
+    }
 
-    /// Half-power bandwidth `2ζω` of the least damped mode [rad/s].
-    fn narrowest_bandwidth(&self) -> f64;
+    /// Half-power bandwidth `2ζω` of the least damped mode, where it is known [rad/s].
+    fn narrowest_bandwidth(&self) -> f64 {
+        f64::NAN
+    }
 }

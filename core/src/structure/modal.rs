@@ -7,17 +7,18 @@
 //! | any other, also unsymmetric | complex, stuck | directly |
 
 use super::flexibility::Flexibility;
-use super::modes::{real_modes, HermitianModes};
+use super::modes::{complex, modes, HermitianModes, RealModes};
 use super::ports::{HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
 use super::restraint::restrain;
 use super::spectrum::{complex_modes, Spectrum};
-use super::{Compliance, DirectCompliance, Receptance, Structure};
+use super::{Compliance, DirectCompliance, Quantity, Receptance, Request, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
+use std::sync::Arc;
 
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
-pub(super) const FREE_FLOOR: f64 = 1e-8;
+const FREE_FLOOR: f64 = 1e-8;
 /// Distance to an undamped resonance, relative to the squared frequency, that is refused.
 const RESONANCE: f64 = 1e-9;
 
@@ -43,10 +44,12 @@ pub struct ModalCompliance {
     base: ModalBase,
     spectrum: Spectrum,
     /// R: displacement of every DOF per modal coordinate, N × modes.
-    right: Mat<c64>,
+    right: Arc<Mat<c64>>,
     /// B R and L Bᵀ, contacts × modes each.
-    contact_right: Mat<c64>,
-    contact_left: Mat<c64>,
+    contact_right: Arc<Mat<c64>>,
+    contact_left: Arc<Mat<c64>>,
+    /// Negative damping of each mode of a damping `C + r C_neg`; of modes of the free structure.
+    negative: Vec<f64>,
     /// L P_k per forced harmonic.
     loads: Vec<(usize, Vec<c64>)>,
     /// Contact stiffness, if the modes are those of the free structure.
@@ -101,11 +104,11 @@ impl ModalCompliance {
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
         let (mass, damping) = (structure.mass(), structure.damping());
-        let free = real_modes(mass, structure.stiffness())?;
+        let free = modes(mass, structure.stiffness())?;
         let stuck = if restrained.as_ref() == structure.stiffness() {
             free.clone()
         } else {
-            real_modes(mass, restrained.as_ref())?
+            modes(mass, restrained.as_ref())?
         };
         let wave = Wave {
             law: structure.is_proportional() && !follows_mass(damping, mass),
@@ -153,20 +156,57 @@ impl ModalCompliance {
         Ok(Some(Self {
             base,
             bandwidth: spectrum.narrowest_bandwidth(),
-            contact_right: &rows * &right,
-            contact_left: (&left * rows.adjoint()).transpose().to_owned(),
+            contact_right: Arc::new(&rows * &right),
+            contact_left: Arc::new((&left * rows.adjoint()).transpose().to_owned()),
+            negative: Vec::new(),
             forced: super::ports::forced_harmonics(&loads),
             loads: loads
                 .iter()
                 .map(|load| (load.harmonic, multiply(left.as_ref(), &load.amplitude)))
                 .collect(),
-            right,
+            right: Arc::new(right),
             spectrum,
             restraint,
             flexibility: None,
             stuck_frequencies,
             free_frequencies,
         }))
+    }
+
+    /// Of unloaded modes of the free structure that the two parts of a damping `C + r C_neg` leave
+    /// uncoupled, at r = 0.
+    pub(super) fn of_free_modes(
+        modes: RealModes,
+        damping: Vec<f64>,
+        negative: Vec<f64>,
+        rows: MatRef<'_, f64>,
+    ) -> Self {
+        let RealModes { omega_squared, shapes } = modes;
+        let contacts = Arc::new(complex((rows * &shapes).as_ref()));
+        Self {
+            base: ModalBase::Free,
+            spectrum: Spectrum::Real { omega_squared, damping, floor: FREE_FLOOR },
+            right: Arc::new(complex(shapes.as_ref())),
+            contact_right: Arc::clone(&contacts),
+            contact_left: contacts,
+            negative,
+            loads: Vec::new(),
+            restraint: None,
+            flexibility: None,
+            stuck_frequencies: Vec::new(),
+            free_frequencies: Vec::new(),
+            bandwidth: f64::NAN,
+            forced: Vec::new(),
+        }
+    }
+
+    /// The same at another ratio r, with contacts of the stiffness D.
+    pub(super) fn at_ratio(&self, ratio: f64, stiffness: Mat<f64>) -> Self {
+        let mut at = Self { restraint: Some(stiffness), ..self.clone() };
+        if let Spectrum::Real { damping, .. } = &mut at.spectrum {
+            damping.iter_mut().zip(&self.negative).for_each(|(own, added)| *own += ratio * added);
+        }
+        at
     }
 
     /// Compares complex modes with a direct solution, at low frequencies too: eigenvectors of a nearly
@@ -192,6 +232,10 @@ impl ModalCompliance {
             let scale = theirs.contact.iter().map(|g| g.norm()).fold(0.0, f64::max);
             ours.contact.iter().zip(&theirs.contact).all(|(a, b)| (a - b).norm() <= 1e-8 * scale)
         })
+    }
+
+    fn singular(&self) -> Error {
+        Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
     }
 
     fn load(&self, harmonic: usize) -> Option<&[c64]> {
@@ -231,6 +275,9 @@ impl ModalCompliance {
         let contacts = self.contacts();
         let order = harmonic as f64;
         let load = self.load(harmonic);
+        if !self.negative.is_empty() {
+            out.by_ratio.resize(contacts * contacts, c64::new(0.0, 0.0));
+        }
         for j in 0..self.right.ncols() {
             let (weight, slope) = self.spectrum.weight(j, order * omega);
             let slope = order * slope;
@@ -243,6 +290,11 @@ impl ModalCompliance {
                     if let Some((contact, _)) = &mut out.slope {
                         contact[column * contacts + row] += right * change;
                     }
+                }
+                let Some(negative) = self.negative.get(j) else { continue };
+                let change = weight * weight * c64::new(0.0, -order * omega * negative) * left;
+                for row in 0..contacts {
+                    out.by_ratio[column * contacts + row] += self.contact_right[(row, j)] * change;
                 }
             }
             let Some(load) = load else { continue };
@@ -273,10 +325,7 @@ impl Compliance for ModalCompliance {
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
         out.reset(self.contacts());
         if harmonic == 0 {
-            let Some(flexibility) = &self.flexibility else {
-                return Err(self.singular());
-            };
-            flexibility.receptance(out);
+            self.flexibility.as_ref().ok_or_else(|| self.singular())?.receptance(out);
             return Ok(());
         }
         self.check_resonance(harmonic, omega)?;
@@ -287,60 +336,37 @@ impl Compliance for ModalCompliance {
         Ok(())
     }
 
-    fn displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
+    fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
+        let Request { harmonic, omega, quantity, contact, slip_load, observe } = *request;
         out.fill(c64::new(0.0, 0.0));
+        let (loaded, sloped) = (quantity != Quantity::OfSlip, quantity == Quantity::Slope);
         if harmonic == 0 {
-            let flexibility = self.flexibility.as_ref().ok_or_else(|| self.singular())?;
-            flexibility.displacement(true, slip_load, observe, out);
+            // Static displacements do not know of a frequency.
+            if !sloped {
+                let flexibility = self.flexibility.as_ref().ok_or_else(|| self.singular())?;
+                flexibility.displacement(loaded, slip_load, observe, out);
+            }
             return Ok(());
         }
-        let weight = |j| self.spectrum.weight(j, harmonic as f64 * omega).0;
-        self.add_modes(self.load(harmonic), contact, slip_load, observe, weight, out);
-        Ok(())
-    }
-
-    fn slip_displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        out.fill(c64::new(0.0, 0.0));
-        if harmonic == 0 {
-            let flexibility = self.flexibility.as_ref().ok_or_else(|| self.singular())?;
-            flexibility.displacement(false, slip_load, observe, out);
-            return Ok(());
+        // The free structure carries the whole contact force, the stuck one the slip load alone.
+        let mut forces = slip_load.to_vec();
+        if let Some(stiffness) = &self.restraint {
+            for (i, force) in forces.iter_mut().enumerate() {
+                *force -= (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum::<c64>();
+            }
         }
-        let weight = |j| self.spectrum.weight(j, harmonic as f64 * omega).0;
-        self.add_modes(None, contact, slip_load, observe, weight, out);
-        Ok(())
-    }
-
-    fn displacement_slope(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        out.fill(c64::new(0.0, 0.0));
-        let order = harmonic as f64;
-        let slope = |j| order * self.spectrum.weight(j, order * omega).1;
-        if harmonic > 0 {
-            self.add_modes(self.load(harmonic), contact, slip_load, observe, slope, out);
+        let (order, load) = (harmonic as f64, self.load(harmonic).filter(|_| loaded));
+        for j in 0..self.right.ncols() {
+            let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
+            for (i, force) in forces.iter().enumerate() {
+                excitation += self.contact_left[(i, j)] * force;
+            }
+            let (weight, slope) = self.spectrum.weight(j, order * omega);
+            let coordinate = if sloped { order * slope } else { weight } * excitation;
+            let shape = self.right.col(j);
+            for (x, &dof) in out.iter_mut().zip(observe) {
+                *x += shape[dof] * coordinate;
+            }
         }
         Ok(())
     }
@@ -364,50 +390,6 @@ impl Compliance for ModalCompliance {
     fn narrowest_bandwidth(&self) -> f64 {
         self.bandwidth
     }
-}
-
-impl ModalCompliance {
-    /// Sums the modes, each with its weight, into the displacements of the DOFs `observe`.
-    fn add_modes(
-        &self,
-        load: Option<&[c64]>,
-        contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        weight: impl Fn(usize) -> c64,
-        out: &mut [c64],
-    ) {
-        // The free structure carries the whole contact force, the stuck one the slip load alone.
-        let forces: Vec<c64> = match &self.restraint {
-            Some(stiffness) => (0..self.contacts())
-                .map(|i| {
-                    let stuck: c64 =
-                        (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum();
-                    slip_load[i] - stuck
-                })
-                .collect(),
-            None => slip_load.to_vec(),
-        };
-        for j in 0..self.right.ncols() {
-            let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
-            for (i, force) in forces.iter().enumerate() {
-                excitation += self.contact_left[(i, j)] * force;
-            }
-            let coordinate = weight(j) * excitation;
-            let shape = self.right.col(j);
-            for (x, &dof) in out.iter_mut().zip(observe) {
-                *x += shape[dof] * coordinate;
-            }
-        }
-    }
-
-    fn singular(&self) -> Error {
-        Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
-    }
-}
-
-pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {
-    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
 }
 
 fn multiply(matrix: MatRef<'_, c64>, vector: &[c64]) -> Vec<c64> {

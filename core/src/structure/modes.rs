@@ -1,57 +1,52 @@
-//! Real modes of `(K − ω²M) φ = 0`, scaled to unit modal mass.
+//! Modes of `(K − ω²M) φ = 0`, scaled to unit modal mass.
 
-use super::modal::complex;
-use super::proportional::ModalDamping;
 use crate::solve::hermitian_eigen;
 use crate::Error;
-use faer::linalg::solvers::DenseSolveCore as _;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
 use faer::traits::ComplexField;
 use faer::{c64, Mat, MatRef, Side};
 
-/// Undamped modes: `Φᵀ M Φ = I`, `Φᵀ K Φ = diag(ω²)`.
+/// Undamped modes of a Hermitian problem: `Φᴴ M Φ = I`, `Φᴴ K Φ = diag(ω²)`.
 #[derive(Debug, Clone)]
-pub struct RealModes {
+pub struct Modes<T> {
     /// Squared natural frequencies, ascending; negative if the structure is statically unstable.
     pub omega_squared: Vec<f64>,
     /// Mode shapes, one per column.
-    pub shapes: Mat<f64>,
+    pub shapes: Mat<T>,
 }
 
-/// Modes of a symmetric stiffness and a positive definite mass.
-///
-/// # Errors
-/// Mass not positive definite, or the eigenvalue iteration fails.
-pub fn real_modes(mass: MatRef<'_, f64>, stiffness: MatRef<'_, f64>) -> Result<RealModes, Error> {
-    let (omega_squared, shapes) = modes(mass, stiffness)?;
-    Ok(RealModes { omega_squared, shapes })
-}
+/// Modes of real matrices.
+pub type RealModes = Modes<f64>;
+/// Modes of complex matrices, as of a travelling wave.
+pub type HermitianModes = Modes<c64>;
 
 /// Ratio of the DOFs' squared frequencies from which their order decides how many digits the low
 /// modes keep: below, rounding of the fastest DOF is no more than 1e-10 of them.
 const GRADED: f64 = 1e6;
 
-/// Eigenvalues and mass-normalised eigenvectors of a Hermitian stiffness and mass. DOFs of hardly any
-/// mass come first: the reduction of a graded matrix keeps the digits of the small entries if it
-/// begins with the large ones.
-fn modes<T: ComplexField<Real = f64>>(
+/// Modes of a Hermitian stiffness and a positive definite mass. DOFs of hardly any mass come first: the
+/// reduction of a graded matrix keeps the digits of the small entries if it begins with the large ones.
+///
+/// # Errors
+/// Mass not positive definite, or the eigenvalue iteration fails.
+pub fn modes<T: ComplexField<Real = f64>>(
     mass: MatRef<'_, T>,
     stiffness: MatRef<'_, T>,
-) -> Result<(Vec<f64>, Mat<T>), Error> {
+) -> Result<Modes<T>, Error> {
     let Some(order) = graded_order(mass, stiffness) else {
         return ordered_modes(mass, stiffness);
     };
     let permuted = |matrix: MatRef<'_, T>| {
         Mat::from_fn(order.len(), order.len(), |i, j| matrix[(order[i], order[j])].clone())
     };
-    let (omega_squared, shapes) =
+    let Modes { omega_squared, shapes } =
         ordered_modes(permuted(mass).as_ref(), permuted(stiffness).as_ref())?;
     let mut place = vec![0; order.len()];
     order.iter().enumerate().for_each(|(at, &dof)| place[dof] = at);
     let back = |i: usize, j: usize| shapes[(place[i], j)].clone();
-    Ok((omega_squared, Mat::from_fn(shapes.nrows(), shapes.ncols(), back)))
+    Ok(Modes { omega_squared, shapes: Mat::from_fn(shapes.nrows(), shapes.ncols(), back) })
 }
 
 /// The DOFs by falling stiffness over mass, if these differ by much.
@@ -71,7 +66,7 @@ fn graded_order<T: ComplexField<Real = f64>>(
 fn ordered_modes<T: ComplexField<Real = f64>>(
     mass: MatRef<'_, T>,
     stiffness: MatRef<'_, T>,
-) -> Result<(Vec<f64>, Mat<T>), Error> {
+) -> Result<Modes<T>, Error> {
     let cholesky = mass.llt(Side::Lower).map_err(|_| Error::IndefiniteMass)?;
     let lower = cholesky.L();
     let mut reduced = stiffness.to_owned();
@@ -83,67 +78,29 @@ fn ordered_modes<T: ComplexField<Real = f64>>(
     let failed = || Error::Eigenvalues("stiffness".to_owned());
     let (omega_squared, mut shapes) = hermitian_eigen(reduced.as_ref()).ok_or_else(failed)?;
     solve_upper_triangular_in_place(lower.adjoint(), shapes.as_mut(), par);
-    Ok((omega_squared, shapes))
+    Ok(Modes { omega_squared, shapes })
 }
 
-impl RealModes {
+impl<T> Modes<T> {
     /// Natural frequencies [rad/s]; rounding below zero counts as a rigid-body mode.
     #[must_use]
     pub fn frequencies(&self) -> Vec<f64> {
         self.omega_squared.iter().map(|w| w.max(0.0).sqrt()).collect()
     }
+}
 
+impl<T: ComplexField<Real = f64>> Modes<T> {
+    /// `Φᴴ A Φ` of a matrix A.
+    #[must_use]
+    pub fn project(&self, matrix: MatRef<'_, T>) -> Mat<T> {
+        self.shapes.adjoint().to_owned() * matrix * &self.shapes
+    }
+}
+
+impl RealModes {
     /// The same modes as complex ones.
     pub(super) fn to_hermitian(&self) -> HermitianModes {
-        HermitianModes {
-            omega_squared: self.omega_squared.clone(),
-            shapes: complex(self.shapes.as_ref()),
-        }
-    }
-
-    /// A damping matrix in these modes.
-    pub(crate) fn damping(&self, matrix: MatRef<'_, f64>) -> ModalDamping {
-        let modal = complex(self.project(matrix).as_ref());
-        ModalDamping::new(modal, &self.to_hermitian(), |i, j| c64::new(matrix[(i, j)], 0.0))
-    }
-
-    /// `Φᵀ A Φ` of a matrix A.
-    #[must_use]
-    pub fn project(&self, matrix: MatRef<'_, f64>) -> Mat<f64> {
-        self.shapes.transpose() * matrix * &self.shapes
-    }
-}
-
-/// Modes of a Hermitian problem: `Φᴴ M Φ = I`, `Φᴴ K Φ = diag(ω²)`.
-#[derive(Debug, Clone)]
-pub(crate) struct HermitianModes {
-    pub(crate) omega_squared: Vec<f64>,
-    pub(crate) shapes: Mat<c64>,
-}
-
-/// Modes of a Hermitian stiffness and a positive definite Hermitian mass.
-pub(super) fn hermitian_modes(
-    mass: MatRef<'_, c64>,
-    stiffness: MatRef<'_, c64>,
-) -> Result<HermitianModes, Error> {
-    let (omega_squared, shapes) = modes(mass, stiffness)?;
-    Ok(HermitianModes { omega_squared, shapes })
-}
-
-impl HermitianModes {
-    /// Natural frequencies [rad/s]; rounding below zero counts as a rigid-body mode.
-    pub(super) fn frequencies(&self) -> Vec<f64> {
-        self.omega_squared.iter().map(|w| w.max(0.0).sqrt()).collect()
-    }
-
-    /// A damping matrix in these modes.
-    pub(super) fn damping(&self, matrix: MatRef<'_, c64>) -> ModalDamping {
-        ModalDamping::new(self.project(matrix), self, |i, j| matrix[(i, j)])
-    }
-
-    /// `Φᴴ A Φ` of a matrix A.
-    pub(super) fn project(&self, matrix: MatRef<'_, c64>) -> Mat<c64> {
-        self.shapes.adjoint() * (matrix * &self.shapes)
+        Modes { omega_squared: self.omega_squared.clone(), shapes: complex(self.shapes.as_ref()) }
     }
 }
 
@@ -153,12 +110,12 @@ const ROUNDING: f64 = 1e-8;
 /// Natural frequencies [rad/s] of mass and stiffness, ascending.
 ///
 /// # Errors
-/// As [`real_modes`], or the structure is statically unstable.
+/// As [`modes`], or the structure is statically unstable.
 pub fn natural_frequencies(
     mass: MatRef<'_, f64>,
     stiffness: MatRef<'_, f64>,
 ) -> Result<Vec<f64>, Error> {
-    let modes = real_modes(mass, stiffness)?;
+    let modes = modes(mass, stiffness)?;
     let highest = modes.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
     match modes.omega_squared.first() {
         Some(&squared) if squared < -ROUNDING * highest => Err(Error::Unstable { squared }),
@@ -166,7 +123,6 @@ pub fn natural_frequencies(
     }
 }
 
-/// Inverse of a well-conditioned complex matrix.
-pub(super) fn inverse(matrix: MatRef<'_, faer::c64>) -> Mat<faer::c64> {
-    matrix.partial_piv_lu().inverse()
+pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
 }

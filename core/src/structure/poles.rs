@@ -1,6 +1,6 @@
 //! Poles of a linear structure: where it resonates, how narrowly, and what drives it there.
 
-use super::modes::{hermitian_modes, real_modes, HermitianModes};
+use super::modes::{complex, modes, HermitianModes};
 use super::spectrum::{complex_modes, Spectrum};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -26,9 +26,9 @@ impl Poles {
     /// # Errors
     /// Mass not positive definite, or an eigenvalue iteration that fails.
     pub fn real([mass, damping, stiffness]: [MatRef<'_, f64>; 3]) -> Result<Self, Error> {
-        let modes = real_modes(mass, stiffness)?;
+        let modes = modes(mass, stiffness)?;
         let damping = modes.project(damping);
-        Self::of_modes(&modes.to_hermitian(), &super::modal::complex(damping.as_ref()))
+        Self::of_modes(&modes.to_hermitian(), &complex(damping.as_ref()))
     }
 
     /// Of Hermitian mass and stiffness.
@@ -36,7 +36,7 @@ impl Poles {
     /// # Errors
     /// As [`Poles::real`].
     pub fn hermitian([mass, damping, stiffness]: [MatRef<'_, c64>; 3]) -> Result<Self, Error> {
-        let modes = hermitian_modes(mass, stiffness)?;
+        let modes = modes(mass, stiffness)?;
         let damping = modes.project(damping);
         Self::of_modes(&modes, &damping)
     }

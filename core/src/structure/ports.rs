@@ -8,7 +8,7 @@ use faer::{c64, Mat};
 pub struct HarmonicLoad {
     /// Harmonic k; 0 is a static load.
     pub harmonic: usize,
-    /// Complex amplitude per DOF [N].
+    /// Complex amplitude per DOF \[N\].
     pub amplitude: Vec<c64>,
 }
 

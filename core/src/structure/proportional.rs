@@ -11,7 +11,7 @@
 //! - what moving a resonance by a millionth of its bandwidth changes, and what a change of the
 //!   stiffness by 1e-15 N of the highest squared frequency changes.
 
-use super::modes::HermitianModes;
+use super::modes::{complex, HermitianModes, RealModes};
 use faer::traits::ComplexField;
 use faer::{c64, Mat, MatRef};
 
@@ -191,5 +191,20 @@ fn turn_rows(matrix: &mut Mat<c64>, [i, j]: [usize; 2], cos: f64, sin: c64) {
         let (a, b) = (matrix[(i, k)], matrix[(j, k)]);
         matrix[(i, k)] = a * cos + b * sin;
         matrix[(j, k)] = b * cos - a * sin.conj();
+    }
+}
+
+impl RealModes {
+    /// A damping matrix in these modes.
+    pub(crate) fn damping(&self, matrix: MatRef<'_, f64>) -> ModalDamping {
+        let modal = complex(self.project(matrix).as_ref());
+        ModalDamping::new(modal, &self.to_hermitian(), |i, j| c64::new(matrix[(i, j)], 0.0))
+    }
+}
+
+impl HermitianModes {
+    /// A damping matrix in these modes.
+    pub(super) fn damping(&self, matrix: MatRef<'_, c64>) -> ModalDamping {
+        ModalDamping::new(self.project(matrix), self, |i, j| matrix[(i, j)])
     }
 }

@@ -5,9 +5,9 @@
 //! DOFs of their coupling alone, so that a response of the whole disk takes one cyclic block
 //! tridiagonal solution in these DOFs: the effort grows with the number of sectors.
 
-use super::modes::real_modes;
+use super::modes::modes;
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
-use super::ring_order::RingOrder;
+use super::ring_order::{RingLayout, RingOrder};
 use super::{compliance, Compliance, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 /// force on sector i is `A_1 x_{i+1} + A_1ᵀ x_{i−1}`.
 #[derive(Debug, Clone)]
 pub struct RingCoupling {
-    /// Mass block [kg].
+    /// Mass block \[kg\].
     pub mass: Mat<f64>,
     /// Damping block [kg/s].
     pub damping: Mat<f64>,
@@ -53,33 +53,6 @@ pub struct Ring {
     pub(super) highest: f64,
     pub(super) bandwidth: f64,
     pub(super) forced: Vec<usize>,
-}
-
-/// Sizes and port positions that all sectors of a ring share.
-#[derive(Debug, Clone)]
-pub struct RingLayout {
-    /// DOFs per sector.
-    pub dofs: usize,
-    /// Contacts per sector; they are the first ports of a sector.
-    pub contacts: usize,
-    /// Contacts with a part on the next sector, where they are the next ports.
-    pub between: Vec<usize>,
-    /// DOFs through which neighbours are coupled, the last ports.
-    pub interface: Vec<usize>,
-}
-
-impl RingLayout {
-    /// Number of ports of a sector.
-    #[must_use]
-    pub fn ports(&self) -> usize {
-        self.contacts + self.between.len() + self.interface.len()
-    }
-
-    /// First port of the interface.
-    #[must_use]
-    pub fn first_interface(&self) -> usize {
-        self.contacts + self.between.len()
-    }
 }
 
 impl Ring {
@@ -276,7 +249,7 @@ impl Ring {
                 } else {
                     structure.stiffness().to_owned()
                 };
-                Ok(real_modes(structure.mass(), stiffness.as_ref())?.frequencies())
+                Ok(modes(structure.mass(), stiffness.as_ref())?.frequencies())
             };
             // The sectors have been decomposed; a disk that cannot be has no stops in a range.
             [true, false].map(|stuck| frequencies(stuck).unwrap_or_default())

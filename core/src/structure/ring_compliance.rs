@@ -2,57 +2,32 @@
 
 use super::ring::Ring;
 use super::ring_order::{RingMotion, RingOrder};
-use super::{Compliance, Receptance};
+use super::{Compliance, Quantity, Receptance, Request};
 use crate::Error;
 use faer::c64;
 
 impl Ring {
-    /// [`Compliance::displacement`] with the equations of this harmonic and frequency at hand.
+    /// [`Compliance::displacement`] with the equations of this harmonic and frequency at hand; those
+    /// of a slope must have slopes.
     ///
     /// # Errors
     /// As [`Compliance::receptance`].
     pub fn displacement_of(
         &self,
         order: &RingOrder,
-        harmonic: usize,
-        omega: f64,
-        slip_load: &[c64],
-        observe: &[usize],
+        request: &Request<'_>,
         out: &mut [c64],
     ) -> Result<(), Error> {
-        let motion = order.respond(true, slip_load);
-        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
-            sector.displacement(harmonic, omega, port, force, dof, value)
-        })
-    }
-
-    /// Derivative in ω of [`Ring::displacement_of`] with slip loads that change at `slip_rate`; the
-    /// equations must have slopes.
-    ///
-    /// # Errors
-    /// As [`Compliance::receptance`].
-    pub fn displacement_rate_of(
-        &self,
-        order: &RingOrder,
-        harmonic: usize,
-        omega: f64,
-        [slip_load, slip_rate]: [&[c64]; 2],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        let motion = order.respond(true, slip_load);
-        let mut rate = order.respond_rate(true, &motion);
-        let moved = order.respond(false, slip_rate);
-        rate.port.iter_mut().zip(&moved.port).for_each(|(rate, moved)| *rate += moved);
-        rate.force.iter_mut().zip(&moved.force).for_each(|(rate, moved)| *rate += moved);
-        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
-            sector.displacement_slope(harmonic, omega, port, force, dof, value)
-        })?;
-        let mut moved = vec![c64::new(0.0, 0.0); observe.len()];
-        self.observe(&rate, observe, &mut moved, |sector, port, force, dof, value| {
-            sector.slip_displacement(harmonic, omega, port, force, dof, value)
-        })?;
-        out.iter_mut().zip(moved).for_each(|(out, moved)| *out += moved);
+        let loaded = request.quantity != Quantity::OfSlip;
+        let motion = order.respond(loaded, request.slip_load);
+        self.observe(&motion, request, out)?;
+        if request.quantity == Quantity::Slope {
+            let rate = order.respond_rate(true, &motion);
+            let mut moved = vec![c64::new(0.0, 0.0); out.len()];
+            let of_rate = Request { quantity: Quantity::OfSlip, ..*request };
+            self.observe(&rate, &of_rate, &mut moved)?;
+            out.iter_mut().zip(moved).for_each(|(out, moved)| *out += moved);
+        }
         Ok(())
     }
 
@@ -60,22 +35,20 @@ impl Ring {
     fn observe(
         &self,
         motion: &RingMotion,
-        observe: &[usize],
+        request: &Request<'_>,
         out: &mut [c64],
-        read: impl Fn(&dyn Compliance, &[c64], &[c64], &[usize], &mut [c64]) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let (ports, dofs) = (self.layout.ports(), self.layout.dofs);
-        for (x, &dof) in out.iter_mut().zip(observe) {
+        for (x, &dof) in out.iter_mut().zip(request.observe) {
             let sector = dof / dofs;
             let range = sector * ports..(sector + 1) * ports;
-            let (port, force) = (&motion.port[range.clone()], &motion.force[range]);
-            read(
-                self.sectors[sector].as_ref(),
-                port,
-                force,
-                &[dof % dofs],
-                std::slice::from_mut(x),
-            )?;
+            let own = Request {
+                contact: &motion.port[range.clone()],
+                slip_load: &motion.force[range],
+                observe: &[dof % dofs],
+                ..*request
+            };
+            self.sectors[sector].displacement(&own, std::slice::from_mut(x))?;
         }
         Ok(())
     }
@@ -139,55 +112,10 @@ impl Compliance for Ring {
         Ok(())
     }
 
-    fn displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        _contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        let order = self.order(harmonic, omega, false)?;
-        self.displacement_of(&order, harmonic, omega, slip_load, observe, out)
-    }
-
-    fn slip_displacement(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        _contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        let motion = self.order(harmonic, omega, false)?.respond(false, slip_load);
-        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
-            sector.slip_displacement(harmonic, omega, port, force, dof, value)
-        })
-    }
-
-    fn displacement_slope(
-        &self,
-        harmonic: usize,
-        omega: f64,
-        _contact: &[c64],
-        slip_load: &[c64],
-        observe: &[usize],
-        out: &mut [c64],
-    ) -> Result<(), Error> {
-        let order = self.order(harmonic, omega, true)?;
-        let motion = order.respond(true, slip_load);
-        let rate = order.respond_rate(true, &motion);
-        self.observe(&motion, observe, out, |sector, port, force, dof, value| {
-            sector.displacement_slope(harmonic, omega, port, force, dof, value)
-        })?;
-        let mut moved = vec![c64::new(0.0, 0.0); observe.len()];
-        self.observe(&rate, observe, &mut moved, |sector, port, force, dof, value| {
-            sector.slip_displacement(harmonic, omega, port, force, dof, value)
-        })?;
-        out.iter_mut().zip(moved).for_each(|(out, moved)| *out += moved);
-        Ok(())
+    fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
+        let slopes = request.quantity == Quantity::Slope;
+        let order = self.order(request.harmonic, request.omega, slopes)?;
+        self.displacement_of(&order, request, out)
     }
 
     fn stuck_frequencies(&self) -> &[f64] {

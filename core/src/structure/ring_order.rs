@@ -1,6 +1,5 @@
 //! One harmonic of the motion of a ring of sectors.
 
-use super::ring::RingLayout;
 use super::Receptance;
 use crate::solve::{Block, BlockRow, CyclicTridiagonal};
 use faer::{c64, Mat, MatRef};
@@ -214,4 +213,31 @@ fn real(matrix: MatRef<'_, c64>) -> Block {
         }
     }
     real
+}
+
+/// Sizes and port positions that all sectors of a ring share.
+#[derive(Debug, Clone)]
+pub struct RingLayout {
+    /// DOFs per sector.
+    pub dofs: usize,
+    /// Contacts per sector; they are the first ports of a sector.
+    pub contacts: usize,
+    /// Contacts with a part on the next sector, where they are the next ports.
+    pub between: Vec<usize>,
+    /// DOFs through which neighbours are coupled, the last ports.
+    pub interface: Vec<usize>,
+}
+
+impl RingLayout {
+    /// Number of ports of a sector.
+    #[must_use]
+    pub fn ports(&self) -> usize {
+        self.contacts + self.between.len() + self.interface.len()
+    }
+
+    /// First port of the interface.
+    #[must_use]
+    pub fn first_interface(&self) -> usize {
+        self.contacts + self.between.len()
+    }
 }

@@ -1,7 +1,7 @@
 //! The frequency dependence of a modal sum: real modes with modal damping, or complex modes.
 
-use super::modes::inverse;
 use crate::Error;
+use faer::linalg::solvers::DenseSolveCore as _;
 use faer::{c64, Mat, MatRef};
 
 /// How the denominator of a mode depends on frequency.
@@ -86,7 +86,7 @@ pub(super) fn complex_modes(
     };
     let eigen = eigen.map_err(|_| Error::Eigenvalues("damping".to_owned()))?;
     let vectors = eigen.U();
-    let inverse = inverse(vectors);
+    let inverse = vectors.partial_piv_lu().inverse();
     let poles: Vec<c64> = (0..2 * n).map(|j| eigen.S()[j]).collect();
     let finite = |z: &c64| z.re.is_finite() && z.im.is_finite();
     let spans = (0..2 * n).all(|i| (0..2 * n).all(|j| finite(&inverse[(i, j)])));

@@ -77,7 +77,7 @@ impl Structure {
         self.mass.nrows()
     }
 
-    /// Mass matrix [kg].
+    /// Mass matrix \[kg\].
     #[must_use]
     pub fn mass(&self) -> MatRef<'_, f64> {
         self.mass.as_ref()

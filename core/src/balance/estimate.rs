@@ -1,60 +1,17 @@
-//! What a solution of the condensed equations means: displacements, forces, slip and errors.
+//! How wrong a solution of the condensed equations is.
 
 use super::accuracy::{errors, Extension};
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::sampling::{finer_than, sampling_errors};
 use super::settings::Method;
-use super::solution::{Point, PointStatus};
+use super::solution::Point;
 use super::unknowns::Unknowns;
-use crate::contact::PointSummary;
 use crate::fourier::Harmonics;
 use crate::solve::System as _;
 use crate::Error;
-use faer::c64;
 
 impl ForcedBalance<'_> {
-    /// Displacements, contact forces and slip shares of a solution.
-    pub(super) fn recover(
-        &self,
-        equations: &Condensed<'_>,
-        omega: f64,
-        x: &[f64],
-        status: PointStatus,
-    ) -> Result<Point, Error> {
-        let harmonics = equations.harmonics();
-        let model = equations.model;
-        let contacts = model.compliance().contacts();
-        let orders = harmonics.highest() + 1;
-        let mut point = Point::empty(omega, status, self.observe.len(), contacts);
-        point.harmonics = harmonics.highest();
-        let zero = c64::new(0.0, 0.0);
-        point.displacement = vec![zero; self.observe.len() * orders];
-        point.contact_displacement = vec![zero; contacts * orders];
-        point.contact_force = vec![zero; contacts * orders];
-        let slip_load = equations.slip_load();
-        let stiffness = model.contact_stiffness();
-        equations.displacements(x, &slip_load, self.observe, |order, observed, u, q| {
-            for (i, value) in observed.iter().enumerate() {
-                point.displacement[i * orders + order] = *value;
-            }
-            // A contact's stiffness couples its own points alone.
-            let points = model.points().iter().flat_map(|p| p.clone().map(move |i| (i, p)));
-            for (i, own) in points {
-                let stuck: c64 = own.clone().map(|j| u[j] * stiffness[(i, j)]).sum();
-                point.contact_displacement[i * orders + order] = u[i];
-                point.contact_force[i * orders + order] = stuck - q[i];
-            }
-        })?;
-        let mut summaries = vec![PointSummary::default(); contacts];
-        for (index, law) in model.laws().iter().enumerate() {
-            let range = model.points()[index].clone();
-            law.summary(equations.motion(index, x), &mut summaries[range]);
-        }
-        point.contacts = summaries;
-        Ok(point)
-    }
-
     /// Writes the error estimate of a solution `x` of these equations; `false` if the analysis is to
     /// end.
     pub(super) fn estimate(
@@ -92,7 +49,7 @@ impl ForcedBalance<'_> {
             return Ok(true);
         }
         // Few samples, as long as nobody insists on them, must not hide harmonics.
-        let climb = self.ladder.samples_climb();
+        let climb = self.control.samples_climb();
         let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
         let observed = self.observe.len();
         let extension = Extension::new(harmonics, point.omega, self.model, slipping, observed);

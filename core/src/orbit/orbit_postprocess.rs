@@ -1,82 +1,65 @@
 //! What is read off an exact limit cycle: harmonics, extremes, slip and energies.
 
+use super::cycles::Cycle;
 use super::limit_cycle::OrbitCurve;
 use super::quadrature::Quadrature;
 use super::survey::Survey;
 use crate::balance::{Point, PointStatus};
 use crate::contact::PointState;
 use crate::fourier::{Harmonics, SampleTable};
-use crate::motion::{Event, Flow, FlowEvent, ModalSystem, State};
+use crate::motion::{Flow, FlowEvent, ModalSystem, State};
 use std::f64::consts::PI;
 
 /// Newton steps to the maximum of the DOF with which the period begins.
 const POLISH: usize = 4;
 
-/// An exact limit cycle read off.
-pub(super) struct CycleSurvey {
-    pub(super) response: Point,
-    /// Lowest and highest displacement of every DOF [m].
-    pub(super) range: Vec<[f64; 2]>,
-    /// State at the start of the period, at the DOFs.
-    pub(super) state: Vec<f64>,
-    pub(super) viscous: f64,
-    pub(super) events: Vec<Event>,
-}
-
-/// Follows the orbit at a point of a curve, from the maximum of the DOF `phase`.
-pub(super) fn survey(
+/// Reads a limit cycle off the orbit at a point of a curve, from the maximum of the DOF `phase`;
+/// nothing if the flow does not run to its end.
+pub(super) fn postprocess(
     curve: &OrbitCurve<'_>,
     z: &[f64],
     phase: usize,
     table: &SampleTable,
     quadrature: &mut Quadrature,
-) -> Option<CycleSurvey> {
+    mut cycle: Cycle,
+) -> Option<Cycle> {
     let [.., omega, _] = z else { return None };
     let starts = curve.states(z)?;
     curve.with_shooting(z, |member, _, _| {
         let system = &member.system;
-        let course = Course { system, omega: *omega, starts };
-        let begin = course.maximum(phase, table, quadrature)?;
-        let highest = table.harmonics().highest();
+        let orbit = OrbitPostprocess { system, omega: *omega, starts };
+        let begin = orbit.maximum(phase, table, quadrature)?;
         let all: Vec<usize> = (0..system.modes()).collect();
-        let survey = course.pass(&begin, &all, highest, quadrature)?;
-        let mut response =
-            Point::empty(*omega, PointStatus::Converged, all.len(), system.displacements());
-        response.harmonics = highest;
-        let displacement = survey.displacement();
-        let (dofs, contacts) = displacement.split_at(all.len() * (highest + 1));
-        response.displacement = dofs.to_vec();
-        response.contact_displacement = contacts.to_vec();
-        response.contact_force = survey.force();
-        response.contacts = survey.summaries();
-        response.error_estimate = vec![0.0; all.len()];
-        Some(CycleSurvey {
-            response,
-            range: survey.range[..all.len()].to_vec(),
-            state: begin.state.to_dofs(system),
-            viscous: survey.viscous,
-            events: survey.events,
-        })
+        let survey = orbit.pass(&begin, &all, table.harmonics().highest(), quadrature)?;
+        let points = system.displacements();
+        cycle.response = Point::empty(*omega, PointStatus::Converged, all.len(), points);
+        survey.write(&mut cycle.response);
+        cycle.response.error_estimate = vec![0.0; all.len()];
+        cycle.range = survey.range[..all.len()].to_vec();
+        cycle.state = begin.state.to_dofs(system);
+        cycle.viscous = survey.viscous;
+        cycle.events = survey.events;
+        Some(cycle)
     })
 }
 
 /// Where a pass over half a period begins.
 struct Begin {
-    /// Time after the start of the course [s].
+    /// Time after the start of the motion \[s\].
     time: f64,
-    /// −1 where it is the mirror image of the course, otherwise 1.
+    /// −1 where it begins with the mirror image of the motion, otherwise 1.
     side: f64,
     state: State,
 }
 
 /// The motion over half a period, with the states from which its segments start.
-struct Course<'a> {
+struct OrbitPostprocess<'a> {
     system: &'a ModalSystem,
     omega: f64,
     starts: Vec<State>,
 }
 
-impl Course<'_> {
+impl OrbitPostprocess<'_> {
     /// One pass over half a period, completed by its mirror image.
     fn pass<'a>(
         &'a self,
@@ -169,16 +152,8 @@ fn renew(state: &mut State, start: &State, side: f64) {
 
 /// The mirror image of a state.
 fn mirror(state: &mut State) {
-    for values in [&mut state.displacement, &mut state.velocity, &mut state.force] {
-        values.iter_mut().for_each(|v| *v = -*v);
-    }
-    for point in &mut state.points {
-        *point = match point {
-            PointState::Stuck => PointState::Stuck,
-            PointState::Forward => PointState::Backward,
-            PointState::Backward => PointState::Forward,
-        };
-    }
+    state.parts().into_iter().flatten().for_each(|v| *v = -*v);
+    state.points.iter_mut().for_each(|point| *point = point.mirrored());
 }
 
 /// Sample tables of odd harmonics.

@@ -1,0 +1,115 @@
+//! A point of the forced response with as many harmonics and samples as the tolerance asks for.
+
+use super::forced::ForcedBalance;
+use super::resolution_control::Decision;
+use super::scale::OF_HARMONICS;
+use super::settings::Resolution;
+use super::solution::{Point, PointStatus};
+use super::unknowns::Unknowns;
+use crate::Error;
+
+/// A point on its way to enough harmonics and samples.
+#[derive(Default)]
+struct Climb {
+    iterations: usize,
+    /// The last level that was solved.
+    below: Option<Point>,
+    stalled: bool,
+    from_below: bool,
+}
+
+/// Where a climb goes on.
+enum Way {
+    On(Resolution),
+    End(Box<Point>),
+}
+
+impl ForcedBalance<'_> {
+    /// Solves at one frequency [rad/s] from a start, or from the stuck response: with more and more
+    /// of what is chosen automatically, until what is left out matters less than the tolerance.
+    ///
+    /// # Errors
+    /// The loads themselves excite an undamped resonance.
+    pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
+        let mut resolution = self.control.first();
+        if self.control.is_fixed() {
+            return self.solve_with(resolution, omega, start);
+        }
+        let mut start = start.cloned();
+        let mut climb = Climb::default();
+        loop {
+            let mut point = self.solve_with(resolution, omega, start.as_ref())?;
+            climb.iterations += point.iterations;
+            point.iterations = climb.iterations;
+            resolution = match point.status {
+                PointStatus::Converged => match self.judge(&point) {
+                    Decision::Enough => return Ok(point),
+                    Decision::Limit(limit) => {
+                        let exact = self.orbit_beyond(&point, limit);
+                        point.status = limit;
+                        return Ok(self.ended(exact.unwrap_or(point), resolution, &climb));
+                    }
+                    Decision::More(more) => {
+                        if let Some(last) = self.instead_of(more, &point) {
+                            return Ok(self.ended(last, resolution, &climb));
+                        }
+                        start.clone_from(&point.unknowns);
+                        climb.below = Some(point);
+                        more
+                    }
+                },
+                PointStatus::Stalled => match self.past(&point, resolution, &mut climb) {
+                    Way::On(next) => next,
+                    Way::End(last) => return Ok(self.ended(*last, resolution, &climb)),
+                },
+                _ => return Ok(point),
+            };
+        }
+    }
+
+    /// The way on from a point that stalled: the exact orbit, once a level more, which may be what it
+    /// lacks, or the levels below. What is below stands if nothing helps.
+    fn past(&mut self, point: &Point, at: Resolution, climb: &mut Climb) -> Way {
+        let solved = climb.below.as_ref().unwrap_or(point);
+        if let Some(exact) = self.orbit_below(solved, f64::INFINITY) {
+            return Way::End(Box::new(exact));
+        }
+        let easy = self.is_worth_a_homotopy(at.harmonics);
+        if climb.below.is_none() && !easy && !climb.from_below {
+            climb.from_below = true;
+            return Way::On(self.control.start_over());
+        }
+        match (self.control.above(at).filter(|_| easy && !climb.stalled), &climb.below) {
+            (Some(above), _) => {
+                climb.stalled = true;
+                Way::On(above)
+            }
+            (None, Some(below)) => {
+                let status = PointStatus::EffortLimit;
+                Way::End(Box::new(Point { status, ..below.clone() }))
+            }
+            (None, None) => Way::End(Box::new(point.clone())),
+        }
+    }
+
+    /// A point that ends the climb; the next one begins with the harmonics at which it ended.
+    fn ended(&mut self, mut point: Point, at: Resolution, climb: &Climb) -> Point {
+        let dear = point.status == PointStatus::EffortLimit;
+        self.control.stay(if dear { point.resolution() } else { at });
+        point.iterations = climb.iterations;
+        point
+    }
+
+    /// What the errors of a solution ask for.
+    fn judge(&mut self, point: &Point) -> Decision {
+        self.scale.include(point);
+        let scale = &self.scale;
+        let of_samples = scale.relative(point, OF_HARMONICS, point.sampling_error.iter().copied());
+        // Nothing can be done about samples that were given.
+        let climb = self.control.samples_climb();
+        let errors = point.error_estimate.iter().zip(&point.sampling_error);
+        let counted = |(all, sampling): (&f64, &f64)| if climb { *all } else { all - sampling };
+        let error = scale.relative(point, OF_HARMONICS, errors.map(counted));
+        self.control.judge(point.resolution(), error, of_samples)
+    }
+}

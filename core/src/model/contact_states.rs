@@ -1,0 +1,70 @@
+//! States of the contacts in which every point sticks or slips, with the poles of each.
+
+use super::body::Body;
+use crate::contact::ContactLaw;
+use crate::structure::Poles;
+use crate::Error;
+use std::sync::OnceLock;
+
+/// States of the contacts, at most: all of a few points; of more the stuck and the slipping one, and
+/// those in which one point differs from all others.
+const MOST_STATES: usize = 16;
+/// DOFs above which only stuck and free natural frequencies are known.
+const MOST_DOFS: usize = 400;
+
+/// Poles of a state, by what load and slip forces do to them and what the DOFs show of them.
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) poles: Poles,
+    /// Effect of a unit force at every contact point on every pole, none of points that stick, and
+    /// what the point shows of it.
+    pub(super) contacts: Vec<Vec<[f64; 2]>>,
+    /// Which points slip.
+    pub(super) slips: Vec<bool>,
+    /// Whether all points that can slip do.
+    pub(super) all: bool,
+}
+
+/// The states of a model per nodal diameter, found when they are first needed.
+#[derive(Debug)]
+pub(super) struct States {
+    pub(super) diameters: Vec<OnceLock<Result<Vec<State>, Error>>>,
+}
+
+impl States {
+    pub(super) fn of(body: &Body, dofs: usize) -> Self {
+        let count = match body {
+            Body::Wave { cyclic, .. } => cyclic.sectors,
+            Body::Whole if dofs <= MOST_DOFS => 1,
+            Body::Whole | Body::Ring(_) => 0,
+        };
+        Self { diameters: (0..count).map(|_| OnceLock::new()).collect() }
+    }
+}
+
+/// Which points always slip, and which never do: what the states of a model depend on.
+pub(super) fn slip_kinds(laws: &[Box<dyn ContactLaw>]) -> Vec<(bool, bool)> {
+    let limits = laws.iter().flat_map(|law| law.limits());
+    limits.map(|limit| (limit == 0.0, limit.is_infinite())).collect()
+}
+
+/// The points that slip in each state that matters: those without friction always do, those without
+/// a limit never.
+pub(super) fn slip_sets(limits: &[f64]) -> Vec<Vec<bool>> {
+    let either: Vec<usize> =
+        (0..limits.len()).filter(|&i| limits[i] > 0.0 && limits[i].is_finite()).collect();
+    let state = |slips: &dyn Fn(usize) -> bool| -> Vec<bool> {
+        let mut state: Vec<bool> = limits.iter().map(|limit| *limit == 0.0).collect();
+        either.iter().enumerate().for_each(|(position, &i)| state[i] = slips(position));
+        state
+    };
+    let count = either.len();
+    if count < usize::BITS as usize && 1 << count <= MOST_STATES {
+        return (0..1 << count).map(|mask: usize| state(&|i| mask >> i & 1 == 1)).collect();
+    }
+    let mut sets = vec![state(&|_| false), state(&|_| true)];
+    if 2 * (count + 1) <= 2 * MOST_STATES {
+        sets.extend((0..count).flat_map(|one| [state(&|i| i == one), state(&|i| i != one)]));
+    }
+    sets
+}
