@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 import numpy as np
 
-from stickslip.checks import Matrix, MatrixLike, brief, real_matrix, real_number, text, unknown
+from stickslip.checks import (
+    Matrix,
+    MatrixLike,
+    brief,
+    real_matrix,
+    real_number,
+    require_finite,
+    require_keys,
+    require_square,
+    set_fields,
+    text,
+)
 from stickslip.errors import ModelError
 from stickslip.model.structure import Rayleigh, Structure
 
@@ -57,24 +69,10 @@ class Coupling:
         return self.dof, self.dof if self.other is None else self.other
 
     def blocks(self, structure: Structure) -> tuple[Matrix, Matrix]:
-        """Return what a spring of unit stiffness adds to the matrices of a sector.
+        """Return what a spring of unit stiffness adds to the matrices of a sector, twice (N, N).
 
-        Parameters
-        ----------
-        structure : Structure
-            The sector, of N degrees of freedom.
-
-        Returns
-        -------
-        own : ndarray of float64, shape (N, N)
-            What it adds to the sector itself: its ends at both sides.
-        next : ndarray of float64, shape (N, N)
-            What couples the sector, by rows, to the next one, by columns.
-
-        Raises
-        ------
-        ModelError
-            If the structure lacks a degree of freedom.
+        The first is what it adds to the sector itself, its ends at both sides; the second what
+        couples the sector, by rows, to the next one, by columns.
         """
         start, end = (structure.index(dof) for dof in self.ends)
         own, following = np.zeros((2, len(structure), len(structure)))
@@ -85,46 +83,14 @@ class Coupling:
 
     def to_spec(self) -> dict[str, object]:
         """Return the coupling in plain values; see `coupling_from_spec`."""
-        return {
-            "dof": self.dof,
-            "other": self.other,
-            "stiffness": self.stiffness,
-            "damping": self.damping,
-        }
+        return asdict(self)
 
 
-def coupling_from_spec(spec: Mapping[str, object]) -> Coupling:
-    """Build a coupling from the plain values of `Coupling.to_spec`.
-
-    Parameters
-    ----------
-    spec : mapping
-        `dof`, `stiffness` and, optionally, `other` and `damping`.
-
-    Returns
-    -------
-    Coupling
-        The coupling.
-
-    Raises
-    ------
-    ModelError
-        If a key is unknown or missing, or a value is refused by `Coupling`.
-    """
-    keys = ("dof", "other", "stiffness", "damping")
-    for key in spec:
-        if key not in keys:
-            raise ModelError(f"coupling: {unknown('key', key, keys)}")
-    for key in ("dof", "stiffness"):
-        if key not in spec:
-            raise ModelError(f"coupling: {key} is missing; give {key}")
-    other = spec.get("other")
-    return Coupling(
-        text(spec["dof"], "coupling: dof"),
-        None if other is None else text(other, "coupling: other"),
-        stiffness=real_number(spec["stiffness"], "coupling: stiffness"),
-        damping=real_number(spec.get("damping", 0.0), "coupling: damping"),
-    )
+def coupling_from_spec(spec: Mapping[str, Any]) -> Coupling:
+    """Build a coupling from the plain values of `Coupling.to_spec`."""
+    known = ("dof", "other", "stiffness", "damping")
+    require_keys(spec, "coupling", known, ("dof", "stiffness"))
+    return Coupling(**spec)
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -168,9 +134,7 @@ class Interface:
             C = damping.matrix(M, K)
         else:
             C = _block(damping, "damping", len(K))
-        for name, value in (("stiffness", K), ("mass", M), ("damping", C)):
-            value.flags.writeable = False
-            object.__setattr__(self, name, value)
+        set_fields(self, stiffness=K, mass=M, damping=C)
 
     def __len__(self) -> int:
         return len(self.stiffness)
@@ -183,16 +147,7 @@ class Interface:
 
 
 def _block(matrix: MatrixLike, name: str, size: int | None) -> Matrix:
-    entry = f"interface: {name}"
-    block = real_matrix(matrix, entry)
-    rows, columns = block.shape
-    if rows != columns:
-        raise ModelError(f"{entry}: {rows} x {columns} is not square; give N x N for N dofs")
-    if size is not None and rows != size:
-        raise ModelError(f"{entry}: {rows} x {columns}, but the stiffness is {size} x {size}")
-    if not np.isfinite(block).all():
-        row, column = np.argwhere(~np.isfinite(block))[0]
-        raise ModelError(
-            f"{entry}: {block[row, column]} at ({row}, {column}); every entry must be finite"
-        )
+    block = real_matrix(matrix, f"interface: {name}")
+    require_square(block, f"interface: {name}", size, "stiffness")
+    require_finite(block, f"interface: {name}")
     return block

@@ -5,26 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, members, unknown
+from stickslip.checks import brief, members, set_fields, unknown
 from stickslip.disk.arguments import NEXT
 from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.cyclic import MATRICES
 from stickslip.disk.ring import Ring, SectorContact
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
-from stickslip.model.damping import makes_blocks
+from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
 from stickslip.model.force import Force
-from stickslip.model.model import Model
+from stickslip.model.model import Model, from_core
 from stickslip.model.structure import Structure
 
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["MistunedDisk", "deviating"]
+__all__ = ["MistunedDisk", "deviating", "tuned_disk"]
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -40,6 +41,9 @@ class MistunedDisk(Model):
         The tuned disk: couplings, contacts and forces are its.
     blades : iterable of Structure
         The structure of each sector by itself.
+    contacts, forces : iterable, optional
+        Others than those of the disk: contacts as many, at the same degrees of freedom, in the
+        order of the sectors; forces on "0.tip", ...
 
     Attributes
     ----------
@@ -53,96 +57,81 @@ class MistunedDisk(Model):
     Raises
     ------
     ModelError
-        If there is not one structure per sector, or one has other degrees of freedom than the disk.
+        If there is not one structure per sector, or one has other degrees of freedom than the disk;
+        if the contacts are not as many, or lie elsewhere.
     """
 
     disk: BladedDisk
     blades: tuple[Structure, ...]
 
-    def __init__(self, disk: BladedDisk, blades: Iterable[Structure]) -> None:
-        if not isinstance(disk, BladedDisk):
-            raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give ss.BladedDisk(...)")
-        self._set(disk, _required(blades, disk), _contacts(disk), _forces(disk))
-
-    def _set(
+    def __init__(
         self,
         disk: BladedDisk,
-        blades: tuple[Structure, ...],
-        contacts: Iterable[Contact],
-        forces: Iterable[Force],
+        blades: Iterable[Structure],
+        contacts: Iterable[Contact] | None = None,
+        forces: Iterable[Force] | None = None,
     ) -> None:
-        object.__setattr__(self, "disk", disk)
-        object.__setattr__(self, "blades", blades)
-        super().__init__(_assembled(disk, blades), contacts, forces)
+        if not isinstance(disk, BladedDisk):
+            raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give ss.BladedDisk(...)")
+        sectors = _required(blades, disk)
+        set_fields(self, disk=disk, blades=sectors)
+        own = _contacts(disk)
+        super().__init__(
+            _ring(disk, sectors, (), ()).assembled(disk.structure.dofs),
+            own if contacts is None else contacts,
+            _forces(disk) if forces is None else forces,
+        )
+        if [one.dofs for one in self.contacts] != [one.dofs for one in own]:
+            raise ModelError(
+                f"contacts: {len(self.contacts)} for {len(own)} of the disk, or elsewhere; change "
+                "parameters only, or build another BladedDisk"
+            )
 
     def __repr__(self) -> str:
         sector = self.disk.structure
         return f"MistunedDisk({self.sectors} x {sector!r}, {len(self.contacts)} contact(s))"
 
-    def __reduce__(self) -> tuple[object, ...]:
-        return rebuilt, (self.disk, self.blades, self.contacts, self.forces)
+    def _parts(self) -> dict[str, Any]:
+        names = ("disk", "blades", "contacts", "forces")
+        return {name: getattr(self, name) for name in names}
+
+    def with_structure(self, structure: Structure) -> Model:
+        """Return a plain `Model` with another structure of all sectors."""
+        return Model(structure, self.contacts, self.forces)
 
     @property
     def sectors(self) -> int:
         """Number of sectors."""
         return self.disk.sectors
 
-    def replaced(
-        self, *, contacts: Iterable[Contact] | None = None, forces: Iterable[Force] | None = None
-    ) -> MistunedDisk:
-        """Return the disk with other contact parameters or forces; see `Model.replaced`.
-
-        Raises
-        ------
-        ModelError
-            If the contacts are not as many, or lie elsewhere.
-        """
-        return rebuilt(
-            self.disk,
-            self.blades,
-            self.contacts if contacts is None else contacts,
-            self.forces if forces is None else forces,
-        )
-
     @cached_property
     def problem(self) -> _core.Problem:
-        """The ring as the compiled core sees it, sector by sector, built once.
-
-        Raises
-        ------
-        ModelError
-            If the core refuses the numbers.
-        """
+        """The ring as the compiled core sees it, sector by sector, built once."""
         from stickslip import _core
 
         ring = self.ring
         contacts: list[list[_core.SectorContact]] = [[] for _ in range(self.sectors)]
         for one in ring.contacts:
-            contacts[one.sector].append((one.law, one.own, one.next, one.parameters))
-        forces = [
-            [(harmonic, load[sector]) for harmonic, load in ring.loads]
-            for sector in range(self.sectors)
-        ]
-        try:
-            return _core.Problem.ring(
-                (ring.mass, ring.mass_next),
-                (ring.damping, ring.damping_next),
-                (ring.stiffness, ring.stiffness_next),
-                contacts,
-                forces,
-                ring.proportional,
-            )
-        except ValueError as error:
-            raise ModelError(str(error)) from error
+            contacts[one.sector].append(one[1:])
+        return from_core(
+            _core.Problem.ring,
+            (ring.mass, ring.mass_next),
+            (ring.damping, ring.damping_next),
+            (ring.stiffness, ring.stiffness_next),
+            contacts,
+            ring.loads_by_sector(),
+            ring.proportional,
+        )
 
     @cached_property
     def ring(self) -> Ring:
         """The disk in numbers, sector by sector."""
         places = [self.disk.contact_rows(contact) for contact in self.disk.contacts]
         contacts = tuple(
-            SectorContact(place // len(places), one.law, *places[place % len(places)], parameters)
-            for place, one in enumerate(self.contacts)
-            for parameters in [one.law_parameters()]
+            SectorContact(
+                number // len(places), one.law, *places[number % len(places)], one.law_parameters()
+            )
+            for number, one in enumerate(self.contacts)
         )
         shape = self.sectors, len(self.disk.structure)
         loads = tuple((harmonic, load.reshape(shape)) for harmonic, load in self._loads())
@@ -185,46 +174,6 @@ def deviating(
     )
 
 
-def rebuilt(
-    disk: BladedDisk,
-    blades: Iterable[Structure],
-    contacts: Iterable[Contact],
-    forces: Iterable[Force],
-) -> MistunedDisk:
-    """Return a mistuned disk with contact parameters and forces of its own.
-
-    Parameters
-    ----------
-    disk : BladedDisk
-        The tuned disk.
-    blades : iterable of Structure
-        The structure of each sector.
-    contacts : iterable of Contact
-        As many as the disk has, at the same degrees of freedom, in the order of the sectors.
-    forces : iterable of Force
-        On the degrees of freedom "0.tip", ...
-
-    Returns
-    -------
-    MistunedDisk
-        The disk.
-
-    Raises
-    ------
-    ModelError
-        If the contacts are not as many, or lie elsewhere.
-    """
-    made = object.__new__(MistunedDisk)
-    made._set(disk, tuple(blades), contacts, forces)
-    expected = [contact.dofs for contact in _contacts(disk)]
-    if [contact.dofs for contact in made.contacts] != expected:
-        raise ModelError(
-            f"contacts: {len(made.contacts)} for {len(expected)} of the disk, or elsewhere; change "
-            "parameters only, or build another BladedDisk"
-        )
-    return made
-
-
 def _contacts(disk: BladedDisk) -> tuple[Contact, ...]:
     return tuple(
         contact.moved(
@@ -252,10 +201,6 @@ def _placed(dof: str | None, sector: int, sectors: int) -> str | None:
     return f"{sector}.{dof}"
 
 
-def _assembled(disk: BladedDisk, blades: tuple[Structure, ...]) -> Structure:
-    return _ring(disk, blades, (), ()).assembled(disk.structure.dofs)
-
-
 def _ring(
     disk: BladedDisk,
     blades: tuple[Structure, ...],
@@ -263,20 +208,48 @@ def _ring(
     loads: tuple[tuple[int, NDArray[np.complex128]], ...],
 ) -> Ring:
     parts = {}
-    for name in ("mass", "damping", "stiffness"):
+    for name in MATRICES:
         blocks = getattr(disk.matrices, name)
         # What couplings add to the sectors themselves does not deviate.
         added = blocks.own - getattr(disk.structure, name)
         parts[name] = np.stack([getattr(blade, name) + added for blade in blades])
         parts[f"{name}_next"] = blocks.next
-    names = ("mass", "damping", "stiffness")
-    blocks = [*zip(*(parts[name] for name in names), strict=True)]
     if disk.couplings or disk.interface is not None:
-        blocks.append(tuple(parts[f"{name}_next"] for name in names))
+        blocks = [*zip(*(parts[name] for name in MATRICES), strict=True)]
+        blocks.append(tuple(parts[f"{name}_next"] for name in MATRICES))
         known = makes_blocks(disk.structure.damping_law, blocks)
     else:
         known = all(blade.proportional for blade in blades)
     return Ring(**parts, contacts=contacts, loads=loads, proportional=known)
+
+
+def tuned_disk(disk: BladedDisk) -> _core.TunedDisk:
+    """Return what makes many mistuned disks of a tuned one in the compiled core.
+
+    Its method `mistuned` makes what ``disk.mistuned(pattern).problem`` is, to rounding.
+    """
+    from stickslip import _core
+
+    sector, matrices = disk.structure, disk.matrices
+    law, nothing = sector.damping_law, np.zeros_like(sector.mass)
+    # Damping that stays, that goes with the stiffness, and that with its root: given ratios go with
+    # the natural frequencies.
+    constant, proportional, root = np.array(sector.damping), nothing, nothing
+    if isinstance(law, Rayleigh):
+        constant, proportional = law.mass * sector.mass, law.stiffness * sector.stiffness
+    elif isinstance(law, ModalDamping):
+        constant, root = nothing, constant
+    return from_core(
+        _core.TunedDisk,
+        matrices.mass.own,
+        sector.stiffness,
+        matrices.stiffness.own - sector.stiffness,
+        (constant + (matrices.damping.own - sector.damping), proportional, root),
+        (matrices.mass.next, matrices.damping.next, matrices.stiffness.next),
+        disk._core_contacts(),
+        disk.mistuned(0.0).ring.loads_by_sector(),
+        matrices.proportional,
+    )
 
 
 def _deviations(values: ArrayLike | None, entry: str, sectors: int) -> NDArray[np.float64]:

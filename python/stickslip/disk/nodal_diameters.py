@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import members
+from stickslip.checks import members, set_fields
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.model.model import PointRef, natural_frequencies
+from stickslip.model import PointRef, natural_frequencies
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -64,6 +64,6 @@ def nodal_diameters(disk: BladedDisk, slipping: Iterable[PointRef] | None) -> No
         np.stack([natural_frequencies(disk, points, nodal_diameter=int(d)) for d in diameters])
         for points in ([], slips)
     )
-    for array in (diameters, stuck, free):
-        array.flags.writeable = False
-    return NodalDiameters(disk, diameters, stuck, free)
+    found = NodalDiameters(disk, diameters, stuck, free)
+    set_fields(found, **vars(found))
+    return found

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import Matrix
+from stickslip.disk.cyclic import assembled
 from stickslip.model.structure import Structure
 
 __all__ = ["Ring", "SectorContact"]
@@ -58,42 +59,25 @@ class Ring:
     proportional: bool
     """Whether laws made all of the damping, so that it couples no modes of the whole."""
 
+    def loads_by_sector(self) -> list[list[tuple[int, NDArray[np.complex128]]]]:
+        """Return the loads on each sector, by harmonics."""
+        return [[(k, load[sector]) for k, load in self.loads] for sector in range(len(self.mass))]
+
     def assembled(self, dofs: Sequence[str]) -> Structure:
-        """Return the whole as one structure.
+        """Return the whole as one structure of n N degrees of freedom.
 
-        Parameters
-        ----------
-        dofs : sequence of str
-            Degrees of freedom of a sector.
-
-        Returns
-        -------
-        Structure
-            Of n N degrees of freedom; "tip" of sector 3 is named "3.tip".
+        Those of a sector are given; "tip" of sector 3 is named "3.tip".
 
         Raises
         ------
         ModelError
             If the whole mass is not positive definite.
         """
-        names = [f"{sector}.{dof}" for sector in range(len(self.mass)) for dof in dofs]
         return Structure.of_law(
-            mass=_whole(self.mass, self.mass_next),
-            stiffness=_whole(self.stiffness, self.stiffness_next),
-            damping=_whole(self.damping, self.damping_next),
-            dofs=names,
+            mass=assembled(self.mass, self.mass_next),
+            stiffness=assembled(self.stiffness, self.stiffness_next),
+            damping=assembled(self.damping, self.damping_next),
+            dofs=[f"{sector}.{dof}" for sector in range(len(self.mass)) for dof in dofs],
             law=None,
             proportional=self.proportional,
         )
-
-
-def _whole(own: NDArray[np.float64], following: Matrix) -> Matrix:
-    sectors, size, _ = own.shape
-    whole = np.zeros((sectors, size, sectors, size))
-    for sector in range(sectors):
-        ahead = (sector + 1) % sectors
-        # Added, not set: of two sectors each is the next of the other.
-        whole[sector, :, sector] += own[sector]
-        whole[sector, :, ahead] += following
-        whole[ahead, :, sector] += following.T
-    return whole.reshape(sectors * size, sectors * size)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import Matrix, brief, members, whole_number
+from stickslip.checks import Matrix, brief, members, set_fields, whole_number
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.influence import InfluenceCoefficients
 from stickslip.errors import ModelError
@@ -95,14 +95,13 @@ class AerodynamicWaves:
         plane = np.outer(direction, direction)
         force = self.influence.at(chosen, n)
         added, fed = -force.real * plane, -force.imag / omega * plane
-        delta = 2.0 * np.pi * chosen / n
-        blocks = self.disk.matrices
+        mass, damping, stiffness = self.disk.matrices.wave(self.disk.angle(chosen))
         return Wave(
             diameter=chosen,
             omega=omega,
-            mass=blocks.mass.wave(delta),
-            damping=blocks.damping.wave(delta) + fed,
-            stiffness=blocks.stiffness.wave(delta) + added,
+            mass=mass,
+            damping=damping + fed,
+            stiffness=stiffness + added,
             negative_damping=fed,
             added_stiffness=added,
         )
@@ -154,20 +153,15 @@ class AerodynamicWaves:
             Without forces, its engine order the nodal diameter. Right for the fundamental of that
             wave; its harmonics see the same coefficients.
         """
-        wave, disk = self.wave(diameter), self.disk
-        own = disk.structure
-        return BladedDisk(
-            Structure(
-                own.mass,
-                own.stiffness + wave.added_stiffness,
-                own.damping + ratio * wave.negative_damping,
-                own.dofs,
-            ),
-            disk.sectors,
-            disk.couplings,
-            disk.contacts,
-            engine_order=wave.diameter,
-            interface=disk.interface,
+        wave, own = self.wave(diameter), self.disk.structure
+        structure = Structure(
+            own.mass,
+            own.stiffness + wave.added_stiffness,
+            own.damping + ratio * wave.negative_damping,
+            own.dofs,
+        )
+        return self.disk._like(
+            structure=structure, forces=(), engine_order=wave.diameter, engine_orders=None
         )
 
     def plot(self, **options: Unpack[WaveOptions]) -> Axes:
@@ -228,10 +222,9 @@ def aerodynamic_waves(
     n = disk.sectors
     rows = [_wave(disk, slips, direction, influence.at(d, n), d, family) for d in range(n)]
     omega, flow, total = np.array(rows).T
-    diameters = np.arange(n)
-    for array in (diameters, omega, flow, total):
-        array.flags.writeable = False
-    return AerodynamicWaves(disk, influence, diameters, omega, flow, total)
+    waves = AerodynamicWaves(disk, influence, np.arange(n), omega, flow, total)
+    set_fields(waves, **vars(waves))
+    return waves
 
 
 def _wave(
@@ -245,10 +238,10 @@ def _wave(
     """Return frequency and both damping ratios of a wave."""
     from scipy.linalg import eigh
 
-    delta = 2.0 * np.pi * diameter / disk.sectors
-    blocks = disk.matrices
-    stiffness = blocks.stiffness.wave(delta) + _stuck(disk, slips, delta)
-    _, shapes = eigh(stiffness, blocks.mass.wave(delta))
+    delta = disk.angle(diameter)
+    mass, damping, stiffness = disk.matrices.wave(delta)
+    stiffness = stiffness + _stuck(disk, slips, delta)
+    _, shapes = eigh(stiffness, mass)
     shape = shapes[:, mode]
     moved = abs(direction @ shape) ** 2
     square = (shape.conj() @ stiffness @ shape).real - force.real * moved
@@ -258,7 +251,7 @@ def _wave(
             "aerodynamic stiffness; give smaller coefficients, or ground the structure"
         )
     omega = float(np.sqrt(square))
-    own = (shape.conj() @ blocks.damping.wave(delta) @ shape).real
+    own = (shape.conj() @ damping @ shape).real
     flow = -force.imag * moved / (2.0 * square)
     return omega, float(flow), float(flow + own / (2.0 * omega))
 

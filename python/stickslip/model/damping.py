@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import Matrix, brief, members, real_number
+from stickslip.checks import Matrix, brief, members, real_number, set_fields
 from stickslip.errors import ModelError
 
 if TYPE_CHECKING:
@@ -34,40 +35,15 @@ _ROUNDING = 1e-13
 _GRADED = 1e6
 
 
-@dataclass(frozen=True, kw_only=True)
-class Rayleigh:
-    """Proportional damping, C = mass * M + stiffness * K.
-
-    Parameters
-    ----------
-    mass : float, optional
-        Factor on the mass matrix [1/s].
-    stiffness : float, optional
-        Factor on the stiffness matrix [s]. Negative factors describe negative damping.
-
-    Raises
-    ------
-    ModelError
-        If a factor is not a finite number.
-    """
-
-    mass: float = 0.0
-    stiffness: float = 0.0
+class DampingLaw(ABC):
+    """What makes a damping matrix of mass and stiffness."""
 
     @property
+    @abstractmethod
     def proportional(self) -> bool:
-        """Whether it couples no modes of the structure by itself: always."""
-        return True
+        """Whether it couples no modes of the structure by itself."""
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "mass", real_number(self.mass, "Rayleigh mass factor"))
-        factor = real_number(self.stiffness, "Rayleigh stiffness factor")
-        object.__setattr__(self, "stiffness", factor)
-
-    def to_spec(self) -> dict[str, object]:
-        """Return the law in plain values; see `law_from_spec`."""
-        return {"law": "rayleigh", "mass": self.mass, "stiffness": self.stiffness}
-
+    @abstractmethod
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
         """Return the damping matrix.
 
@@ -86,14 +62,57 @@ class Rayleigh:
         Raises
         ------
         ModelError
-            If it is not finite.
+            If there are not N ratios, an eigenvalue is negative, the damping is not finite, or a
+            stuck contact does not find its degrees of freedom.
         """
+
+    @abstractmethod
+    def to_spec(self) -> dict[str, object]:
+        """Return the law in plain values; see `law_from_spec`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rayleigh(DampingLaw):
+    """Proportional damping, C = mass * M + stiffness * K.
+
+    Parameters
+    ----------
+    mass : float, optional
+        Factor on the mass matrix [1/s].
+    stiffness : float, optional
+        Factor on the stiffness matrix [s]. Negative factors describe negative damping.
+
+    Raises
+    ------
+    ModelError
+        If a factor is not a finite number.
+    """
+
+    mass: float = 0.0
+    stiffness: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "stiffness"):
+            factor = real_number(getattr(self, name), f"Rayleigh {name} factor")
+            object.__setattr__(self, name, factor)
+
+    @property
+    def proportional(self) -> bool:
+        """Whether it couples no modes of the structure by itself: always."""
+        return True
+
+    def to_spec(self) -> dict[str, object]:
+        """Return the law in plain values; see `law_from_spec`."""
+        return {"law": "rayleigh", "mass": self.mass, "stiffness": self.stiffness}
+
+    def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
+        """Return the damping matrix; see `DampingLaw.matrix`."""
         with np.errstate(over="ignore", invalid="ignore"):
             return _finite(self.mass * mass + self.stiffness * stiffness, self)
 
 
 @dataclass(frozen=True)
-class ModalDamping:
+class ModalDamping(DampingLaw):
     """Damping ratios of modes, as `modal_damping` gives them.
 
     With mass-normalised modes Phi, C = M Phi diag(2 zeta omega) Phi^T M. Rigid-body modes stay
@@ -117,11 +136,6 @@ class ModalDamping:
     ratio: float | Sequence[float]
     stuck: Iterable[Contact] = ()
 
-    @property
-    def proportional(self) -> bool:
-        """Whether it couples no modes of the structure by itself: unless contacts are `stuck`."""
-        return not self.stuck
-
     def __post_init__(self) -> None:
         given = self.ratio.tolist() if isinstance(self.ratio, np.ndarray) else self.ratio
         ratio: float | tuple[float, ...]
@@ -132,8 +146,12 @@ class ModalDamping:
             )
         else:
             ratio = real_number(given, "damping ratio")
-        object.__setattr__(self, "ratio", ratio)
-        object.__setattr__(self, "stuck", _contacts(self.stuck))
+        set_fields(self, ratio=ratio, stuck=_contacts(self.stuck))
+
+    @property
+    def proportional(self) -> bool:
+        """Whether it couples no modes of the structure by itself: unless contacts are `stuck`."""
+        return not self.stuck
 
     def to_spec(self) -> dict[str, object]:
         """Return the law in plain values; see `law_from_spec`."""
@@ -142,26 +160,7 @@ class ModalDamping:
         return {"law": "modal", "ratio": ratio, **({"stuck": stuck} if stuck else {})}
 
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
-        """Return the damping matrix.
-
-        Parameters
-        ----------
-        mass, stiffness : ndarray of float64, shape (N, N)
-            The structure's matrices [kg], [N/m].
-        dofs : sequence of str, optional
-            Its degrees of freedom, by which stuck contacts find their places.
-
-        Returns
-        -------
-        ndarray of float64, shape (N, N)
-            Damping [kg/s].
-
-        Raises
-        ------
-        ModelError
-            If there are not N ratios, an eigenvalue is negative, the damping is not finite, or a
-            stuck contact does not find its degrees of freedom.
-        """
+        """Return the damping matrix; see `DampingLaw.matrix`."""
         from scipy.linalg import eigh
 
         from stickslip.model.structure import Structure
@@ -267,31 +266,17 @@ def _contacts(stuck: object) -> tuple[Contact, ...]:
     return tuple(given)
 
 
-def _finite(damping: Matrix, law: Rayleigh | ModalDamping) -> Matrix:
+def _finite(damping: Matrix, law: DampingLaw) -> Matrix:
     if not np.isfinite(damping).all():
         raise ModelError(f"damping: {brief(law)} makes entries beyond 1e308; give smaller numbers")
     return damping
 
 
-DampingLaw: TypeAlias = Rayleigh | ModalDamping
-"""What makes a damping matrix of mass and stiffness."""
-
-
 def makes_blocks(law: DampingLaw | None, blocks: Iterable[tuple[Matrix, Matrix, Matrix]]) -> bool:
     """Tell whether Rayleigh damping of a sector holds with what couples it to its neighbours.
 
-    Parameters
-    ----------
-    law : Rayleigh, ModalDamping or None
-        The law of the sector by itself.
-    blocks : iterable of (mass, damping, stiffness)
-        The blocks of the sector and of its coupling, or of several sectors.
-
-    Returns
-    -------
-    bool
-        Whether every damping block is what the law makes of mass and stiffness, but for rounding.
-        A law of modes does not know those of the coupled sectors.
+    The blocks are mass, damping and stiffness of the sector and of its coupling, or of several
+    sectors. A law of modes does not know those of the coupled sectors.
     """
     if not isinstance(law, Rayleigh):
         return False
@@ -302,30 +287,13 @@ def makes_blocks(law: DampingLaw | None, blocks: Iterable[tuple[Matrix, Matrix, 
 
 
 def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:
-    """Build a damping law from the plain values of its `to_spec`.
-
-    Parameters
-    ----------
-    spec : mapping
-        `law`, "rayleigh" or "modal", and its numbers.
-
-    Returns
-    -------
-    Rayleigh or ModalDamping
-        The law.
-
-    Raises
-    ------
-    ModelError
-        If there is no such law, or it refuses a number.
-    """
+    """Build a damping law from the plain values of its `to_spec`."""
     from stickslip.model.laws import contact_from_spec
 
     values = {key: value for key, value in spec.items() if key != "law"}
     if isinstance(values.get("stuck"), list):
         values["stuck"] = [contact_from_spec(one) for one in values["stuck"]]
-    laws = {"rayleigh": Rayleigh, "modal": ModalDamping}
+    laws: dict[object, type[DampingLaw]] = {"rayleigh": Rayleigh, "modal": ModalDamping}
     if spec.get("law") not in laws:
         raise ModelError(f"damping: unknown law {brief(spec.get('law'))}; known: {list(laws)}")
-    made: DampingLaw = laws[str(spec["law"])](**values)
-    return made
+    return laws[spec["law"]](**values)
