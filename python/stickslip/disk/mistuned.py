@@ -127,15 +127,14 @@ class MistunedDisk(Model):
     def ring(self) -> Ring:
         """The disk in numbers, sector by sector."""
         places = [self.disk.contact_rows(contact) for contact in self.disk.contacts]
-        contacts = tuple(
-            SectorContact(
-                number // len(places), one.law, *places[number % len(places)], one.law_parameters()
-            )
-            for number, one in enumerate(self.contacts)
-        )
+        contacts = []
+        for number, one in enumerate(self.contacts):
+            sector, place = divmod(number, len(places))
+            own, following = places[place]
+            contacts.append(SectorContact(sector, one.law, own, following, one.law_parameters()))
         shape = self.sectors, len(self.disk.structure)
         loads = tuple((harmonic, load.reshape(shape)) for harmonic, load in self._loads())
-        return _ring(self.disk, self.blades, contacts, loads)
+        return _ring(self.disk, self.blades, tuple(contacts), loads)
 
 
 def deviating(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +35,7 @@ _ROUNDING = 1e-13
 _GRADED = 1e6
 
 
-class DampingLaw(ABC):
+class _DampingLaw(ABC):
     """What makes a damping matrix of mass and stiffness."""
 
     @property
@@ -45,19 +45,9 @@ class DampingLaw(ABC):
 
     @abstractmethod
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
-        """Return the damping matrix.
+        """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N).
 
-        Parameters
-        ----------
-        mass, stiffness : ndarray of float64, shape (N, N)
-            The structure's matrices [kg], [N/m].
-        dofs : sequence of str, optional
-            Its degrees of freedom, by which stuck contacts find their places.
-
-        Returns
-        -------
-        ndarray of float64, shape (N, N)
-            Damping [kg/s].
+        Stuck contacts find their places by the names `dofs` of the structure.
 
         Raises
         ------
@@ -66,13 +56,9 @@ class DampingLaw(ABC):
             stuck contact does not find its degrees of freedom.
         """
 
-    @abstractmethod
-    def to_spec(self) -> dict[str, object]:
-        """Return the law in plain values; see `law_from_spec`."""
-
 
 @dataclass(frozen=True, kw_only=True)
-class Rayleigh(DampingLaw):
+class Rayleigh(_DampingLaw):
     """Proportional damping, C = mass * M + stiffness * K.
 
     Parameters
@@ -106,13 +92,13 @@ class Rayleigh(DampingLaw):
         return {"law": "rayleigh", "mass": self.mass, "stiffness": self.stiffness}
 
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
-        """Return the damping matrix; see `DampingLaw.matrix`."""
+        """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N)."""
         with np.errstate(over="ignore", invalid="ignore"):
             return _finite(self.mass * mass + self.stiffness * stiffness, self)
 
 
 @dataclass(frozen=True)
-class ModalDamping(DampingLaw):
+class ModalDamping(_DampingLaw):
     """Damping ratios of modes, as `modal_damping` gives them.
 
     With mass-normalised modes Phi, C = M Phi diag(2 zeta omega) Phi^T M. Rigid-body modes stay
@@ -160,7 +146,7 @@ class ModalDamping(DampingLaw):
         return {"law": "modal", "ratio": ratio, **({"stuck": stuck} if stuck else {})}
 
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
-        """Return the damping matrix; see `DampingLaw.matrix`."""
+        """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N)."""
         from scipy.linalg import eigh
 
         from stickslip.model.structure import Structure
@@ -188,6 +174,9 @@ class ModalDamping(DampingLaw):
         with np.errstate(over="ignore", invalid="ignore"):
             damping = (shapes * (2.0 * ratios * omega)) @ shapes.T
         return _finite(np.asarray(damping, dtype=np.float64), self)
+
+
+DampingLaw: TypeAlias = Rayleigh | ModalDamping
 
 
 def _graded(stiffness: Matrix, mass: Matrix) -> NDArray[np.intp]:
@@ -293,7 +282,7 @@ def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:
     values = {key: value for key, value in spec.items() if key != "law"}
     if isinstance(values.get("stuck"), list):
         values["stuck"] = [contact_from_spec(one) for one in values["stuck"]]
-    laws: dict[object, type[DampingLaw]] = {"rayleigh": Rayleigh, "modal": ModalDamping}
+    laws: dict[object, type[Rayleigh | ModalDamping]] = {"rayleigh": Rayleigh, "modal": ModalDamping}
     if spec.get("law") not in laws:
         raise ModelError(f"damping: unknown law {brief(spec.get('law'))}; known: {list(laws)}")
     return laws[spec["law"]](**values)

@@ -171,10 +171,10 @@ def join(structures: Mapping[str, Structure]) -> Structure:
         )
     if not structures:
         raise ModelError("join: no parts; give at least one structure")
-    for part, structure in structures.items():
-        text(part, "join: name of a part")
+    for name, structure in structures.items():
+        text(name, "join: name of a part")
         if not isinstance(structure, Structure):
-            raise ModelError(f"join: part {brief(part)} is {brief(structure)}; give a Structure")
+            raise ModelError(f"join: part {brief(name)} is {brief(structure)}; give a Structure")
     parts = list(structures.values())
     starts = np.cumsum([0, *map(len, parts)])
     blocks = {name: np.zeros((starts[-1],) * 2) for name in ("mass", "stiffness", "damping")}
