@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.fields import real_field, whole_field
+from stickslip.io.entries import columns_of, whole_matrix
+from stickslip.io.numbers import real_field, require_whole_numbers, whole_field
 from stickslip.io.source import read_text
-from stickslip.io.triangle import columns_of, require_whole_numbers, whole_matrix
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -129,23 +129,7 @@ class _Header:
 
 
 def read_harwell_boeing(path: Path) -> coo_array:
-    """Read an assembled real matrix; symmetric storage is mirrored.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    scipy.sparse.coo_array
-        The whole matrix. Right-hand sides in the file are left out.
-
-    Raises
-    ------
-    ValueError
-        With the reason, if the file is not of the format, damaged, or holds a matrix that is
-        complex, elemental or a pattern without values.
+    """Read an assembled real matrix; symmetric storage is mirrored, right-hand sides are left out.
 
     References
     ----------

@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import re
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.fields import real_field, whole_field
-from stickslip.io.source import plain
-from stickslip.io.triangle import require_size
+from stickslip.io.entries import require_size
+from stickslip.io.numbers import real_field, whole_field
+from stickslip.io.source import Key, plain
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -64,24 +63,11 @@ class _Header:
         return self.rows < 0 or self.rows >= _LARGE
 
 
-def read_op4(path: Path) -> dict[str, Callable[[], coo_array]]:
-    """Read a file of several matrices.
+def read_op4(path: Path, key: Key) -> coo_array:
+    """Read a matrix of a file: text, or binary of either byte order with integers of 4 or 8 bytes.
 
-    Parameters
-    ----------
-    path : Path
-        The file: text, or binary of either byte order with integers of 4 or 8 bytes.
-
-    Returns
-    -------
-    dict of str to function that returns scipy.sparse.coo_array
-        By name, in capitals, what builds the matrix. It raises ValueError if the matrix is complex,
-        calls itself symmetric and is not, or shares its name with another.
-
-    Raises
-    ------
-    ValueError
-        With the reason, if the file is not of the format or damaged.
+    Names are in capitals. The whole file is walked through, but only the matrix that is asked for
+    must be real, be called so once, and be symmetric if it says so.
 
     References
     ----------
@@ -90,20 +76,16 @@ def read_op4(path: Path) -> dict[str, Callable[[], coo_array]]:
     content = path.read_bytes()
     if len(content) < 16:
         raise ValueError("the file is empty or nearly so")
-    walk: Iterator[_Column] = _binary(content) if 0 in content[:4] else _text(content)
-    matrices: dict[str, Callable[[], coo_array]] = {}
-    for header, columns in walk:
-        builder = _twice if header.name in matrices else partial(_matrix, header, columns)
-        matrices[header.name] = builder
-    return matrices
+    found = list(_binary(content) if 0 in content[:4] else _text(content))
+    names = [header.name for header, _ in found]
+    chosen = Key(path, key.name and key.name.upper()).among(dict.fromkeys(names))
+    if names.count(chosen) > 1:
+        raise ValueError("the file holds two matrices of this name")
+    return _matrix(*found[names.index(chosen)])
 
 
 _Column = tuple[_Header, list[tuple[int, list[_Piece]]]]
 """A matrix as the walks yield it: what precedes it, and the pieces of each column."""
-
-
-def _twice() -> coo_array:
-    raise ValueError("the file holds two matrices of this name")
 
 
 def _matrix(header: _Header, columns: list[tuple[int, list[_Piece]]]) -> coo_array:
