@@ -282,7 +282,7 @@ def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:
     values = {key: value for key, value in spec.items() if key != "law"}
     if isinstance(values.get("stuck"), list):
         values["stuck"] = [contact_from_spec(one) for one in values["stuck"]]
-    laws: dict[object, type[Rayleigh | ModalDamping]] = {"rayleigh": Rayleigh, "modal": ModalDamping}
+    laws: dict[object, type[DampingLaw]] = {"rayleigh": Rayleigh, "modal": ModalDamping}
     if spec.get("law") not in laws:
         raise ModelError(f"damping: unknown law {brief(spec.get('law'))}; known: {list(laws)}")
     return laws[spec["law"]](**values)
