@@ -22,14 +22,10 @@ class ModelError(ValueError):
 
 
 class EntryError(ModelError):
-    """A value that an entry cannot have; `at` names the entry where its full name is known.
+    """A value that an entry cannot have.
 
-    Parameters
-    ----------
-    entry : str
-        Name of the entry; empty where only the value is known.
-    said : str
-        What is wrong and the remedy, from the mark after the name on: ``: -1 lies below 0; ...``.
+    `entry` is its name, empty where only the value is known; `said` what is wrong and the remedy,
+    from the mark after the name on: ``: -1 lies below 0; ...``.
     """
 
     def __init__(self, entry: str, said: str) -> None:

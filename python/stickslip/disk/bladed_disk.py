@@ -21,8 +21,7 @@ from stickslip.disk.arguments import (
     require_interface,
     stranger,
 )
-from stickslip.disk.coupling import Coupling, Interface
-from stickslip.disk.cyclic import CyclicMatrices
+from stickslip.disk.coupling import Coupling, CyclicMatrices, Interface
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.force import Force
@@ -180,9 +179,9 @@ class BladedDisk(Model):
 
     @cached_property
     def neighbours(self) -> Structure:
-        """Names of the degrees of freedom of a sector and the next one; its matrices mean nothing.
+        """A sector and the next one, in whose degrees of freedom contacts find theirs.
 
-        Contacts find their degrees of freedom in it.
+        Its matrices mean nothing.
         """
         own = self.structure.dofs
         size = 2 * len(own)
@@ -224,23 +223,7 @@ class BladedDisk(Model):
         )
 
     def seen_from(self, sector: int) -> BladedDisk:
-        """Return the disk with another sector as sector 0.
-
-        Parameters
-        ----------
-        sector : int
-            From 0 to n-1.
-
-        Returns
-        -------
-        BladedDisk
-            The same disk under forces ahead by those of the sector.
-
-        Raises
-        ------
-        ModelError
-            If there is no such sector.
-        """
+        """Return the disk, under forces ahead by those of a sector from 0 to n-1, as from there."""
         number = whole_number(sector, "sector")
         if number >= self.sectors:
             raise ModelError(f"sector: {number}; there are {self.sectors}, 0 to {self.sectors - 1}")
@@ -248,13 +231,7 @@ class BladedDisk(Model):
 
     @cached_property
     def problem(self) -> _core.Problem:
-        """One sector of the wave as the compiled core sees it, built once.
-
-        Raises
-        ------
-        ModelError
-            If the forces make no single travelling wave, or the core refuses the numbers.
-        """
+        """One sector of the wave as the compiled core sees it, built once; forces must make one."""
         self._require_one_wave()
         return self._wave_problem(self._loads())
 
@@ -296,15 +273,7 @@ class BladedDisk(Model):
     def nodal_diameters(self, slipping: Iterable[PointRef] | None = None) -> NodalDiameters:
         """Return the natural frequencies at all nodal diameters, stuck and slipping.
 
-        Parameters
-        ----------
-        slipping : iterable of int, str or (int or str, int), optional
-            The contact points that slip. Default: all.
-
-        Returns
-        -------
-        NodalDiameters
-            Frequencies with all contacts stuck, and with those points slipping.
+        `slipping` are the contact points that slip, as of `natural_frequencies`. Default: all.
         """
         from stickslip.disk.nodal_diameters import nodal_diameters
 

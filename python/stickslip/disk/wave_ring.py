@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.cyclic import assembled
+from stickslip.disk.coupling import assembled
 from stickslip.model.model import Model, from_core
 
 if TYPE_CHECKING:

@@ -1,17 +1,18 @@
-"""Travelling waves of a tuned disk in a flow: their damping, and their matrices."""
+"""Travelling waves of a tuned disk in a flow: influence coefficients, damping and matrices."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from numbers import Complex
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import Matrix, brief, members, set_fields, whole_number
+from stickslip.checks import Matrix, brief, members, set_fields, text, whole_number
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.influence import InfluenceCoefficients
 from stickslip.errors import ModelError
 from stickslip.model.model import AnyMatrix, PointRef
 from stickslip.model.structure import Structure
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from stickslip.plot.waves import WaveOptions
 
-__all__ = ["AerodynamicWaves", "Wave", "aerodynamic_waves"]
+__all__ = ["AerodynamicWaves", "InfluenceCoefficients", "Wave", "aerodynamic_waves"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,20 +72,7 @@ class AerodynamicWaves:
     def wave(self, diameter: int | None = None) -> Wave:
         """Return the matrices of a wave, as arrays for its limit cycle.
 
-        Parameters
-        ----------
-        diameter : int, optional
-            Nodal diameter, 0 to n-1. Default: the least stable.
-
-        Returns
-        -------
-        Wave
-            Its matrices.
-
-        Raises
-        ------
-        ModelError
-            If there is no such nodal diameter.
+        Its nodal diameter is from 0 to n-1. Default: the least stable.
         """
         chosen = self.least_stable if diameter is None else whole_number(diameter, "diameter")
         n = self.disk.sectors
@@ -109,21 +97,9 @@ class AerodynamicWaves:
     def negative_damping(self, diameter: int | None = None) -> NDArray[np.float64]:
         """Return what the flow damps in a wave, in the form that `stickslip.limit_cycles` takes.
 
-        Parameters
-        ----------
-        diameter : int, optional
-            Nodal diameter d of the wave, 0 to n-1. Default: the least stable.
-
-        Returns
-        -------
-        ndarray of float64, shape (n, N, N)
-            -Im L(k d) / (k omega_d) by the nodal diameter k d modulo n that harmonic k meets, of
-            the lowest odd k [kg/s]; 0 where none comes. Its stiffness is in `disk_of`.
-
-        Raises
-        ------
-        ModelError
-            If there is no such nodal diameter.
+        Of shape (n, N, N) [kg/s]: -Im L(k d) / (k omega_d) by the nodal diameter k d modulo n that
+        harmonic k meets, of the lowest odd k; 0 where none comes. The default wave is the least
+        stable, and its stiffness is in `disk_of`.
         """
         wave, n = self.wave(diameter), self.disk.sectors
         direction = self.influence.direction(self.disk.structure)
@@ -140,18 +116,9 @@ class AerodynamicWaves:
     def disk_of(self, diameter: int | None = None, ratio: float = 1.0) -> BladedDisk:
         """Return the disk in which a wave has the aerodynamic stiffness, and damping.
 
-        Parameters
-        ----------
-        diameter : int, optional
-            Nodal diameter, 0 to n-1. Default: the least stable.
-        ratio : float, optional
-            Factor on the aerodynamic damping; 0 for `stickslip.limit_cycles`, which adds it.
-
-        Returns
-        -------
-        BladedDisk
-            Without forces, its engine order the nodal diameter. Right for the fundamental of that
-            wave; its harmonics see the same coefficients.
+        It has no forces, and the nodal diameter of the wave as engine order. It is right for the
+        fundamental of that wave; its harmonics see the same coefficients. `ratio` is a factor on
+        the aerodynamic damping: 0 for `stickslip.limit_cycles`, which adds it.
         """
         wave, own = self.wave(diameter), self.disk.structure
         structure = Structure(
@@ -279,3 +246,92 @@ def _condensed(spring: Matrix, sticks: list[int]) -> Matrix:
         loose = spring[np.ix_(free, free)]
         left[np.ix_(sticks, sticks)] = held - cross @ np.linalg.solve(loose, cross.T)
     return left
+
+
+@dataclass(frozen=True)
+class InfluenceCoefficients:
+    """Aerodynamic force on a blade per displacement of itself and of its neighbours.
+
+    A blade that moves as Re x exp(i omega t) exerts Re L_j x exp(i omega t) on the blade j places
+    before it; in a travelling wave of nodal diameter d of n blades, each ahead of the one before by
+    2 pi d / n, the force on every blade is its own displacement times
+
+        L(d) = sum_j L_j exp(2 pi i d j / n).
+
+    Its real part is a stiffness less, its imaginary part over omega a damping less: a positive
+    imaginary part feeds energy into the wave.
+
+    Parameters
+    ----------
+    coefficients : mapping of int to complex
+        L_j by the place j of the moving blade: 0 the blade itself, 1 the next, -1 the one before.
+        In N/m at a `dof`; of a `mode` with unit modal mass in 1/s^2.
+    dof : str, optional
+        The degree of freedom that moves and is acted on.
+    mode : int, optional
+        Instead: the mode of a blade by itself, counted from 0, along which it moves.
+
+    Raises
+    ------
+    ModelError
+        If there is no coefficient, one is not finite, or not exactly one of dof and mode is given.
+
+    References
+    ----------
+    Hanamura, Tanaka and Yamaguchi (1980); Crawley (1988) on travelling-wave and influence
+    coefficients.
+    """
+
+    coefficients: Mapping[int, complex]
+    dof: str | None = None
+    mode: int | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.coefficients, Mapping) or not self.coefficients:
+            raise ModelError(
+                f"influence coefficients: {brief(self.coefficients)} is no mapping; give "
+                "{0: ..., 1: ..., -1: ...}"
+            )
+        checked: dict[int, complex] = {}
+        for place, value in self.coefficients.items():
+            if isinstance(place, bool) or not isinstance(place, int | np.integer):
+                raise ModelError(f"influence coefficients: place {brief(place)} is no whole number")
+            if not isinstance(value, Complex) or not np.isfinite(complex(value)):
+                raise ModelError(
+                    f"influence coefficient {place}: {brief(value)} is no finite number; give L_j "
+                    "in N/m"
+                )
+            checked[int(place)] = complex(value)
+        if (self.dof is None) == (self.mode is None):
+            raise ModelError("influence coefficients: give exactly one of dof and mode")
+        if self.dof is not None:
+            text(self.dof, "influence coefficients: dof")
+        else:
+            whole_number(self.mode, "influence coefficients: mode")
+        object.__setattr__(self, "coefficients", MappingProxyType(checked))
+
+    def at(self, diameter: int, sectors: int) -> complex:
+        """Return L(d), the coefficient of a travelling wave of nodal diameter d, from 0 to n-1.
+
+        n - d runs the other way round.
+        """
+        turn = 2j * np.pi * diameter / sectors
+        return complex(sum(L * np.exp(turn * j) for j, L in self.coefficients.items()))
+
+    def direction(self, structure: Structure) -> NDArray[np.float64]:
+        """Return the vector p of the force p L p^T x on a blade by itself, shape (N,).
+
+        It is the unit vector of the dof, or M phi of the mode phi with unit modal mass.
+        """
+        if self.dof is not None:
+            unit: NDArray[np.float64] = np.eye(len(structure))[structure.index(self.dof)]
+            return unit
+        from scipy.linalg import eigh
+
+        mode = whole_number(self.mode, "influence coefficients: mode")
+        if mode >= len(structure):
+            raise ModelError(
+                f"influence coefficients: mode {mode}; a blade has {len(structure)}, counted from 0"
+            )
+        _, shapes = eigh(structure.stiffness, structure.mass)
+        return np.asarray(structure.mass @ shapes[:, mode], dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Solid finite elements: hexahedra of 20 nodes, quadratic shape functions."""
+"""Solid finite elements, hexahedra of 20 nodes with quadratic shape functions, and their stress."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import file_path, real_number
+from stickslip.checks import file_path, real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.files import refusal, write
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-__all__ = ["Solid"]
+__all__ = ["Solid", "von_mises", "von_mises_range"]
 
 _BOTTOM = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)]
 _EDGES = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)]
@@ -126,24 +126,10 @@ class Solid:
     def load(
         self, traction: Callable[[NDArray[np.float64]], NDArray[np.float64]], vertices: ArrayLike
     ) -> NDArray[np.float64]:
-        """Return the forces of a traction on part of the surface.
+        """Return the forces of a traction on part of the surface, shape (3 n,) [N].
 
-        Parameters
-        ----------
-        traction : callable
-            From places, shape (3, ...), to force per area, the same shape [Pa].
-        vertices : array_like of int
-            The faces that have all their vertices among these are loaded.
-
-        Returns
-        -------
-        ndarray of float64, shape (3 n,)
-            Forces [N].
-
-        Raises
-        ------
-        ModelError
-            If there is no such face.
+        `traction` leads from places, shape (3, ...), to force per area, the same shape [Pa]; the
+        faces that have all their `vertices` among those given are loaded.
         """
         skfem = _skfem()
         among = np.isin(self.mesh.facets, np.asarray(vertices)).all(axis=0)
@@ -160,18 +146,10 @@ class Solid:
         return np.asarray(work.assemble(basis), dtype=np.float64)
 
     def stress(self, displacement: ArrayLike) -> NDArray[Any]:
-        """Return the stress of a displacement field at the nodes.
+        """Return the stress of a displacement field at the nodes, shape (n, 6) [Pa].
 
-        Parameters
-        ----------
-        displacement : array_like, shape (3 n,)
-            Of all degrees of freedom, real or complex [m].
-
-        Returns
-        -------
-        ndarray, shape (n, 6)
-            xx, yy, zz, yz, xz, xy [Pa]: the mean of the elements around a node, each evaluated at
-            the node itself.
+        The field is of all degrees of freedom, real or complex [m]; the stress xx, yy, zz, yz, xz,
+        xy is the mean of the elements around a node, each evaluated at the node itself.
         """
         given = np.asarray(displacement)
         if np.iscomplexobj(given):
@@ -193,19 +171,10 @@ class Solid:
         return np.asarray(np.array(sums).T / count[:, None])
 
     def write_vtu(self, path: str | os.PathLike[str], fields: Mapping[str, ArrayLike]) -> None:
-        """Write mesh and nodal fields for ParaView.
+        """Write mesh and nodal fields for ParaView, whole or not at all.
 
-        Parameters
-        ----------
-        path : str or path-like
-            The file, `.vtu`; it is written whole or not at all.
-        fields : mapping of str to array_like, shape (n,) or (n, 3)
-            Real values at the nodes by name.
-
-        Raises
-        ------
-        ModelError
-            If meshio is missing, or the file cannot be written.
+        `fields` are real values at the nodes by name, shape (n,) or (n, 3). The package meshio is
+        needed.
         """
         try:
             import meshio
@@ -289,3 +258,70 @@ def _skfem() -> Any:
             "solid: finite elements need the package scikit-fem: pip install 'stickslip[fe]'"
         ) from None
     return skfem
+
+
+_BLOCK = 2000
+"""Nodes at a time: the differences of all instants of so many fit into memory."""
+
+
+def von_mises(stress: ArrayLike) -> NDArray[np.float64]:
+    """Return the von Mises equivalent of real stresses.
+
+    Parameters
+    ----------
+    stress : array_like, shape (..., 6)
+        xx, yy, zz, yz, xz, xy [Pa].
+
+    Returns
+    -------
+    ndarray of float64, shape (...)
+        [Pa].
+    """
+    xx, yy, zz, yz, xz, xy = np.moveaxis(np.asarray(stress, dtype=np.float64), -1, 0)
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * normal + 3.0 * (yz**2 + xz**2 + xy**2)))
+
+
+def von_mises_range(harmonics: ArrayLike, samples: int = 64) -> NDArray[np.float64]:
+    """Return the range of the von Mises stress over a period.
+
+    The largest von Mises equivalent of the difference of the stresses at two instants,
+    max over t1, t2 of vM(s(t1) - s(t2)). Unlike the range of vM(s(t)), which has no sign, it is
+    twice the amplitude in a motion that goes as far to either side, and static stress adds nothing.
+
+    Parameters
+    ----------
+    harmonics : array_like of complex, shape (H+1, n, 6)
+        S_k of s(t) = Re sum_k S_k exp(i k omega t): xx, yy, zz, yz, xz, xy [Pa].
+    samples : int, optional
+        Instants per period between which the difference is taken, an even number.
+
+    Returns
+    -------
+    ndarray of float64, shape (n,)
+        [Pa].
+
+    Raises
+    ------
+    ModelError
+        If the shape is another, or `samples` is not an even number from 4.
+
+    References
+    ----------
+    The equivalent stress range of ASME BPVC VIII-2, 5.5.3 (components of two instants subtracted).
+    """
+    given = np.asarray(harmonics)
+    if given.ndim != 3 or given.shape[2] != 6:
+        raise ModelError(f"stress: shape {given.shape}; give (harmonics, nodes, 6)")
+    count = whole_number(samples, "samples", smallest=4)
+    if count % 2:
+        raise ModelError(f"samples: {count} is odd; half periods need an even number")
+    phases = np.exp(2j * np.pi * np.outer(np.arange(count) / count, np.arange(len(given))))
+    largest = np.zeros(given.shape[1])
+    for start in range(0, given.shape[1], _BLOCK):
+        nodes = slice(start, start + _BLOCK)
+        history = np.real(np.tensordot(phases, given[:, nodes], axes=1))  # (instant, node, 6)
+        for lag in range(1, count // 2 + 1):
+            difference = von_mises(history - np.roll(history, lag, axis=0)).max(axis=0)
+            largest[nodes] = np.maximum(largest[nodes], difference)
+    return largest

@@ -175,19 +175,9 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
 def write_frf(path: str | os.PathLike[str], functions: Frf | Iterable[Frf]) -> None:
     """Write frequency response functions to a Universal File, dataset 58 as text.
 
-    The format holds 6 digits of the frequency and 12 of the values.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file; it is written whole or not at all.
-    functions : Frf or iterable of Frf
-        The functions. Names other than "node.direction" have at most 10 characters.
-
-    Raises
-    ------
-    ModelError
-        If the package pyuff is missing, a name is too long, or the file cannot be written.
+    The file is written whole or not at all. The format holds 6 digits of the frequency and 12 of
+    the values; names other than "node.direction" have at most 10 characters. The package pyuff is
+    needed.
     """
     file = file_path(path, "path")
     pyuff = _pyuff(file)

@@ -58,22 +58,9 @@ class Contact(ABC):
 
     @abstractmethod
     def rows(self, structure: Structure) -> Matrix:
-        """Return B of u = B x.
+        """Return B of u = B x for a structure of N degrees of freedom, shape (points, N).
 
-        Parameters
-        ----------
-        structure : Structure
-            The structure that the contact acts on, of N degrees of freedom.
-
-        Returns
-        -------
-        ndarray of float64, shape (points, N)
-            One row per contact point: +1 at its degree of freedom, -1 at that of its other end.
-
-        Raises
-        ------
-        ModelError
-            If the structure lacks a degree of freedom.
+        One row per contact point: +1 at its degree of freedom, -1 at that of its other end.
         """
 
     @property
@@ -102,28 +89,12 @@ class Contact(ABC):
     def adjustable(self) -> dict[str, tuple[float, ...]]:
         """Return the parameters that an analysis can vary, by name, in SI units.
 
-        Returns
-        -------
-        dict of str to tuple of float
-            The value of each contact point, or one of the whole contact. See `factors`.
+        Each has the value of every contact point, or one of the whole contact. See `factors`.
         """
         return {name: (value,) for name, value in self.parameters().items()}
 
     def adjusted(self, parameter: str, values: Sequence[float]) -> Self:
-        """Return the contact with other values of one of its adjustable parameters.
-
-        Parameters
-        ----------
-        parameter : str
-            Its name.
-        values : sequence of float
-            As many as `adjustable` has.
-
-        Raises
-        ------
-        ModelError
-            If the law refuses a value.
-        """
+        """Return the contact with other values, as many as `adjustable` has, of a parameter."""
         (value,) = values
         return self._with(parameter, value)
 
@@ -144,21 +115,10 @@ class Contact(ABC):
     def linear_limit(self, *, stuck: bool) -> Contact | None:
         """Return what is left of the contact in a linear limit, as one that never slips.
 
-        Parameters
-        ----------
-        stuck : bool
-            At small amplitude everything sticks that has friction; else, at large amplitude, only
-            what never slips.
+        At small amplitude (`stuck`) everything sticks that has friction, at large amplitude only
+        what never slips. None if nothing is left.
 
-        Returns
-        -------
-        Contact or None
-            Without slip; None if nothing is left.
-
-        Raises
-        ------
-        ModelError
-            If the law has no linear limits.
+        A law without linear limits is refused.
         """
         raise self._without_limits()
 
@@ -201,11 +161,8 @@ class Contact(ABC):
     def to_spec(self) -> dict[str, object]:
         """Return the contact in plain values that any text format can hold.
 
-        Returns
-        -------
-        dict
-            `law`, `dofs` (list), `parameters` (dict; infinity is the text "inf", which JSON has no
-            number for) and `name`. See `laws.contact_from_spec`.
+        They are `law`, `dofs`, `parameters` and `name`; infinity is the text "inf", which JSON has
+        no number for. See `laws.contact_from_spec`.
         """
         return {
             "law": self.law,

@@ -155,25 +155,10 @@ class Model:
         return position
 
     def point(self, point: PointRef) -> tuple[int, int]:
-        """Return a contact point as positions.
+        """Return a contact point as positions of the contact, and of the point in it.
 
-        Parameters
-        ----------
-        point : int, str or (int or str, int)
-            (contact, point), the point counted from 0; or the contact alone where it has one point.
-
-        Returns
-        -------
-        contact : int
-            Position of the contact.
-        point : int
-            Position of the point in it.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point, or the contact has several points and none is
-            named.
+        It is given as (contact, point), the point counted from 0, or by the contact alone where
+        that has one point.
         """
         return self._place(point, [contact.points for contact in self.contacts])
 
@@ -233,25 +218,7 @@ class Model:
     def replaced(
         self, *, contacts: Iterable[Contact] | None = None, forces: Iterable[Force] | None = None
     ) -> Self:
-        """Return the model with other contacts or forces.
-
-        Parameters
-        ----------
-        contacts : iterable of Contact, optional
-            The contacts. Default: those of the model.
-        forces : iterable of Force, optional
-            The forces. Default: those of the model.
-
-        Returns
-        -------
-        Model
-            A new model of the same kind and structure.
-
-        Raises
-        ------
-        ModelError
-            As for a new model.
-        """
+        """Return the model, of the same kind and structure, with other contacts or forces."""
         changes = {"contacts": contacts, "forces": forces}
         return self._like(**{name: one for name, one in changes.items() if one is not None})
 
@@ -281,13 +248,7 @@ class Model:
 
     @cached_property
     def problem(self) -> _core.Problem:
-        """The model as the compiled core sees it: numbers without names, built once.
-
-        Raises
-        ------
-        ModelError
-            If the core refuses the numbers.
-        """
+        """The model as the compiled core sees it: numbers without names, built once."""
         from stickslip import _core
 
         structure = self.structure
