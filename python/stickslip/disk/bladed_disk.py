@@ -68,15 +68,6 @@ class BladedDisk(Model):
     interface : Interface, optional
         Blocks of cyclic matrices that couple each sector to the next.
 
-    Attributes
-    ----------
-    structure, contacts, forces
-        Of sector 0, as in `Model`; contacts with their names.
-    sectors, engine_order, engine_orders, couplings, interface
-        As given.
-    matrices : CyclicMatrices
-        Mass, damping and stiffness of a sector among its neighbours.
-
     Raises
     ------
     ModelError
@@ -102,6 +93,7 @@ class BladedDisk(Model):
     couplings: tuple[Coupling, ...]
     interface: Interface | None
     matrices: CyclicMatrices
+    """Mass, damping and stiffness of a sector among its neighbours."""
 
     def __init__(
         self,
@@ -232,7 +224,15 @@ class BladedDisk(Model):
     @cached_property
     def problem(self) -> _core.Problem:
         """One sector of the wave as the compiled core sees it, built once; forces must make one."""
-        self._require_one_wave()
+        for number, force in enumerate(self.forces, 1):
+            k, order = force.harmonic, self.order_of(force.harmonic)
+            if (order - k * self.engine_order) % self.sectors:
+                reason = (
+                    f"force {number} at {brief(force.dof)}: harmonic {k} of engine order {order} "
+                    f"does not travel with {k} x {self.engine_order} modulo {self.sectors} "
+                    "sectors, so that the motion is no single wave; compute all sectors"
+                )
+                raise ModelError(f"{reason}, disk.mistuned(0)", study=f"{reason}, {ALL_SECTORS}")
         return self._wave_problem(self._loads())
 
     def mistuned(
@@ -311,14 +311,3 @@ class BladedDisk(Model):
             loads,
             self.matrices.proportional,
         )
-
-    def _require_one_wave(self) -> None:
-        for number, force in enumerate(self.forces, 1):
-            k, order = force.harmonic, self.order_of(force.harmonic)
-            if (order - k * self.engine_order) % self.sectors:
-                reason = (
-                    f"force {number} at {brief(force.dof)}: harmonic {k} of engine order {order} "
-                    f"does not travel with {k} x {self.engine_order} modulo {self.sectors} "
-                    "sectors, so that the motion is no single wave; compute all sectors"
-                )
-                raise ModelError(f"{reason}, disk.mistuned(0)", study=f"{reason}, {ALL_SECTORS}")

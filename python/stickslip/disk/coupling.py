@@ -169,8 +169,8 @@ MATRICES = ("mass", "damping", "stiffness")
 class Blocks(NamedTuple):
     """A cyclic matrix by its blocks."""
 
-    own: Matrix
-    """(N, N) Block of a sector."""
+    own: NDArray[np.float64]
+    """(N, N) Block of a sector, or (n, N, N) those of n sectors."""
     next: Matrix
     """(N, N) Block of a sector, by rows, and the next one, by columns."""
 
@@ -180,11 +180,12 @@ class Blocks(NamedTuple):
         return np.asarray(self.own + ahead + ahead.conj().T, dtype=np.complex128)
 
 
-def assembled(own: NDArray[np.float64], following: Matrix, wrap: float = 1.0) -> Matrix:
-    """Return the matrix of a ring, of the blocks of n sectors, (n, N, N), and that between two.
+def assembled(blocks: Blocks, wrap: float = 1.0) -> Matrix:
+    """Return the matrix of a ring of n sectors, whose own blocks are (n, N, N).
 
     The sector after the last one is the first, its motion times `wrap`.
     """
+    own, following = blocks
     sectors, size, _ = own.shape
     whole = np.zeros((sectors, size, sectors, size))
     for sector in range(sectors):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.checks import Matrix, brief, members, set_fields, unknown
 from stickslip.disk.arguments import NEXT
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.coupling import MATRICES, assembled
+from stickslip.disk.coupling import MATRICES, Blocks, CyclicMatrices, assembled
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
@@ -43,15 +43,6 @@ class MistunedDisk(Model):
     contacts, forces : iterable, optional
         Others than those of the disk: contacts as many, at the same degrees of freedom, in the
         order of the sectors; forces on "0.tip", ...
-
-    Attributes
-    ----------
-    structure, contacts, forces
-        Of the whole, as in `Model`.
-    disk : BladedDisk
-        The tuned disk.
-    blades : tuple of Structure
-        The sectors.
 
     Raises
     ------
@@ -114,9 +105,9 @@ class MistunedDisk(Model):
             contacts[one.sector].append(one[1:])
         return from_core(
             _core.Problem.ring,
-            (ring.mass, ring.mass_next),
-            (ring.damping, ring.damping_next),
-            (ring.stiffness, ring.stiffness_next),
+            ring.mass,
+            ring.damping,
+            ring.stiffness,
             contacts,
             ring.loads_by_sector(),
             ring.proportional,
@@ -207,18 +198,17 @@ def _ring(
 ) -> Ring:
     parts = {}
     for name in MATRICES:
-        blocks = getattr(disk.matrices, name)
+        tuned = getattr(disk.matrices, name)
         # What couplings add to the sectors themselves does not deviate.
-        added = blocks.own - getattr(disk.structure, name)
-        parts[name] = np.stack([getattr(blade, name) + added for blade in blades])
-        parts[f"{name}_next"] = blocks.next
+        added = tuned.own - getattr(disk.structure, name)
+        own = np.stack([getattr(blade, name) + added for blade in blades])
+        parts[name] = Blocks(own, tuned.next)
     if disk.couplings or disk.interface is not None:
-        blocks = [*zip(*(parts[name] for name in MATRICES), strict=True)]
-        blocks.append(tuple(parts[f"{name}_next"] for name in MATRICES))
-        known = makes_blocks(disk.structure.damping_law, blocks)
+        sectors, between = zip(*parts.values(), strict=True)
+        known = makes_blocks(disk.structure.damping_law, [*zip(*sectors, strict=True), between])
     else:
         known = all(blade.proportional for blade in blades)
-    return Ring(**parts, contacts=contacts, loads=loads, proportional=known)
+    return Ring(**parts, proportional=known, contacts=contacts, loads=loads)
 
 
 def tuned_disk(disk: BladedDisk) -> _core.TunedDisk:
@@ -307,52 +297,34 @@ class SectorContact(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Ring:
+class Ring(CyclicMatrices):
     """A mistuned disk in numbers, n sectors of N degrees of freedom each.
 
-    In the whole matrices sector i takes the rows i N to (i + 1) N - 1. Sector i is tied to sector
-    i + 1, the last to the first, by the same block everywhere: rows belong to sector i, columns to
-    sector i + 1.
+    The blocks of the sectors are (n, N, N). In the whole matrices sector i takes the rows i N to
+    (i + 1) N - 1; the block between a sector and the next one is the same everywhere.
     """
 
-    mass: NDArray[np.float64]
-    """(n, N, N) Blocks of the sectors themselves [kg]."""
-    damping: NDArray[np.float64]
-    """(n, N, N) [kg/s]."""
-    stiffness: NDArray[np.float64]
-    """(n, N, N) [N/m]."""
-    mass_next: Matrix
-    """(N, N) Block between a sector and the next one [kg]."""
-    damping_next: Matrix
-    """(N, N) [kg/s]."""
-    stiffness_next: Matrix
-    """(N, N) [N/m]."""
     contacts: tuple[SectorContact, ...]
     """All contacts, those of sector 0 first."""
     loads: tuple[tuple[int, NDArray[np.complex128]], ...]
     """Harmonics in ascending order, each with the forces on all sectors, (n, N) [N]."""
-    proportional: bool
-    """Whether laws made all of the damping, so that it couples no modes of the whole."""
 
     def loads_by_sector(self) -> list[list[tuple[int, NDArray[np.complex128]]]]:
         """Return the loads on each sector, by harmonics."""
-        return [[(k, load[sector]) for k, load in self.loads] for sector in range(len(self.mass))]
+        return [[(k, load[sector]) for k, load in self.loads] for sector in range(self.sectors)]
+
+    @property
+    def sectors(self) -> int:
+        """Number of sectors."""
+        return len(self.mass.own)
 
     def assembled(self, dofs: Sequence[str]) -> Structure:
-        """Return the whole as one structure of n N degrees of freedom.
-
-        Those of a sector are given; "tip" of sector 3 is named "3.tip".
-
-        Raises
-        ------
-        ModelError
-            If the whole mass is not positive definite.
-        """
+        """Return the whole as one structure; "tip" of sector 3 is named "3.tip"."""
         return Structure.of_law(
-            mass=assembled(self.mass, self.mass_next),
-            stiffness=assembled(self.stiffness, self.stiffness_next),
-            damping=assembled(self.damping, self.damping_next),
-            dofs=[f"{sector}.{dof}" for sector in range(len(self.mass)) for dof in dofs],
+            mass=assembled(self.mass),
+            stiffness=assembled(self.stiffness),
+            damping=assembled(self.damping),
+            dofs=[f"{sector}.{dof}" for sector in range(self.sectors) for dof in dofs],
             law=None,
             proportional=self.proportional,
         )

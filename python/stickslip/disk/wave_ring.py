@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.coupling import assembled
+from stickslip.disk.coupling import Blocks, assembled
 from stickslip.model.model import Model, from_core
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def wave_ring(disk: BladedDisk, rotation: Rotation) -> _core.Problem:
     size, count = len(disk.structure), rotation.sectors
     matrices = (disk.matrices.mass, disk.matrices.damping, disk.matrices.stiffness)
     mass, damping, stiffness = (
-        assembled(np.array([blocks.own] * count), blocks.next, rotation.wrap) for blocks in matrices
+        assembled(Blocks(np.array([one.own] * count), one.next), rotation.wrap) for one in matrices
     )
     contacts = []
     loads = {k: np.zeros((count, size), np.complex128) for k, _ in disk._loads()}

@@ -52,19 +52,10 @@ class Model:
     structure : Structure
         The linear part.
     contacts : iterable of Contact, optional
-        Friction contacts. None is the linear structure.
+        Friction contacts. None is the linear structure. The unnamed are named by their law:
+        "jenkins", "jenkins-2", ...
     forces : iterable of Force, optional
         Forces; those on the same degree of freedom and harmonic add up.
-
-    Attributes
-    ----------
-    structure : Structure
-        The linear part.
-    contacts : tuple of Contact
-        The contacts, each with its name: those that had none are named by their law, "jenkins",
-        "jenkins-2", ...
-    forces : tuple of Force
-        The forces.
 
     Raises
     ------

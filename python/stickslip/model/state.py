@@ -35,15 +35,6 @@ class State:
         Of all contact points in order, or by contact or (contact, point), the others zero [N].
         Default: zero.
 
-    Attributes
-    ----------
-    dofs : tuple of str
-        The degrees of freedom.
-    displacement, velocity : ndarray of float64, shape (N,)
-        [m], [m/s].
-    contact_force : ndarray of float64, shape (n_p,)
-        [N], positive against the relative displacement.
-
     Raises
     ------
     ModelError
@@ -55,6 +46,7 @@ class State:
     displacement: Float
     velocity: Float
     contact_force: Float
+    """(n_p,) Contact forces [N], positive against the relative displacement."""
 
     def __init__(
         self,

@@ -51,13 +51,6 @@ class StructuralDamper(Sliders):
     name : str, optional
         By which results and settings refer to it. Default: "structural".
 
-    Attributes
-    ----------
-    stiffness : ndarray of float64, shape (points, points)
-        D [N/m].
-    slip_forces : tuple of float
-        F [N].
-
     Raises
     ------
     ModelError

@@ -39,25 +39,14 @@ class Structure:
     mass : array_like or scipy.sparse matrix, shape (N, N)
         Symmetric and positive definite [kg].
     stiffness : array_like or scipy.sparse matrix, shape (N, N)
-        Symmetric [N/m]. It may be singular: a free structure has rigid-body modes.
+        Symmetric [N/m]. It may be singular: a free structure has rigid-body modes. An asymmetry of
+        mass or stiffness up to 1e-8 of the largest entry, as printed digits leave it, is averaged
+        out.
     damping : array_like, scipy.sparse matrix, Rayleigh, ModalDamping or None, optional
         Viscous damping [kg/s], any real matrix (gyroscopic terms are skew). None is no damping.
     dofs : sequence of str, optional
         One name per degree of freedom, by which contacts, forces and results refer to it.
         Default "0", "1", ...
-
-    Attributes
-    ----------
-    mass, damping, stiffness : ndarray of float64, shape (N, N)
-        Read-only. An asymmetry of mass or stiffness up to 1e-8 of the largest entry, as printed
-        digits leave it, has been averaged out.
-    dofs : tuple of str
-        Names of the degrees of freedom.
-    damping_law : Rayleigh, ModalDamping or None
-        What the damping was made of; None where it was given as a matrix.
-    proportional : bool
-        Whether the damping couples none of the structure's modes because of what it was made of: a
-        law, or parts of `join` that each have one. Of a matrix rounding decides whether it does.
 
     Raises
     ------
@@ -78,7 +67,10 @@ class Structure:
     damping: Matrix
     dofs: tuple[str, ...]
     damping_law: DampingLaw | None
+    """What the damping was made of; None where it was given as a matrix."""
     proportional: bool
+    """Whether the damping couples none of the structure's modes because of what it was made of: a
+    law, or parts of `join` that each have one. Of a matrix rounding decides whether it does."""
 
     def __init__(
         self,
