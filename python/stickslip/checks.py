@@ -7,9 +7,10 @@ import os
 import re
 import stat
 from collections.abc import Collection, Iterable, Sequence
+from importlib import import_module
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
+from typing import Any, Protocol, TypeAlias, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +31,7 @@ __all__ = [
     "is_reserved",
     "listed",
     "members",
+    "optional_package",
     "real_matrix",
     "real_number",
     "require_finite",
@@ -164,6 +166,16 @@ def members(value: Iterable[_Member], entry: str, remedy: str) -> tuple[_Member,
     if walk is None:
         raise ModelError(f"{entry}: {brief(value)} is not a list; write {remedy}")
     return tuple(walk)
+
+
+def optional_package(module: str, entry: str, package: str = "") -> Any:
+    """Return a module that not every installation has; `entry` says what needs it."""
+    try:
+        return import_module(module)
+    except ImportError:
+        raise ModelError(
+            f"{entry} need the package {package or module}: pip install 'stickslip[fe]'"
+        ) from None
 
 
 def file_path(path: object, entry: str) -> Path:

@@ -15,6 +15,7 @@ from stickslip.checks import Matrix, brief, members, set_fields, text, whole_num
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.model.model import AnyMatrix, PointRef
+from stickslip.model.structural import condensed_stiffness
 from stickslip.model.structure import Structure
 
 if TYPE_CHECKING:
@@ -230,22 +231,9 @@ def _stuck(disk: BladedDisk, slips: set[tuple[int, int]], delta: float) -> AnyMa
     for number, contact in enumerate(disk.contacts):
         own, following = disk.contact_rows(contact)
         rows = own + np.exp(1j * delta) * following
-        sticks = [point for point in range(contact.points) if (number, point) not in slips]
-        total += rows.conj().T @ _condensed(contact.stuck_stiffness, sticks) @ rows
+        sticks = np.array([(number, point) not in slips for point in range(contact.points)])
+        total += rows.conj().T @ condensed_stiffness(contact.stuck_stiffness, sticks) @ rows
     return total
-
-
-def _condensed(spring: Matrix, sticks: list[int]) -> Matrix:
-    """Return the stiffness left when only some points stick, the others being free of force."""
-    left = np.zeros_like(spring)
-    if len(sticks) == len(spring):
-        return spring
-    if sticks:
-        free = [point for point in range(len(spring)) if point not in sticks]
-        held, cross = spring[np.ix_(sticks, sticks)], spring[np.ix_(sticks, free)]
-        loose = spring[np.ix_(free, free)]
-        left[np.ix_(sticks, sticks)] = held - cross @ np.linalg.solve(loose, cross.T)
-    return left
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
 from stickslip.model.structure import Structure
 
-__all__ = ["Reduction", "ReductionReport", "reported"]
+__all__ = ["Reduction", "ReductionReport"]
 
 
 class Reduction:
@@ -131,12 +131,44 @@ class Reduction:
         once more. `springs` to ground at boundary degrees of freedom [N/m] are added to both
         structures: stuck dampers.
         """
-        added = {}
+        count = whole_number(frequencies, "frequencies", smallest=1, largest=self.size - 1)
+        count = min(count, len(self.dofs))
+        reduced, added = self.stiffness.copy(), np.zeros(self.size)
         for dof, value in (springs or {}).items():
             if dof not in self.boundary:
                 raise ModelError(f"springs: {unknown('dof', dof, self.boundary)}")
-            added[self.boundary.index(dof)] = real_number(value, f"springs: {dof}")
-        return reported(self, frequencies, added)
+            place, spring = self.boundary.index(dof), real_number(value, f"springs: {dof}")
+            added[self.rows[place]] += spring
+            reduced[place, place] += spring
+        K, M = (self.full_stiffness + diags_array(added)).tocsc(), self.full_mass
+        # Below 0, so that a free structure can be factored too.
+        shift = -0.1 * float(self.omega[0]) ** 2
+        squares, _ = lowest_modes(K, M, count, Factor((K - shift * M).tocsc()), shift)
+        own = eigh(reduced, self.mass, eigvals_only=True)[:count]
+        omegas = np.sqrt(np.clip(squares, 0.0, None))
+        return ReductionReport(
+            (self.size, len(self.boundary), self.omega.size),
+            self.asymmetry,
+            self.decoupling,
+            int((omegas < _RIGID * self.omega[0]).sum()),
+            *self._translations(),
+            omegas,
+            np.sqrt(np.clip(own, 0.0, None)),
+        )
+
+    def _translations(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Return mass and resistance of the whole structure against translations."""
+        masses: dict[str, float] = {}
+        grounding: dict[str, float] = {}
+        ways = [name.rpartition(".")[2] for name in self.row_names or ()]
+        for way in ("1", "2", "3"):
+            moved = np.array([one == way for one in ways], dtype=np.float64)
+            if moved.any():
+                total = float(moved @ (self.full_stiffness.diagonal() * moved))
+                masses[way] = float(moved @ (self.full_mass @ moved))
+                held = float(np.abs(self.full_stiffness @ moved).sum())
+                grounding[way] = held / total if total else 0.0
+        return masses, grounding
 
 
 _RIGID = 1e-3
@@ -145,37 +177,27 @@ _RIGID = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class ReductionReport:
-    """Checks of a reduction.
-
-    Attributes
-    ----------
-    sizes : tuple of int
-        Degrees of freedom: full, boundary, fixed-interface modes.
-    asymmetry : tuple of float
-        Of mass and stiffness as given, as a part of the largest entry.
-    decoupling : float
-        Stiffness between constraint and fixed-interface modes, 0 but for rounding, as a part of the
-        largest entry.
-    rigid : int
-        Rigid-body modes of the full structure: 0 is grounded, 6 is free.
-    masses : dict of str to float
-        Mass that a translation moves [kg], by direction "1", "2", "3"; empty without names such as
-        "17.3". Clamped degrees of freedom are not in it.
-    grounding : dict of str to float
-        Force that it takes to move the whole structure by a unit translation, as a part of the sum
-        of its stiffnesses: 0 where it is free to move.
-    full, reduced : ndarray of float64, shape (frequencies,)
-        Natural frequencies [rad/s], ascending.
-    """
+    """Checks of a reduction."""
 
     sizes: tuple[int, int, int]
+    """Degrees of freedom: full, boundary, fixed-interface modes."""
     asymmetry: tuple[float, float]
+    """Of mass and stiffness as given, as a part of the largest entry."""
     decoupling: float
+    """Stiffness between constraint and fixed-interface modes, 0 but for rounding, as a part of the
+    largest entry."""
     rigid: int
+    """Rigid-body modes of the full structure: 0 is grounded, 6 is free."""
     masses: dict[str, float]
+    """Mass that a translation moves [kg], by direction "1", "2", "3"; empty without names such as
+    "17.3". Clamped degrees of freedom are not in it."""
     grounding: dict[str, float]
+    """Force that it takes to move the whole structure by a unit translation, as a part of the sum
+    of its stiffnesses: 0 where it is free to move."""
     full: NDArray[np.float64]
+    """(frequencies,) Natural frequencies of the full structure [rad/s], ascending."""
     reduced: NDArray[np.float64]
+    """(frequencies,) Those of the reduced one [rad/s]."""
 
     @property
     def errors(self) -> NDArray[np.float64]:
@@ -205,50 +227,3 @@ class ReductionReport:
             hertz, reduced = one / (2.0 * np.pi), other / (2.0 * np.pi)
             lines.append(f"{mode:4d}   {hertz:<12.6g}   {reduced:<12.6g}   {shown}")
         return "\n".join(lines)
-
-
-def reported(
-    reduction: Reduction, frequencies: int, springs: Mapping[int, float]
-) -> ReductionReport:
-    """Return the report; `springs` by position in the boundary [N/m]."""
-    count = whole_number(frequencies, "frequencies", smallest=1, largest=reduction.size - 1)
-    count = min(count, len(reduction.dofs))
-    K, M = reduction.full_stiffness, reduction.full_mass
-    reduced = reduction.stiffness.copy()
-    added = np.zeros(reduction.size)
-    for place, value in springs.items():
-        added[reduction.rows[place]] += value
-        reduced[place, place] += value
-    K = (K + diags_array(added)).tocsc()
-    # Below 0, so that a free structure can be factored too.
-    shift = -0.1 * float(reduction.omega[0]) ** 2
-    factor = Factor((K - shift * M).tocsc())
-    squares, _ = lowest_modes(K, M, count, factor, shift)
-    own = eigh(reduced, reduction.mass, eigvals_only=True)[:count]
-    omegas = np.sqrt(np.clip(squares, 0.0, None))
-    masses, grounding = _translations(reduction)
-    return ReductionReport(
-        (reduction.size, len(reduction.boundary), reduction.omega.size),
-        reduction.asymmetry,
-        reduction.decoupling,
-        int((omegas < _RIGID * reduction.omega[0]).sum()),
-        masses,
-        grounding,
-        omegas,
-        np.sqrt(np.clip(own, 0.0, None)),
-    )
-
-
-def _translations(reduction: Reduction) -> tuple[dict[str, float], dict[str, float]]:
-    """Return mass and resistance of the whole structure against translations."""
-    masses: dict[str, float] = {}
-    grounding: dict[str, float] = {}
-    ways = [name.rpartition(".")[2] for name in reduction.row_names or ()]
-    for way in ("1", "2", "3"):
-        moved = np.array([one == way for one in ways], dtype=np.float64)
-        if moved.any():
-            total = float(moved @ (reduction.full_stiffness.diagonal() * moved))
-            masses[way] = float(moved @ (reduction.full_mass @ moved))
-            held = float(np.abs(reduction.full_stiffness @ moved).sum())
-            grounding[way] = held / total if total else 0.0
-    return masses, grounding

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import file_path, real_number, whole_number
+from stickslip.checks import file_path, optional_package, real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.files import refusal, write
 
@@ -36,6 +36,8 @@ _VTK = np.array(
 """Places of the 20 nodes in VTK's order, in half edges."""
 _MIRRORED = [*range(4, 8), *range(4), *range(12, 16), *range(8, 12), *range(16, 20)]
 """The same with top and bottom exchanged."""
+_BLOCK = 2000
+"""Nodes at a time: the differences of all instants of so many fit into memory."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +98,7 @@ class Solid:
     @cached_property
     def stiffness(self) -> csc_array:
         """Stiffness matrix [N/m], sparse, of the free body."""
-        grad, weights = self._gradients
+        _, grad, weights = self._shapes
         shear = self.young / (2.0 * (1.0 + self.poisson))
         lame = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
         flat = grad.reshape(*grad.shape[:2], 60)  # (element, point, shape function and direction)
@@ -111,8 +113,7 @@ class Solid:
     @cached_property
     def mass(self) -> csc_array:
         """Consistent mass matrix [kg], sparse."""
-        _, weights = self._gradients
-        shapes = self._scalar_values
+        shapes, _, weights = self._shapes
         scalar = np.einsum("aq,bq,eq->eab", shapes, shapes, self.density * weights, optimize=True)
         whole = np.zeros((len(scalar), 20, 3, 20, 3))
         for way in range(3):
@@ -176,12 +177,7 @@ class Solid:
         `fields` are real values at the nodes by name, shape (n,) or (n, 3). The package meshio is
         needed.
         """
-        try:
-            import meshio
-        except ImportError:
-            raise ModelError(
-                f"{path}: .vtu files need the package meshio: pip install 'stickslip[fe]'"
-            ) from None
+        meshio = optional_package("meshio", f"{path}: .vtu files")
         file = file_path(path, "path")
         values = {name: np.asarray(value, dtype=np.float64) for name, value in fields.items()}
         cells = [("hexahedron20", self._vtk_cells)]
@@ -210,20 +206,18 @@ class Solid:
         return matrix
 
     @cached_property
-    def _gradients(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Gradients of the shape functions (element, point, function, direction), and weights."""
+    def _shapes(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Shape functions and weights at the points of the elements.
+
+        The values (function, point) are the same in every element; the gradients are (element,
+        point, function, direction).
+        """
         skfem = _skfem()
         basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4)
+        values = np.array([np.atleast_2d(np.asarray(one[0]))[0] for one in basis.basis])
         shape = basis.dx.shape
         grad = np.array([np.broadcast_to(one[0].grad, (3, *shape)) for one in basis.basis])
-        return np.ascontiguousarray(grad.transpose(2, 3, 0, 1)), np.asarray(basis.dx)
-
-    @cached_property
-    def _scalar_values(self) -> NDArray[np.float64]:
-        """Values of the shape functions (function, point), the same in every element."""
-        skfem = _skfem()
-        basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4)
-        return np.array([np.atleast_2d(np.asarray(one[0]))[0] for one in basis.basis])
+        return values, np.ascontiguousarray(grad.transpose(2, 3, 0, 1)), np.asarray(basis.dx)
 
     @cached_property
     def _nodal_basis(self) -> Any:
@@ -251,17 +245,7 @@ class Solid:
 
 
 def _skfem() -> Any:
-    try:
-        import skfem
-    except ImportError:
-        raise ModelError(
-            "solid: finite elements need the package scikit-fem: pip install 'stickslip[fe]'"
-        ) from None
-    return skfem
-
-
-_BLOCK = 2000
-"""Nodes at a time: the differences of all instants of so many fit into memory."""
+    return optional_package("skfem", "solid: finite elements", "scikit-fem")
 
 
 def von_mises(stress: ArrayLike) -> NDArray[np.float64]:

@@ -66,12 +66,8 @@ def read_matlab(file: Path, key: Key) -> object:
 
 
 def _read_hdf5(file: Path, key: Key) -> object:
-    try:
-        import h5py
-    except ImportError:
-        raise ModelError(
-            f"{file}: a MATLAB 7.3 file needs the package h5py; install it, or save with -v7"
-        ) from None
+    import h5py
+
     with h5py.File(file, "r") as variables:
         name = key.among(name for name in variables if not name.startswith("#"))
         require_own(variables, name)

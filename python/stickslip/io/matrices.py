@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
 
@@ -15,8 +14,8 @@ from stickslip.checks import (
     SparseMatrix,
     brief,
     file_path,
-    is_file,
     real_matrix,
+    require_finite,
     text,
     unknown,
 )
@@ -30,14 +29,12 @@ from stickslip.io.matlab import read_matlab
 from stickslip.io.matrix_market import read_matrix_market
 from stickslip.io.npz import read_numpy
 from stickslip.io.op4 import read_op4
-from stickslip.io.source import Key, plain
+from stickslip.io.source import Key, plain, readable
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
 __all__ = ["read_dofs", "read_matrix"]
-
-_LONGEST = 80
 
 _Reader: TypeAlias = Callable[[Path, Key], object]
 
@@ -63,7 +60,7 @@ def read_matrix(
     ----------
     path : str or path-like
         The file. Its ending says what it is: `.npy`, `.npz` (of `numpy.savez` or
-        `scipy.sparse.save_npz`), `.mat` (MATLAB; -v7.3 files need the package h5py), `.mtx` or
+        `scipy.sparse.save_npz`), `.mat` (MATLAB), `.mtx` or
         `.mtx.gz` (MatrixMarket, or Abaqus' text), `.hb`, `.rb`, `.rua`, `.rsa`, `.hbf`, `.psa`
         (Harwell-Boeing and Rutherford-Boeing, as of ANSYS' HBMAT), `.op4` (Nastran's OUTPUT4),
         `.pch`, `.dmig` (Nastran's DMIG), `.sti`, `.mas` (CalculiX, with the `.dof` beside it),
@@ -91,15 +88,12 @@ def read_matrix(
     read_dofs : the names of its rows.
     """
     file = file_path(path, "path")
-    loaded = _load(file, key)
-    if sparse:
-        with _readable(file):
-            return _sparse(loaded.matrix, _entry(file, key))
-    with _readable(file):
-        matrix = real_matrix(loaded.matrix, _entry(file, key))
-    if not np.isfinite(matrix).all():
-        row, column = np.argwhere(~np.isfinite(matrix))[0]
-        raise _not_finite(_entry(file, key), matrix[row, column], row, column)
+    loaded, entry = _load(file, key).matrix, _entry(file, key)
+    with readable(file, _ending(file)):
+        if sparse:
+            return _sparse(loaded, entry)
+        matrix = real_matrix(loaded, entry)
+    require_finite(matrix, entry)
     return matrix
 
 
@@ -124,9 +118,7 @@ def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str
     """
     file = file_path(path, "path")
     if _ending(file) == ".dof":
-        if not is_file(file):
-            raise ModelError(f"{file}: no such file; check the path")
-        with _readable(file):
+        with readable(file, ".dof"):
             return read_calculix_dofs(file)
     names = _load(file, key).dofs
     if names is None:
@@ -141,9 +133,7 @@ def _load(file: Path, key: str | None) -> Labelled:
     reader = _READERS.get(_ending(file))
     if reader is None:
         raise ModelError(f"{file}: {unknown('file ending', _ending(file), _READERS)}")
-    if not is_file(file):
-        raise ModelError(f"{file}: no such file; check the path")
-    with _readable(file):
+    with readable(file, _ending(file)):
         loaded = reader(file, Key(file, key))
         if not isinstance(loaded, Labelled):
             loaded = Labelled(loaded, None)
@@ -153,22 +143,6 @@ def _load(file: Path, key: str | None) -> Labelled:
             # Damaged sparse indices would write outside the dense array.
             loaded.matrix.check_format(full_check=True)
     return loaded
-
-
-@contextmanager
-def _readable(file: Path) -> Iterator[None]:
-    """Word whatever a reader stumbles over."""
-    # The readers' libraries raise whatever they stumble over in a damaged file, struct.error and
-    # MemoryError among it.
-    try:
-        yield
-    except ModelError:
-        raise
-    except Exception as error:
-        cause = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
-        raise ModelError(
-            f"{file}: cannot be read as {_ending(file)}: {cause}; write the file again"
-        ) from error
 
 
 def _sparse(matrix: object, entry: str) -> csc_array:
@@ -181,16 +155,9 @@ def _sparse(matrix: object, entry: str) -> csc_array:
         raise ModelError(f"{entry}: entries of type {found.dtype}; give real matrices")
     wrong = np.flatnonzero(~np.isfinite(found.data))
     if wrong.size:
-        at = wrong[0]
-        raise _not_finite(entry, found.data[at], int(found.row[at]), int(found.col[at]))
+        place = f"({found.row[wrong[0]]}, {found.col[wrong[0]]})"
+        raise ModelError(f"{entry}: {found.data[wrong[0]]} at {place}; every entry must be finite")
     return found.astype(np.float64).tocsc()
-
-
-def _not_finite(entry: str, value: float, row: int, column: int) -> ModelError:
-    return ModelError(
-        f"{entry}: {value} in row {row}, column {column}, counted from 0; "
-        "every entry must be finite"
-    )
 
 
 def _ending(file: Path) -> str:

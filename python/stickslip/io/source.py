@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import gzip
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from stickslip.checks import brief, listed, unknown
+from stickslip.checks import brief, is_file, listed, unknown
 from stickslip.errors import ModelError
 
-__all__ = ["LARGEST_UNPACKED", "Key", "inflate", "plain", "read_text", "unzip"]
+__all__ = ["LARGEST_UNPACKED", "Key", "inflate", "plain", "read_text", "readable", "unzip"]
 
 LARGEST_UNPACKED = 2**30
 """Bytes that packed content may take unpacked, a heuristic: 30 million entries as text, a dense
 matrix of 11 000 rows. What is not packed may be as large as its file."""
 
+_LONGEST = 80
 _MARK = b"\xef\xbb\xbf"
 
 
@@ -52,6 +54,25 @@ class Key:
             raise ModelError(
                 f"{self.file}: key {brief(self.name)}, but the file holds one matrix; leave key out"
             )
+
+
+@contextmanager
+def readable(file: Path, kind: str) -> Iterator[None]:
+    """Refuse a file that is not there; word whatever a reader stumbles over.
+
+    The readers' libraries raise anything in a damaged file, struct.error and MemoryError among it.
+    """
+    if not is_file(file):
+        raise ModelError(f"{file}: no such file; check the path")
+    try:
+        yield
+    except Exception as error:
+        if isinstance(error, ModelError) and str(error).startswith(str(file)):
+            raise
+        cause = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
+        raise ModelError(
+            f"{file}: cannot be read as {kind}: {cause}; write the file again"
+        ) from error
 
 
 def read_text(path: Path, encoding: str = "ascii", *, ended: bool = False) -> str:

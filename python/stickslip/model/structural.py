@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.checks import (
     Matrix,
@@ -21,7 +22,7 @@ from stickslip.errors import ModelError
 from stickslip.model.contact import Sliders, real_numbers
 from stickslip.model.structure import Structure
 
-__all__ = ["StructuralDamper"]
+__all__ = ["StructuralDamper", "condensed_stiffness"]
 
 _PRINTED = 1e-6
 """Asymmetry, or row sum, relative to the largest stiffness, that printed digits may leave."""
@@ -139,13 +140,7 @@ class StructuralDamper(Sliders):
         sticks = limits > 0.0 if stuck else np.isinf(limits)
         if not any(dof for dof, stays in zip(self._dofs, sticks, strict=True) if stays):
             return None
-        slips = ~sticks
-        condensed = np.zeros_like(self.stiffness)
-        across = self.stiffness[np.ix_(slips, sticks)]
-        inverse = np.linalg.pinv(self.stiffness[np.ix_(slips, slips)], hermitian=True)
-        condensed[np.ix_(sticks, sticks)] = (
-            self.stiffness[np.ix_(sticks, sticks)] - across.T @ inverse @ across
-        )
+        condensed = condensed_stiffness(self.stiffness, sticks)
         condensed[np.abs(condensed) <= _ROUNDING * np.abs(self.stiffness).max()] = 0.0
         return StructuralDamper(
             self._dofs, stiffness=condensed, slip_forces=[np.inf] * self.points, name=self.name
@@ -179,6 +174,15 @@ class StructuralDamper(Sliders):
         """Return the slip limits in words."""
         limits = ", ".join(f"{force:g}" for force in self.slip_forces)
         return f"{self.points} points, slip_forces {limits}"
+
+
+def condensed_stiffness(stiffness: Matrix, sticks: NDArray[np.bool_]) -> Matrix:
+    """Return the stiffness left when only some points stick, the others being free of force."""
+    left, slips = np.zeros_like(stiffness), ~sticks
+    across = stiffness[np.ix_(slips, sticks)]
+    inverse = np.linalg.pinv(stiffness[np.ix_(slips, slips)], hermitian=True)
+    left[np.ix_(sticks, sticks)] = stiffness[np.ix_(sticks, sticks)] - across.T @ inverse @ across
+    return left
 
 
 def _stiffness(value: MatrixLike, points: int) -> Matrix:
