@@ -8,12 +8,7 @@ __all__ = ["CallError", "EntryError", "Interrupted", "ModelError"]
 class ModelError(ValueError):
     """Input that cannot be used; one line names the entry, its value and the remedy.
 
-    Parameters
-    ----------
-    message : str
-        The line.
-    study : str, optional
-        The line for authors of study files, where the remedy is another one. Default: the same.
+    Authors of study files are told the line `study`, where the remedy is another one for them.
     """
 
     def __init__(self, message: str = "", *, study: str | None = None) -> None:

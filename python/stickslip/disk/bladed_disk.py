@@ -31,7 +31,7 @@ from stickslip.model.structure import Structure
 if TYPE_CHECKING:
     from stickslip import _core
     from stickslip.disk.mistuned import MistunedDisk
-    from stickslip.disk.nodal_diameters import NodalDiameters
+    from stickslip.disk.waves import NodalDiameters
 
 __all__ = ["BladedDisk"]
 
@@ -242,7 +242,9 @@ class BladedDisk(Model):
         mass: ArrayLike | None = None,
         structures: Iterable[Structure] | None = None,
     ) -> MistunedDisk:
-        """Return the assembly of all sectors, which may differ.
+        """Return the assembly of all sectors, which may differ: a `Model`.
+
+        Its degrees of freedom are "0.tip", "1.tip", ..., its contacts "0.jenkins", ...
 
         Parameters
         ----------
@@ -254,11 +256,6 @@ class BladedDisk(Model):
             Deviations of mass, likewise.
         structures : iterable of Structure, optional
             Instead of both: one sector structure each, with the same degrees of freedom.
-
-        Returns
-        -------
-        MistunedDisk
-            A `Model` with degrees of freedom "0.tip", "1.tip", ... and contacts "0.jenkins", ...
 
         Raises
         ------
@@ -275,7 +272,7 @@ class BladedDisk(Model):
 
         `slipping` are the contact points that slip, as of `natural_frequencies`. Default: all.
         """
-        from stickslip.disk.nodal_diameters import nodal_diameters
+        from stickslip.disk.waves import nodal_diameters
 
         return nodal_diameters(self, slipping)
 

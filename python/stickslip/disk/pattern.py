@@ -33,11 +33,6 @@ def mistuning_pattern(
     seed : int, optional
         Seed of NumPy's default generator: the same seed, the same pattern.
 
-    Returns
-    -------
-    ndarray of float64, shape (sectors,)
-        Deviations S r_i; the sectors have the stiffness (1 + S r_i) K.
-
     Raises
     ------
     ModelError

@@ -1,4 +1,4 @@
-"""Travelling waves of a tuned disk in a flow: influence coefficients, damping and matrices."""
+"""Travelling waves of a tuned disk: frequencies by nodal diameter, and damping in a flow."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from stickslip.checks import Matrix, brief, members, set_fields, text, whole_number
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
+from stickslip.model import natural_frequencies
 from stickslip.model.model import AnyMatrix, PointRef
 from stickslip.model.structural import condensed_stiffness
 from stickslip.model.structure import Structure
@@ -23,9 +24,17 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from stickslip.plot import DiameterOptions, SafeOptions
     from stickslip.plot.waves import WaveOptions
 
-__all__ = ["AerodynamicWaves", "InfluenceCoefficients", "Wave", "aerodynamic_waves"]
+__all__ = [
+    "AerodynamicWaves",
+    "InfluenceCoefficients",
+    "NodalDiameters",
+    "Wave",
+    "aerodynamic_waves",
+    "nodal_diameters",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -323,3 +332,49 @@ class InfluenceCoefficients:
             )
         _, shapes = eigh(structure.stiffness, structure.mass)
         return np.asarray(structure.mass @ shapes[:, mode], dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class NodalDiameters:
+    """Natural frequencies at the nodal diameters 0 to n/2, rounded down.
+
+    A wave of nodal diameter d that runs the other way round, n - d, has the same frequencies unless
+    gyroscopic terms part them; those belong to the damping, which plays no part here.
+    """
+
+    disk: BladedDisk
+    """The disk."""
+    diameters: NDArray[np.int64]
+    """(D,) Nodal diameters."""
+    stuck: NDArray[np.float64]
+    """(D, N) With all contacts stuck [rad/s], ascending at each diameter."""
+    slipping: NDArray[np.float64]
+    """(D, N) With the chosen contact points slipping [rad/s]."""
+
+    def plot(self, **options: Unpack[DiameterOptions]) -> Axes:
+        """Draw the frequencies over the nodal diameters; see `stickslip.plot.nodal_diameters`."""
+        from stickslip import plot
+
+        return plot.nodal_diameters(self, **options)
+
+    def plot_safe(self, speed: float, **options: Unpack[SafeOptions]) -> Axes:
+        """Draw them with the excitation at a rotor speed [rad/s]; see `stickslip.plot.safe`."""
+        from stickslip import plot
+
+        return plot.safe(self, speed, **options)
+
+
+def nodal_diameters(disk: BladedDisk, slipping: Iterable[PointRef] | None) -> NodalDiameters:
+    """Return the natural frequencies at all nodal diameters; see `BladedDisk.nodal_diameters`."""
+    every = [
+        (contact, point) for contact, one in enumerate(disk.contacts) for point in range(one.points)
+    ]
+    slips = every if slipping is None else list(members(slipping, "slipping", "slipping=[...]"))
+    diameters = np.arange(disk.sectors // 2 + 1)
+    stuck, free = (
+        np.stack([natural_frequencies(disk, points, nodal_diameter=int(d)) for d in diameters])
+        for points in ([], slips)
+    )
+    found = NodalDiameters(disk, diameters, stuck, free)
+    set_fields(found, **vars(found))
+    return found

@@ -55,13 +55,6 @@ class Solid:
     density : float
         [kg/m^3].
 
-    Attributes
-    ----------
-    nodes : ndarray of float64, shape (n, 3)
-        Vertices, then middles of edges [m]. Degree of freedom 3 i + j is direction j of node i.
-    dofs : tuple of str
-        Their names, "node.direction", both from 1.
-
     Raises
     ------
     ModelError
@@ -87,12 +80,15 @@ class Solid:
 
     @cached_property
     def nodes(self) -> NDArray[np.float64]:
-        """Places of the nodes [m], shape (n, 3)."""
+        """Vertices, then middles of edges [m], shape (n, 3).
+
+        Degree of freedom 3 i + j is direction j of node i.
+        """
         return np.asarray(self._basis.doflocs[:, ::3].T, dtype=np.float64)
 
     @cached_property
     def dofs(self) -> tuple[str, ...]:
-        """Names of the degrees of freedom."""
+        """Names of the degrees of freedom, "node.direction", both from 1."""
         return tuple(f"{node}.{way}" for node in range(1, len(self.nodes) + 1) for way in (1, 2, 3))
 
     @cached_property
@@ -249,17 +245,9 @@ def _skfem() -> Any:
 
 
 def von_mises(stress: ArrayLike) -> NDArray[np.float64]:
-    """Return the von Mises equivalent of real stresses.
+    """Return the von Mises equivalent [Pa] of real stresses, shape (..., 6).
 
-    Parameters
-    ----------
-    stress : array_like, shape (..., 6)
-        xx, yy, zz, yz, xz, xy [Pa].
-
-    Returns
-    -------
-    ndarray of float64, shape (...)
-        [Pa].
+    They are xx, yy, zz, yz, xz, xy [Pa].
     """
     xx, yy, zz, yz, xz, xy = np.moveaxis(np.asarray(stress, dtype=np.float64), -1, 0)
     normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2

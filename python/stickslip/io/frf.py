@@ -128,18 +128,15 @@ class Frf:
 
 
 def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
-    """Read the frequency response functions of a Universal File.
+    """Read the frequency response functions of a Universal File, in SI units.
+
+    Their `.receptance()` gives m/N whatever was measured.
 
     Parameters
     ----------
     path : str or path-like
         The file, `.uff` or `.unv`: datasets 58 and 58b. Other datasets and functions are passed
         over.
-
-    Returns
-    -------
-    tuple of Frf
-        In SI units; `.receptance()` gives m/N whatever was measured.
 
     Raises
     ------

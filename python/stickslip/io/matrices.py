@@ -98,18 +98,15 @@ def read_matrix(
 
 
 def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str, ...]:
-    """Read the names of the rows of a matrix, where the file has them.
+    """Read the names of the rows of a matrix, "node.direction", where the file has them.
+
+    Directions count from 1.
 
     Parameters
     ----------
     path, key
         As of `read_matrix`: CalculiX (`.sti`, `.mas`, `.dof`), Nastran's DMIG, Abaqus' matrix input
         format and substructures, ANSYS' `.full`.
-
-    Returns
-    -------
-    tuple of str
-        "node.direction", one per row; directions count from 1.
 
     Raises
     ------

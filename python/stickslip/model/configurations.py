@@ -10,9 +10,9 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import brief, members
+from stickslip.checks import members
 from stickslip.errors import ModelError
-from stickslip.model.model import Model, PointRef, from_core
+from stickslip.model.model import Model, PointRef, from_core, require_model
 
 __all__ = ["SlipConfigurations", "natural_frequencies", "slip_configurations"]
 
@@ -45,7 +45,7 @@ def natural_frequencies(
     ModelError
         If `model` is no `Model`; if there is no such contact, point or nodal diameter.
     """
-    _require_model(model)
+    require_model(model)
     refs = members(slipping, "slipping", "slipping=[...]")
     points = sorted({model.point(ref) for ref in refs})
     return from_core(model.frequencies, points, nodal_diameter)
@@ -116,7 +116,7 @@ def slip_configurations(
     ----------
     Guillen (1999), Table 6.4, whose slipping contacts are deleted instead of condensed.
     """
-    _require_model(model)
+    require_model(model)
     if points is None:
         chosen = [
             (number, point)
@@ -140,8 +140,3 @@ def slip_configurations(
         for slipping in combinations(chosen, size)
     }
     return SlipConfigurations(MappingProxyType(table))
-
-
-def _require_model(model: object) -> None:
-    if not isinstance(model, Model):
-        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")

@@ -48,12 +48,6 @@ class _DampingLaw(ABC):
         """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N).
 
         Stuck contacts find their places by the names `dofs` of the structure.
-
-        Raises
-        ------
-        ModelError
-            If there are not N ratios, an eigenvalue is negative, the damping is not finite, or a
-            stuck contact does not find its degrees of freedom.
         """
 
 
@@ -201,6 +195,8 @@ def modal_damping(
 ) -> ModalDamping:
     """Damping given by ratios of critical damping, mode by mode.
 
+    C = M Phi diag(2 zeta omega) Phi^T M with mass-normalised modes Phi.
+
     The aerodynamic input of a flutter analysis: negative ratios of the modes that the flow drives.
     It serves wherever a damping matrix does: as `damping` of a `Structure`, and as the
     `negative_damping` that `destabilised` adds.
@@ -214,16 +210,6 @@ def modal_damping(
         Whose modes: with these contacts stuck, of a model all of them. Default: none, the modes of
         the structure by itself, in which all contacts slip without friction. The former are those
         that flutter sets in with, the latter those of a structure computed without its dampers.
-
-    Returns
-    -------
-    ModalDamping
-        The law, C = M Phi diag(2 zeta omega) Phi^T M with mass-normalised modes Phi.
-
-    Raises
-    ------
-    ModelError
-        As `ModalDamping`.
 
     References
     ----------

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from stickslip.checks import Matrix, MatrixLike, brief, real_matrix, real_number, require_finite
+from stickslip.checks import Matrix, MatrixLike, real_matrix, real_number, require_finite
 from stickslip.errors import ModelError
 from stickslip.model.damping import DampingLaw
-from stickslip.model.model import Model
+from stickslip.model.model import Model, require_model
 from stickslip.model.structure import Structure
 
 __all__ = ["destabilised", "is_proportional", "negative_matrix"]
@@ -42,8 +42,7 @@ def destabilised(
     ----------
     Guillen (1999), eqs. (5.22) and (5.31).
     """
-    if not isinstance(model, Model):
-        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+    require_model(model)
     added = real_number(ratio, "ratio") * negative_matrix(negative_damping, model.structure)
     own = model.structure
     damping = own.damping + added

@@ -158,8 +158,7 @@ class ParallelJenkins(_TwoEnds, Sliders):
     Raises
     ------
     ModelError
-        If a stiffness is negative or infinite, a slip force negative, one is not a number, there
-        are not as many of both, or both ends are the same degree of freedom.
+        As of `Jenkins`, or if there are not as many stiffnesses as slip forces.
 
     References
     ----------

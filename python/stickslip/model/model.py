@@ -31,6 +31,7 @@ __all__ = [
     "from_core",
     "listed_items",
     "refusal",
+    "require_model",
 ]
 
 _Item = TypeVar("_Item")
@@ -130,13 +131,7 @@ class Model:
         return tuple(str(contact.name) for contact in self.contacts)
 
     def contact_index(self, contact: ContactRef) -> int:
-        """Return the position of a contact, which is given by it, counted from 0, or by its name.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact.
-        """
+        """Return the position of a contact, given by its position, counted from 0, or its name."""
         if isinstance(contact, str):
             if contact not in self.contact_names:
                 raise ModelError(unknown("contact", contact, self.contact_names))
@@ -180,22 +175,8 @@ class Model:
     def scaled(self, *, force: float = 1.0, slip_force: float = 1.0) -> Self:
         """Return the model at another level of excitation or preload.
 
-        Parameters
-        ----------
-        force : float, optional
-            Factor on every force amplitude, static loads included.
-        slip_force : float, optional
-            Factor on every slip force, not negative; contacts that never slip stay so.
-
-        Returns
-        -------
-        Model
-            A new model.
-
-        Raises
-        ------
-        ModelError
-            If a factor is not a finite number, or `slip_force` is negative.
+        `force` multiplies every force amplitude, static loads included, `slip_force`, which is not
+        negative, every slip force; contacts that never slip stay so.
         """
         force = real_number(force, "factor on the forces")
         slip_force = real_number(slip_force, "factor on the slip forces")
@@ -270,6 +251,12 @@ class Model:
         for force in self.forces:
             loads[force.harmonic][self.structure.index(force.dof)] += force.coefficient
         return list(loads.items())
+
+
+def require_model(model: object) -> None:
+    """Refuse what is no model."""
+    if not isinstance(model, Model):
+        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
 
 
 def listed_items(items: Iterable[_Item], entry: str, kind: type[object]) -> tuple[_Item, ...]:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import brief, real_number, set_fields, unknown
 from stickslip.errors import ModelError
-from stickslip.model.model import Model, PointRef
+from stickslip.model.model import Model, PointRef, require_model
 
 __all__ = ["State"]
 
@@ -55,8 +55,7 @@ class State:
         velocity: ArrayLike | Mapping[str, float] | None = None,
         contact_force: ArrayLike | Mapping[PointRef, float] | None = None,
     ) -> None:
-        if not isinstance(model, Model):
-            raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+        require_model(model)
         forces = _forces(model, contact_force)
         set_fields(
             self,
@@ -88,13 +87,7 @@ class State:
 
     @classmethod
     def of_vector(cls, model: Model, vector: Float) -> Self:
-        """Return the state of a model in a vector (x, v, f), shape (2 N + n_p,).
-
-        Raises
-        ------
-        ModelError
-            If the vector has another length, or a number is not finite.
-        """
+        """Return the state of a model in a vector (x, v, f), shape (2 N + n_p,)."""
         dofs = len(model.structure)
         return cls(model, vector[:dofs], vector[dofs : 2 * dofs], vector[2 * dofs :])
 

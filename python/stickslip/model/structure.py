@@ -126,13 +126,7 @@ class Structure:
         return made
 
     def index(self, name: str) -> int:
-        """Return the position of a degree of freedom, its row in the matrices.
-
-        Raises
-        ------
-        ModelError
-            If there is no such name; the message gives the nearest one.
-        """
+        """Return the position of a degree of freedom, its row in the matrices."""
         try:
             return self.dofs.index(name)
         except ValueError:
@@ -140,22 +134,9 @@ class Structure:
 
 
 def join(structures: Mapping[str, Structure]) -> Structure:
-    """Put several structures side by side, not yet coupled.
+    """Put several structures, by name, side by side, not yet coupled.
 
-    Parameters
-    ----------
-    structures : mapping of str to Structure
-        The parts by name.
-
-    Returns
-    -------
-    Structure
-        Block-diagonal matrices; the degree of freedom "tip" of part "1" is named "1.tip".
-
-    Raises
-    ------
-    ModelError
-        If there is no part, or a part is not a `Structure` or has an empty name.
+    The matrices are block-diagonal; the degree of freedom "tip" of part "1" is named "1.tip".
     """
     if not isinstance(structures, Mapping):
         raise ModelError(
