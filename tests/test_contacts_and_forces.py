@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stickslip.errors import ModelError
-from stickslip.model.contact import Jenkins
 from stickslip.model.force import Force, force_from_spec
+from stickslip.model.jenkins import Jenkins
 from stickslip.model.laws import LAWS, contact_from_spec
 from stickslip.reference import snecma_structure
 

@@ -4,12 +4,14 @@ import ast
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import stickslip as ss
+from stickslip.analyses.uniqueness import uniqueness
 from stickslip.cli import app
 from stickslip.reference import snecma_beam
 from stickslip.results.diagnostic import SEVERITIES, Severity, diagnostic, missed_tolerances
@@ -70,6 +72,17 @@ def test_damping_that_leaves_uniqueness_open_is_a_caution(damping, expected):
     frf = ss.forced_response(one_dof(damping, ss.Force("x", 0.9)), [1.0], harmonics=3)
     assert codes(frf) & {"undamped-motion", "negative-damping"} == expected
     assert len(kinds.cautions(frf)) == len(expected)
+
+
+def test_uniqueness_is_asked_of_the_laws():
+    model = one_dof(0.4)
+    assert model.problem.laws_not_monotone == []
+    assert uniqueness(model) is None
+    asked = SimpleNamespace(
+        structure=model.structure, problem=SimpleNamespace(laws_not_monotone=["stop", "stop"])
+    )
+    assert uniqueness(asked).code == "law-not-monotone"
+    assert "contact law 'stop' is not monotone" in uniqueness(asked).text
 
 
 def test_missed_tolerances_are_counted():

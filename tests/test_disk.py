@@ -362,3 +362,40 @@ def test_bad_disks_are_refused_in_one_line(build, message):
     with pytest.raises(ss.ModelError, match=message) as refusal:
         build()
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    "contact",
+    [
+        ss.Jenkins("tip", "next.tip", stiffness=1e5, slip_force=5.0),
+        ss.StructuralDamper(
+            ["tip", "next.tip"], stiffness=[[1e5, -1e5], [-1e5, 1e5]], slip_forces=[5.0, 5.0]
+        ),
+    ],
+    ids=["jenkins", "structural"],
+)
+def test_dampers_between_sectors_are_designed_as_those_of_all_sectors(contact):
+    disk = BladedDisk(
+        ss.reference.snecma_structure(),
+        sectors=6,
+        couplings=[ss.Coupling("tip", stiffness=1e4)],
+        contacts=[contact],
+        forces=[ss.Force("tip", 20.0)],
+        engine_order=2,
+    )
+    options = {"harmonics": 3, "common": "factor"}
+    tuned = ss.damper_curve(disk, stiffness=[0.5, 1.0, 2.0], dof="tip", **options)
+    whole = ss.damper_curve(
+        disk.mistuned(0.0),
+        stiffness=[0.5, 1.0, 2.0],
+        dof="0.tip",
+        omega=tuned.settings.span,
+        **options,
+    )
+    np.testing.assert_allclose(tuned.amplitude, whole.amplitude, rtol=1e-6)
+    if contact.law == "jenkins":
+        rigid = ss.damper_curve(disk, stiffness=[1e6, np.inf], dof="tip", harmonics=3)
+        assert rigid.amplitude[1] < rigid.amplitude[0]
+    for parameter in ("slip_force", "stiffness"):
+        best = ss.optimal_damper(disk, parameter=parameter, dof="tip", **options)
+        assert best.amplitude <= tuned.amplitude.min() * (1.0 + 1e-3)

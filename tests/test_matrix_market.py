@@ -74,7 +74,7 @@ def test_matrix_market_without_entries(folder):
         (COORDINATE + "2 2 1\n1.5 1 1.0\n", "could not convert string '1.5' to int64"),
         (COORDINATE + "2 2 1\n1 1 x\n", "could not convert string 'X' to float64"),
         (COORDINATE + "2 2 2\n1 1 1\n1 2\n", "columns"),
-        (COORDINATE + "2 2 1\n1 1 nan\n", "nan in row 0"),
+        (COORDINATE + "2 2 1\n1 1 nan\n", r"nan at \(0, 0\)"),
         (COORDINATE + "9999 9999 1\n1 1 1\n", "9999 rows"),
         (MTX.format("coordinate real symmetric") + "2 3 1\n1 1 1\n", "symmetric, but 2 x 3"),
         (MTX.format("array real symmetric") + "2 2\n1\n2\n", "3 entries announced, 2 present"),

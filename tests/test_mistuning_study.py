@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 import stickslip as ss
 from stickslip import _core
 from stickslip.disk import BladedDisk, mistuning_pattern
-from stickslip.disk.family import family
+from stickslip.disk.mistuned import tuned_disk
 from stickslip.disk.pattern import drawn_patterns
 from stickslip.results.status import Status
 from stickslip.settings.balance import BalanceSettings
@@ -136,7 +136,7 @@ def test_the_disks_are_those_of_mistuned(damping):
     K1[0, 1] = -50.0
     disk = ring(4, damping=damping, shroud=True, interface=ss.Interface(K1))
     pattern = mistuning_pattern(4, 0.1, seed=5)
-    made = family(disk).mistuned(pattern)
+    made = tuned_disk(disk).mistuned(pattern)
     grid, observe, driving = np.array([180.0, 220.0]), np.arange(12), np.arange(0)
     given = grid, observe, driving, BalanceSettings.of(harmonics=3, max_iterations=50), None
     mine = _core.forced_response(made, *given).columns["displacement"]

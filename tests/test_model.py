@@ -10,8 +10,9 @@ import pytest
 import stickslip as ss
 from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
-from stickslip.model.contact import Contact, Jenkins
+from stickslip.model.contact import Contact
 from stickslip.model.force import Force
+from stickslip.model.jenkins import Jenkins
 from stickslip.reference import beam_pair, snecma_beam, snecma_structure
 
 

@@ -24,7 +24,7 @@ import os, signal, sys, time
 import stickslip as ss
 from stickslip import _core
 from stickslip.analyses.pattern_store import PatternStore
-from stickslip.disk import family
+from stickslip.disk import mistuned
 ss.mistuning_study, ss.reference.beam_ring
 store, log, patterns = sys.argv[1], sys.argv[2], int(sys.argv[3])
 add = PatternStore.add

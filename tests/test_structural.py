@@ -203,7 +203,7 @@ def test_damper_survives_files_pickles_and_factors(strong, tmp_path):
     assert hash(loaded) == hash(damper)
     assert damper.scaled(2.0).slip_forces == (49.2, 200.0, 492.1, np.inf)
     assert damper != damper.named("other")
-    assert damper.held(stuck=False).stiffness == pytest.approx(np.zeros((4, 4)), abs=1e-6)
+    assert damper.linear_limit(stuck=False).stiffness == pytest.approx(np.zeros((4, 4)), abs=1e-6)
 
 
 def test_figures_of_forces_and_states(strong, exact):

@@ -155,6 +155,13 @@ impl Problem {
         Ok(vector(py, frequencies))
     }
 
+    /// Names of the contact laws that are no monotone operators of the motion.
+    #[getter]
+    fn laws_not_monotone(&self) -> Vec<&'static str> {
+        let open = self.model.laws().iter().filter(|law| !law.is_monotone());
+        open.map(|law| law.name()).collect()
+    }
+
     /// Which modes carry the compliance.
     #[getter]
     fn modal_base(&self) -> &'static str {

@@ -6,10 +6,11 @@ import difflib
 import os
 import re
 import stat
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
+from importlib import import_module
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
+from typing import Any, Protocol, TypeAlias, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,8 +31,13 @@ __all__ = [
     "is_reserved",
     "listed",
     "members",
+    "optional_package",
     "real_matrix",
     "real_number",
+    "require_finite",
+    "require_keys",
+    "require_square",
+    "set_fields",
     "text",
     "unknown",
     "vanished",
@@ -86,22 +92,7 @@ def brief(value: object) -> str:
 
 
 def unknown(kind: str, name: object, known: Iterable[str]) -> str:
-    """Word an unknown name, with the nearest known one or the list of them.
-
-    Parameters
-    ----------
-    kind : str
-        What is named: "dof", "contact", ...
-    name : object
-        The name that was given.
-    known : iterable of str
-        The names that exist.
-
-    Returns
-    -------
-    str
-        For example ``unknown dof 'tpi'; did you mean 'tip'?``.
-    """
+    """Word an unknown name: ``unknown dof 'tpi'; did you mean 'tip'?``, or the list of names."""
     names = list(known)
     near = _near(name, names) if isinstance(name, str) else []
     if near:
@@ -147,13 +138,7 @@ def listed(names: Sequence[str]) -> str:
 
 
 def text(value: object, entry: str) -> str:
-    """Return a name that is text and not blank.
-
-    Raises
-    ------
-    ModelError
-        If `value` is not a string or holds nothing but white space.
-    """
+    """Return a name that is text and not blank."""
     if not isinstance(value, str):
         raise EntryError(entry, f": {brief(value)} is not text; give a name in quotes")
     if not value.strip():
@@ -162,13 +147,7 @@ def text(value: object, entry: str) -> str:
 
 
 def choice(value: object, entry: str, choices: Iterable[str]) -> str:
-    """Return one of the names in `choices`.
-
-    Raises
-    ------
-    ModelError
-        If `value` is not text or none of them; the message gives the nearest one.
-    """
+    """Return one of the names in `choices`."""
     names = list(choices)
     if not isinstance(value, str):
         raise EntryError(entry, f": {brief(value)} is not text; known: {listed(names)}")
@@ -178,13 +157,7 @@ def choice(value: object, entry: str, choices: Iterable[str]) -> str:
 
 
 def members(value: Iterable[_Member], entry: str, remedy: str) -> tuple[_Member, ...]:
-    """Return the members of a list, or of anything else that can be gone through.
-
-    Raises
-    ------
-    ModelError
-        If `value` is text, a single object or an array without dimensions.
-    """
+    """Return the members of a list, or of anything else that can be gone through."""
     try:
         # The array without dimensions is an `Iterable`, and fails only here.
         walk = None if isinstance(value, str | bytes) else iter(value)
@@ -195,15 +168,18 @@ def members(value: Iterable[_Member], entry: str, remedy: str) -> tuple[_Member,
     return tuple(walk)
 
 
-def file_path(path: object, entry: str) -> Path:
-    """Return the path of a file.
+def optional_package(module: str, entry: str, package: str = "") -> Any:
+    """Return a module that not every installation has; `entry` says what needs it."""
+    try:
+        return import_module(module)
+    except ImportError:
+        raise ModelError(
+            f"{entry} need the package {package or module}: pip install 'stickslip[fe]'"
+        ) from None
 
-    Raises
-    ------
-    ModelError
-        If `path` is neither text nor path-like, or empty, or holds characters that no file name
-        can have.
-    """
+
+def file_path(path: object, entry: str) -> Path:
+    """Return the path of a file, of characters that a file name can have."""
     if not isinstance(path, str | os.PathLike):
         raise ModelError(f"{entry}: {brief(path)} is not a path; give text or a pathlib.Path")
     name = os.fspath(path)
@@ -221,11 +197,7 @@ def file_path(path: object, entry: str) -> Path:
 def is_file(file: Path) -> bool:
     """Return whether there is a file to read.
 
-    Raises
-    ------
-    ModelError
-        If there is something else: a folder, or a pipe, a device or a socket, of which reading
-        may never end. Also if the system does not tell.
+    A folder is refused, and a pipe, a device or a socket, of which reading may never end.
     """
     try:
         mode = file.stat().st_mode
@@ -251,22 +223,7 @@ def vanished(text: str, number: float) -> bool:
 
 
 def real_number(value: object, entry: str, *, finite: bool = True) -> float:
-    """Return a real number as a float.
-
-    Parameters
-    ----------
-    value : object
-        The number: Python or NumPy, or a zero-dimensional array.
-    entry : str
-        What the message calls it.
-    finite : bool, optional
-        Refuse infinity. Not-a-number is always refused.
-
-    Raises
-    ------
-    ModelError
-        If `value` is anything else (text, a truth value, complex, a list).
-    """
+    """Return a real number as a float: of Python or NumPy, or an array without dimensions."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, complex | np.complexfloating):
@@ -288,13 +245,7 @@ def real_number(value: object, entry: str, *, finite: bool = True) -> float:
 
 
 def whole_number(value: object, entry: str, *, smallest: int = 0, largest: int = MAX_COUNT) -> int:
-    """Return an integer from `smallest` to `largest`.
-
-    Raises
-    ------
-    ModelError
-        If `value` is not an integer (1.0 and True are not) or lies outside.
-    """
+    """Return an integer from `smallest` to `largest`; 1.0 and True are none."""
     if isinstance(value, bool) or not isinstance(value, Integral):
         raise EntryError(
             entry, f": {brief(value)} is not an integer; give {smallest}, {smallest + 1}, ..."
@@ -308,24 +259,9 @@ def whole_number(value: object, entry: str, *, smallest: int = 0, largest: int =
 
 
 def real_matrix(value: object, entry: str) -> Matrix:
-    """Return a two-dimensional array of real numbers, dense, as a copy.
+    """Return a two-dimensional array of real numbers, dense, in rows, as a copy.
 
-    Parameters
-    ----------
-    value : array_like or scipy.sparse array or matrix
-        The matrix. Sparse ones are made dense up to `MAX_DENSE` rows.
-    entry : str
-        What the message calls it.
-
-    Returns
-    -------
-    ndarray of float64, shape (rows, columns)
-        C-contiguous. Its entries may still be infinite or not a number.
-
-    Raises
-    ------
-    ModelError
-        If the value is ragged, complex, not numeric, not two-dimensional, or too large and sparse.
+    Sparse matrices are made dense up to `MAX_DENSE` rows. Entries may still be infinite.
     """
     if isinstance(value, SparseMatrix):
         rows = max(value.shape)
@@ -353,3 +289,49 @@ def real_matrix(value: object, entry: str) -> Matrix:
     # Long doubles beyond 1e308 become infinite, which is refused where entries are checked.
     with np.errstate(over="ignore"):
         return np.array(array, dtype=np.float64, order="C")
+
+
+def require_square(
+    matrix: Matrix, entry: str, size: int | None = None, other: str = "mass matrix"
+) -> None:
+    """Refuse a matrix that is not square, or of another size than the `other`."""
+    rows, columns = matrix.shape
+    if rows != columns:
+        raise ModelError(f"{entry}: {rows} x {columns} is not square; give N x N for N dofs")
+    if size is not None and rows != size:
+        raise ModelError(f"{entry}: {rows} x {columns}, but the {other} is {size} x {size}")
+
+
+def require_finite(matrix: Matrix, entry: str, names: Sequence[str] | None = None) -> None:
+    """Refuse a matrix with an entry that is not finite; `names` are those of its rows."""
+    if not np.isfinite(matrix).all():
+        row, column = np.argwhere(~np.isfinite(matrix))[0]
+        one, other = (row, column) if names is None else (brief(names[row]), brief(names[column]))
+        raise ModelError(
+            f"{entry}: {matrix[row, column]} at ({one}, {other}); every entry must be finite"
+        )
+
+
+def require_keys(
+    given: Iterable[str],
+    entry: str,
+    known: Collection[str],
+    needed: Iterable[str],
+    kind: str = "key",
+) -> None:
+    """Refuse a key that is not known, and that one is missing which is needed."""
+    keys = list(given)
+    for key in keys:
+        if key not in known:
+            raise ModelError(f"{entry}: {unknown(kind, key, known)}")
+    for key in needed:
+        if key not in keys:
+            raise ModelError(f"{entry}: {key} is missing; give {key}")
+
+
+def set_fields(owner: object, **values: object) -> None:
+    """Set the fields of an immutable object; arrays become read-only."""
+    for name, value in values.items():
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False
+        object.__setattr__(owner, name, value)

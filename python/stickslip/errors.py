@@ -8,12 +8,7 @@ __all__ = ["CallError", "EntryError", "Interrupted", "ModelError"]
 class ModelError(ValueError):
     """Input that cannot be used; one line names the entry, its value and the remedy.
 
-    Parameters
-    ----------
-    message : str
-        The line.
-    study : str, optional
-        The line for authors of study files, where the remedy is another one. Default: the same.
+    Authors of study files are told the line `study`, where the remedy is another one for them.
     """
 
     def __init__(self, message: str = "", *, study: str | None = None) -> None:
@@ -22,14 +17,10 @@ class ModelError(ValueError):
 
 
 class EntryError(ModelError):
-    """A value that an entry cannot have; `at` names the entry where its full name is known.
+    """A value that an entry cannot have.
 
-    Parameters
-    ----------
-    entry : str
-        Name of the entry; empty where only the value is known.
-    said : str
-        What is wrong and the remedy, from the mark after the name on: ``: -1 lies below 0; ...``.
+    `entry` is its name, empty where only the value is known; `said` what is wrong and the remedy,
+    from the mark after the name on: ``: -1 lies below 0; ...``.
     """
 
     def __init__(self, entry: str, said: str) -> None:

@@ -47,20 +47,7 @@ _REMEDIES = {
 
 
 def write(target: Path, content: bytes | bytearray | memoryview) -> None:
-    """Write a file whole, or leave everything as it was.
-
-    Parameters
-    ----------
-    target : Path
-        The file; an existing one is replaced.
-    content : bytes
-        All of its bytes.
-
-    Raises
-    ------
-    ModelError
-        If the folder does not exist, or the file cannot be written; then nothing is changed.
-    """
+    """Write a file whole, or leave everything as it was; an existing one is replaced."""
     require_place(target)
     temporary = _beside(target)
     try:
@@ -77,10 +64,7 @@ def write(target: Path, content: bytes | bytearray | memoryview) -> None:
 def require_place(target: Path) -> None:
     """Refuse a file that could not be written because of what is or is not there.
 
-    Raises
-    ------
-    ModelError
-        If the target is a folder or a device, or its folder does not exist.
+    That is a folder or a device as target, or a folder that does not exist.
     """
     if os.path.isdir(target):
         raise ModelError(f"{target}: is a folder; give the name of a file in it")
@@ -95,13 +79,7 @@ def require_place(target: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder and those above it, unless they are there.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be made.
-    """
+    """Make a folder and those above it, unless they are there."""
     try:
         os.makedirs(folder, exist_ok=True)
     except OSError as error:
@@ -109,13 +87,7 @@ def make_folder(folder: Path) -> None:
 
 
 def require_writable(folder: Path) -> None:
-    """Refuse a folder in which no file can be made; better now than when all is computed.
-
-    Raises
-    ------
-    ModelError
-        With the reason.
-    """
+    """Refuse a folder in which no file can be made; better now than when all is computed."""
     probe = _beside(folder / "probe")
     try:
         _write_anew(probe, memoryview(b""))

@@ -81,13 +81,7 @@ class Interruption:
             self._noted = number, time.monotonic()
 
     def heed(self) -> None:
-        """Call the handler of a signal that was noted.
-
-        Raises
-        ------
-        KeyboardInterrupt
-            By the handler, as Python's own does.
-        """
+        """Call the handler of a signal that was noted, which may raise KeyboardInterrupt."""
         if self._noted is not None:
             number, self._noted = self._noted[0], None
             self._handlers[number](number, None)
@@ -112,10 +106,7 @@ class Interruption:
     def completed(self, result: Kind, what: str) -> Kind:
         """Tell that all is done, and return the result.
 
-        Raises
-        ------
-        Interrupted
-            If a signal came after the last point; it holds the complete result.
+        If a signal came after the last point, `Interrupted` holds it.
         """
         try:
             self(1.0)

@@ -73,29 +73,12 @@ _UNIT = re.compile(r"[A-Za-zµμ°%²³·*/^()\s0-9.+-]*")
 def quantity(value: float | str, unit: str, entry: str, *, finite: bool = True) -> float:
     """Read a number, or a text with a unit, as a number in SI units.
 
-    Parameters
-    ----------
-    value : float or str
-        A number is taken as it is, in `unit`. A text is a number followed by a unit:
-        ``"20.3 N"``, ``"24 kN/mm"``, ``"25 Hz"``, ``"1500 rpm"``, ``"90 deg"``, ``"0.5 %"``.
-    unit : str
-        The SI unit asked for: ``"N"``, ``"N/m"``, ``"rad/s"``, ``"rad"``, ``""`` for a ratio.
-        Where ``"rad/s"`` is asked, 1 Hz counts as 2 pi rad/s.
-    entry : str
-        Name of the entry, with which an error message begins: ``"force 1: amplitude"``.
-    finite : bool, optional
-        Refuse a number that is infinite. Not-a-number is always refused.
+    A number is taken as it is, in `unit`: ``"N"``, ``"N/m"``, ``"rad/s"``, ``"rad"``, ``""`` for a
+    ratio. A text is a number followed by a unit: ``"20.3 N"``, ``"24 kN/mm"``, ``"1500 rpm"``,
+    ``"90 deg"``, ``"0.5 %"``; 1 Hz counts as 2 pi rad/s. Messages begin with the name of the
+    `entry`.
 
-    Returns
-    -------
-    float
-        The value in `unit`.
-
-    Raises
-    ------
-    ModelError
-        The value is not finite, is no number, or carries no unit, an unknown one or one of another
-        dimension.
+    A number that is infinite is refused if it must be `finite`, not-a-number always.
     """
     if isinstance(value, str):
         return _parse(value, unit, entry)

@@ -12,7 +12,7 @@ from stickslip.analyses.contact_assumptions import (
     residual_assumption,
     start_assumption,
 )
-from stickslip.analyses.uniqueness import damping_assumption
+from stickslip.analyses.uniqueness import uniqueness
 from stickslip.model import Model, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
 from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_tolerances, present
@@ -120,7 +120,7 @@ def assumptions_of(
                 _frequencies(settings, arrays, missing, interrupted=interrupted),
                 _orbits(orbits),
                 _observed(model, dofs),
-                damping_assumption(model.structure.damping),
+                uniqueness(model),
                 _truncation(dofs, arrays, _OTHER_METHOD if single else "keep more harmonics there"),
                 missed_tolerances(arrays.status, "points"),
             )
@@ -179,7 +179,7 @@ def orbit_assumptions(
                 chosen,
                 _frequencies(without_span, arrays, missing, interrupted=missing > 0),
                 _observed(model, dofs),
-                damping_assumption(model.structure.damping),
+                uniqueness(model),
                 missed_tolerances(arrays.status, "points"),
             )
         )
@@ -239,7 +239,7 @@ def transient_assumptions(
                 diagnostic("no-tolerance", _UNASKED) if open_end else None,
                 _kept(settings),
                 _observed(model, dofs),
-                damping_assumption(model.structure.damping),
+                uniqueness(model),
             )
         )
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption
-from stickslip.analyses.uniqueness import damping_assumption
+from stickslip.analyses.uniqueness import uniqueness
 from stickslip.checks import listed
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_tolerances, present
@@ -49,7 +49,7 @@ def damper_assumptions(
             _rigid(rigid),
             *peak_assumptions(settings, arrays, "values"),
             _truncation(settings, arrays),
-            damping_assumption(model.structure.damping),
+            uniqueness(model),
             direct_assumption(model),
         )
     )

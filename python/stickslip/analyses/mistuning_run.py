@@ -122,7 +122,7 @@ class Work:
     def run(self, threads: int, watch: Interruption, store: PatternStore | None) -> bool:
         """Compute what is missing; False if Ctrl-C has ended it."""
         from stickslip import _core
-        from stickslip.disk.family import family
+        from stickslip.disk.mistuned import tuned_disk
 
         missing = np.argwhere(~self.known)
         if not missing.size:
@@ -144,7 +144,7 @@ class Work:
 
         try:
             return _core.mistuning_study(
-                [family(one.disk) for one in self.series],
+                [tuned_disk(one.disk) for one in self.series],
                 missing[:, 1].tolist(),
                 self.deviations[missing[:, 0], np.newaxis] * self.patterns[missing[:, 2]],
                 [[self.disk.structure.index(dof)] for dof in self.dofs],

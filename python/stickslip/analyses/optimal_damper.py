@@ -218,9 +218,11 @@ def _matrix_factor(model: Model, ref: Chosen, contact: Contact) -> float:
     held = local_stiffness(model, [ref]) / max(
         float(contact.stuck_stiffness.diagonal().max()), 1e-300
     )
-    rows = contact.rows(model.structure)
+    stiffness = model.structure.stiffness
     try:
-        flexibility = rows @ np.linalg.solve(model.structure.stiffness, rows.T)
+        flexibility = sum(
+            rows @ np.linalg.solve(stiffness, rows.T) for rows in model.contact_rows(contact)
+        )
     except np.linalg.LinAlgError:
         return held
     product = float(np.linalg.eigvals(contact.stuck_stiffness @ flexibility).real.max())

@@ -1,17 +1,30 @@
-"""Whether a steady state is the only one, as far as the damping tells."""
+"""Whether a steady state is the only one, as far as contact laws and damping tell."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.checks import listed
+from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 
-__all__ = ["damping_assumption"]
+__all__ = ["uniqueness"]
 
 
-def damping_assumption(damping: NDArray[np.float64]) -> Diagnostic | None:
-    """Say that a solution need not be the only one, if the damping leaves that open."""
+def uniqueness(model: Model) -> Diagnostic | None:
+    """Say that a solution need not be the only one, if contact laws or damping leave that open.
+
+    The passive structure with laws that are monotone operators has one steady motion.
+    """
+    open_laws = list(dict.fromkeys(model.problem.laws_not_monotone))
+    if open_laws:
+        return diagnostic(
+            "law-not-monotone",
+            f"The contact law {listed(open_laws)} is not monotone in the motion: the solution may "
+            "be unstable or not the only one.",
+        )
+    damping = model.structure.damping
     # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
     symmetric = 0.5 * (damping + damping.T)
     diagonal = np.abs(np.diag(symmetric))

@@ -208,14 +208,15 @@ def local_stiffness(model: Model, contacts: Iterable[Chosen]) -> float:
         Inverse static flexibility without any contact; where the structure is not grounded, the
         stiffness with all other degrees of freedom held [N/m].
     """
-    structure = model.structure
-    rows = np.concatenate(
-        [model.contacts[located(model, ref)[0]].rows(structure) for ref in contacts]
-    )
-    held: Float = np.einsum("ij,jk,ik->i", rows, structure.stiffness, rows)
+    stiffness = model.structure.stiffness
+    chosen = [model.contact_rows(model.contacts[located(model, ref)[0]]) for ref in contacts]
+    # A contact between sectors of a disk has rows on both.
+    parts = [np.concatenate(rows) for rows in zip(*chosen, strict=True)]
+    held: Float = sum(np.einsum("ij,jk,ik->i", rows, stiffness, rows) for rows in parts)
     try:
-        moved = np.linalg.solve(structure.stiffness, rows.T)
-        flexibility = np.einsum("ij,ji->i", rows, moved)
+        flexibility = sum(
+            np.einsum("ij,ji->i", rows, np.linalg.solve(stiffness, rows.T)) for rows in parts
+        )
     except np.linalg.LinAlgError:
         return float(held.max())
     # Of a structure that is nearly free, rounding decides.

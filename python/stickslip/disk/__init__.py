@@ -2,14 +2,15 @@
 
 from stickslip.calls import checked_names
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.boundary import cyclic_sector
-from stickslip.disk.coupling import Coupling, Interface
-from stickslip.disk.influence import InfluenceCoefficients
-from stickslip.disk.mistuned import MistunedDisk
-from stickslip.disk.nodal_diameters import NodalDiameters
+from stickslip.disk.coupling import Coupling, Interface, cyclic_sector
+from stickslip.disk.mistuned import MistunedDisk, Ring
 from stickslip.disk.pattern import mistuning_pattern
-from stickslip.disk.ring import Ring
-from stickslip.disk.waves import AerodynamicWaves, aerodynamic_waves
+from stickslip.disk.waves import (
+    AerodynamicWaves,
+    InfluenceCoefficients,
+    NodalDiameters,
+    aerodynamic_waves,
+)
 
 __all__ = [
     "AerodynamicWaves",

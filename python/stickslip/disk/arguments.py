@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NoReturn
 
 from stickslip.checks import brief, unknown, whole_number
 from stickslip.disk.coupling import Coupling, Interface
@@ -50,36 +49,22 @@ def require_couplings(couplings: tuple[Coupling, ...], structure: Structure) -> 
     """Refuse couplings at degrees of freedom that the sector lacks."""
     for number, coupling in enumerate(couplings, 1):
         for dof in coupling.ends:
-            if dof not in structure.dofs:
-                _refuse_coupling(number, dof, structure)
-
-
-def _refuse_coupling(number: int, dof: str, structure: Structure) -> NoReturn:
-    bare = dof.removeprefix(NEXT).removeprefix(PREVIOUS)
-    if bare in structure.dofs:
-        raise ModelError(
-            f"coupling {number}: {brief(dof)}: its second end is in the next sector anyway; write "
-            f"{brief(bare)}"
-        )
-    raise ModelError(f"coupling {number}: {unknown('dof', dof, structure.dofs)}")
+            if dof in structure.dofs:
+                continue
+            bare = dof.removeprefix(NEXT).removeprefix(PREVIOUS)
+            if bare in structure.dofs:
+                raise ModelError(
+                    f"coupling {number}: {brief(dof)}: its second end is in the next sector anyway;"
+                    f" write {brief(bare)}"
+                )
+            raise ModelError(f"coupling {number}: {unknown('dof', dof, structure.dofs)}")
 
 
 def stranger(dof: str, dofs: Iterable[str | None], own: Sequence[str]) -> str:
     """Word a degree of freedom of a contact that neither the sector nor the next one has.
 
-    Parameters
-    ----------
-    dof : str
-        The one that is unknown.
-    dofs : iterable of str or None
-        All of the contact.
-    own : sequence of str
-        Those of the sector.
-
-    Returns
-    -------
-    str
-        For the sector before: the contact as that sector sees it.
+    `dofs` are all of the contact, `own` those of the sector. For the sector before: the contact as
+    that sector sees it.
     """
     bare = dof.removeprefix(PREVIOUS)
     if bare == dof or bare not in own:

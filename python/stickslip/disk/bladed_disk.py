@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import Matrix, brief, unknown, whole_number
+from stickslip.checks import Matrix, brief, set_fields, whole_number
 from stickslip.disk.arguments import (
     ALL_SECTORS,
     NEXT,
@@ -21,18 +21,17 @@ from stickslip.disk.arguments import (
     require_interface,
     stranger,
 )
-from stickslip.disk.coupling import Coupling, Interface
-from stickslip.disk.cyclic import CyclicMatrices
+from stickslip.disk.coupling import Coupling, CyclicMatrices, Interface
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.force import Force
-from stickslip.model.model import AnyMatrix, Model, PointRef, listed_items
+from stickslip.model.model import AnyMatrix, Model, PointRef, from_core, listed_items
 from stickslip.model.structure import Structure
 
 if TYPE_CHECKING:
     from stickslip import _core
     from stickslip.disk.mistuned import MistunedDisk
-    from stickslip.disk.nodal_diameters import NodalDiameters
+    from stickslip.disk.waves import NodalDiameters
 
 __all__ = ["BladedDisk"]
 
@@ -69,15 +68,6 @@ class BladedDisk(Model):
     interface : Interface, optional
         Blocks of cyclic matrices that couple each sector to the next.
 
-    Attributes
-    ----------
-    structure, contacts, forces
-        Of sector 0, as in `Model`; contacts with their names.
-    sectors, engine_order, engine_orders, couplings, interface
-        As given.
-    matrices : CyclicMatrices
-        Mass, damping and stiffness of a sector among its neighbours.
-
     Raises
     ------
     ModelError
@@ -103,6 +93,7 @@ class BladedDisk(Model):
     couplings: tuple[Coupling, ...]
     interface: Interface | None
     matrices: CyclicMatrices
+    """Mass, damping and stiffness of a sector among its neighbours."""
 
     def __init__(
         self,
@@ -120,34 +111,45 @@ class BladedDisk(Model):
         springs = listed_items(couplings, "coupling", Coupling)
         require_couplings(springs, structure)
         require_interface(interface, structure)
-        values = {
-            "sectors": whole_number(sectors, "sectors", smallest=2),
-            "engine_order": whole_number(engine_order, "engine_order"),
-            "engine_orders": MappingProxyType(orders_of(engine_orders)),
-            "couplings": springs,
-            "interface": interface,
-            "matrices": CyclicMatrices.of(structure, springs, interface),
-        }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
-
-    def __repr__(self) -> str:
-        names = ", ".join(self.contact_names[:6]) + (", ..." if len(self.contacts) > 6 else "")
-        return (
-            f"BladedDisk({self.sectors} x {self.structure!r}, contacts=[{names}], "
-            f"{len(self.forces)} force(s) of engine order {self.engine_order})"
+        set_fields(
+            self,
+            sectors=whole_number(sectors, "sectors", smallest=2),
+            engine_order=whole_number(engine_order, "engine_order"),
+            engine_orders=MappingProxyType(orders_of(engine_orders)),
+            couplings=springs,
+            interface=interface,
+            matrices=CyclicMatrices.of(structure, springs, interface),
         )
 
-    def __reduce__(self) -> tuple[object, ...]:
-        return _rebuilt, (
-            self.structure,
-            self.sectors,
-            self.couplings,
-            self.contacts,
-            self.forces,
-            self.engine_order,
-            dict(self.engine_orders),
-            self.interface,
+    def __repr__(self) -> str:
+        return (
+            f"BladedDisk({self.sectors} x {self.structure!r}, {self._listed} of engine order "
+            f"{self.engine_order})"
+        )
+
+    def _parts(self) -> dict[str, Any]:
+        return super()._parts() | {
+            "sectors": self.sectors,
+            "couplings": self.couplings,
+            "engine_order": self.engine_order,
+            "engine_orders": dict(self.engine_orders),
+            "interface": self.interface,
+        }
+
+    @property
+    def _contact_dofs(self) -> tuple[str, ...]:
+        return self.neighbours.dofs
+
+    def _unknown_dof(self, dof: str, contact: Contact) -> str:
+        return stranger(dof, contact.dofs, self.structure.dofs)
+
+    def _unknown_force(self, dof: str) -> str:
+        bare = dof.removeprefix(NEXT)
+        if bare not in self.structure.dofs:
+            return super()._unknown_force(dof)
+        return (
+            f"{brief(dof)}: forces are those on sector 0, from which those on the others follow; "
+            f"write {brief(bare)}"
         )
 
     def _require_dofs(self) -> None:
@@ -158,54 +160,29 @@ class BladedDisk(Model):
                 f"structure: dof {brief(taken)}: names in '{NEXT}' are those of the next sector; "
                 "give it another name"
             )
-        known = self.neighbours.dofs
+        super()._require_dofs()
         for number, contact in enumerate(self.contacts, 1):
-            entry = f"contact {number} ({brief(contact.name)})"
-            for dof in contact.dofs:
-                if dof is not None and dof not in known:
-                    raise ModelError(f"{entry}: {stranger(dof, contact.dofs, own)}")
             if not any(dof in own for dof in contact.dofs):
                 names = [dof.removeprefix(NEXT) for dof in contact.dofs if dof is not None]
                 raise ModelError(
-                    f"{entry}: it touches the next sector only; write "
-                    f"{', '.join(map(brief, names))}"
+                    f"contact {number} ({brief(contact.name)}): it touches the next sector only; "
+                    f"write {', '.join(map(brief, names))}"
                 )
-        for number, force in enumerate(self.forces, 1):
-            bare = force.dof.removeprefix(NEXT)
-            if force.dof not in own:
-                if bare in own:
-                    raise ModelError(
-                        f"force {number}: {brief(force.dof)}: forces are those on sector 0, from "
-                        f"which those on the others follow; write {brief(bare)}"
-                    )
-                raise ModelError(f"force {number}: {unknown('dof', force.dof, own)}")
 
     @cached_property
     def neighbours(self) -> Structure:
-        """Names of the degrees of freedom of a sector and the next one; its matrices mean nothing.
+        """A sector and the next one, in whose degrees of freedom contacts find theirs.
 
-        Contacts find their degrees of freedom in it.
+        Its matrices mean nothing.
         """
         own = self.structure.dofs
         size = 2 * len(own)
         names = [*own, *(NEXT + dof for dof in own)]
         return Structure(np.eye(size), np.zeros((size, size)), dofs=names)
 
-    def contact_rows(self, contact: Contact) -> tuple[Matrix, Matrix]:
-        """Return the two parts of B of u = B x_i + B' x_(i+1).
-
-        Parameters
-        ----------
-        contact : Contact
-            A contact of the disk.
-
-        Returns
-        -------
-        own, next : ndarray of float64, shape (points, N)
-            Parts on the sector itself and on the next one.
-        """
-        rows = contact.rows(self.neighbours)
-        size = len(self.structure)
+    def contact_rows(self, contact: Contact) -> tuple[Matrix, ...]:
+        """Return the two parts of B of u = B x_i + B' x_(i+1), (points, N) each."""
+        rows, size = contact.rows(self.neighbours), len(self.structure)
         return np.ascontiguousarray(rows[:, :size]), np.ascontiguousarray(rows[:, size:])
 
     def order_of(self, harmonic: int) -> int:
@@ -223,10 +200,12 @@ class BladedDisk(Model):
 
     def matrices_at(self, harmonic: int) -> tuple[AnyMatrix, AnyMatrix, AnyMatrix]:
         """Return mass, damping and stiffness as a harmonic of the motion meets them, complex."""
-        delta = 2.0 * pi * self.diameter(harmonic) / self.sectors
-        blocks = (self.matrices.mass, self.matrices.damping, self.matrices.stiffness)
-        mass, damping, stiffness = (block.wave(delta) for block in blocks)
+        mass, damping, stiffness = self.matrices.wave(self.angle(self.diameter(harmonic)))
         return mass, damping, stiffness
+
+    def angle(self, diameter: int) -> float:
+        """Return by how much a wave of a nodal diameter is ahead from sector to sector [rad]."""
+        return 2.0 * pi * diameter / self.sectors
 
     def forces_on(self, sector: int) -> tuple[Force, ...]:
         """Return the forces on a sector."""
@@ -236,53 +215,24 @@ class BladedDisk(Model):
         )
 
     def seen_from(self, sector: int) -> BladedDisk:
-        """Return the disk with another sector as sector 0.
-
-        Parameters
-        ----------
-        sector : int
-            From 0 to n-1.
-
-        Returns
-        -------
-        BladedDisk
-            The same disk under forces ahead by those of the sector.
-
-        Raises
-        ------
-        ModelError
-            If there is no such sector.
-        """
+        """Return the disk, under forces ahead by those of a sector from 0 to n-1, as from there."""
         number = whole_number(sector, "sector")
         if number >= self.sectors:
             raise ModelError(f"sector: {number}; there are {self.sectors}, 0 to {self.sectors - 1}")
         return self.replaced(forces=self.forces_on(number)) if number else self
 
-    def replaced(
-        self, *, contacts: Iterable[Contact] | None = None, forces: Iterable[Force] | None = None
-    ) -> BladedDisk:
-        """Return the disk with other contacts or forces; see `Model.replaced`."""
-        return _rebuilt(
-            self.structure,
-            self.sectors,
-            self.couplings,
-            self.contacts if contacts is None else contacts,
-            self.forces if forces is None else forces,
-            self.engine_order,
-            self.engine_orders,
-            self.interface,
-        )
-
     @cached_property
     def problem(self) -> _core.Problem:
-        """One sector of the wave as the compiled core sees it, built once.
-
-        Raises
-        ------
-        ModelError
-            If the forces make no single travelling wave, or the core refuses the numbers.
-        """
-        self._require_one_wave()
+        """One sector of the wave as the compiled core sees it, built once; forces must make one."""
+        for number, force in enumerate(self.forces, 1):
+            k, order = force.harmonic, self.order_of(force.harmonic)
+            if (order - k * self.engine_order) % self.sectors:
+                reason = (
+                    f"force {number} at {brief(force.dof)}: harmonic {k} of engine order {order} "
+                    f"does not travel with {k} x {self.engine_order} modulo {self.sectors} "
+                    "sectors, so that the motion is no single wave; compute all sectors"
+                )
+                raise ModelError(f"{reason}, disk.mistuned(0)", study=f"{reason}, {ALL_SECTORS}")
         return self._wave_problem(self._loads())
 
     def mistuned(
@@ -292,7 +242,9 @@ class BladedDisk(Model):
         mass: ArrayLike | None = None,
         structures: Iterable[Structure] | None = None,
     ) -> MistunedDisk:
-        """Return the assembly of all sectors, which may differ.
+        """Return the assembly of all sectors, which may differ: a `Model`.
+
+        Its degrees of freedom are "0.tip", "1.tip", ..., its contacts "0.jenkins", ...
 
         Parameters
         ----------
@@ -304,11 +256,6 @@ class BladedDisk(Model):
             Deviations of mass, likewise.
         structures : iterable of Structure, optional
             Instead of both: one sector structure each, with the same degrees of freedom.
-
-        Returns
-        -------
-        MistunedDisk
-            A `Model` with degrees of freedom "0.tip", "1.tip", ... and contacts "0.jenkins", ...
 
         Raises
         ------
@@ -323,17 +270,9 @@ class BladedDisk(Model):
     def nodal_diameters(self, slipping: Iterable[PointRef] | None = None) -> NodalDiameters:
         """Return the natural frequencies at all nodal diameters, stuck and slipping.
 
-        Parameters
-        ----------
-        slipping : iterable of int, str or (int or str, int), optional
-            The contact points that slip. Default: all.
-
-        Returns
-        -------
-        NodalDiameters
-            Frequencies with all contacts stuck, and with those points slipping.
+        `slipping` are the contact points that slip, as of `natural_frequencies`. Default: all.
         """
-        from stickslip.disk.nodal_diameters import nodal_diameters
+        from stickslip.disk.waves import nodal_diameters
 
         return nodal_diameters(self, slipping)
 
@@ -358,53 +297,14 @@ class BladedDisk(Model):
     def _wave_problem(self, loads: list[tuple[int, NDArray[np.complex128]]]) -> _core.Problem:
         from stickslip import _core
 
-        contacts = [
-            (contact.law, *self.contact_rows(contact), contact.law_parameters())
-            for contact in self.contacts
-        ]
-        try:
-            return _core.Problem.travelling_wave(
-                self.matrices.mass,
-                self.matrices.damping,
-                self.matrices.stiffness,
-                self.sectors,
-                self.engine_order % self.sectors,
-                contacts,
-                loads,
-                self.matrices.proportional,
-            )
-        except ValueError as error:
-            raise ModelError(str(error)) from error
-
-    def _require_one_wave(self) -> None:
-        for number, force in enumerate(self.forces, 1):
-            k, order = force.harmonic, self.order_of(force.harmonic)
-            if (order - k * self.engine_order) % self.sectors:
-                reason = (
-                    f"force {number} at {brief(force.dof)}: harmonic {k} of engine order {order} "
-                    f"does not travel with {k} x {self.engine_order} modulo {self.sectors} "
-                    "sectors, so that the motion is no single wave; compute all sectors"
-                )
-                raise ModelError(f"{reason}, disk.mistuned(0)", study=f"{reason}, {ALL_SECTORS}")
-
-
-def _rebuilt(
-    structure: Structure,
-    sectors: int,
-    couplings: Iterable[Coupling],
-    contacts: Iterable[Contact],
-    forces: Iterable[Force],
-    engine_order: int,
-    engine_orders: Mapping[int, int],
-    interface: Interface | None,
-) -> BladedDisk:
-    return BladedDisk(
-        structure,
-        sectors,
-        couplings,
-        contacts,
-        forces,
-        engine_order=engine_order,
-        engine_orders=engine_orders,
-        interface=interface,
-    )
+        return from_core(
+            _core.Problem.travelling_wave,
+            self.matrices.mass,
+            self.matrices.damping,
+            self.matrices.stiffness,
+            self.sectors,
+            self.engine_order % self.sectors,
+            self._core_contacts(),
+            loads,
+            self.matrices.proportional,
+        )

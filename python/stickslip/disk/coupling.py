@@ -1,17 +1,41 @@
-"""What ties a sector to the next one: springs, or the blocks of a cyclic matrix."""
+"""What ties a sector to the next one, springs or blocks of cyclic matrices; rings of them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from stickslip.checks import Matrix, MatrixLike, brief, real_matrix, real_number, text, unknown
+from stickslip.checks import (
+    Matrix,
+    MatrixLike,
+    brief,
+    real_matrix,
+    real_number,
+    require_finite,
+    require_keys,
+    require_square,
+    set_fields,
+    text,
+    unknown,
+)
 from stickslip.errors import ModelError
+from stickslip.model.damping import makes_blocks
 from stickslip.model.structure import Rayleigh, Structure
 
-__all__ = ["Coupling", "Interface", "coupling_from_spec"]
+__all__ = [
+    "MATRICES",
+    "Blocks",
+    "Coupling",
+    "CyclicMatrices",
+    "Interface",
+    "assembled",
+    "coupling_from_spec",
+    "cyclic_sector",
+]
 
 
 @dataclass(frozen=True)
@@ -57,24 +81,10 @@ class Coupling:
         return self.dof, self.dof if self.other is None else self.other
 
     def blocks(self, structure: Structure) -> tuple[Matrix, Matrix]:
-        """Return what a spring of unit stiffness adds to the matrices of a sector.
+        """Return what a spring of unit stiffness adds to the matrices of a sector, twice (N, N).
 
-        Parameters
-        ----------
-        structure : Structure
-            The sector, of N degrees of freedom.
-
-        Returns
-        -------
-        own : ndarray of float64, shape (N, N)
-            What it adds to the sector itself: its ends at both sides.
-        next : ndarray of float64, shape (N, N)
-            What couples the sector, by rows, to the next one, by columns.
-
-        Raises
-        ------
-        ModelError
-            If the structure lacks a degree of freedom.
+        The first is what it adds to the sector itself, its ends at both sides; the second what
+        couples the sector, by rows, to the next one, by columns.
         """
         start, end = (structure.index(dof) for dof in self.ends)
         own, following = np.zeros((2, len(structure), len(structure)))
@@ -85,46 +95,14 @@ class Coupling:
 
     def to_spec(self) -> dict[str, object]:
         """Return the coupling in plain values; see `coupling_from_spec`."""
-        return {
-            "dof": self.dof,
-            "other": self.other,
-            "stiffness": self.stiffness,
-            "damping": self.damping,
-        }
+        return asdict(self)
 
 
-def coupling_from_spec(spec: Mapping[str, object]) -> Coupling:
-    """Build a coupling from the plain values of `Coupling.to_spec`.
-
-    Parameters
-    ----------
-    spec : mapping
-        `dof`, `stiffness` and, optionally, `other` and `damping`.
-
-    Returns
-    -------
-    Coupling
-        The coupling.
-
-    Raises
-    ------
-    ModelError
-        If a key is unknown or missing, or a value is refused by `Coupling`.
-    """
-    keys = ("dof", "other", "stiffness", "damping")
-    for key in spec:
-        if key not in keys:
-            raise ModelError(f"coupling: {unknown('key', key, keys)}")
-    for key in ("dof", "stiffness"):
-        if key not in spec:
-            raise ModelError(f"coupling: {key} is missing; give {key}")
-    other = spec.get("other")
-    return Coupling(
-        text(spec["dof"], "coupling: dof"),
-        None if other is None else text(other, "coupling: other"),
-        stiffness=real_number(spec["stiffness"], "coupling: stiffness"),
-        damping=real_number(spec.get("damping", 0.0), "coupling: damping"),
-    )
+def coupling_from_spec(spec: Mapping[str, Any]) -> Coupling:
+    """Build a coupling from the plain values of `Coupling.to_spec`."""
+    known = ("dof", "other", "stiffness", "damping")
+    require_keys(spec, "coupling", known, ("dof", "stiffness"))
+    return Coupling(**spec)
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -168,9 +146,7 @@ class Interface:
             C = damping.matrix(M, K)
         else:
             C = _block(damping, "damping", len(K))
-        for name, value in (("stiffness", K), ("mass", M), ("damping", C)):
-            value.flags.writeable = False
-            object.__setattr__(self, name, value)
+        set_fields(self, stiffness=K, mass=M, damping=C)
 
     def __len__(self) -> int:
         return len(self.stiffness)
@@ -183,16 +159,146 @@ class Interface:
 
 
 def _block(matrix: MatrixLike, name: str, size: int | None) -> Matrix:
-    entry = f"interface: {name}"
-    block = real_matrix(matrix, entry)
-    rows, columns = block.shape
-    if rows != columns:
-        raise ModelError(f"{entry}: {rows} x {columns} is not square; give N x N for N dofs")
-    if size is not None and rows != size:
-        raise ModelError(f"{entry}: {rows} x {columns}, but the stiffness is {size} x {size}")
-    if not np.isfinite(block).all():
-        row, column = np.argwhere(~np.isfinite(block))[0]
-        raise ModelError(
-            f"{entry}: {block[row, column]} at ({row}, {column}); every entry must be finite"
-        )
+    block = real_matrix(matrix, f"interface: {name}")
+    require_square(block, f"interface: {name}", size, "stiffness")
+    require_finite(block, f"interface: {name}")
     return block
+
+
+MATRICES = ("mass", "damping", "stiffness")
+
+
+class Blocks(NamedTuple):
+    """A cyclic matrix by its blocks."""
+
+    own: NDArray[np.float64]
+    """(N, N) Block of a sector, or (n, N, N) those of n sectors."""
+    next: Matrix
+    """(N, N) Block of a sector, by rows, and the next one, by columns."""
+
+    def wave(self, delta: float) -> NDArray[np.complex128]:
+        """Return the matrix that a wave meets which runs ahead by `delta` per sector [rad]."""
+        ahead = np.exp(1j * delta) * self.next
+        return np.asarray(self.own + ahead + ahead.conj().T, dtype=np.complex128)
+
+
+def assembled(blocks: Blocks, wrap: float = 1.0) -> Matrix:
+    """Return the matrix of a ring of n sectors, whose own blocks are (n, N, N).
+
+    The sector after the last one is the first, its motion times `wrap`.
+    """
+    own, following = blocks
+    sectors, size, _ = own.shape
+    whole = np.zeros((sectors, size, sectors, size))
+    for sector in range(sectors):
+        ahead = (sector + 1) % sectors
+        between = following if ahead else wrap * following
+        # Added, not set: of two sectors each is the next of the other.
+        whole[sector, :, sector] += own[sector]
+        whole[sector, :, ahead] += between
+        whole[ahead, :, sector] += between.T
+    return whole.reshape(sectors * size, sectors * size)
+
+
+@dataclass(frozen=True)
+class CyclicMatrices:
+    """Mass, damping and stiffness of a sector and of its coupling to the next one."""
+
+    mass: Blocks
+    """[kg]"""
+    damping: Blocks
+    """[kg/s]"""
+    stiffness: Blocks
+    """[N/m]"""
+    proportional: bool
+    """Whether a law made all of the damping, one that couples no modes of any nodal diameter."""
+
+    def wave(self, delta: float) -> tuple[NDArray[np.complex128], ...]:
+        """Return mass, damping and stiffness as a wave meets them; see `Blocks.wave`."""
+        return self.mass.wave(delta), self.damping.wave(delta), self.stiffness.wave(delta)
+
+    @classmethod
+    def of(
+        cls, structure: Structure, couplings: Sequence[Coupling], interface: Interface | None
+    ) -> CyclicMatrices:
+        """Add couplings and interface blocks to the matrices of a sector by itself."""
+        blocks = {}
+        for name in MATRICES:
+            own = getattr(structure, name).copy()
+            following = np.zeros_like(own) if interface is None else getattr(interface, name).copy()
+            for coupling in couplings:
+                factor = getattr(coupling, name, 0.0)
+                if factor:
+                    at_own, at_next = coupling.blocks(structure)
+                    own += factor * at_own
+                    following += factor * at_next
+            blocks[name] = Blocks(own, following)
+        if couplings or interface is not None:
+            known = makes_blocks(structure.damping_law, zip(*blocks.values(), strict=True))
+        else:
+            known = structure.proportional
+        return cls(**blocks, proportional=known)
+
+
+def cyclic_sector(structure: Structure, boundary: Mapping[str, str]) -> tuple[Structure, Interface]:
+    """Join the right boundary of a sector to the left one of the next.
+
+    Both results are for ``BladedDisk(structure, ..., interface=interface)``: the sector without its
+    right boundary, whose parts stand at the left one, K0 = K of the own degrees of freedom with K
+    of the right boundary added at the left; and the blocks to the next sector, K1 between the own
+    degrees of freedom and the left boundary of the next sector.
+
+    Parameters
+    ----------
+    structure : Structure
+        A sector with the degrees of freedom of both of its cuts, as finite elements give it, in
+        cylindrical or sector-fixed coordinates.
+    boundary : mapping of str to str
+        Degrees of freedom at the right cut, each with the one at the left cut that it is in the
+        next sector.
+
+    Raises
+    ------
+    ModelError
+        If the boundary is no mapping or empty, a degree of freedom is unknown, stands at both cuts,
+        or is named twice.
+    """
+    left = _checked(structure, boundary)
+    kept = [dof for dof in structure.dofs if dof not in left]
+    own = np.array([[float(dof == name) for name in kept] for dof in structure.dofs])
+    ahead = [left.get(dof) for dof in structure.dofs]
+    following = np.array([[float(dof == name) for name in kept] for dof in ahead])
+    blocks = {}
+    for name in ("mass", "stiffness", "damping"):
+        matrix = getattr(structure, name)
+        blocks[name] = own.T @ matrix @ own + following.T @ matrix @ following
+    # The blocks of a skew part change sign across the cut, which one block per cut cannot say.
+    if np.abs(structure.damping - structure.damping.T).max() > 0.0:
+        reason = "structure: its damping is not symmetric; give the blocks yourself,"
+        raise ModelError(f"{reason} ss.Interface(...)", study=f"{reason} interface of [disk]")
+    interface = Interface(
+        *(own.T @ getattr(structure, name) @ following for name in ("stiffness", "mass", "damping"))
+    )
+    law = structure.damping_law if isinstance(structure.damping_law, Rayleigh) else None
+    sector = Structure.of_law(blocks["mass"], blocks["stiffness"], blocks["damping"], kept, law)
+    return sector, interface
+
+
+def _checked(structure: Structure, boundary: object) -> dict[str, str]:
+    if not isinstance(structure, Structure):
+        raise ModelError(f"structure: {brief(structure)} is no Structure; give ss.Structure(...)")
+    if not isinstance(boundary, Mapping) or not boundary:
+        raise ModelError(
+            f'boundary: {brief(boundary)} names no pairs; write {{"right dof": "left dof"}}'
+        )
+    for right, left in boundary.items():
+        for dof in (right, left):
+            if dof not in structure.dofs:
+                raise ModelError(f"boundary: {unknown('dof', dof, structure.dofs)}")
+        if left in boundary:
+            raise ModelError(f"boundary: {brief(left)} stands at both cuts; name it at one")
+    lefts = list(boundary.values())
+    twice = next((dof for dof in lefts if lefts.count(dof) > 1), None)
+    if twice is not None:
+        raise ModelError(f"boundary: {brief(twice)} is given twice at the left; name it once")
+    return dict(boundary)

@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, members, unknown
+from stickslip.checks import Matrix, brief, members, set_fields, unknown
 from stickslip.disk.arguments import NEXT
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.ring import Ring, SectorContact
+from stickslip.disk.coupling import MATRICES, Blocks, CyclicMatrices, assembled
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
-from stickslip.model.damping import makes_blocks
+from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
 from stickslip.model.force import Force
-from stickslip.model.model import Model
+from stickslip.model.model import Model, from_core
 from stickslip.model.structure import Structure
 
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["MistunedDisk", "deviating"]
+__all__ = ["MistunedDisk", "Ring", "SectorContact", "deviating", "tuned_disk"]
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -40,113 +40,91 @@ class MistunedDisk(Model):
         The tuned disk: couplings, contacts and forces are its.
     blades : iterable of Structure
         The structure of each sector by itself.
-
-    Attributes
-    ----------
-    structure, contacts, forces
-        Of the whole, as in `Model`.
-    disk : BladedDisk
-        The tuned disk.
-    blades : tuple of Structure
-        The sectors.
+    contacts, forces : iterable, optional
+        Others than those of the disk: contacts as many, at the same degrees of freedom, in the
+        order of the sectors; forces on "0.tip", ...
 
     Raises
     ------
     ModelError
-        If there is not one structure per sector, or one has other degrees of freedom than the disk.
+        If there is not one structure per sector, or one has other degrees of freedom than the disk;
+        if the contacts are not as many, or lie elsewhere.
     """
 
     disk: BladedDisk
     blades: tuple[Structure, ...]
 
-    def __init__(self, disk: BladedDisk, blades: Iterable[Structure]) -> None:
-        if not isinstance(disk, BladedDisk):
-            raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give ss.BladedDisk(...)")
-        self._set(disk, _required(blades, disk), _contacts(disk), _forces(disk))
-
-    def _set(
+    def __init__(
         self,
         disk: BladedDisk,
-        blades: tuple[Structure, ...],
-        contacts: Iterable[Contact],
-        forces: Iterable[Force],
+        blades: Iterable[Structure],
+        contacts: Iterable[Contact] | None = None,
+        forces: Iterable[Force] | None = None,
     ) -> None:
-        object.__setattr__(self, "disk", disk)
-        object.__setattr__(self, "blades", blades)
-        super().__init__(_assembled(disk, blades), contacts, forces)
+        if not isinstance(disk, BladedDisk):
+            raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give ss.BladedDisk(...)")
+        sectors = _required(blades, disk)
+        set_fields(self, disk=disk, blades=sectors)
+        own = _contacts(disk)
+        super().__init__(
+            _ring(disk, sectors, (), ()).assembled(disk.structure.dofs),
+            own if contacts is None else contacts,
+            _forces(disk) if forces is None else forces,
+        )
+        if [one.dofs for one in self.contacts] != [one.dofs for one in own]:
+            raise ModelError(
+                f"contacts: {len(self.contacts)} for {len(own)} of the disk, or elsewhere; change "
+                "parameters only, or build another BladedDisk"
+            )
 
     def __repr__(self) -> str:
         sector = self.disk.structure
         return f"MistunedDisk({self.sectors} x {sector!r}, {len(self.contacts)} contact(s))"
 
-    def __reduce__(self) -> tuple[object, ...]:
-        return rebuilt, (self.disk, self.blades, self.contacts, self.forces)
+    def _parts(self) -> dict[str, Any]:
+        names = ("disk", "blades", "contacts", "forces")
+        return {name: getattr(self, name) for name in names}
+
+    def with_structure(self, structure: Structure) -> Model:
+        """Return a plain `Model` with another structure of all sectors."""
+        return Model(structure, self.contacts, self.forces)
 
     @property
     def sectors(self) -> int:
         """Number of sectors."""
         return self.disk.sectors
 
-    def replaced(
-        self, *, contacts: Iterable[Contact] | None = None, forces: Iterable[Force] | None = None
-    ) -> MistunedDisk:
-        """Return the disk with other contact parameters or forces; see `Model.replaced`.
-
-        Raises
-        ------
-        ModelError
-            If the contacts are not as many, or lie elsewhere.
-        """
-        return rebuilt(
-            self.disk,
-            self.blades,
-            self.contacts if contacts is None else contacts,
-            self.forces if forces is None else forces,
-        )
-
     @cached_property
     def problem(self) -> _core.Problem:
-        """The ring as the compiled core sees it, sector by sector, built once.
-
-        Raises
-        ------
-        ModelError
-            If the core refuses the numbers.
-        """
+        """The ring as the compiled core sees it, sector by sector, built once."""
         from stickslip import _core
 
         ring = self.ring
         contacts: list[list[_core.SectorContact]] = [[] for _ in range(self.sectors)]
         for one in ring.contacts:
-            contacts[one.sector].append((one.law, one.own, one.next, one.parameters))
-        forces = [
-            [(harmonic, load[sector]) for harmonic, load in ring.loads]
-            for sector in range(self.sectors)
-        ]
-        try:
-            return _core.Problem.ring(
-                (ring.mass, ring.mass_next),
-                (ring.damping, ring.damping_next),
-                (ring.stiffness, ring.stiffness_next),
-                contacts,
-                forces,
-                ring.proportional,
-            )
-        except ValueError as error:
-            raise ModelError(str(error)) from error
+            contacts[one.sector].append(one[1:])
+        return from_core(
+            _core.Problem.ring,
+            ring.mass,
+            ring.damping,
+            ring.stiffness,
+            contacts,
+            ring.loads_by_sector(),
+            ring.proportional,
+        )
 
     @cached_property
     def ring(self) -> Ring:
         """The disk in numbers, sector by sector."""
         places = [self.disk.contact_rows(contact) for contact in self.disk.contacts]
-        contacts = tuple(
-            SectorContact(place // len(places), one.law, *places[place % len(places)], parameters)
-            for place, one in enumerate(self.contacts)
-            for parameters in [one.law_parameters()]
-        )
+        contacts = []
+        for number, one in enumerate(self.contacts):
+            sector, place = divmod(number, len(places))
+            own, following = places[place]
+            contacts.append(SectorContact(sector, one.law, own, following, one.law_parameters()))
         shape = self.sectors, len(self.disk.structure)
         loads = tuple((harmonic, load.reshape(shape)) for harmonic, load in self._loads())
-        return _ring(self.disk, self.blades, contacts, loads)
+        return _ring(self.disk, self.blades, tuple(contacts), loads)
 
 
 def deviating(
@@ -185,46 +163,6 @@ def deviating(
     )
 
 
-def rebuilt(
-    disk: BladedDisk,
-    blades: Iterable[Structure],
-    contacts: Iterable[Contact],
-    forces: Iterable[Force],
-) -> MistunedDisk:
-    """Return a mistuned disk with contact parameters and forces of its own.
-
-    Parameters
-    ----------
-    disk : BladedDisk
-        The tuned disk.
-    blades : iterable of Structure
-        The structure of each sector.
-    contacts : iterable of Contact
-        As many as the disk has, at the same degrees of freedom, in the order of the sectors.
-    forces : iterable of Force
-        On the degrees of freedom "0.tip", ...
-
-    Returns
-    -------
-    MistunedDisk
-        The disk.
-
-    Raises
-    ------
-    ModelError
-        If the contacts are not as many, or lie elsewhere.
-    """
-    made = object.__new__(MistunedDisk)
-    made._set(disk, tuple(blades), contacts, forces)
-    expected = [contact.dofs for contact in _contacts(disk)]
-    if [contact.dofs for contact in made.contacts] != expected:
-        raise ModelError(
-            f"contacts: {len(made.contacts)} for {len(expected)} of the disk, or elsewhere; change "
-            "parameters only, or build another BladedDisk"
-        )
-    return made
-
-
 def _contacts(disk: BladedDisk) -> tuple[Contact, ...]:
     return tuple(
         contact.moved(
@@ -252,10 +190,6 @@ def _placed(dof: str | None, sector: int, sectors: int) -> str | None:
     return f"{sector}.{dof}"
 
 
-def _assembled(disk: BladedDisk, blades: tuple[Structure, ...]) -> Structure:
-    return _ring(disk, blades, (), ()).assembled(disk.structure.dofs)
-
-
 def _ring(
     disk: BladedDisk,
     blades: tuple[Structure, ...],
@@ -263,20 +197,47 @@ def _ring(
     loads: tuple[tuple[int, NDArray[np.complex128]], ...],
 ) -> Ring:
     parts = {}
-    for name in ("mass", "damping", "stiffness"):
-        blocks = getattr(disk.matrices, name)
+    for name in MATRICES:
+        tuned = getattr(disk.matrices, name)
         # What couplings add to the sectors themselves does not deviate.
-        added = blocks.own - getattr(disk.structure, name)
-        parts[name] = np.stack([getattr(blade, name) + added for blade in blades])
-        parts[f"{name}_next"] = blocks.next
-    names = ("mass", "damping", "stiffness")
-    blocks = [*zip(*(parts[name] for name in names), strict=True)]
+        added = tuned.own - getattr(disk.structure, name)
+        own = np.stack([getattr(blade, name) + added for blade in blades])
+        parts[name] = Blocks(own, tuned.next)
     if disk.couplings or disk.interface is not None:
-        blocks.append(tuple(parts[f"{name}_next"] for name in names))
-        known = makes_blocks(disk.structure.damping_law, blocks)
+        sectors, between = zip(*parts.values(), strict=True)
+        known = makes_blocks(disk.structure.damping_law, [*zip(*sectors, strict=True), between])
     else:
         known = all(blade.proportional for blade in blades)
-    return Ring(**parts, contacts=contacts, loads=loads, proportional=known)
+    return Ring(**parts, proportional=known, contacts=contacts, loads=loads)
+
+
+def tuned_disk(disk: BladedDisk) -> _core.TunedDisk:
+    """Return what makes many mistuned disks of a tuned one in the compiled core.
+
+    Its method `mistuned` makes what ``disk.mistuned(pattern).problem`` is, to rounding.
+    """
+    from stickslip import _core
+
+    sector, matrices = disk.structure, disk.matrices
+    law, nothing = sector.damping_law, np.zeros_like(sector.mass)
+    # Damping that stays, that goes with the stiffness, and that with its root: given ratios go with
+    # the natural frequencies.
+    constant, proportional, root = np.array(sector.damping), nothing, nothing
+    if isinstance(law, Rayleigh):
+        constant, proportional = law.mass * sector.mass, law.stiffness * sector.stiffness
+    elif isinstance(law, ModalDamping):
+        constant, root = nothing, constant
+    return from_core(
+        _core.TunedDisk,
+        matrices.mass.own,
+        sector.stiffness,
+        matrices.stiffness.own - sector.stiffness,
+        (constant + (matrices.damping.own - sector.damping), proportional, root),
+        (matrices.mass.next, matrices.damping.next, matrices.stiffness.next),
+        disk._core_contacts(),
+        disk.mistuned(0.0).ring.loads_by_sector(),
+        matrices.proportional,
+    )
 
 
 def _deviations(values: ArrayLike | None, entry: str, sectors: int) -> NDArray[np.float64]:
@@ -318,3 +279,52 @@ def _required(blades: Iterable[Structure], disk: BladedDisk) -> tuple[Structure,
             )
             raise ModelError(f"structures[{sector}]: {reason}")
     return given
+
+
+class SectorContact(NamedTuple):
+    """A contact of one sector in numbers."""
+
+    sector: int
+    """Sector it belongs to."""
+    law: str
+    """Name of the law, as the compiled core knows it."""
+    own: Matrix
+    """(points, N) Part of B on the sector itself."""
+    next: Matrix
+    """(points, N) Part of B on the next sector."""
+    parameters: Mapping[str, float | list[float]]
+    """Parameters of the law."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ring(CyclicMatrices):
+    """A mistuned disk in numbers, n sectors of N degrees of freedom each.
+
+    The blocks of the sectors are (n, N, N). In the whole matrices sector i takes the rows i N to
+    (i + 1) N - 1; the block between a sector and the next one is the same everywhere.
+    """
+
+    contacts: tuple[SectorContact, ...]
+    """All contacts, those of sector 0 first."""
+    loads: tuple[tuple[int, NDArray[np.complex128]], ...]
+    """Harmonics in ascending order, each with the forces on all sectors, (n, N) [N]."""
+
+    def loads_by_sector(self) -> list[list[tuple[int, NDArray[np.complex128]]]]:
+        """Return the loads on each sector, by harmonics."""
+        return [[(k, load[sector]) for k, load in self.loads] for sector in range(self.sectors)]
+
+    @property
+    def sectors(self) -> int:
+        """Number of sectors."""
+        return len(self.mass.own)
+
+    def assembled(self, dofs: Sequence[str]) -> Structure:
+        """Return the whole as one structure; "tip" of sector 3 is named "3.tip"."""
+        return Structure.of_law(
+            mass=assembled(self.mass),
+            stiffness=assembled(self.stiffness),
+            damping=assembled(self.damping),
+            dofs=[f"{sector}.{dof}" for sector in range(self.sectors) for dof in dofs],
+            law=None,
+            proportional=self.proportional,
+        )

@@ -33,11 +33,6 @@ def mistuning_pattern(
     seed : int, optional
         Seed of NumPy's default generator: the same seed, the same pattern.
 
-    Returns
-    -------
-    ndarray of float64, shape (sectors,)
-        Deviations S r_i; the sectors have the stiffness (1 + S r_i) K.
-
     Raises
     ------
     ModelError
@@ -59,30 +54,11 @@ def mistuning_pattern(
 def drawn_patterns(
     sectors: int, count: int, distribution: Distribution = "normal", *, seed: int = 0
 ) -> NDArray[np.float64]:
-    """Draw patterns of unit standard deviation, each from a generator of its own.
+    """Draw patterns of zero mean and unit standard deviation, shape (count, sectors).
 
-    Parameters
-    ----------
-    sectors : int
-        Number of sectors.
-    count : int
-        Number of patterns.
-    distribution : {"normal", "uniform"}, optional
-        Distribution of zero mean and unit deviation. Mean and deviation are those of the
-        distribution: the 36 numbers of one pattern have others, as the blades of one disk do.
-    seed : int, optional
-        Pattern i is drawn from ``SeedSequence(seed, spawn_key=(i,))`` of NumPy, the same however
-        many there are.
-
-    Returns
-    -------
-    ndarray of float64, shape (count, sectors)
-        Deviations r_i, in units of the standard deviation S.
-
-    Raises
-    ------
-    ModelError
-        If a number is outside its range, or there is no such distribution.
+    Mean and deviation are those of the distribution: the 36 numbers of one pattern have others, as
+    the blades of one disk do. Pattern i is drawn from ``SeedSequence(seed, spawn_key=(i,))`` of
+    NumPy, the same however many there are.
     """
     size = whole_number(sectors, "sectors", smallest=1)
     number = whole_number(count, "patterns", smallest=1)

@@ -13,11 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stickslip.checks import Matrix
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.cyclic import Blocks
-from stickslip.errors import ModelError
-from stickslip.model import Model
+from stickslip.disk.coupling import Blocks, assembled
+from stickslip.model.model import Model, from_core
 
 if TYPE_CHECKING:
     from stickslip import _core
@@ -41,19 +39,9 @@ class Rotation(NamedTuple):
 
 
 def rotation_of(disk: BladedDisk, *, half_wave: bool) -> Rotation:
-    """Return the symmetry of the travelling wave of a disk.
+    """Return the symmetry of the travelling wave of a disk, of as few sectors as it tells apart.
 
-    Parameters
-    ----------
-    disk : BladedDisk
-        The disk.
-    half_wave : bool
-        Whether x(t + T/2) = -x(t).
-
-    Returns
-    -------
-    Rotation
-        Of as few sectors as the wave tells apart; of one if nothing ties sectors together.
+    `half_wave` says whether x(t + T/2) = -x(t). If nothing ties sectors together, one is enough.
     """
     order = disk.engine_order % disk.sectors if _tied(disk) else 0
     common = gcd(order, disk.sectors)
@@ -69,24 +57,9 @@ def rotation_of(disk: BladedDisk, *, half_wave: bool) -> Rotation:
 
 
 def moving(model: Model, *, half_wave: bool) -> tuple[_core.Problem, Rotation | None]:
-    """Return a model as the compiled core follows it in time.
+    """Return a model as the compiled core follows it in time, and the symmetry of its wave, if any.
 
-    Parameters
-    ----------
-    model : Model
-        The model; of a tuned disk the sectors that its wave tells apart are followed.
-    half_wave : bool
-        Whether x(t + T/2) = -x(t).
-
-    Returns
-    -------
-    (Problem, Rotation or None)
-        The problem, and the symmetry of the wave if there is one.
-
-    Raises
-    ------
-    ModelError
-        If the forces on a disk make no single travelling wave, or the core refuses the numbers.
+    Of a tuned disk the sectors that its wave tells apart are followed; see `rotation_of`.
     """
     if not isinstance(model, BladedDisk):
         return model.problem, None
@@ -95,45 +68,29 @@ def moving(model: Model, *, half_wave: bool) -> tuple[_core.Problem, Rotation | 
 
 
 def wave_ring(disk: BladedDisk, rotation: Rotation) -> _core.Problem:
-    """Return the sectors that a wave tells apart as the compiled core sees them.
-
-    Raises
-    ------
-    ModelError
-        If the forces make no single travelling wave, or the core refuses the numbers.
-    """
+    """Return the sectors that a wave tells apart as the compiled core sees them."""
     from stickslip import _core
 
     _ = disk.problem  # refuses forces that make no single wave
     size, count = len(disk.structure), rotation.sectors
-    matrices = disk.matrices
+    matrices = (disk.matrices.mass, disk.matrices.damping, disk.matrices.stiffness)
     mass, damping, stiffness = (
-        _assembled(blocks, rotation)
-        for blocks in (matrices.mass, matrices.damping, matrices.stiffness)
+        assembled(Blocks(np.array([one.own] * count), one.next), rotation.wrap) for one in matrices
     )
     contacts = []
+    loads = {k: np.zeros((count, size), np.complex128) for k, _ in disk._loads()}
     for sector in range(count):
-        following, factor = _next(sector, rotation)
-        for contact in disk.contacts:
-            own, ahead = disk.contact_rows(contact)
-            rows = np.zeros((contact.points, count * size))
-            rows[:, _block(sector, size)] += own
-            rows[:, _block(following, size)] += factor * ahead
-            contacts.append((contact.law, rows, contact.law_parameters()))
-    loads = {
-        force.harmonic: np.zeros(count * size, dtype=np.complex128)
-        for force in sorted(disk.forces, key=lambda one: one.harmonic)
-    }
-    for sector in range(count):
+        following = (sector + 1) % count
+        for law, own, ahead, parameters in disk._core_contacts():
+            rows = np.zeros((len(own), count, size))
+            rows[:, sector] += own
+            rows[:, following] += ahead if following else rotation.wrap * ahead
+            contacts.append((law, rows.reshape(len(own), -1), parameters))
         for force in disk.forces_on(sector):
-            place = sector * size + disk.structure.index(force.dof)
-            loads[force.harmonic][place] += force.coefficient
-    try:
-        return _core.Problem(
-            mass, damping, stiffness, contacts, list(loads.items()), matrices.proportional
-        )
-    except ValueError as error:
-        raise ModelError(str(error)) from error
+            loads[force.harmonic][sector, disk.structure.index(force.dof)] += force.coefficient
+    forces = [(harmonic, load.ravel()) for harmonic, load in loads.items()]
+    proportional = disk.matrices.proportional
+    return from_core(_core.Problem, mass, damping, stiffness, contacts, forces, proportional)
 
 
 def _tied(disk: BladedDisk) -> bool:
@@ -142,26 +99,3 @@ def _tied(disk: BladedDisk) -> bool:
     return any(one.next.any() for one in blocks) or any(
         disk.contact_rows(contact)[1].any() for contact in disk.contacts
     )
-
-
-def _next(sector: int, rotation: Rotation) -> tuple[int, float]:
-    """Return the sector after one, and the factor of its motion."""
-    if sector + 1 < rotation.sectors:
-        return sector + 1, 1.0
-    return 0, rotation.wrap
-
-
-def _block(sector: int, size: int) -> slice:
-    return slice(sector * size, (sector + 1) * size)
-
-
-def _assembled(blocks: Blocks, rotation: Rotation) -> Matrix:
-    size, count = len(blocks.own), rotation.sectors
-    total = np.zeros((count * size, count * size))
-    for sector in range(count):
-        following, factor = _next(sector, rotation)
-        own, ahead = _block(sector, size), _block(following, size)
-        total[own, own] += blocks.own
-        total[own, ahead] += factor * blocks.next
-        total[ahead, own] += factor * blocks.next.T
-    return total

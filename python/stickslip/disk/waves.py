@@ -1,19 +1,22 @@
-"""Travelling waves of a tuned disk in a flow: their damping, and their matrices."""
+"""Travelling waves of a tuned disk: frequencies by nodal diameter, and damping in a flow."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from numbers import Complex
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import Matrix, brief, members, whole_number
+from stickslip.checks import Matrix, brief, members, set_fields, text, whole_number
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.influence import InfluenceCoefficients
 from stickslip.errors import ModelError
+from stickslip.model import natural_frequencies
 from stickslip.model.model import AnyMatrix, PointRef
+from stickslip.model.structural import condensed_stiffness
 from stickslip.model.structure import Structure
 
 if TYPE_CHECKING:
@@ -21,9 +24,17 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from stickslip.plot import DiameterOptions, SafeOptions
     from stickslip.plot.waves import WaveOptions
 
-__all__ = ["AerodynamicWaves", "Wave", "aerodynamic_waves"]
+__all__ = [
+    "AerodynamicWaves",
+    "InfluenceCoefficients",
+    "NodalDiameters",
+    "Wave",
+    "aerodynamic_waves",
+    "nodal_diameters",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,20 +82,7 @@ class AerodynamicWaves:
     def wave(self, diameter: int | None = None) -> Wave:
         """Return the matrices of a wave, as arrays for its limit cycle.
 
-        Parameters
-        ----------
-        diameter : int, optional
-            Nodal diameter, 0 to n-1. Default: the least stable.
-
-        Returns
-        -------
-        Wave
-            Its matrices.
-
-        Raises
-        ------
-        ModelError
-            If there is no such nodal diameter.
+        Its nodal diameter is from 0 to n-1. Default: the least stable.
         """
         chosen = self.least_stable if diameter is None else whole_number(diameter, "diameter")
         n = self.disk.sectors
@@ -95,14 +93,13 @@ class AerodynamicWaves:
         plane = np.outer(direction, direction)
         force = self.influence.at(chosen, n)
         added, fed = -force.real * plane, -force.imag / omega * plane
-        delta = 2.0 * np.pi * chosen / n
-        blocks = self.disk.matrices
+        mass, damping, stiffness = self.disk.matrices.wave(self.disk.angle(chosen))
         return Wave(
             diameter=chosen,
             omega=omega,
-            mass=blocks.mass.wave(delta),
-            damping=blocks.damping.wave(delta) + fed,
-            stiffness=blocks.stiffness.wave(delta) + added,
+            mass=mass,
+            damping=damping + fed,
+            stiffness=stiffness + added,
             negative_damping=fed,
             added_stiffness=added,
         )
@@ -110,21 +107,9 @@ class AerodynamicWaves:
     def negative_damping(self, diameter: int | None = None) -> NDArray[np.float64]:
         """Return what the flow damps in a wave, in the form that `stickslip.limit_cycles` takes.
 
-        Parameters
-        ----------
-        diameter : int, optional
-            Nodal diameter d of the wave, 0 to n-1. Default: the least stable.
-
-        Returns
-        -------
-        ndarray of float64, shape (n, N, N)
-            -Im L(k d) / (k omega_d) by the nodal diameter k d modulo n that harmonic k meets, of
-            the lowest odd k [kg/s]; 0 where none comes. Its stiffness is in `disk_of`.
-
-        Raises
-        ------
-        ModelError
-            If there is no such nodal diameter.
+        Of shape (n, N, N) [kg/s]: -Im L(k d) / (k omega_d) by the nodal diameter k d modulo n that
+        harmonic k meets, of the lowest odd k; 0 where none comes. The default wave is the least
+        stable, and its stiffness is in `disk_of`.
         """
         wave, n = self.wave(diameter), self.disk.sectors
         direction = self.influence.direction(self.disk.structure)
@@ -141,33 +126,19 @@ class AerodynamicWaves:
     def disk_of(self, diameter: int | None = None, ratio: float = 1.0) -> BladedDisk:
         """Return the disk in which a wave has the aerodynamic stiffness, and damping.
 
-        Parameters
-        ----------
-        diameter : int, optional
-            Nodal diameter, 0 to n-1. Default: the least stable.
-        ratio : float, optional
-            Factor on the aerodynamic damping; 0 for `stickslip.limit_cycles`, which adds it.
-
-        Returns
-        -------
-        BladedDisk
-            Without forces, its engine order the nodal diameter. Right for the fundamental of that
-            wave; its harmonics see the same coefficients.
+        It has no forces, and the nodal diameter of the wave as engine order. It is right for the
+        fundamental of that wave; its harmonics see the same coefficients. `ratio` is a factor on
+        the aerodynamic damping: 0 for `stickslip.limit_cycles`, which adds it.
         """
-        wave, disk = self.wave(diameter), self.disk
-        own = disk.structure
-        return BladedDisk(
-            Structure(
-                own.mass,
-                own.stiffness + wave.added_stiffness,
-                own.damping + ratio * wave.negative_damping,
-                own.dofs,
-            ),
-            disk.sectors,
-            disk.couplings,
-            disk.contacts,
-            engine_order=wave.diameter,
-            interface=disk.interface,
+        wave, own = self.wave(diameter), self.disk.structure
+        structure = Structure(
+            own.mass,
+            own.stiffness + wave.added_stiffness,
+            own.damping + ratio * wave.negative_damping,
+            own.dofs,
+        )
+        return self.disk._like(
+            structure=structure, forces=(), engine_order=wave.diameter, engine_orders=None
         )
 
     def plot(self, **options: Unpack[WaveOptions]) -> Axes:
@@ -228,10 +199,9 @@ def aerodynamic_waves(
     n = disk.sectors
     rows = [_wave(disk, slips, direction, influence.at(d, n), d, family) for d in range(n)]
     omega, flow, total = np.array(rows).T
-    diameters = np.arange(n)
-    for array in (diameters, omega, flow, total):
-        array.flags.writeable = False
-    return AerodynamicWaves(disk, influence, diameters, omega, flow, total)
+    waves = AerodynamicWaves(disk, influence, np.arange(n), omega, flow, total)
+    set_fields(waves, **vars(waves))
+    return waves
 
 
 def _wave(
@@ -245,10 +215,10 @@ def _wave(
     """Return frequency and both damping ratios of a wave."""
     from scipy.linalg import eigh
 
-    delta = 2.0 * np.pi * diameter / disk.sectors
-    blocks = disk.matrices
-    stiffness = blocks.stiffness.wave(delta) + _stuck(disk, slips, delta)
-    _, shapes = eigh(stiffness, blocks.mass.wave(delta))
+    delta = disk.angle(diameter)
+    mass, damping, stiffness = disk.matrices.wave(delta)
+    stiffness = stiffness + _stuck(disk, slips, delta)
+    _, shapes = eigh(stiffness, mass)
     shape = shapes[:, mode]
     moved = abs(direction @ shape) ** 2
     square = (shape.conj() @ stiffness @ shape).real - force.real * moved
@@ -258,7 +228,7 @@ def _wave(
             "aerodynamic stiffness; give smaller coefficients, or ground the structure"
         )
     omega = float(np.sqrt(square))
-    own = (shape.conj() @ blocks.damping.wave(delta) @ shape).real
+    own = (shape.conj() @ damping @ shape).real
     flow = -force.imag * moved / (2.0 * square)
     return omega, float(flow), float(flow + own / (2.0 * omega))
 
@@ -270,19 +240,141 @@ def _stuck(disk: BladedDisk, slips: set[tuple[int, int]], delta: float) -> AnyMa
     for number, contact in enumerate(disk.contacts):
         own, following = disk.contact_rows(contact)
         rows = own + np.exp(1j * delta) * following
-        sticks = [point for point in range(contact.points) if (number, point) not in slips]
-        total += rows.conj().T @ _condensed(contact.stuck_stiffness, sticks) @ rows
+        sticks = np.array([(number, point) not in slips for point in range(contact.points)])
+        total += rows.conj().T @ condensed_stiffness(contact.stuck_stiffness, sticks) @ rows
     return total
 
 
-def _condensed(spring: Matrix, sticks: list[int]) -> Matrix:
-    """Return the stiffness left when only some points stick, the others being free of force."""
-    left = np.zeros_like(spring)
-    if len(sticks) == len(spring):
-        return spring
-    if sticks:
-        free = [point for point in range(len(spring)) if point not in sticks]
-        held, cross = spring[np.ix_(sticks, sticks)], spring[np.ix_(sticks, free)]
-        loose = spring[np.ix_(free, free)]
-        left[np.ix_(sticks, sticks)] = held - cross @ np.linalg.solve(loose, cross.T)
-    return left
+@dataclass(frozen=True)
+class InfluenceCoefficients:
+    """Aerodynamic force on a blade per displacement of itself and of its neighbours.
+
+    A blade that moves as Re x exp(i omega t) exerts Re L_j x exp(i omega t) on the blade j places
+    before it; in a travelling wave of nodal diameter d of n blades, each ahead of the one before by
+    2 pi d / n, the force on every blade is its own displacement times
+
+        L(d) = sum_j L_j exp(2 pi i d j / n).
+
+    Its real part is a stiffness less, its imaginary part over omega a damping less: a positive
+    imaginary part feeds energy into the wave.
+
+    Parameters
+    ----------
+    coefficients : mapping of int to complex
+        L_j by the place j of the moving blade: 0 the blade itself, 1 the next, -1 the one before.
+        In N/m at a `dof`; of a `mode` with unit modal mass in 1/s^2.
+    dof : str, optional
+        The degree of freedom that moves and is acted on.
+    mode : int, optional
+        Instead: the mode of a blade by itself, counted from 0, along which it moves.
+
+    Raises
+    ------
+    ModelError
+        If there is no coefficient, one is not finite, or not exactly one of dof and mode is given.
+
+    References
+    ----------
+    Hanamura, Tanaka and Yamaguchi (1980); Crawley (1988) on travelling-wave and influence
+    coefficients.
+    """
+
+    coefficients: Mapping[int, complex]
+    dof: str | None = None
+    mode: int | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.coefficients, Mapping) or not self.coefficients:
+            raise ModelError(
+                f"influence coefficients: {brief(self.coefficients)} is no mapping; give "
+                "{0: ..., 1: ..., -1: ...}"
+            )
+        checked: dict[int, complex] = {}
+        for place, value in self.coefficients.items():
+            if isinstance(place, bool) or not isinstance(place, int | np.integer):
+                raise ModelError(f"influence coefficients: place {brief(place)} is no whole number")
+            if not isinstance(value, Complex) or not np.isfinite(complex(value)):
+                raise ModelError(
+                    f"influence coefficient {place}: {brief(value)} is no finite number; give L_j "
+                    "in N/m"
+                )
+            checked[int(place)] = complex(value)
+        if (self.dof is None) == (self.mode is None):
+            raise ModelError("influence coefficients: give exactly one of dof and mode")
+        if self.dof is not None:
+            text(self.dof, "influence coefficients: dof")
+        else:
+            whole_number(self.mode, "influence coefficients: mode")
+        object.__setattr__(self, "coefficients", MappingProxyType(checked))
+
+    def at(self, diameter: int, sectors: int) -> complex:
+        """Return L(d), the coefficient of a travelling wave of nodal diameter d, from 0 to n-1.
+
+        n - d runs the other way round.
+        """
+        turn = 2j * np.pi * diameter / sectors
+        return complex(sum(L * np.exp(turn * j) for j, L in self.coefficients.items()))
+
+    def direction(self, structure: Structure) -> NDArray[np.float64]:
+        """Return the vector p of the force p L p^T x on a blade by itself, shape (N,).
+
+        It is the unit vector of the dof, or M phi of the mode phi with unit modal mass.
+        """
+        if self.dof is not None:
+            unit: NDArray[np.float64] = np.eye(len(structure))[structure.index(self.dof)]
+            return unit
+        from scipy.linalg import eigh
+
+        mode = whole_number(self.mode, "influence coefficients: mode")
+        if mode >= len(structure):
+            raise ModelError(
+                f"influence coefficients: mode {mode}; a blade has {len(structure)}, counted from 0"
+            )
+        _, shapes = eigh(structure.stiffness, structure.mass)
+        return np.asarray(structure.mass @ shapes[:, mode], dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class NodalDiameters:
+    """Natural frequencies at the nodal diameters 0 to n/2, rounded down.
+
+    A wave of nodal diameter d that runs the other way round, n - d, has the same frequencies unless
+    gyroscopic terms part them; those belong to the damping, which plays no part here.
+    """
+
+    disk: BladedDisk
+    """The disk."""
+    diameters: NDArray[np.int64]
+    """(D,) Nodal diameters."""
+    stuck: NDArray[np.float64]
+    """(D, N) With all contacts stuck [rad/s], ascending at each diameter."""
+    slipping: NDArray[np.float64]
+    """(D, N) With the chosen contact points slipping [rad/s]."""
+
+    def plot(self, **options: Unpack[DiameterOptions]) -> Axes:
+        """Draw the frequencies over the nodal diameters; see `stickslip.plot.nodal_diameters`."""
+        from stickslip import plot
+
+        return plot.nodal_diameters(self, **options)
+
+    def plot_safe(self, speed: float, **options: Unpack[SafeOptions]) -> Axes:
+        """Draw them with the excitation at a rotor speed [rad/s]; see `stickslip.plot.safe`."""
+        from stickslip import plot
+
+        return plot.safe(self, speed, **options)
+
+
+def nodal_diameters(disk: BladedDisk, slipping: Iterable[PointRef] | None) -> NodalDiameters:
+    """Return the natural frequencies at all nodal diameters; see `BladedDisk.nodal_diameters`."""
+    every = [
+        (contact, point) for contact, one in enumerate(disk.contacts) for point in range(one.points)
+    ]
+    slips = every if slipping is None else list(members(slipping, "slipping", "slipping=[...]"))
+    diameters = np.arange(disk.sectors // 2 + 1)
+    stuck, free = (
+        np.stack([natural_frequencies(disk, points, nodal_diameter=int(d)) for d in diameters])
+        for points in ([], slips)
+    )
+    found = NodalDiameters(disk, diameters, stuck, free)
+    set_fields(found, **vars(found))
+    return found

@@ -2,10 +2,8 @@
 
 from stickslip.calls import checked_names
 from stickslip.fe.component_modes import craig_bampton
-from stickslip.fe.reduction import Reduction
-from stickslip.fe.report import ReductionReport
-from stickslip.fe.solid import Solid
-from stickslip.fe.stress import von_mises, von_mises_range
+from stickslip.fe.reduction import Reduction, ReductionReport
+from stickslip.fe.solid import Solid, von_mises, von_mises_range
 
 __all__ = ["Reduction", "ReductionReport", "Solid", "craig_bampton", "von_mises", "von_mises_range"]
 

@@ -101,18 +101,14 @@ def craig_bampton(
     K_ii, M_ii = K[inner][:, inner].tocsc(), M[inner][:, inner].tocsc()
     try:
         factor = Factor(K_ii)
-    except RuntimeError:
+        squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
+    except (RuntimeError, np.linalg.LinAlgError):
         raise _moves_rigidly(names) from None
     except MemoryError:
         raise ModelError(
             f"stiffness: the factors of {inner.size} rows do not fit into memory; coarsen"
         ) from None
-    coupling = K[inner][:, kept].toarray()
-    constraint = -factor.solve(coupling)
-    try:
-        squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
-    except np.linalg.LinAlgError:
-        raise _moves_rigidly(names) from None
+    constraint = -factor.solve(K[inner][:, kept].toarray())
     inertia = M_ii.diagonal()
     moving = inertia > _MASSLESS * inertia.max()
     highest = float((K_ii.diagonal()[moving] / inertia[moving]).max())

@@ -1,21 +1,23 @@
-"""A structure reduced to component modes, and the way back to all its degrees of freedom."""
+"""A structure reduced to component modes, its checks, and the way back to all of its motion."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csc_array
+from scipy.linalg import eigh
+from scipy.sparse import csc_array, diags_array
 
-from stickslip.checks import Matrix, MatrixLike, real_number, unknown
+from stickslip.checks import Matrix, MatrixLike, real_number, unknown, whole_number
 from stickslip.errors import ModelError
-from stickslip.fe.report import ReductionReport, reported
+from stickslip.fe.sparse import Factor, lowest_modes
 from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
 from stickslip.model.structure import Structure
 
-__all__ = ["Reduction"]
+__all__ = ["Reduction", "ReductionReport"]
 
 
 class Reduction:
@@ -79,42 +81,17 @@ class Reduction:
         )
 
     def structure(self, damping: MatrixLike | DampingLaw | None = None) -> Structure:
-        """Return the reduced structure.
+        """Return the reduced structure, with the degrees of freedom `dofs`.
 
-        Parameters
-        ----------
-        damping : array_like, Rayleigh, ModalDamping or None, optional
-            Viscous damping of the reduced structure, as of `Structure`.
-
-        Returns
-        -------
-        Structure
-            With the degrees of freedom `dofs`.
-
-        Raises
-        ------
-        ModelError
-            If the damping does not fit.
+        Its viscous damping is given as that of `Structure`.
         """
         return Structure(self.mass, self.stiffness, damping, self.dofs)
 
     def recover(self, reduced: ArrayLike) -> NDArray[np.generic]:
-        """Return the motion of all degrees of freedom, x = T q.
+        """Return the motion of all degrees of freedom, x = T q, shape (..., N).
 
-        Parameters
-        ----------
-        reduced : array_like, shape (..., n)
-            Motion of the reduced structure, real or complex: a harmonic, an instant, many of them.
-
-        Returns
-        -------
-        ndarray, shape (..., N)
-            In the order of the full matrices.
-
-        Raises
-        ------
-        ModelError
-            If the last dimension is not n.
+        `reduced` is the motion of the reduced structure, shape (..., n), real or complex: a
+        harmonic, an instant, many of them.
         """
         q = np.asarray(reduced)
         if not q.ndim or q.shape[-1] != len(self.dofs):
@@ -127,23 +104,9 @@ class Reduction:
     def forces(self, load: ArrayLike, harmonic: int = 1) -> list[Force]:
         """Return what a distributed load does to the reduced structure, T^T f.
 
-        Parameters
-        ----------
-        load : array_like, shape (N,)
-            Forces on all degrees of freedom [N]; complex ones have phases, as those of a travelling
-            wave: f(t) = Re(load exp(i k omega t)).
-        harmonic : int, optional
-            k.
-
-        Returns
-        -------
-        list of Force
-            One per reduced degree of freedom that the load moves.
-
-        Raises
-        ------
-        ModelError
-            If the shape is another, or a number not finite.
+        The load is on all degrees of freedom, shape (N,) [N]; complex numbers have phases, as those
+        of a travelling wave: f(t) = Re(load exp(i k omega t)), k being the `harmonic`. There is one
+        force per reduced degree of freedom that it moves.
         """
         given = np.asarray(load)
         if given.shape != (self.size,) or not np.isfinite(given).all():
@@ -164,27 +127,103 @@ class Reduction:
     ) -> ReductionReport:
         """Check the reduction against the full structure.
 
-        Parameters
-        ----------
-        frequencies : int, optional
-            How many natural frequencies to compare. The full structure is factored once more.
-        springs : mapping of str to float, optional
-            Springs to ground at boundary degrees of freedom [N/m], on both structures: stuck
-            dampers.
-
-        Returns
-        -------
-        ReductionReport
-            Symmetry, rigid-body modes, grounding, masses, frequencies; `print` it.
-
-        Raises
-        ------
-        ModelError
-            If a spring is not at the boundary, or the modes of the full structure are not found.
+        `frequencies` says how many natural frequencies to compare; the full structure is factored
+        once more. `springs` to ground at boundary degrees of freedom [N/m] are added to both
+        structures: stuck dampers.
         """
-        added = {}
+        count = whole_number(frequencies, "frequencies", smallest=1, largest=self.size - 1)
+        count = min(count, len(self.dofs))
+        reduced, added = self.stiffness.copy(), np.zeros(self.size)
         for dof, value in (springs or {}).items():
             if dof not in self.boundary:
                 raise ModelError(f"springs: {unknown('dof', dof, self.boundary)}")
-            added[self.boundary.index(dof)] = real_number(value, f"springs: {dof}")
-        return reported(self, frequencies, added)
+            place, spring = self.boundary.index(dof), real_number(value, f"springs: {dof}")
+            added[self.rows[place]] += spring
+            reduced[place, place] += spring
+        K, M = (self.full_stiffness + diags_array(added)).tocsc(), self.full_mass
+        # Below 0, so that a free structure can be factored too.
+        shift = -0.1 * float(self.omega[0]) ** 2
+        squares, _ = lowest_modes(K, M, count, Factor((K - shift * M).tocsc()), shift)
+        own = eigh(reduced, self.mass, eigvals_only=True)[:count]
+        omegas = np.sqrt(np.clip(squares, 0.0, None))
+        return ReductionReport(
+            (self.size, len(self.boundary), self.omega.size),
+            self.asymmetry,
+            self.decoupling,
+            int((omegas < _RIGID * self.omega[0]).sum()),
+            *self._translations(),
+            omegas,
+            np.sqrt(np.clip(own, 0.0, None)),
+        )
+
+    def _translations(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Return mass and resistance of the whole structure against translations."""
+        masses: dict[str, float] = {}
+        grounding: dict[str, float] = {}
+        ways = [name.rpartition(".")[2] for name in self.row_names or ()]
+        for way in ("1", "2", "3"):
+            moved = np.array([one == way for one in ways], dtype=np.float64)
+            if moved.any():
+                total = float(moved @ (self.full_stiffness.diagonal() * moved))
+                masses[way] = float(moved @ (self.full_mass @ moved))
+                held = float(np.abs(self.full_stiffness @ moved).sum())
+                grounding[way] = held / total if total else 0.0
+        return masses, grounding
+
+
+_RIGID = 1e-3
+"""A mode below this part of the first elastic one is a rigid-body mode."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReductionReport:
+    """Checks of a reduction."""
+
+    sizes: tuple[int, int, int]
+    """Degrees of freedom: full, boundary, fixed-interface modes."""
+    asymmetry: tuple[float, float]
+    """Of mass and stiffness as given, as a part of the largest entry."""
+    decoupling: float
+    """Stiffness between constraint and fixed-interface modes, 0 but for rounding, as a part of the
+    largest entry."""
+    rigid: int
+    """Rigid-body modes of the full structure: 0 is grounded, 6 is free."""
+    masses: dict[str, float]
+    """Mass that a translation moves [kg], by direction "1", "2", "3"; empty without names such as
+    "17.3". Clamped degrees of freedom are not in it."""
+    grounding: dict[str, float]
+    """Force that it takes to move the whole structure by a unit translation, as a part of the sum
+    of its stiffnesses: 0 where it is free to move."""
+    full: NDArray[np.float64]
+    """(frequencies,) Natural frequencies of the full structure [rad/s], ascending."""
+    reduced: NDArray[np.float64]
+    """(frequencies,) Those of the reduced one [rad/s]."""
+
+    @property
+    def errors(self) -> NDArray[np.float64]:
+        """How much higher the reduced frequencies are, relative; nan of rigid-body modes."""
+        errors = np.full(self.full.size, np.nan)
+        elastic = slice(self.rigid, None)
+        errors[elastic] = self.reduced[elastic] / self.full[elastic] - 1.0
+        return errors
+
+    def __str__(self) -> str:
+        full, boundary, modes = self.sizes
+        lines = [
+            f"{full} dofs reduced to {boundary} of the boundary and {modes} fixed-interface modes",
+            f"asymmetry          mass {self.asymmetry[0]:.1e}, stiffness {self.asymmetry[1]:.1e}",
+            f"decoupling         {self.decoupling:.1e} of the largest stiffness",
+            f"rigid-body modes   {self.rigid}" + ("" if self.rigid else ": the structure is held"),
+        ]
+        for way, mass in self.masses.items():
+            part = self.grounding[way]
+            held = "free to move" if part < 1e-10 else "held"
+            lines.append(f"direction {way}        {mass:.6g} kg, {held} ({part:.1e})")
+        lines.append("mode   full [Hz]      reduced [Hz]   error")
+        for mode, (one, other, error) in enumerate(
+            zip(self.full, self.reduced, self.errors, strict=True), 1
+        ):
+            shown = "rigid body" if np.isnan(error) else f"{error:.1e}"
+            hertz, reduced = one / (2.0 * np.pi), other / (2.0 * np.pi)
+            lines.append(f"{mode:4d}   {hertz:<12.6g}   {reduced:<12.6g}   {shown}")
+        return "\n".join(lines)

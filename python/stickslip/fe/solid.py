@@ -1,4 +1,4 @@
-"""Solid finite elements: hexahedra of 20 nodes, quadratic shape functions."""
+"""Solid finite elements, hexahedra of 20 nodes with quadratic shape functions, and their stress."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import file_path, real_number
+from stickslip.checks import file_path, optional_package, real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.files import refusal, write
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-__all__ = ["Solid"]
+__all__ = ["Solid", "von_mises", "von_mises_range"]
 
 _BOTTOM = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)]
 _EDGES = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)]
@@ -36,6 +36,8 @@ _VTK = np.array(
 """Places of the 20 nodes in VTK's order, in half edges."""
 _MIRRORED = [*range(4, 8), *range(4), *range(12, 16), *range(8, 12), *range(16, 20)]
 """The same with top and bottom exchanged."""
+_BLOCK = 2000
+"""Nodes at a time: the differences of all instants of so many fit into memory."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,13 +54,6 @@ class Solid:
         Poisson's ratio.
     density : float
         [kg/m^3].
-
-    Attributes
-    ----------
-    nodes : ndarray of float64, shape (n, 3)
-        Vertices, then middles of edges [m]. Degree of freedom 3 i + j is direction j of node i.
-    dofs : tuple of str
-        Their names, "node.direction", both from 1.
 
     Raises
     ------
@@ -85,18 +80,21 @@ class Solid:
 
     @cached_property
     def nodes(self) -> NDArray[np.float64]:
-        """Places of the nodes [m], shape (n, 3)."""
+        """Vertices, then middles of edges [m], shape (n, 3).
+
+        Degree of freedom 3 i + j is direction j of node i.
+        """
         return np.asarray(self._basis.doflocs[:, ::3].T, dtype=np.float64)
 
     @cached_property
     def dofs(self) -> tuple[str, ...]:
-        """Names of the degrees of freedom."""
+        """Names of the degrees of freedom, "node.direction", both from 1."""
         return tuple(f"{node}.{way}" for node in range(1, len(self.nodes) + 1) for way in (1, 2, 3))
 
     @cached_property
     def stiffness(self) -> csc_array:
         """Stiffness matrix [N/m], sparse, of the free body."""
-        grad, weights = self._gradients
+        _, grad, weights = self._shapes
         shear = self.young / (2.0 * (1.0 + self.poisson))
         lame = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
         flat = grad.reshape(*grad.shape[:2], 60)  # (element, point, shape function and direction)
@@ -111,8 +109,7 @@ class Solid:
     @cached_property
     def mass(self) -> csc_array:
         """Consistent mass matrix [kg], sparse."""
-        _, weights = self._gradients
-        shapes = self._scalar_values
+        shapes, _, weights = self._shapes
         scalar = np.einsum("aq,bq,eq->eab", shapes, shapes, self.density * weights, optimize=True)
         whole = np.zeros((len(scalar), 20, 3, 20, 3))
         for way in range(3):
@@ -126,24 +123,10 @@ class Solid:
     def load(
         self, traction: Callable[[NDArray[np.float64]], NDArray[np.float64]], vertices: ArrayLike
     ) -> NDArray[np.float64]:
-        """Return the forces of a traction on part of the surface.
+        """Return the forces of a traction on part of the surface, shape (3 n,) [N].
 
-        Parameters
-        ----------
-        traction : callable
-            From places, shape (3, ...), to force per area, the same shape [Pa].
-        vertices : array_like of int
-            The faces that have all their vertices among these are loaded.
-
-        Returns
-        -------
-        ndarray of float64, shape (3 n,)
-            Forces [N].
-
-        Raises
-        ------
-        ModelError
-            If there is no such face.
+        `traction` leads from places, shape (3, ...), to force per area, the same shape [Pa]; the
+        faces that have all their `vertices` among those given are loaded.
         """
         skfem = _skfem()
         among = np.isin(self.mesh.facets, np.asarray(vertices)).all(axis=0)
@@ -160,18 +143,10 @@ class Solid:
         return np.asarray(work.assemble(basis), dtype=np.float64)
 
     def stress(self, displacement: ArrayLike) -> NDArray[Any]:
-        """Return the stress of a displacement field at the nodes.
+        """Return the stress of a displacement field at the nodes, shape (n, 6) [Pa].
 
-        Parameters
-        ----------
-        displacement : array_like, shape (3 n,)
-            Of all degrees of freedom, real or complex [m].
-
-        Returns
-        -------
-        ndarray, shape (n, 6)
-            xx, yy, zz, yz, xz, xy [Pa]: the mean of the elements around a node, each evaluated at
-            the node itself.
+        The field is of all degrees of freedom, real or complex [m]; the stress xx, yy, zz, yz, xz,
+        xy is the mean of the elements around a node, each evaluated at the node itself.
         """
         given = np.asarray(displacement)
         if np.iscomplexobj(given):
@@ -193,26 +168,12 @@ class Solid:
         return np.asarray(np.array(sums).T / count[:, None])
 
     def write_vtu(self, path: str | os.PathLike[str], fields: Mapping[str, ArrayLike]) -> None:
-        """Write mesh and nodal fields for ParaView.
+        """Write mesh and nodal fields for ParaView, whole or not at all.
 
-        Parameters
-        ----------
-        path : str or path-like
-            The file, `.vtu`; it is written whole or not at all.
-        fields : mapping of str to array_like, shape (n,) or (n, 3)
-            Real values at the nodes by name.
-
-        Raises
-        ------
-        ModelError
-            If meshio is missing, or the file cannot be written.
+        `fields` are real values at the nodes by name, shape (n,) or (n, 3). The package meshio is
+        needed.
         """
-        try:
-            import meshio
-        except ImportError:
-            raise ModelError(
-                f"{path}: .vtu files need the package meshio: pip install 'stickslip[fe]'"
-            ) from None
+        meshio = optional_package("meshio", f"{path}: .vtu files")
         file = file_path(path, "path")
         values = {name: np.asarray(value, dtype=np.float64) for name, value in fields.items()}
         cells = [("hexahedron20", self._vtk_cells)]
@@ -241,20 +202,18 @@ class Solid:
         return matrix
 
     @cached_property
-    def _gradients(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Gradients of the shape functions (element, point, function, direction), and weights."""
+    def _shapes(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Shape functions and weights at the points of the elements.
+
+        The values (function, point) are the same in every element; the gradients are (element,
+        point, function, direction).
+        """
         skfem = _skfem()
         basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4)
+        values = np.array([np.atleast_2d(np.asarray(one[0]))[0] for one in basis.basis])
         shape = basis.dx.shape
         grad = np.array([np.broadcast_to(one[0].grad, (3, *shape)) for one in basis.basis])
-        return np.ascontiguousarray(grad.transpose(2, 3, 0, 1)), np.asarray(basis.dx)
-
-    @cached_property
-    def _scalar_values(self) -> NDArray[np.float64]:
-        """Values of the shape functions (function, point), the same in every element."""
-        skfem = _skfem()
-        basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4)
-        return np.array([np.atleast_2d(np.asarray(one[0]))[0] for one in basis.basis])
+        return values, np.ascontiguousarray(grad.transpose(2, 3, 0, 1)), np.asarray(basis.dx)
 
     @cached_property
     def _nodal_basis(self) -> Any:
@@ -282,10 +241,59 @@ class Solid:
 
 
 def _skfem() -> Any:
-    try:
-        import skfem
-    except ImportError:
-        raise ModelError(
-            "solid: finite elements need the package scikit-fem: pip install 'stickslip[fe]'"
-        ) from None
-    return skfem
+    return optional_package("skfem", "solid: finite elements", "scikit-fem")
+
+
+def von_mises(stress: ArrayLike) -> NDArray[np.float64]:
+    """Return the von Mises equivalent [Pa] of real stresses, shape (..., 6).
+
+    They are xx, yy, zz, yz, xz, xy [Pa].
+    """
+    xx, yy, zz, yz, xz, xy = np.moveaxis(np.asarray(stress, dtype=np.float64), -1, 0)
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * normal + 3.0 * (yz**2 + xz**2 + xy**2)))
+
+
+def von_mises_range(harmonics: ArrayLike, samples: int = 64) -> NDArray[np.float64]:
+    """Return the range of the von Mises stress over a period.
+
+    The largest von Mises equivalent of the difference of the stresses at two instants,
+    max over t1, t2 of vM(s(t1) - s(t2)). Unlike the range of vM(s(t)), which has no sign, it is
+    twice the amplitude in a motion that goes as far to either side, and static stress adds nothing.
+
+    Parameters
+    ----------
+    harmonics : array_like of complex, shape (H+1, n, 6)
+        S_k of s(t) = Re sum_k S_k exp(i k omega t): xx, yy, zz, yz, xz, xy [Pa].
+    samples : int, optional
+        Instants per period between which the difference is taken, an even number.
+
+    Returns
+    -------
+    ndarray of float64, shape (n,)
+        [Pa].
+
+    Raises
+    ------
+    ModelError
+        If the shape is another, or `samples` is not an even number from 4.
+
+    References
+    ----------
+    The equivalent stress range of ASME BPVC VIII-2, 5.5.3 (components of two instants subtracted).
+    """
+    given = np.asarray(harmonics)
+    if given.ndim != 3 or given.shape[2] != 6:
+        raise ModelError(f"stress: shape {given.shape}; give (harmonics, nodes, 6)")
+    count = whole_number(samples, "samples", smallest=4)
+    if count % 2:
+        raise ModelError(f"samples: {count} is odd; half periods need an even number")
+    phases = np.exp(2j * np.pi * np.outer(np.arange(count) / count, np.arange(len(given))))
+    largest = np.zeros(given.shape[1])
+    for start in range(0, given.shape[1], _BLOCK):
+        nodes = slice(start, start + _BLOCK)
+        history = np.real(np.tensordot(phases, given[:, nodes], axes=1))  # (instant, node, 6)
+        for lag in range(1, count // 2 + 1):
+            difference = von_mises(history - np.roll(history, lag, axis=0)).max(axis=0)
+            largest[nodes] = np.maximum(largest[nodes], difference)
+    return largest

@@ -33,10 +33,7 @@ def asymmetry(matrix: csc_array) -> float:
 def symmetric_sparse(value: object, entry: str) -> tuple[csc_array, float]:
     """Return a matrix as sparse, real, finite and exactly symmetric, and how symmetric it was.
 
-    Raises
-    ------
-    ModelError
-        If it is none of this, beyond rounded digits (1e-8 of the largest entry).
+    Up to 1e-8 of the largest entry are rounded digits.
     """
     from scipy.sparse import csc_array
 
@@ -63,19 +60,9 @@ def symmetric_sparse(value: object, entry: str) -> tuple[csc_array, float]:
 
 
 class Factor:
-    """A symmetric matrix, factored (SuperLU).
+    """A symmetric sparse matrix, factored (SuperLU).
 
-    Parameters
-    ----------
-    matrix : scipy.sparse.csc_array, shape (N, N)
-        The matrix.
-
-    Raises
-    ------
-    RuntimeError
-        If it is singular to the last digit.
-    MemoryError
-        If its factors do not fit.
+    Raises RuntimeError if it is singular to the last digit, MemoryError if its factors do not fit.
     """
 
     def __init__(self, matrix: csc_array) -> None:
@@ -97,32 +84,11 @@ class Factor:
 def lowest_modes(
     stiffness: csc_array, mass: csc_array, count: int, factor: Factor, shift: float = 0.0
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the modes of K x = lambda M x nearest above a shift.
+    """Return the modes of K x = lambda M x nearest above a shift, which is below every eigenvalue.
 
-    Parameters
-    ----------
-    stiffness, mass : scipy.sparse.csc_array, shape (N, N)
-        Symmetric; the mass positive semidefinite.
-    count : int
-        Number of modes.
-    factor : Factor
-        Of K - shift M.
-    shift : float, optional
-        Below every eigenvalue [rad^2/s^2].
-
-    Returns
-    -------
-    squares : ndarray of float64, shape (count,)
-        Squared angular frequencies, ascending.
-    modes : ndarray of float64, shape (N, count)
-        Mass-normalised; the largest entry of each is positive.
-
-    Raises
-    ------
-    ModelError
-        If Lanczos' method does not converge.
-    numpy.linalg.LinAlgError
-        If K - shift M is not positive definite, as far as that is noticed.
+    `factor` is that of K - shift M. Squared angular frequencies ascend; shapes, (N, count), are
+    mass-normalised, the largest entry of each positive. `numpy.linalg.LinAlgError` says that K -
+    shift M is not positive definite, as far as that is noticed.
     """
     from scipy.linalg import eigh
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh

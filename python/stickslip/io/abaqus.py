@@ -1,70 +1,63 @@
-"""Matrices of Abaqus as text: coordinate format, matrix input format and substructures."""
+"""Matrices of Abaqus as text, and of CalculiX: entries line by line, and substructures."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.io.fields import real_field
-from stickslip.io.label import Labelled, counted, entry_table, node_names, square_matrix
-from stickslip.io.source import plain, read_text
+from stickslip.checks import is_file
+from stickslip.io.entries import Labelled, node_names, square_matrix
+from stickslip.io.numbers import counted, entry_table, real_field
+from stickslip.io.source import Key, read_text
 
-__all__ = ["abaqus_keys", "read_abaqus"]
+if TYPE_CHECKING:
+    from scipy.sparse import coo_array
 
-_MATRIX = re.compile(r"^\*MATRIX,\s*TYPE\s*=\s*(\w+)", re.I)
+__all__ = ["read_abaqus", "read_calculix", "read_calculix_dofs"]
+
+_MATRIX = re.compile(r"\*MATRIX,\s*TYPE\s*=\s*(\w+)", re.I).match
+_NAME = re.compile(r"[1-9][0-9]*\.[0-6]")
 
 
-def read_abaqus(path: Path, key: str | None = None) -> Labelled:
+def read_abaqus(path: Path, key: Key) -> Labelled:
     """Read a matrix of *MATRIX OUTPUT or *SUBSTRUCTURE MATRIX OUTPUT.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    key : str, optional
-        "stiffness" or "mass", which of the matrices of a substructure.
-
-    Returns
-    -------
-    Labelled
-        The whole matrix. FORMAT=COORDINATE does not name its rows; FORMAT=MATRIX INPUT does, and
-        they come sorted by node and direction.
-
-    Raises
-    ------
-    ValueError
-        With the reason, if the file is none of these, or damaged.
+    A substructure has several, "stiffness" or "mass". FORMAT=COORDINATE does not name its rows;
+    FORMAT=MATRIX INPUT does, and they come sorted by node and direction.
 
     References
     ----------
     Dassault Systemes, "Abaqus Analysis User's Guide", "Generating structural matrices" and
     "Defining substructures".
     """
-    text = read_text(path)
-    lines = text.splitlines(keepends=True)
-    if key is not None or any(_MATRIX.match(line) for line in lines):
-        return _substructure(lines, key)
-    body = "".join(line for line in lines if not line.startswith("*"))
-    first = body.partition("\n")[0]
-    if not first.strip():
+    text = read_text(path, ended=True)
+    lines = text.splitlines()
+    starts = [(found[1].lower(), at) for at, line in enumerate(lines) if (found := _MATRIX(line))]
+    if len(dict(starts)) < len(starts):
+        raise ValueError("a matrix is given twice")
+    if starts:
+        return _substructure(lines, dict(starts), key.among(name for name, _ in starts))
+    key.refuse()
+    body = "\n".join(line for line in lines if not line.startswith("*"))
+    words = len(body.partition("\n")[0].replace(",", " ").split())
+    if not words:
         raise ValueError("the file holds no entries")
-    words = len(first.replace(",", " ").split())
     if words == 3:
-        table = entry_table(body, 3)
-        rows, columns = counted(table[:, 0], "row") - 1, counted(table[:, 1], "column") - 1
-        size = int(max(rows.max(), columns.max())) + 1
-        return Labelled(square_matrix(rows, columns, table[:, 2], size), None)
+        return Labelled(_of_places(body), None)
     if words == 5:
         return _of_nodes(entry_table(body, 5))
     raise ValueError(f"a line holds {words} numbers; 3 or 5 are known, and MatrixMarket files")
 
 
-def abaqus_keys(path: Path) -> tuple[str, ...]:
-    """Return the names of the matrices of a substructure; of other files none."""
-    lines = plain(path.read_bytes(), "latin-1").splitlines()
-    return tuple(match[1].lower() for match in map(_MATRIX.match, lines) if match)
+def _of_places(text: str) -> coo_array:
+    """Return the matrix of lines of row, column, value."""
+    table = entry_table(text, 3)
+    rows, columns = counted(table[:, 0], "row") - 1, counted(table[:, 1], "column") - 1
+    size = int(max(rows.max(), columns.max())) + 1
+    return square_matrix(rows, columns, table[:, 2], size)
 
 
 def _of_nodes(table: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Labelled:
@@ -79,26 +72,11 @@ def _of_nodes(table: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Label
     return Labelled(matrix, node_names(names[:, 0], names[:, 1]))
 
 
-def _substructure(lines: list[str], key: str | None) -> Labelled:
+def _substructure(lines: list[str], starts: dict[str, int], key: str) -> Labelled:
     """Return the lower triangle by rows below *MATRIX, mirrored."""
-    found = [
-        (match[1].lower(), at) for at, line in enumerate(lines) if (match := _MATRIX.match(line))
-    ]
-    starts = dict(found)
-    if len(starts) < len(found):
-        raise ValueError("a matrix is given twice")
-    if key is None and len(starts) == 1:
-        key = next(iter(starts))
-    if key not in starts:
-        raise ValueError(f"no matrix {key!r}; it holds {', '.join(starts) or 'none'}")
     names = _retained(lines[: min(starts.values())])
-    body = []
-    for line in lines[starts[key] + 1 :]:
-        if line.startswith("*"):
-            break
-        body.append(line)
-    if not body or not body[-1].endswith("\n"):
-        raise ValueError("the last line does not end; the file was cut short")
+    below = lines[starts[key] + 1 :]
+    body = below[: next((at for at, line in enumerate(below) if line[:1] == "*"), len(below))]
     words = [word.strip() for line in body for word in line.rstrip().removesuffix(",").split(",")]
     values = np.array([real_field(word) for word in words])
     size = len(names)
@@ -121,3 +99,31 @@ def _retained(lines: list[str]) -> tuple[str, ...]:
     if len(nodes) != len(ways) or not all(way.isdigit() for way in ways):
         raise ValueError(f"{len(nodes)} nodes and {len(ways)} directions in the head")
     return node_names(nodes, ways)
+
+
+def read_calculix(path: Path) -> Labelled:
+    """Read job.sti (stiffness) or job.mas (mass), with the names in job.dof beside it.
+
+    References
+    ----------
+    Dhondt, "CalculiX CrunchiX User's Manual", keyword *FREQUENCY.
+    """
+    names = read_calculix_dofs(path.with_suffix(".dof"))
+    matrix = _of_places(read_text(path, ended=True))
+    if matrix.shape[0] != len(names):
+        raise ValueError(f"{matrix.shape[0]} rows, but {path.stem}.dof names {len(names)}")
+    return Labelled(matrix, names)
+
+
+def read_calculix_dofs(path: Path) -> tuple[str, ...]:
+    """Read the names of the rows, "node.direction", from job.dof."""
+    if not is_file(path):
+        raise ValueError(f"{path.name} must lie beside it: it names the rows")
+    text = read_text(path)
+    names = tuple(text.split())
+    wrong = next((name for name in names if not _NAME.fullmatch(name)), None)
+    if wrong is not None or not text.endswith("\n") or not names:
+        raise ValueError(f"{path.name} is damaged: node.direction expected, found {wrong!r}")
+    if len(set(names)) < len(names):
+        raise ValueError(f"{path.name} names a row twice")
+    return names

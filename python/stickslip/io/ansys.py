@@ -15,13 +15,10 @@ from pathlib import Path
 import numpy as np
 
 from stickslip.errors import ModelError
-from stickslip.io.label import Labelled, node_names
-from stickslip.io.triangle import whole_matrix
+from stickslip.io.entries import Labelled, node_names, whole_matrix
+from stickslip.io.source import Key
 
-__all__ = ["ANSYS_KEYS", "read_ansys"]
-
-ANSYS_KEYS = ("stiffness", "mass")
-"""The matrices of a .full file."""
+__all__ = ["read_ansys"]
 
 _PATIENCE = 600
 """Seconds; the largest sound files take one or two minutes."""
@@ -42,29 +39,12 @@ np.savez(sys.argv[2], dofs=dofs, held=full.const, rows=chosen.row, columns=chose
 """
 
 
-def read_ansys(path: Path, key: str) -> Labelled:
-    """Read a matrix of a .full file.
+def read_ansys(path: Path, key: Key) -> Labelled:
+    """Read a matrix of a .full file, "stiffness" or "mass", without its constrained rows.
 
-    Parameters
-    ----------
-    path : Path
-        The file; unsymmetric matrices and lumped masses are refused by the reader.
-    key : str
-        "stiffness" or "mass".
-
-    Returns
-    -------
-    Labelled
-        The whole matrix without the rows of constrained degrees of freedom; its rows are
-        "node.direction", directions from 1.
-
-    Raises
-    ------
-    ModelError
-        If ansys-mapdl-reader is not installed.
-    ValueError
-        With the reason, if the file is damaged.
+    The reader refuses unsymmetric matrices and lumped masses. Directions count from 1.
     """
+    chosen = key.among(("stiffness", "mass"))
     if importlib.util.find_spec("ansys") is None or importlib.util.find_spec("vtk") is None:
         raise ModelError(
             f"{path}: a .full file needs ansys-mapdl-reader, some 600 MB with VTK: "
@@ -72,7 +52,7 @@ def read_ansys(path: Path, key: str) -> Labelled:
         )
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "matrix.npz"
-        command = [sys.executable, "-c", _READ, str(path), str(target), key]
+        command = [sys.executable, "-c", _READ, str(path), str(target), chosen]
         try:
             made = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
         except subprocess.TimeoutExpired:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.io.fields import real_field, whole_field
-from stickslip.io.label import Labelled, node_names, square_matrix
-from stickslip.io.source import read_text
+from stickslip.io.entries import Labelled, node_names, square_matrix, whole_matrix
+from stickslip.io.numbers import real_field, whole_field
+from stickslip.io.source import Key, read_text
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -34,32 +34,17 @@ class _Entries:
     values: list[float] = field(default_factory=list)
 
 
-def read_dmig(path: Path) -> dict[str, Labelled]:
-    """Read all square matrices of a punch file.
+def read_dmig(path: Path, key: Key) -> Labelled:
+    """Read a square matrix of a punch file; a triangle is mirrored, other cards are passed over.
 
-    Parameters
-    ----------
-    path : Path
-        The file; cards other than DMIG are passed over.
-
-    Returns
-    -------
-    dict of str to Labelled
-        The matrices by name, in capitals. All have the same rows: every grid point and component
-        that one of them names, sorted. A triangle is mirrored.
-
-    Raises
-    ------
-    ValueError
-        With the reason, if the file is damaged, or a matrix is complex or rectangular.
+    All matrices of a file have the same rows: every grid point and component that one of them
+    names, sorted. Names are in capitals.
 
     References
     ----------
     MSC Software, "MSC Nastran Quick Reference Guide", bulk data entry DMIG.
     """
-    text = read_text(path)
-    if not text.endswith("\n"):
-        raise ValueError("the last line does not end; the file was cut short")
+    text = read_text(path, ended=True)
     matrices: dict[str, _Entries] = {}
     for fields in _cards(text.splitlines()):
         name = fields[0].upper()
@@ -75,10 +60,9 @@ def read_dmig(path: Path) -> dict[str, Labelled]:
         raise ValueError("no DMIG card")
     used = sorted({place for one in matrices.values() for place in (*one.rows, *one.columns)})
     index = {place: row for row, place in enumerate(used)}
-    names = node_names(*zip(*used, strict=True)) if used else ()
-    return {
-        name: Labelled(_matrix(name, entries, index), names) for name, entries in matrices.items()
-    }
+    made = {name: _matrix(name, entries, index) for name, entries in matrices.items()}
+    chosen = Key(path, key.name and key.name.upper()).among(made)
+    return Labelled(made[chosen], node_names(*zip(*used, strict=True)) if used else ())
 
 
 def _cards(lines: list[str]) -> Iterator[list[str]]:
@@ -128,8 +112,6 @@ def _add_column(entries: _Entries, fields: list[str]) -> None:
 
 
 def _matrix(name: str, entries: _Entries, index: dict[_Place, int]) -> coo_array:
-    from scipy.sparse import coo_array
-
     if entries.kind not in (1, 2):
         raise ValueError(f"matrix {name!r} is complex (type {entries.kind}); export real matrices")
     if entries.form not in (1, 6):
@@ -141,6 +123,4 @@ def _matrix(name: str, entries: _Entries, index: dict[_Place, int]) -> coo_array
     values = np.array(entries.values)
     if entries.form == 6:
         return square_matrix(rows, columns, values, len(index))
-    if np.unique(rows * len(index) + columns).size < rows.size:
-        raise ValueError(f"matrix {name!r}: an entry is given twice")
-    return coo_array((values, (rows, columns)), shape=(len(index),) * 2)
+    return whole_matrix((len(index),) * 2, rows, columns, values, "general")

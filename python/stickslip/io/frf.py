@@ -14,9 +14,18 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, choice, file_path, is_file, members, text
+from stickslip.checks import (
+    brief,
+    choice,
+    file_path,
+    members,
+    optional_package,
+    set_fields,
+    text,
+)
 from stickslip.errors import ModelError
 from stickslip.files import write
+from stickslip.io.source import readable
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
@@ -85,36 +94,22 @@ class Frf:
             raise ModelError("frf: a frequency or value is not finite")
         if frequency[0] < 0.0 or (np.diff(frequency) <= 0.0).any():
             raise ModelError("frf: the frequencies do not ascend from 0 or above; sort them")
-        frequency.flags.writeable = motion.flags.writeable = False
-        object.__setattr__(self, "omega", frequency)
-        object.__setattr__(self, "values", motion)
-        object.__setattr__(self, "dof", text(dof, "frf: dof"))
-        object.__setattr__(self, "reference", text(reference, "frf: reference"))
-        object.__setattr__(self, "quantity", choice(quantity, "frf: quantity", _DERIVATIVES))
+        set_fields(
+            self,
+            omega=frequency,
+            values=motion,
+            dof=text(dof, "frf: dof"),
+            reference=text(reference, "frf: reference"),
+            quantity=choice(quantity, "frf: quantity", _DERIVATIVES),
+        )
 
     @classmethod
     def of(cls, response: ForcedResponse, dof: str, reference: str) -> Frf:
-        """Return the fundamental of a computed response per force.
+        """Return the fundamental of a computed response per force, of the points that were solved.
 
-        Parameters
-        ----------
-        response : ForcedResponse
-            The response; points that were not solved are left out.
-        dof : str
-            An observed degree of freedom.
-        reference : str
-            A degree of freedom with a force of the first harmonic; other forces stay in proportion
-            to it.
-
-        Returns
-        -------
-        Frf
-            The displacement per force. A structure with friction has another one at every level.
-
-        Raises
-        ------
-        ModelError
-            If a degree of freedom is unknown or not observed, or there is no force at `reference`.
+        `dof` is an observed degree of freedom, `reference` one with a force of the first harmonic;
+        other forces stay in proportion to it. A structure with friction has another displacement
+        per force at every level.
         """
         forces = [f for f in response.model.forces if f.harmonic == 1 and f.dof == reference]
         amplitude = sum(force.coefficient for force in forces)
@@ -133,18 +128,15 @@ class Frf:
 
 
 def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
-    """Read the frequency response functions of a Universal File.
+    """Read the frequency response functions of a Universal File, in SI units.
+
+    Their `.receptance()` gives m/N whatever was measured.
 
     Parameters
     ----------
     path : str or path-like
         The file, `.uff` or `.unv`: datasets 58 and 58b. Other datasets and functions are passed
         over.
-
-    Returns
-    -------
-    tuple of Frf
-        In SI units; `.receptance()` gives m/N whatever was measured.
 
     Raises
     ------
@@ -153,20 +145,13 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
         response function per force.
     """
     file = file_path(path, "path")
-    if not is_file(file):
-        raise ModelError(f"{file}: no such file; check the path")
-    pyuff = _pyuff(file)
-    _require_datasets(file)
-    try:
+    with readable(file, "Universal File"):
+        pyuff = optional_package("pyuff", f"{file}: Universal Files")
+        _require_datasets(file)
         universal = pyuff.UFF(str(file))
         kinds = np.atleast_1d(universal.get_set_types())
         sets = [universal.read_sets(int(at)) for at in np.flatnonzero(kinds == 58)]
         found = [_frf(one) for one in sets if one["func_type"] == _FRF]
-    except Exception as error:
-        cause = " ".join(str(error).split())[:80] or type(error).__name__
-        raise ModelError(
-            f"{file}: cannot be read as Universal File: {cause}; write the file again"
-        ) from error
     if not found:
         raise ModelError(f"{file}: it holds no frequency response function (dataset 58, type 4)")
     return tuple(found)
@@ -175,22 +160,12 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
 def write_frf(path: str | os.PathLike[str], functions: Frf | Iterable[Frf]) -> None:
     """Write frequency response functions to a Universal File, dataset 58 as text.
 
-    The format holds 6 digits of the frequency and 12 of the values.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file; it is written whole or not at all.
-    functions : Frf or iterable of Frf
-        The functions. Names other than "node.direction" have at most 10 characters.
-
-    Raises
-    ------
-    ModelError
-        If the package pyuff is missing, a name is too long, or the file cannot be written.
+    The file is written whole or not at all. The format holds 6 digits of the frequency and 12 of
+    the values; names other than "node.direction" have at most 10 characters. The package pyuff is
+    needed.
     """
     file = file_path(path, "path")
-    pyuff = _pyuff(file)
+    pyuff = optional_package("pyuff", f"{file}: Universal Files")
     given = (functions,) if isinstance(functions, Frf) else members(functions, "frf", "[frf, ...]")
     sets = [_dataset(pyuff, one) for one in given]
     content = io.StringIO()
@@ -198,17 +173,6 @@ def write_frf(path: str | os.PathLike[str], functions: Frf | Iterable[Frf]) -> N
         # `UFF.write_sets` writes to files by name only, and hides why a disk refuses them.
         pyuff.pyuff._write58(content, one)
     write(file, content.getvalue().encode())
-
-
-def _pyuff(file: Path) -> ModuleType:
-    try:
-        import pyuff
-    except ImportError:
-        raise ModelError(
-            f"{file}: Universal Files need the package pyuff: pip install 'stickslip[fe]'"
-        ) from None
-    module: ModuleType = pyuff
-    return module
 
 
 def _frf(dataset: Mapping[str, object]) -> Frf:

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.fields import real_field, whole_field
+from stickslip.io.entries import columns_of, whole_matrix
+from stickslip.io.numbers import real_field, require_whole_numbers, whole_field
 from stickslip.io.source import read_text
-from stickslip.io.triangle import columns_of, require_whole_numbers, whole_matrix
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -77,75 +77,8 @@ class _Columns:
         return np.fromiter(map(real_field, self.fields(lines, count)), np.float64, count)
 
 
-@dataclass(frozen=True)
-class _Header:
-    """What the first four or five lines say."""
-
-    kind: str
-    rows: int
-    columns: int
-    entries: int
-    formats: tuple[_Columns, _Columns, _Columns]
-    cards: tuple[int, ...]
-    """Lines of pointers, rows, values and right-hand sides."""
-    lines: int
-    """Lines of the header."""
-
-    @classmethod
-    def parse(cls, lines: list[str]) -> _Header:
-        if len(lines) < 4:
-            raise ValueError(f"the header has 4 lines, the file {len(lines)}")
-        total, *cards = _whole_numbers(lines[1], 4)
-        kind = lines[2][:3].upper()
-        _require_supported(kind)
-        rows, columns, entries = _whole_numbers(lines[2][3:], 3)[:3]
-        formats = [_Columns.parse(written) for written in re.findall(r"\([^()]*\)", lines[3])[:3]]
-        if len(formats) < 3:
-            raise ValueError("line 4 does not hold three number formats")
-        header = cls(
-            kind,
-            rows,
-            columns,
-            entries,
-            (formats[0], formats[1], formats[2]),
-            tuple(cards[:4]),
-            5 if sum(cards[3:4]) else 4,
-        )
-        header.require_cards(total, len(lines))
-        return header
-
-    def require_cards(self, total: int, lines: int) -> None:
-        """Refuse counts of lines that contradict each other, the numbers or the file."""
-        counts = (self.columns + 1, self.entries, self.entries)
-        named = zip(("pointers", "rows", "values"), counts, self.formats, self.cards, strict=False)
-        for name, count, written, cards in named:
-            if written.cards(count) != cards:
-                needed = written.cards(count)
-                raise ValueError(f"{cards} lines of {name} announced, {count} fill {needed}")
-        if total != sum(self.cards):
-            raise ValueError(f"{total} lines announced in all, but {sum(self.cards)} by parts")
-        if self.lines + total != lines:
-            raise ValueError(f"{self.lines + total} lines announced, {lines} present")
-
-
 def read_harwell_boeing(path: Path) -> coo_array:
-    """Read an assembled real matrix; symmetric storage is mirrored.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    scipy.sparse.coo_array
-        The whole matrix. Right-hand sides in the file are left out.
-
-    Raises
-    ------
-    ValueError
-        With the reason, if the file is not of the format, damaged, or holds a matrix that is
-        complex, elemental or a pattern without values.
+    """Read an assembled real matrix; symmetric storage is mirrored, right-hand sides are left out.
 
     References
     ----------
@@ -154,19 +87,35 @@ def read_harwell_boeing(path: Path) -> coo_array:
     """
     text = read_text(path, "latin-1")
     lines = text.rstrip().split("\n") if text.strip() else []
-    header = _Header.parse(lines)
+    if len(lines) < 4:
+        raise ValueError(f"the header has 4 lines, the file {len(lines)}")
+    total, *cards = _whole_numbers(lines[1], 4)[:5]
+    kind = lines[2][:3].upper()
+    _require_supported(kind)
+    height, width, entries = _whole_numbers(lines[2][3:], 3)[:3]
+    formats = [_Columns.parse(written) for written in re.findall(r"\([^()]*\)", lines[3])[:3]]
+    if len(formats) < 3:
+        raise ValueError("line 4 does not hold three number formats")
+    start, blocks = 5 if sum(cards[3:]) else 4, []
+    end = start + total
+    counts = (width + 1, entries, entries)
+    named = zip(("pointers", "rows", "values"), counts, formats, cards, strict=False)
+    for name, count, written, announced in named:
+        needed = written.cards(count)
+        if needed != announced:
+            raise ValueError(f"{announced} lines of {name} announced, {count} fill {needed}")
+        blocks.append(lines[start : start + needed])
+        start += needed
+    if total != sum(cards):
+        raise ValueError(f"{total} lines announced in all, but {sum(cards)} by parts")
+    if end != len(lines):
+        raise ValueError(f"{end} lines announced, {len(lines)} present")
     require_whole_numbers(text)
-    blocks = []
-    start = header.lines
-    for length in header.cards[:3]:
-        blocks.append(lines[start : start + length])
-        start += length
-    pointers = header.formats[0].integers(blocks[0], header.columns + 1) - 1
-    rows = header.formats[1].integers(blocks[1], header.entries) - 1
-    values = header.formats[2].reals(blocks[2], header.entries)
-    columns = columns_of(pointers, rows)
-    symmetry = {"S": "symmetric", "Z": "skew-symmetric"}.get(header.kind[1], "general")
-    return whole_matrix((header.rows, header.columns), rows, columns, values, symmetry)
+    pointers = formats[0].integers(blocks[0], counts[0]) - 1
+    rows = formats[1].integers(blocks[1], entries) - 1
+    values = formats[2].reals(blocks[2], entries)
+    symmetry = {"S": "symmetric", "Z": "skew-symmetric"}.get(kind[1], "general")
+    return whole_matrix((height, width), rows, columns_of(pointers, rows), values, symmetry)
 
 
 def _require_supported(kind: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from stickslip.io.source import LARGEST_UNPACKED, inflate
+from stickslip.io import source
 
 if TYPE_CHECKING:
     import h5py  # type: ignore[import-untyped, unused-ignore]
@@ -19,13 +19,7 @@ _RATIO = 1032
 
 
 def require_own(group: h5py.Group, name: str) -> None:
-    """Refuse a name that leads into another file, or out of the group.
-
-    Raises
-    ------
-    ValueError
-        If it is a link rather than a part of the file.
-    """
+    """Refuse a name that leads into another file, or out of the group."""
     import h5py
 
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
@@ -35,18 +29,7 @@ def require_own(group: h5py.Group, name: str) -> None:
 def require_held(dataset: h5py.Dataset) -> None:
     """Refuse numbers that the file announces and does not hold, or that unpack to too many.
 
-    Parameters
-    ----------
-    dataset : h5py.Dataset
-        The numbers.
-
-    Raises
-    ------
-    ValueError
-        If parts of them were never written, are in another file, or are packed and take more than
-        `LARGEST_UNPACKED` bytes, or not the bytes of their part.
-    zlib.error
-        If a packed part is damaged.
+    None may be in another file; parts that are packed must have the bytes of their part.
     """
     name = dataset.name.lstrip("/")
     if dataset.is_virtual or dataset.external:
@@ -60,7 +43,7 @@ def require_held(dataset: h5py.Dataset) -> None:
             raise ValueError(f"{name!r} announces {announced} bytes and holds {held}")
         return
     chunk = math.prod(dataset.chunks) * width
-    if max(announced, chunk) > LARGEST_UNPACKED and announced > held:
+    if max(announced, chunk) > source.LARGEST_UNPACKED and announced > held:
         raise ValueError(f"{name!r} unpacks to {announced} bytes; reduce the model")
     counts = (-(-size // step) for size, step in zip(dataset.shape, dataset.chunks, strict=True))
     parts: list[h5py.h5d.StoreInfo] = []
@@ -74,7 +57,7 @@ def require_held(dataset: h5py.Dataset) -> None:
     for part in parts:
         # HDF5 follows a packed part to any length, and does not look at the check sum of zlib.
         if part.filter_mask == 0 and (
-            _FLETCHER not in filters or part.size * _RATIO > LARGEST_UNPACKED
+            _FLETCHER not in filters or part.size * _RATIO > source.LARGEST_UNPACKED
         ):
             _, stored = dataset.id.read_direct_chunk(part.chunk_offset)
-            inflate(stored, chunk)
+            source.inflate(stored, chunk)

@@ -1,4 +1,4 @@
-"""MATLAB files of version 4 and 5, walked through before SciPy reads them.
+"""MATLAB files: of version 7.3 HDF5, those before walked through before they are read.
 
 SciPy's compiled reader (1.17) trusts types and lengths: a damaged one takes the process down.
 """
@@ -10,14 +10,28 @@ import struct
 import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.source import inflate
-from stickslip.io.triangle import columns_of
+from stickslip.checks import brief
+from stickslip.errors import ModelError
+from stickslip.io.entries import columns_of, require_once
+from stickslip.io.hdf5 import require_held, require_own
+from stickslip.io.source import Key, inflate
 
-__all__ = ["require_sound"]
+if TYPE_CHECKING:
+    import h5py  # type: ignore[import-untyped, unused-ignore]
+
+__all__ = ["read_matlab"]
+
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+
+_NUMBERS = {"double", "single", "sparse", "logical"} | {
+    f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)
+}
+"""Classes of variables that are matrices of numbers."""
 
 _WIDTHS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8, 16: 1, 17: 2, 18: 4}
 """Bytes per number, by type of element."""
@@ -31,21 +45,70 @@ _KINDS_4 = ("f8", "f4", "i4", "i2", "u2", "u1")
 _SPARSE_4 = 2
 
 
-def require_sound(path: Path) -> None:
+def read_matlab(file: Path, key: Key) -> object:
+    """Read a matrix of a file of any version."""
+    with file.open("rb") as stream:
+        start = stream.read(512 + len(_HDF5))
+    # MATLAB puts its own 512 bytes in front of the HDF5 file.
+    if start.startswith(_HDF5) or start[512:] == _HDF5:
+        return _read_hdf5(file, key)
+    from scipy.io import loadmat, whosmat
+
+    _require_sound(file)
+    found = whosmat(file)
+    kinds = {name: kind for name, _, kind in found}
+    if len(kinds) < len(found):
+        raise ValueError("two matrices have the same name")
+    name = key.among(kinds)
+    if kinds[name] not in _NUMBERS:
+        raise ModelError(f"{file}: {brief(name)} is a {kinds[name]}; save the matrix by itself")
+    return loadmat(file, variable_names=[name])[name]
+
+
+def _read_hdf5(file: Path, key: Key) -> object:
+    import h5py
+
+    with h5py.File(file, "r") as variables:
+        name = key.among(name for name in variables if not name.startswith("#"))
+        require_own(variables, name)
+        variable = variables[name]
+        if isinstance(variable, h5py.Group):
+            return _read_sparse(file, name, variable)
+        kind = variable.attrs.get("MATLAB_class", b"double").decode()
+        if kind not in _NUMBERS:
+            raise ModelError(f"{file}: {brief(name)} is a {kind}; save the matrix by itself")
+        if variable.dtype.names:
+            raise ModelError(f"{file}: {brief(name)}: complex entries; give real matrices")
+        require_held(variable)
+        # HDF5 counts in rows, MATLAB in columns.
+        return np.asarray(variable[()]).T
+
+
+def _read_sparse(file: Path, name: str, group: h5py.Group) -> object:
+    from scipy.sparse import csc_array
+
+    if "MATLAB_sparse" not in group.attrs:
+        raise ModelError(f"{file}: {brief(name)} is a struct; save the matrix by itself")
+    parts = {}
+    for part in ("jc", "ir", "data"):
+        if part in group:
+            require_own(group, part)
+            require_held(group[part])
+            parts[part] = group[part][()]
+    rows, pointers = int(group.attrs["MATLAB_sparse"]), parts["jc"].astype(np.int64)
+    if "data" not in parts:
+        if pointers.any():
+            raise ValueError(f"{pointers.max()} entries announced, 0 present")
+        return csc_array((rows, len(pointers) - 1))
+    values, places = parts["data"], parts["ir"].astype(np.int64)
+    if values.dtype.names:
+        raise ModelError(f"{file}: {brief(name)}: complex entries; give real matrices")
+    columns_of(pointers, places)
+    return csc_array((values, places, pointers), shape=(rows, len(pointers) - 1))
+
+
+def _require_sound(path: Path) -> None:
     """Check that sizes, counts and bytes of a file agree.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Raises
-    ------
-    ValueError
-        If an element is of an unknown type, ends outside the file or its matrix, or stands where
-        another must be; if a matrix has not the numbers that its size asks for.
-    zlib.error
-        If a compressed element is damaged.
 
     References
     ----------
@@ -171,5 +234,5 @@ def _require_triplets(table: NDArray[np.float64]) -> None:
     for index in table[:2]:
         if not ((index >= 1) & (index <= index[-1]) & (index == np.rint(index))).all():
             raise ValueError(f"a row or column index lies outside 1 to {index[-1]:g}")
-    if np.unique(table[:2, :-1], axis=1).shape[1] < table.shape[1] - 1:
-        raise ValueError("an entry is given twice")
+    rows, columns = table[:2, :-1].astype(np.int64) - 1
+    require_once(rows, columns, int(table[1, -1]))

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import MAX_DENSE
-from stickslip.io.fields import require_representable
+from stickslip.io.entries import SIGNS, whole_matrix
+from stickslip.io.numbers import require_representable, require_whole_numbers
 from stickslip.io.source import plain, unzip
-from stickslip.io.triangle import SIGNS, require_whole_numbers, whole_matrix
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -69,21 +69,7 @@ class _Head:
 def read_matrix_market(path: Path) -> coo_array:
     """Read a real matrix in coordinate or array format; one triangle is mirrored.
 
-    Parameters
-    ----------
-    path : Path
-        The file, packed by gzip if its name ends in `.gz`.
-
-    Returns
-    -------
-    scipy.sparse.coo_array
-        The whole matrix.
-
-    Raises
-    ------
-    ValueError
-        With the reason, if the file is not of the format, damaged, or holds a matrix that is
-        complex or a pattern without values.
+    A file whose name ends in `.gz` is packed.
 
     References
     ----------

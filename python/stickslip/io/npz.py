@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 import os
 import zipfile
+from pathlib import Path
 from typing import IO
 
 import numpy as np
 
-from stickslip.io.source import LARGEST_UNPACKED
+from stickslip.io import source
+from stickslip.io.source import Key
 
-__all__ = ["require_sound_npy"]
+__all__ = ["read_numpy"]
 
 _HEADERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
@@ -19,22 +21,28 @@ _HEADERS = {
 }
 
 
-def require_sound_npy(stream: IO[bytes]) -> None:
-    """Check `.npy` and `.npz`, and go back to the beginning.
+def read_numpy(file: Path, key: Key) -> object:
+    """Read a matrix of `.npy` or `.npz`, of NumPy or of SciPy's sparse matrices.
 
-    Parameters
-    ----------
-    stream : binary file
-        The file, opened for reading.
-
-    Raises
-    ------
-    ValueError
-        If an array has more or fewer bytes than its header announces, two have the same name, or
-        one unpacks to more than `LARGEST_UNPACKED`.
-    zipfile.BadZipFile
-        If the archive is damaged.
+    An array must have the bytes that its header announces, and a name of its own.
     """
+    with file.open("rb") as stream:
+        _require_sound(stream)
+        loaded = np.load(stream, allow_pickle=False)
+        if isinstance(loaded, np.ndarray):
+            key.refuse()
+            return loaded
+        if {"format", "shape", "data"} <= set(loaded.files):
+            from scipy.sparse import load_npz
+
+            key.refuse()
+            stream.seek(0)
+            return load_npz(stream)
+        return loaded[key.among(loaded.files)]
+
+
+def _require_sound(stream: IO[bytes]) -> None:
+    """Check `.npy` and `.npz`, and go back to the beginning."""
     if stream.read(2) == b"PK":
         with zipfile.ZipFile(stream) as archive:
             if len(set(archive.namelist())) < len(archive.namelist()):
@@ -50,7 +58,7 @@ def require_sound_npy(stream: IO[bytes]) -> None:
 
 def _require_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
     size = member.file_size
-    if size > LARGEST_UNPACKED and member.compress_type != zipfile.ZIP_STORED:
+    if size > source.LARGEST_UNPACKED and member.compress_type != zipfile.ZIP_STORED:
         raise ValueError(f"{member.filename!r} unpacks to {size} bytes; save it unpacked")
     if member.filename.endswith(".npy"):
         with archive.open(member) as stream:

@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import re
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.fields import real_field, whole_field
-from stickslip.io.source import plain
-from stickslip.io.triangle import require_size
+from stickslip.io.entries import require_size
+from stickslip.io.numbers import real_field, whole_field
+from stickslip.io.source import Key, plain
 
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
@@ -63,25 +62,17 @@ class _Header:
         """Whether strings of a sparse matrix have two words of address."""
         return self.rows < 0 or self.rows >= _LARGE
 
+    def string(self, address: list[int]) -> tuple[int, int]:
+        """Return the words of a string of a sparse matrix, and its row."""
+        words, row = address if self.large else divmod(address[0], _LARGE)
+        return words - 1, row
 
-def read_op4(path: Path) -> dict[str, Callable[[], coo_array]]:
-    """Read a file of several matrices.
 
-    Parameters
-    ----------
-    path : Path
-        The file: text, or binary of either byte order with integers of 4 or 8 bytes.
+def read_op4(path: Path, key: Key) -> coo_array:
+    """Read a matrix of a file: text, or binary of either byte order with integers of 4 or 8 bytes.
 
-    Returns
-    -------
-    dict of str to function that returns scipy.sparse.coo_array
-        By name, in capitals, what builds the matrix. It raises ValueError if the matrix is complex,
-        calls itself symmetric and is not, or shares its name with another.
-
-    Raises
-    ------
-    ValueError
-        With the reason, if the file is not of the format or damaged.
+    Names are in capitals. The whole file is walked through, but only the matrix that is asked for
+    must be real, be called so once, and be symmetric if it says so.
 
     References
     ----------
@@ -90,20 +81,16 @@ def read_op4(path: Path) -> dict[str, Callable[[], coo_array]]:
     content = path.read_bytes()
     if len(content) < 16:
         raise ValueError("the file is empty or nearly so")
-    walk: Iterator[_Column] = _binary(content) if 0 in content[:4] else _text(content)
-    matrices: dict[str, Callable[[], coo_array]] = {}
-    for header, columns in walk:
-        builder = _twice if header.name in matrices else partial(_matrix, header, columns)
-        matrices[header.name] = builder
-    return matrices
+    found = list(_binary(content) if 0 in content[:4] else _text(content))
+    names = [header.name for header, _ in found]
+    chosen = Key(path, key.name and key.name.upper()).among(dict.fromkeys(names))
+    if names.count(chosen) > 1:
+        raise ValueError("the file holds two matrices of this name")
+    return _matrix(*found[names.index(chosen)])
 
 
 _Column = tuple[_Header, list[tuple[int, list[_Piece]]]]
 """A matrix as the walks yield it: what precedes it, and the pieces of each column."""
-
-
-def _twice() -> coo_array:
-    raise ValueError("the file holds two matrices of this name")
 
 
 def _matrix(header: _Header, columns: list[tuple[int, list[_Piece]]]) -> coo_array:
@@ -125,14 +112,10 @@ def _matrix(header: _Header, columns: list[tuple[int, list[_Piece]]]) -> coo_arr
             rows.append(np.arange(first - 1, below))
             places.append(np.full(piece.size, column - 1))
             values.append(piece)
-    joined = (
-        np.concatenate([np.empty(0), *values]),
-        (
-            np.concatenate([np.empty(0, np.int64), *rows]),
-            np.concatenate([np.empty(0, np.int64), *places]),
-        ),
-    )
-    matrix = coo_array(joined, shape=(size, header.columns))
+    nothing = np.empty(0, np.int64)
+    indices = np.concatenate([nothing, *rows]), np.concatenate([nothing, *places])
+    entries = np.concatenate([np.empty(0), *values])
+    matrix = coo_array((entries, indices), shape=(size, header.columns))
     matrix.eliminate_zeros()
     if header.form in (_SQUARE, _SYMMETRIC) and size != header.columns:
         raise ValueError(f"square or symmetric, but {size} x {header.columns}")
@@ -172,7 +155,7 @@ def _binary(content: bytes) -> Iterator[_Column]:
             if row > 0:
                 columns.append((column, [(row, np.frombuffer(body, real).astype(np.float64))]))
             else:
-                columns.append((column, list(_strings(body, header.large, integer, real))))
+                columns.append((column, list(_strings(body, header, integer, real))))
         else:
             raise ValueError(f"the file ends inside matrix {header.name!r}")
         yield header, columns
@@ -194,22 +177,17 @@ def _records(content: bytes, order: str) -> Iterator[bytes]:
 
 
 def _strings(
-    body: bytes, large: bool, integer: np.dtype[np.int64], real: np.dtype[np.float64]
+    body: bytes, header: _Header, integer: np.dtype[np.int64], real: np.dtype[np.float64]
 ) -> Iterator[_Piece]:
     """Cut a sparse column into its pieces."""
-    width, place = integer.itemsize, 0
+    place, count = 0, 1 + header.large
     while place < len(body):
-        if large:
-            words, row = np.frombuffer(body, integer, 2, place).tolist()
-            words, place = words - 1, place + 2 * width
-        else:
-            (address,) = np.frombuffer(body, integer, 1, place).tolist()
-            words, row, place = address // _LARGE - 1, address % _LARGE, place + width
-        end = place + words * width
-        if words < 1 or end > len(body) or words * width % real.itemsize:
+        words, row = header.string(np.frombuffer(body, integer, count, place).tolist())
+        start = place + count * integer.itemsize
+        place = start + words * integer.itemsize
+        if words < 1 or place > len(body) or (place - start) % real.itemsize:
             raise ValueError(f"a string of {words} words at row {row}; the file is damaged")
-        yield row, np.frombuffer(body[place:end], real).astype(np.float64)
-        place = end
+        yield row, np.frombuffer(body[start:place], real).astype(np.float64)
 
 
 def _text(content: bytes) -> Iterator[_Column]:
@@ -217,35 +195,36 @@ def _text(content: bytes) -> Iterator[_Column]:
     text = plain(content, "ascii")
     if not text.endswith("\n"):
         raise ValueError("the last line does not end; the file was cut short")
-    lines = _Lines(text.splitlines())
-    while lines.left:
-        header, numbers = _first_line(next(lines))
+    lines = iter(text.splitlines())
+    for first in lines:
+        header, numbers = _first_line(first)
         columns = []
         while True:
-            column, row, words = _integers(next(lines), 3)
+            column, row, words = _integers(_line(lines), 3)
             if column == header.columns + 1:
                 # Writers do not agree on how many numbers follow the last column.
-                if not (trailer := next(lines).rstrip()) or len(trailer) % numbers[1]:
+                if not (trailer := _line(lines).rstrip()) or len(trailer) % numbers[1]:
                     raise ValueError(f"the file ends inside matrix {header.name!r}")
                 break
             if row > 0:
-                columns.append((column, [(row, lines.reals(words, *numbers))]))
+                columns.append((column, [(row, _reals(lines, words, *numbers))]))
                 continue
             pieces = []
             while words > 0:
-                address = next(lines)
-                if header.large:
-                    size, row = _integers(address, 2)
-                    size, words = size - 1, words - size - 1
-                else:
-                    (whole,) = _integers(address, 1)
-                    size, row = whole // _LARGE - 1, whole % _LARGE
-                    words -= size + 1
+                size, row = header.string(_integers(_line(lines), 1 + header.large))
+                words -= size + 1 + header.large
                 if size < 1 or words < 0 or size % header.words:
                     raise ValueError(f"a string of {size} words at row {row}")
-                pieces.append((row, lines.reals(size // header.words, *numbers)))
+                pieces.append((row, _reals(lines, size // header.words, *numbers)))
             columns.append((column, pieces))
         yield header, columns
+
+
+def _line(lines: Iterator[str]) -> str:
+    line = next(lines, None)
+    if line is None:
+        raise ValueError("the file ends inside a matrix")
+    return line
 
 
 def _first_line(line: str) -> tuple[_Header, tuple[int, int]]:
@@ -262,37 +241,18 @@ def _first_line(line: str) -> tuple[_Header, tuple[int, int]]:
     return header, (int(written[1]), int(written[2])) if written else (5, 16)
 
 
-class _Lines(Iterator[str]):
-    """Lines that are read one after the other, or as a table of numbers."""
-
-    def __init__(self, lines: list[str]) -> None:
-        self._lines = lines
-        self._place = 0
-
-    @property
-    def left(self) -> int:
-        return len(self._lines) - self._place
-
-    def __next__(self) -> str:
-        if not self.left:
-            raise ValueError("the file ends inside a matrix")
-        self._place += 1
-        return self._lines[self._place - 1]
-
-    def reals(self, count: int, per_line: int, width: int) -> NDArray[np.float64]:
-        """Read `count` numbers of `width` characters each."""
-        if count < 1 or not per_line or not width:
-            raise ValueError(f"{count} numbers announced, {per_line} in a line")
-        fields: list[str] = []
-        while len(fields) < count:
-            expected = min(per_line, count - len(fields))
-            line = next(self).rstrip()
-            if len(line) != expected * width:
-                raise ValueError(
-                    f"{expected} numbers of {width} characters expected: {line[:40]!r}"
-                )
-            fields += [line[at : at + width] for at in range(0, len(line), width)]
-        return np.array([real_field(field) for field in fields])
+def _reals(lines: Iterator[str], count: int, per_line: int, width: int) -> NDArray[np.float64]:
+    """Read `count` numbers of `width` characters each."""
+    if count < 1 or not per_line or not width:
+        raise ValueError(f"{count} numbers announced, {per_line} in a line")
+    fields: list[str] = []
+    while len(fields) < count:
+        expected = min(per_line, count - len(fields))
+        line = _line(lines).rstrip()
+        if len(line) != expected * width:
+            raise ValueError(f"{expected} numbers of {width} characters expected: {line[:40]!r}")
+        fields += [line[at : at + width] for at in range(0, len(line), width)]
+    return np.array([real_field(field) for field in fields])
 
 
 def _integers(line: str, count: int, width: int = 8) -> list[int]:

@@ -4,51 +4,93 @@ from __future__ import annotations
 
 import gzip
 import zlib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["LARGEST_UNPACKED", "inflate", "plain", "read_text", "unzip"]
+from stickslip.checks import brief, is_file, listed, unknown
+from stickslip.errors import ModelError
+
+__all__ = ["LARGEST_UNPACKED", "Key", "inflate", "plain", "read_text", "readable", "unzip"]
 
 LARGEST_UNPACKED = 2**30
 """Bytes that packed content may take unpacked, a heuristic: 30 million entries as text, a dense
 matrix of 11 000 rows. What is not packed may be as large as its file."""
 
+_LONGEST = 80
 _MARK = b"\xef\xbb\xbf"
 
 
-def read_text(path: Path, encoding: str = "ascii") -> str:
-    """Return the text of a file, see `plain`."""
-    return plain(path.read_bytes(), encoding)
+@dataclass(frozen=True)
+class Key:
+    """The name of a matrix in a file, where one was given."""
+
+    file: Path
+    name: str | None
+
+    def among(self, known: Iterable[str]) -> str:
+        """Return the name, one of those in the file; where there is only one, it need not be given.
+
+        Raises
+        ------
+        ModelError
+            If there is no such name, or it is needed and missing.
+        """
+        names = list(known)
+        if self.name is None:
+            if len(names) == 1:
+                return names[0]
+            raise ModelError(
+                f"{self.file}: it holds {listed(names) or 'nothing'}; choose one with key"
+            )
+        if self.name not in names:
+            raise ModelError(f"{self.file}: {unknown('key', self.name, names)}")
+        return self.name
+
+    def refuse(self) -> None:
+        """Refuse the name of a matrix in a file that holds but one."""
+        if self.name is not None:
+            raise ModelError(
+                f"{self.file}: key {brief(self.name)}, but the file holds one matrix; leave key out"
+            )
+
+
+@contextmanager
+def readable(file: Path, kind: str) -> Iterator[None]:
+    """Refuse a file that is not there; word whatever a reader stumbles over.
+
+    The readers' libraries raise anything in a damaged file, struct.error and MemoryError among it.
+    """
+    if not is_file(file):
+        raise ModelError(f"{file}: no such file; check the path")
+    try:
+        yield
+    except Exception as error:
+        if isinstance(error, ModelError) and str(error).startswith(str(file)):
+            raise
+        cause = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
+        raise ModelError(
+            f"{file}: cannot be read as {kind}: {cause}; write the file again"
+        ) from error
+
+
+def read_text(path: Path, encoding: str = "ascii", *, ended: bool = False) -> str:
+    """Return the text of a file, see `plain`; of an `ended` one the last line must end."""
+    text = plain(path.read_bytes(), encoding)
+    if ended and not text.endswith("\n"):
+        raise ValueError("the last line does not end; the file was cut short")
+    return text
 
 
 def plain(content: bytes, encoding: str) -> str:
-    """Return text without the byte-order mark of Windows' editors, lines ended by line feeds.
-
-    Raises
-    ------
-    UnicodeDecodeError
-        If there are bytes that the encoding does not have.
-    """
+    """Return text without the byte-order mark of Windows' editors, lines ended by line feeds."""
     text = content.removeprefix(_MARK).decode(encoding)
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def unzip(path: Path, most: int) -> bytes:
-    """Return what gzip packed.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    most : int
-        Bytes that its contents can need.
-
-    Raises
-    ------
-    ValueError
-        If it is more.
-    OSError, EOFError, zlib.error
-        If it is damaged.
-    """
+    """Return what gzip packed, at most so many bytes."""
     with gzip.open(path) as packed:
         content = packed.read(most + 1)
     if len(content) > most:
@@ -57,15 +99,7 @@ def unzip(path: Path, most: int) -> bytes:
 
 
 def inflate(body: memoryview | bytes, size: int) -> bytes:
-    """Return what zlib packed, which must be `size` bytes.
-
-    Raises
-    ------
-    ValueError
-        If it is more or less, or `size` is above `LARGEST_UNPACKED`.
-    zlib.error
-        If it is damaged.
-    """
+    """Return what zlib packed, which must be `size` bytes, and at most `LARGEST_UNPACKED`."""
     if size > LARGEST_UNPACKED:
         raise ValueError(f"it unpacks to {size} bytes; reduce the model, or save it unpacked")
     unpacker = zlib.decompressobj()

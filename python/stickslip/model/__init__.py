@@ -1,12 +1,16 @@
 """The problem in the user's words: structure, contacts, forces."""
 
 from stickslip.calls import checked_names
-from stickslip.model.configurations import SlipConfigurations, slip_configurations
-from stickslip.model.contact import Contact, Jenkins
+from stickslip.model.configurations import (
+    SlipConfigurations,
+    natural_frequencies,
+    slip_configurations,
+)
+from stickslip.model.contact import Contact
 from stickslip.model.force import Force, force_from_spec
+from stickslip.model.jenkins import Jenkins, ParallelJenkins
 from stickslip.model.laws import LAWS, contact_from_spec
-from stickslip.model.model import ContactRef, Model, PointRef, natural_frequencies
-from stickslip.model.parallel_jenkins import ParallelJenkins
+from stickslip.model.model import ContactRef, Model, PointRef
 from stickslip.model.structural import StructuralDamper
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 

@@ -1,4 +1,4 @@
-"""Natural frequencies of every set of slipping contact points."""
+"""Natural frequencies with contact points slipping: of one set of them, and of every set."""
 
 from __future__ import annotations
 
@@ -10,14 +10,45 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.checks import members
 from stickslip.errors import ModelError
-from stickslip.model.model import Model, PointRef, natural_frequencies
+from stickslip.model.model import Model, PointRef, from_core, require_model
 
-__all__ = ["SlipConfigurations", "slip_configurations"]
+__all__ = ["SlipConfigurations", "natural_frequencies", "slip_configurations"]
 
 _MOST = 12
 """Points whose sets, 4096 of them, are still a table."""
 _SHOWN = 6
+
+
+def natural_frequencies(
+    model: Model, slipping: Iterable[PointRef] = (), *, nodal_diameter: int | None = None
+) -> NDArray[np.float64]:
+    """Natural frequencies with some contact points slipping and all others stuck.
+
+    Parameters
+    ----------
+    model : Model
+        Its forces and damping play no part.
+    slipping : iterable of int, str or (int or str, int), optional
+        The contact points that slip: contact, or (contact, point). Default: all stick.
+    nodal_diameter : int, optional
+        Nodal diameter of a `BladedDisk`, 0 to n-1. Default: the one its engine order excites.
+
+    Returns
+    -------
+    ndarray of float64, shape (N,)
+        Angular frequencies in ascending order [rad/s].
+
+    Raises
+    ------
+    ModelError
+        If `model` is no `Model`; if there is no such contact, point or nodal diameter.
+    """
+    require_model(model)
+    refs = members(slipping, "slipping", "slipping=[...]")
+    points = sorted({model.point(ref) for ref in refs})
+    return from_core(model.frequencies, points, nodal_diameter)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,8 +116,7 @@ def slip_configurations(
     ----------
     Guillen (1999), Table 6.4, whose slipping contacts are deleted instead of condensed.
     """
-    if not isinstance(model, Model):
-        natural_frequencies(model)
+    require_model(model)
     if points is None:
         chosen = [
             (number, point)

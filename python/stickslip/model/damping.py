@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import Matrix, brief, members, real_number
+from stickslip.checks import Matrix, brief, members, real_number, set_fields
 from stickslip.errors import ModelError
 
 if TYPE_CHECKING:
@@ -34,8 +35,24 @@ _ROUNDING = 1e-13
 _GRADED = 1e6
 
 
+class _DampingLaw(ABC):
+    """What makes a damping matrix of mass and stiffness."""
+
+    @property
+    @abstractmethod
+    def proportional(self) -> bool:
+        """Whether it couples no modes of the structure by itself."""
+
+    @abstractmethod
+    def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
+        """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N).
+
+        Stuck contacts find their places by the names `dofs` of the structure.
+        """
+
+
 @dataclass(frozen=True, kw_only=True)
-class Rayleigh:
+class Rayleigh(_DampingLaw):
     """Proportional damping, C = mass * M + stiffness * K.
 
     Parameters
@@ -54,46 +71,28 @@ class Rayleigh:
     mass: float = 0.0
     stiffness: float = 0.0
 
+    def __post_init__(self) -> None:
+        for name in ("mass", "stiffness"):
+            factor = real_number(getattr(self, name), f"Rayleigh {name} factor")
+            object.__setattr__(self, name, factor)
+
     @property
     def proportional(self) -> bool:
         """Whether it couples no modes of the structure by itself: always."""
         return True
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "mass", real_number(self.mass, "Rayleigh mass factor"))
-        factor = real_number(self.stiffness, "Rayleigh stiffness factor")
-        object.__setattr__(self, "stiffness", factor)
 
     def to_spec(self) -> dict[str, object]:
         """Return the law in plain values; see `law_from_spec`."""
         return {"law": "rayleigh", "mass": self.mass, "stiffness": self.stiffness}
 
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
-        """Return the damping matrix.
-
-        Parameters
-        ----------
-        mass, stiffness : ndarray of float64, shape (N, N)
-            The structure's matrices [kg], [N/m].
-        dofs : sequence of str, optional
-            Its degrees of freedom, by which stuck contacts find their places.
-
-        Returns
-        -------
-        ndarray of float64, shape (N, N)
-            Damping [kg/s].
-
-        Raises
-        ------
-        ModelError
-            If it is not finite.
-        """
+        """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N)."""
         with np.errstate(over="ignore", invalid="ignore"):
             return _finite(self.mass * mass + self.stiffness * stiffness, self)
 
 
 @dataclass(frozen=True)
-class ModalDamping:
+class ModalDamping(_DampingLaw):
     """Damping ratios of modes, as `modal_damping` gives them.
 
     With mass-normalised modes Phi, C = M Phi diag(2 zeta omega) Phi^T M. Rigid-body modes stay
@@ -117,11 +116,6 @@ class ModalDamping:
     ratio: float | Sequence[float]
     stuck: Iterable[Contact] = ()
 
-    @property
-    def proportional(self) -> bool:
-        """Whether it couples no modes of the structure by itself: unless contacts are `stuck`."""
-        return not self.stuck
-
     def __post_init__(self) -> None:
         given = self.ratio.tolist() if isinstance(self.ratio, np.ndarray) else self.ratio
         ratio: float | tuple[float, ...]
@@ -132,8 +126,12 @@ class ModalDamping:
             )
         else:
             ratio = real_number(given, "damping ratio")
-        object.__setattr__(self, "ratio", ratio)
-        object.__setattr__(self, "stuck", _contacts(self.stuck))
+        set_fields(self, ratio=ratio, stuck=_contacts(self.stuck))
+
+    @property
+    def proportional(self) -> bool:
+        """Whether it couples no modes of the structure by itself: unless contacts are `stuck`."""
+        return not self.stuck
 
     def to_spec(self) -> dict[str, object]:
         """Return the law in plain values; see `law_from_spec`."""
@@ -142,26 +140,7 @@ class ModalDamping:
         return {"law": "modal", "ratio": ratio, **({"stuck": stuck} if stuck else {})}
 
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
-        """Return the damping matrix.
-
-        Parameters
-        ----------
-        mass, stiffness : ndarray of float64, shape (N, N)
-            The structure's matrices [kg], [N/m].
-        dofs : sequence of str, optional
-            Its degrees of freedom, by which stuck contacts find their places.
-
-        Returns
-        -------
-        ndarray of float64, shape (N, N)
-            Damping [kg/s].
-
-        Raises
-        ------
-        ModelError
-            If there are not N ratios, an eigenvalue is negative, the damping is not finite, or a
-            stuck contact does not find its degrees of freedom.
-        """
+        """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N)."""
         from scipy.linalg import eigh
 
         from stickslip.model.structure import Structure
@@ -191,6 +170,9 @@ class ModalDamping:
         return _finite(np.asarray(damping, dtype=np.float64), self)
 
 
+DampingLaw: TypeAlias = Rayleigh | ModalDamping
+
+
 def _graded(stiffness: Matrix, mass: Matrix) -> NDArray[np.intp]:
     """Return the order of dofs in which their modes keep their digits: the lightest first."""
     rates = np.abs(np.diag(stiffness)) / np.diag(mass)
@@ -213,6 +195,8 @@ def modal_damping(
 ) -> ModalDamping:
     """Damping given by ratios of critical damping, mode by mode.
 
+    C = M Phi diag(2 zeta omega) Phi^T M with mass-normalised modes Phi.
+
     The aerodynamic input of a flutter analysis: negative ratios of the modes that the flow drives.
     It serves wherever a damping matrix does: as `damping` of a `Structure`, and as the
     `negative_damping` that `destabilised` adds.
@@ -226,16 +210,6 @@ def modal_damping(
         Whose modes: with these contacts stuck, of a model all of them. Default: none, the modes of
         the structure by itself, in which all contacts slip without friction. The former are those
         that flutter sets in with, the latter those of a structure computed without its dampers.
-
-    Returns
-    -------
-    ModalDamping
-        The law, C = M Phi diag(2 zeta omega) Phi^T M with mass-normalised modes Phi.
-
-    Raises
-    ------
-    ModelError
-        As `ModalDamping`.
 
     References
     ----------
@@ -267,31 +241,17 @@ def _contacts(stuck: object) -> tuple[Contact, ...]:
     return tuple(given)
 
 
-def _finite(damping: Matrix, law: Rayleigh | ModalDamping) -> Matrix:
+def _finite(damping: Matrix, law: DampingLaw) -> Matrix:
     if not np.isfinite(damping).all():
         raise ModelError(f"damping: {brief(law)} makes entries beyond 1e308; give smaller numbers")
     return damping
 
 
-DampingLaw: TypeAlias = Rayleigh | ModalDamping
-"""What makes a damping matrix of mass and stiffness."""
-
-
 def makes_blocks(law: DampingLaw | None, blocks: Iterable[tuple[Matrix, Matrix, Matrix]]) -> bool:
     """Tell whether Rayleigh damping of a sector holds with what couples it to its neighbours.
 
-    Parameters
-    ----------
-    law : Rayleigh, ModalDamping or None
-        The law of the sector by itself.
-    blocks : iterable of (mass, damping, stiffness)
-        The blocks of the sector and of its coupling, or of several sectors.
-
-    Returns
-    -------
-    bool
-        Whether every damping block is what the law makes of mass and stiffness, but for rounding.
-        A law of modes does not know those of the coupled sectors.
+    The blocks are mass, damping and stiffness of the sector and of its coupling, or of several
+    sectors. A law of modes does not know those of the coupled sectors.
     """
     if not isinstance(law, Rayleigh):
         return False
@@ -302,30 +262,13 @@ def makes_blocks(law: DampingLaw | None, blocks: Iterable[tuple[Matrix, Matrix, 
 
 
 def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:
-    """Build a damping law from the plain values of its `to_spec`.
-
-    Parameters
-    ----------
-    spec : mapping
-        `law`, "rayleigh" or "modal", and its numbers.
-
-    Returns
-    -------
-    Rayleigh or ModalDamping
-        The law.
-
-    Raises
-    ------
-    ModelError
-        If there is no such law, or it refuses a number.
-    """
+    """Build a damping law from the plain values of its `to_spec`."""
     from stickslip.model.laws import contact_from_spec
 
     values = {key: value for key, value in spec.items() if key != "law"}
     if isinstance(values.get("stuck"), list):
         values["stuck"] = [contact_from_spec(one) for one in values["stuck"]]
-    laws = {"rayleigh": Rayleigh, "modal": ModalDamping}
+    laws: dict[object, type[DampingLaw]] = {"rayleigh": Rayleigh, "modal": ModalDamping}
     if spec.get("law") not in laws:
         raise ModelError(f"damping: unknown law {brief(spec.get('law'))}; known: {list(laws)}")
-    made: DampingLaw = laws[str(spec["law"])](**values)
-    return made
+    return laws[spec["law"]](**values)

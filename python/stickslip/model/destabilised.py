@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import numpy as np
-
-from stickslip.checks import Matrix, MatrixLike, brief, real_matrix, real_number
+from stickslip.checks import Matrix, MatrixLike, real_matrix, real_number, require_finite
 from stickslip.errors import ModelError
 from stickslip.model.damping import DampingLaw
-from stickslip.model.model import Model
+from stickslip.model.model import Model, require_model
 from stickslip.model.structure import Structure
-
-if TYPE_CHECKING:
-    from stickslip.disk import BladedDisk
 
 __all__ = ["destabilised", "is_proportional", "negative_matrix"]
 
@@ -49,28 +42,13 @@ def destabilised(
     ----------
     Guillen (1999), eqs. (5.22) and (5.31).
     """
-    if not isinstance(model, Model):
-        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+    require_model(model)
     added = real_number(ratio, "ratio") * negative_matrix(negative_damping, model.structure)
     own = model.structure
     damping = own.damping + added
     proportional = own.proportional and is_proportional(negative_damping)
     structure = Structure.of_law(own.mass, own.stiffness, damping, own.dofs, None, proportional)
-    if not model.travels:
-        return Model(structure, model.contacts, model.forces)
-    from stickslip.disk import BladedDisk
-
-    disk: BladedDisk = model  # type: ignore[assignment]
-    return BladedDisk(
-        structure,
-        disk.sectors,
-        disk.couplings,
-        disk.contacts,
-        disk.forces,
-        engine_order=disk.engine_order,
-        engine_orders=disk.engine_orders,
-        interface=disk.interface,
-    )
+    return model.with_structure(structure)
 
 
 def is_proportional(damping: MatrixLike | DampingLaw) -> bool:
@@ -79,25 +57,7 @@ def is_proportional(damping: MatrixLike | DampingLaw) -> bool:
 
 
 def negative_matrix(damping: MatrixLike | DampingLaw, structure: Structure) -> Matrix:
-    """Return negative damping as a matrix that fits a structure.
-
-    Parameters
-    ----------
-    damping : array_like, scipy.sparse matrix, Rayleigh or ModalDamping
-        A matrix [kg/s], or a law that makes one.
-    structure : Structure
-        Of N degrees of freedom.
-
-    Returns
-    -------
-    ndarray of float64, shape (N, N)
-        [kg/s].
-
-    Raises
-    ------
-    ModelError
-        If it is of another size or not finite.
-    """
+    """Return negative damping, a matrix or a law, as a matrix that fits a structure [kg/s]."""
     if isinstance(damping, DampingLaw):
         return damping.matrix(structure.mass, structure.stiffness, structure.dofs)
     matrix = real_matrix(damping, "negative_damping")
@@ -108,10 +68,5 @@ def negative_matrix(damping: MatrixLike | DampingLaw, structure: Structure) -> M
             f"dofs; give {size} x {size}, or"
         )
         raise ModelError(f"{reason} modal_damping([...])", study=f"{reason} {{modal = [...]}}")
-    if not np.isfinite(matrix).all():
-        row, column = np.argwhere(~np.isfinite(matrix))[0]
-        raise ModelError(
-            f"negative_damping: {matrix[row, column]} at ({row}, {column}); every entry must be "
-            "finite"
-        )
+    require_finite(matrix, "negative_damping")
     return matrix

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
-from stickslip.checks import brief, real_number, text, unknown, whole_number
+from stickslip.checks import brief, real_number, require_keys, set_fields, text, whole_number
 from stickslip.errors import ModelError
 
 __all__ = ["Force", "force_from_spec"]
@@ -40,17 +41,15 @@ class Force:
     harmonic: int = 1
 
     def __post_init__(self) -> None:
-        text(self.dof, "force: dof")
-        entry = f"force at {brief(self.dof)}"
+        entry = f"force at {brief(text(self.dof, 'force: dof'))}"
         harmonic = whole_number(self.harmonic, f"{entry}: harmonic")
         phase = real_number(self.phase, f"{entry}: phase")
         if harmonic == 0 and phase != 0.0:
             raise ModelError(
                 f"{entry}: phase {phase:g} on a static load (harmonic 0); leave the phase out"
             )
-        object.__setattr__(self, "amplitude", real_number(self.amplitude, f"{entry}: amplitude"))
-        object.__setattr__(self, "phase", phase)
-        object.__setattr__(self, "harmonic", harmonic)
+        amplitude = real_number(self.amplitude, f"{entry}: amplitude")
+        set_fields(self, amplitude=amplitude, phase=phase, harmonic=harmonic)
 
     @property
     def coefficient(self) -> complex:
@@ -58,51 +57,12 @@ class Force:
         return cmath.rect(self.amplitude, self.phase) if self.phase else complex(self.amplitude)
 
     def to_spec(self) -> dict[str, object]:
-        """Return the force in plain values that any text format can hold.
-
-        Returns
-        -------
-        dict
-            `dof`, `amplitude`, `phase`, `harmonic`. See `force_from_spec`.
-        """
-        return {
-            "dof": self.dof,
-            "amplitude": self.amplitude,
-            "phase": self.phase,
-            "harmonic": self.harmonic,
-        }
+        """Return the force in plain values that any text format can hold."""
+        return asdict(self)
 
 
-def force_from_spec(spec: Mapping[str, object]) -> Force:
-    """Build a force from the plain values of `Force.to_spec`.
-
-    Parameters
-    ----------
-    spec : mapping
-        `dof`, `amplitude` and, optionally, `phase` and `harmonic`.
-
-    Returns
-    -------
-    Force
-        The force.
-
-    Raises
-    ------
-    ModelError
-        If a key is unknown or missing, or a value is refused by `Force`.
-    """
-    keys = ("dof", "amplitude", "phase", "harmonic")
-    for key in spec:
-        if key not in keys:
-            raise ModelError(f"force: {unknown('key', key, keys)}")
-    for key in keys[:2]:
-        if key not in spec:
-            raise ModelError(f"force: {key} is missing; give {key}")
-    dof = text(spec["dof"], "force: dof")
-    entry = f"force at {brief(dof)}"
-    return Force(
-        dof,
-        real_number(spec["amplitude"], f"{entry}: amplitude"),
-        real_number(spec.get("phase", 0.0), f"{entry}: phase"),
-        whole_number(spec.get("harmonic", 1), f"{entry}: harmonic"),
-    )
+def force_from_spec(spec: Mapping[str, Any]) -> Force:
+    """Build a force from the plain values of `Force.to_spec`."""
+    known = ("dof", "amplitude", "phase", "harmonic")
+    require_keys(spec, "force", known, known[:2])
+    return Force(**spec)

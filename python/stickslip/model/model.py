@@ -6,16 +6,16 @@ count from 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, count
-from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import brief, members, real_number, unknown, whole_number
+from stickslip.checks import Matrix, brief, members, real_number, set_fields, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.force import Force
@@ -24,9 +24,18 @@ from stickslip.model.structure import Structure
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["ContactRef", "Model", "PointRef", "listed_items", "natural_frequencies", "refusal"]
+__all__ = [
+    "ContactRef",
+    "Model",
+    "PointRef",
+    "from_core",
+    "listed_items",
+    "refusal",
+    "require_model",
+]
 
 _Item = TypeVar("_Item")
+_Made = TypeVar("_Made")
 
 ContactRef: TypeAlias = int | str
 """A contact: its position, counted from 0, or its name."""
@@ -44,19 +53,10 @@ class Model:
     structure : Structure
         The linear part.
     contacts : iterable of Contact, optional
-        Friction contacts. None is the linear structure.
+        Friction contacts. None is the linear structure. The unnamed are named by their law:
+        "jenkins", "jenkins-2", ...
     forces : iterable of Force, optional
         Forces; those on the same degree of freedom and harmonic add up.
-
-    Attributes
-    ----------
-    structure : Structure
-        The linear part.
-    contacts : tuple of Contact
-        The contacts, each with its name: those that had none are named by their law, "jenkins",
-        "jenkins-2", ...
-    forces : tuple of Force
-        The forces.
 
     Raises
     ------
@@ -79,31 +79,51 @@ class Model:
             raise ModelError(
                 f"structure: {brief(structure)} is not a Structure; give ss.Structure(...)"
             )
-        object.__setattr__(self, "structure", structure)
-        object.__setattr__(self, "contacts", _named(listed_items(contacts, "contact", Contact)))
-        object.__setattr__(self, "forces", listed_items(forces, "force", Force))
+        set_fields(
+            self,
+            structure=structure,
+            contacts=_named(listed_items(contacts, "contact", Contact)),
+            forces=listed_items(forces, "force", Force),
+        )
         self._require_dofs()
 
     def __repr__(self) -> str:
+        return f"Model({self.structure!r}, {self._listed})"
+
+    @property
+    def _listed(self) -> str:
         names = ", ".join(self.contact_names[:6]) + (", ..." if len(self.contacts) > 6 else "")
-        return f"Model({self.structure!r}, contacts=[{names}], {len(self.forces)} force(s))"
+        return f"contacts=[{names}], {len(self.forces)} force(s)"
 
     def __reduce__(self) -> tuple[object, ...]:
         # The compiled problem is rebuilt on the other side: it cannot be pickled.
-        return Model, (self.structure, self.contacts, self.forces)
+        return _remade, (type(self), self._parts())
+
+    def _parts(self) -> dict[str, Any]:
+        """Return what the model is made of, as the arguments of its class."""
+        return {"structure": self.structure, "contacts": self.contacts, "forces": self.forces}
 
     def _require_dofs(self) -> None:
-        known = self.structure.dofs
         for number, contact in enumerate(self.contacts, 1):
+            entry = f"contact {number} ({brief(contact.name)})"
             for dof in contact.dofs:
-                if dof is not None and dof not in known:
-                    reason = unknown("dof", dof, known)
-                    if dof == "ground":
-                        reason += " (the ground is None)"
-                    raise ModelError(f"contact {number} ({brief(contact.name)}): {reason}")
+                if dof is not None and dof not in self._contact_dofs:
+                    raise ModelError(f"{entry}: {self._unknown_dof(dof, contact)}")
         for number, force in enumerate(self.forces, 1):
-            if force.dof not in known:
-                raise ModelError(f"force {number}: {unknown('dof', force.dof, known)}")
+            if force.dof not in self.structure.dofs:
+                raise ModelError(f"force {number}: {self._unknown_force(force.dof)}")
+
+    @property
+    def _contact_dofs(self) -> tuple[str, ...]:
+        """Degrees of freedom that contacts may act on."""
+        return self.structure.dofs
+
+    def _unknown_dof(self, dof: str, contact: Contact) -> str:
+        reason = unknown("dof", dof, self.structure.dofs)
+        return f"{reason} (the ground is None)" if dof == "ground" else reason
+
+    def _unknown_force(self, dof: str) -> str:
+        return unknown("dof", dof, self.structure.dofs)
 
     @property
     def contact_names(self) -> tuple[str, ...]:
@@ -111,23 +131,7 @@ class Model:
         return tuple(str(contact.name) for contact in self.contacts)
 
     def contact_index(self, contact: ContactRef) -> int:
-        """Return the position of a contact.
-
-        Parameters
-        ----------
-        contact : int or str
-            Its position, counted from 0, or its name.
-
-        Returns
-        -------
-        int
-            Its position.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact.
-        """
+        """Return the position of a contact, given by its position, counted from 0, or its name."""
         if isinstance(contact, str):
             if contact not in self.contact_names:
                 raise ModelError(unknown("contact", contact, self.contact_names))
@@ -137,32 +141,17 @@ class Model:
         return position
 
     def point(self, point: PointRef) -> tuple[int, int]:
-        """Return a contact point as positions.
+        """Return a contact point as positions of the contact, and of the point in it.
 
-        Parameters
-        ----------
-        point : int, str or (int or str, int)
-            (contact, point), the point counted from 0; or the contact alone where it has one point.
-
-        Returns
-        -------
-        contact : int
-            Position of the contact.
-        point : int
-            Position of the point in it.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point, or the contact has several points and none is
-            named.
+        It is given as (contact, point), the point counted from 0, or by the contact alone where
+        that has one point.
         """
         return self._place(point, [contact.points for contact in self.contacts])
 
     def slider(self, slider: PointRef) -> tuple[int, int]:
-        """Return a part of a contact that sticks or slips by itself as positions.
+        """Return a part of a contact that slips by itself as positions; see `point`.
 
-        Parameters, returns and errors are those of `point`; elements in parallel count one by one.
+        Elements in parallel count one by one.
         """
         return self._place(slider, [len(contact.slider_limits) for contact in self.contacts])
 
@@ -183,25 +172,11 @@ class Model:
             )
         return contact, 0
 
-    def scaled(self, *, force: float = 1.0, slip_force: float = 1.0) -> Model:
+    def scaled(self, *, force: float = 1.0, slip_force: float = 1.0) -> Self:
         """Return the model at another level of excitation or preload.
 
-        Parameters
-        ----------
-        force : float, optional
-            Factor on every force amplitude, static loads included.
-        slip_force : float, optional
-            Factor on every slip force, not negative; contacts that never slip stay so.
-
-        Returns
-        -------
-        Model
-            A new model.
-
-        Raises
-        ------
-        ModelError
-            If a factor is not a finite number, or `slip_force` is negative.
+        `force` multiplies every force amplitude, static loads included, `slip_force`, which is not
+        negative, every slip force; contacts that never slip stay so.
         """
         force = real_number(force, "factor on the forces")
         slip_force = real_number(slip_force, "factor on the slip forces")
@@ -214,45 +189,21 @@ class Model:
 
     def replaced(
         self, *, contacts: Iterable[Contact] | None = None, forces: Iterable[Force] | None = None
-    ) -> Model:
-        """Return the model with other contacts or forces.
+    ) -> Self:
+        """Return the model, of the same kind and structure, with other contacts or forces."""
+        changes = {"contacts": contacts, "forces": forces}
+        return self._like(**{name: one for name, one in changes.items() if one is not None})
 
-        Parameters
-        ----------
-        contacts : iterable of Contact, optional
-            The contacts. Default: those of the model.
-        forces : iterable of Force, optional
-            The forces. Default: those of the model.
+    def _like(self, **changes: Any) -> Self:
+        """Return the model with some of its parts changed."""
+        return type(self)(**self._parts() | changes)
 
-        Returns
-        -------
-        Model
-            A new model of the same kind and structure.
-
-        Raises
-        ------
-        ModelError
-            As for a new model.
-        """
-        return Model(
-            self.structure,
-            self.contacts if contacts is None else contacts,
-            self.forces if forces is None else forces,
-        )
+    def with_structure(self, structure: Structure) -> Model:
+        """Return the model with another structure of the same degrees of freedom."""
+        return self._like(structure=structure)
 
     def matrices_at(self, harmonic: int) -> tuple[AnyMatrix, AnyMatrix, AnyMatrix]:
-        """Return mass, damping and stiffness as a harmonic of the motion meets them.
-
-        Parameters
-        ----------
-        harmonic : int
-            The harmonic k. A `Model` is the same for all; a sector of a disk is not.
-
-        Returns
-        -------
-        mass, damping, stiffness : ndarray, shape (N, N)
-            Without the contacts [kg], [kg/s], [N/m].
-        """
+        """Return mass, damping and stiffness as a harmonic of the motion meets them, (N, N)."""
         structure = self.structure
         return structure.mass, structure.damping, structure.stiffness
 
@@ -269,31 +220,27 @@ class Model:
 
     @cached_property
     def problem(self) -> _core.Problem:
-        """The model as the compiled core sees it: numbers without names, built once.
-
-        Raises
-        ------
-        ModelError
-            If the core refuses the numbers.
-        """
+        """The model as the compiled core sees it: numbers without names, built once."""
         from stickslip import _core
 
         structure = self.structure
-        contacts = [
-            (contact.law, contact.rows(structure), contact.law_parameters())
-            for contact in self.contacts
-        ]
-        try:
-            return _core.Problem(
-                structure.mass,
-                structure.damping,
-                structure.stiffness,
-                contacts,
-                self._loads(),
-                structure.proportional,
-            )
-        except ValueError as error:
-            raise ModelError(str(error)) from error
+        return from_core(
+            _core.Problem,
+            structure.mass,
+            structure.damping,
+            structure.stiffness,
+            self._core_contacts(),
+            self._loads(),
+            structure.proportional,
+        )
+
+    def contact_rows(self, contact: Contact) -> tuple[Matrix, ...]:
+        """Return B of a contact, one matrix per sector that it lies in: of a `Model` one."""
+        return (contact.rows(self.structure),)
+
+    def _core_contacts(self) -> list[Any]:
+        """Return the contacts as the compiled core takes them."""
+        return [(one.law, *self.contact_rows(one), one.law_parameters()) for one in self.contacts]
 
     def _loads(self) -> list[tuple[int, NDArray[np.complex128]]]:
         """Sum the forces of each harmonic, in ascending harmonics."""
@@ -306,50 +253,14 @@ class Model:
         return list(loads.items())
 
 
-def natural_frequencies(
-    model: Model, slipping: Iterable[PointRef] = (), *, nodal_diameter: int | None = None
-) -> NDArray[np.float64]:
-    """Natural frequencies with some contact points slipping and all others stuck.
-
-    Parameters
-    ----------
-    model : Model
-        Its forces and damping play no part.
-    slipping : iterable of int, str or (int or str, int), optional
-        The contact points that slip: contact, or (contact, point). Default: all stick.
-    nodal_diameter : int, optional
-        Nodal diameter of a `BladedDisk`, 0 to n-1. Default: the one its engine order excites.
-
-    Returns
-    -------
-    ndarray of float64, shape (N,)
-        Angular frequencies in ascending order [rad/s].
-
-    Raises
-    ------
-    ModelError
-        If `model` is no `Model`; if there is no such contact, point or nodal diameter.
-    """
+def require_model(model: object) -> None:
+    """Refuse what is no model."""
     if not isinstance(model, Model):
         raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
-    refs = members(slipping, "slipping", "slipping=[...]")
-    points = sorted({model.point(ref) for ref in refs})
-    try:
-        return model.frequencies(points, nodal_diameter)
-    except ModelError:
-        raise
-    except ValueError as error:
-        raise ModelError(str(error)) from error
 
 
 def listed_items(items: Iterable[_Item], entry: str, kind: type[object]) -> tuple[_Item, ...]:
-    """Return the members of a list that must all be of one kind; `entry` is what they are called.
-
-    Raises
-    ------
-    ModelError
-        If it is no list, or a member is of another kind.
-    """
+    """Return the members of a list that must all be of one kind, which `entry` names."""
     listed = members(items, f"{entry}s", f"{entry}s=[...]")
     for number, item in enumerate(listed, 1):
         if not isinstance(item, kind):
@@ -372,6 +283,20 @@ def _named(contacts: tuple[Contact, ...]) -> tuple[Contact, ...]:
             taken[contact.name] = number
     free = {law: _free_names(law, taken.keys()) for law in {contact.law for contact in contacts}}
     return tuple(contact.named(contact.name or next(free[contact.law])) for contact in contacts)
+
+
+def from_core(make: Callable[..., _Made], *arguments: Any) -> _Made:
+    """Return what the compiled core makes; what it refuses is a `ModelError`."""
+    try:
+        return make(*arguments)
+    except ModelError:
+        raise
+    except ValueError as error:
+        raise ModelError(str(error)) from error
+
+
+def _remade(kind: type[Model], parts: dict[str, Any]) -> Model:
+    return kind(**parts)
 
 
 def refusal(error: ValueError, model: Model) -> ModelError:

@@ -9,9 +9,9 @@ from typing import Self, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, real_number, unknown
+from stickslip.checks import brief, real_number, set_fields, unknown
 from stickslip.errors import ModelError
-from stickslip.model.model import Model, PointRef
+from stickslip.model.model import Model, PointRef, require_model
 
 __all__ = ["State"]
 
@@ -35,15 +35,6 @@ class State:
         Of all contact points in order, or by contact or (contact, point), the others zero [N].
         Default: zero.
 
-    Attributes
-    ----------
-    dofs : tuple of str
-        The degrees of freedom.
-    displacement, velocity : ndarray of float64, shape (N,)
-        [m], [m/s].
-    contact_force : ndarray of float64, shape (n_p,)
-        [N], positive against the relative displacement.
-
     Raises
     ------
     ModelError
@@ -55,6 +46,7 @@ class State:
     displacement: Float
     velocity: Float
     contact_force: Float
+    """(n_p,) Contact forces [N], positive against the relative displacement."""
 
     def __init__(
         self,
@@ -63,19 +55,15 @@ class State:
         velocity: ArrayLike | Mapping[str, float] | None = None,
         contact_force: ArrayLike | Mapping[PointRef, float] | None = None,
     ) -> None:
-        if not isinstance(model, Model):
-            raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+        require_model(model)
         forces = _forces(model, contact_force)
-        values = {
-            "dofs": model.structure.dofs,
-            "displacement": _motion(model, displacement, "displacement"),
-            "velocity": _motion(model, velocity, "velocity"),
-            "contact_force": forces,
-        }
-        for name, value in values.items():
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
-            object.__setattr__(self, name, value)
+        set_fields(
+            self,
+            dofs=model.structure.dofs,
+            displacement=_motion(model, displacement, "displacement"),
+            velocity=_motion(model, velocity, "velocity"),
+            contact_force=forces,
+        )
 
     def __repr__(self) -> str:
         largest = float(np.abs(self.displacement).max(initial=0.0))
@@ -90,45 +78,16 @@ class State:
 
     def __reduce__(self) -> tuple[object, ...]:
         # Unpickled arrays would be writeable.
-        return _rebuilt, (self.dofs, self.displacement, self.velocity, self.contact_force)
+        return _rebuilt, (dict(vars(self)),)
 
     @classmethod
     def rest(cls, model: Model) -> Self:
-        """Return the state without displacement, velocity or contact force.
-
-        Parameters
-        ----------
-        model : Model
-            Whose state it is.
-
-        Returns
-        -------
-        State
-            All zero.
-        """
+        """Return the state of a model without displacement, velocity or contact force."""
         return cls(model)
 
     @classmethod
     def of_vector(cls, model: Model, vector: Float) -> Self:
-        """Return the state in a vector (x, v, f).
-
-        Parameters
-        ----------
-        model : Model
-            Whose state it is.
-        vector : ndarray of float64, shape (2 N + n_p,)
-            Displacements, velocities, contact forces.
-
-        Returns
-        -------
-        State
-            The same numbers.
-
-        Raises
-        ------
-        ModelError
-            If the vector has another length, or a number is not finite.
-        """
+        """Return the state of a model in a vector (x, v, f), shape (2 N + n_p,)."""
         dofs = len(model.structure)
         return cls(model, vector[:dofs], vector[dofs : 2 * dofs], vector[2 * dofs :])
 
@@ -140,20 +99,7 @@ class State:
         return vector
 
     def require_fit(self, model: Model, entry: str) -> None:
-        """Refuse a model with other degrees of freedom or another number of contact points.
-
-        Parameters
-        ----------
-        model : Model
-            What is to start from this state.
-        entry : str
-            What the message calls it.
-
-        Raises
-        ------
-        ModelError
-            If the state cannot be one of this model.
-        """
+        """Refuse a model with other degrees of freedom or another number of contact points."""
         points = sum(len(contact.slider_limits) for contact in model.contacts)
         if self.dofs != model.structure.dofs or self.contact_force.size != points:
             raise ModelError(
@@ -222,11 +168,7 @@ def _require_held(model: Model, forces: Float, entry: str) -> None:
         place += len(limits)
 
 
-def _rebuilt(dofs: tuple[str, ...], *arrays: Float) -> State:
+def _rebuilt(fields: dict[str, object]) -> State:
     state = object.__new__(State)
-    names = ("displacement", "velocity", "contact_force")
-    object.__setattr__(state, "dofs", dofs)
-    for name, array in zip(names, arrays, strict=True):
-        array.flags.writeable = False
-        object.__setattr__(state, name, array)
+    set_fields(state, **fields)
     return state

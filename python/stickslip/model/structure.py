@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from numbers import Real
 
@@ -14,6 +14,9 @@ from stickslip.checks import (
     brief,
     members,
     real_matrix,
+    require_finite,
+    require_square,
+    set_fields,
     text,
     unknown,
 )
@@ -36,25 +39,14 @@ class Structure:
     mass : array_like or scipy.sparse matrix, shape (N, N)
         Symmetric and positive definite [kg].
     stiffness : array_like or scipy.sparse matrix, shape (N, N)
-        Symmetric [N/m]. It may be singular: a free structure has rigid-body modes.
+        Symmetric [N/m]. It may be singular: a free structure has rigid-body modes. An asymmetry of
+        mass or stiffness up to 1e-8 of the largest entry, as printed digits leave it, is averaged
+        out.
     damping : array_like, scipy.sparse matrix, Rayleigh, ModalDamping or None, optional
         Viscous damping [kg/s], any real matrix (gyroscopic terms are skew). None is no damping.
     dofs : sequence of str, optional
         One name per degree of freedom, by which contacts, forces and results refer to it.
         Default "0", "1", ...
-
-    Attributes
-    ----------
-    mass, damping, stiffness : ndarray of float64, shape (N, N)
-        Read-only. An asymmetry of mass or stiffness up to 1e-8 of the largest entry, as printed
-        digits leave it, has been averaged out.
-    dofs : tuple of str
-        Names of the degrees of freedom.
-    damping_law : Rayleigh, ModalDamping or None
-        What the damping was made of; None where it was given as a matrix.
-    proportional : bool
-        Whether the damping couples none of the structure's modes because of what it was made of: a
-        law, or parts of `join` that each have one. Of a matrix rounding decides whether it does.
 
     Raises
     ------
@@ -75,7 +67,10 @@ class Structure:
     damping: Matrix
     dofs: tuple[str, ...]
     damping_law: DampingLaw | None
+    """What the damping was made of; None where it was given as a matrix."""
     proportional: bool
+    """Whether the damping couples none of the structure's modes because of what it was made of: a
+    law, or parts of `join` that each have one. Of a matrix rounding decides whether it does."""
 
     def __init__(
         self,
@@ -87,20 +82,15 @@ class Structure:
         M, K = real_matrix(mass, "mass"), real_matrix(stiffness, "stiffness")
         if not M.size:
             raise ModelError("mass: 0 x 0; a structure needs at least one dof")
-        _require_shape(M, "mass", len(M))
+        require_square(M, "mass")
         names = _names(dofs, len(M))
-        _require_shape(K, "stiffness", len(M))
         M, K = _symmetric(M, "mass", names), _symmetric(K, "stiffness", names)
         _require_positive(M, names)
-        values = (M, K, _damping(damping, M, K, names), names)
-        for field, value in zip(("mass", "stiffness", "damping", "dofs"), values, strict=True):
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
-            object.__setattr__(self, field, value)
+        C = _damping(damping, M, K, names)
         law = damping if isinstance(damping, DampingLaw) else None
-        object.__setattr__(self, "damping_law", law)
-        proportional = law.proportional if law is not None else not self.damping.any()
-        object.__setattr__(self, "proportional", proportional)
+        proportional = law.proportional if law is not None else not C.any()
+        set_fields(self, mass=M, stiffness=K, damping=C, dofs=names)
+        set_fields(self, damping_law=law, proportional=proportional)
 
     def __repr__(self) -> str:
         shown = ", ".join(self.dofs[:_SHOWN]) + (", ..." if len(self) > _SHOWN else "")
@@ -126,45 +116,17 @@ class Structure:
     ) -> Structure:
         """Return a structure with a damping matrix that a law made, to the last bit.
 
-        Parameters
-        ----------
-        mass, stiffness, damping, dofs
-            As of a new structure.
-        law : Rayleigh, ModalDamping or None
-            The law that made the damping, if any.
-        proportional : bool, optional
-            Whether the damping is known to couple no modes. Default: what the law says.
-
-        Returns
-        -------
-        Structure
-            The structure.
+        `proportional` says whether the damping is known to couple no modes; by default what the law
+        says.
         """
         made = cls(mass, stiffness, damping, dofs)
-        object.__setattr__(made, "damping_law", law)
         if proportional is None and law is not None:
             proportional = law.proportional
-        object.__setattr__(made, "proportional", made.proportional or bool(proportional))
+        set_fields(made, damping_law=law, proportional=made.proportional or bool(proportional))
         return made
 
     def index(self, name: str) -> int:
-        """Return the position of a degree of freedom.
-
-        Parameters
-        ----------
-        name : str
-            Its name.
-
-        Returns
-        -------
-        int
-            Its row in the matrices.
-
-        Raises
-        ------
-        ModelError
-            If there is no such name; the message gives the nearest one.
-        """
+        """Return the position of a degree of freedom, its row in the matrices."""
         try:
             return self.dofs.index(name)
         except ValueError:
@@ -172,22 +134,9 @@ class Structure:
 
 
 def join(structures: Mapping[str, Structure]) -> Structure:
-    """Put several structures side by side, not yet coupled.
+    """Put several structures, by name, side by side, not yet coupled.
 
-    Parameters
-    ----------
-    structures : mapping of str to Structure
-        The parts by name.
-
-    Returns
-    -------
-    Structure
-        Block-diagonal matrices; the degree of freedom "tip" of part "1" is named "1.tip".
-
-    Raises
-    ------
-    ModelError
-        If there is no part, or a part is not a `Structure` or has an empty name.
+    The matrices are block-diagonal; the degree of freedom "tip" of part "1" is named "1.tip".
     """
     if not isinstance(structures, Mapping):
         raise ModelError(
@@ -195,29 +144,20 @@ def join(structures: Mapping[str, Structure]) -> Structure:
         )
     if not structures:
         raise ModelError("join: no parts; give at least one structure")
-    for part, structure in structures.items():
-        text(part, "join: name of a part")
+    for name, structure in structures.items():
+        text(name, "join: name of a part")
         if not isinstance(structure, Structure):
-            raise ModelError(f"join: part {brief(part)} is {brief(structure)}; give a Structure")
+            raise ModelError(f"join: part {brief(name)} is {brief(structure)}; give a Structure")
     parts = list(structures.values())
-    return Structure.of_law(
-        mass=_blocks([part.mass for part in parts]),
-        stiffness=_blocks([part.stiffness for part in parts]),
-        damping=_blocks([part.damping for part in parts]),
-        dofs=[f"{name}.{dof}" for name, part in structures.items() for dof in part.dofs],
-        law=None,
-        proportional=all(part.proportional for part in parts),
-    )
-
-
-def _blocks(matrices: Sequence[Matrix]) -> Matrix:
-    whole = np.zeros((sum(map(len, matrices)),) * 2)
-    start = 0
-    for matrix in matrices:
-        block = slice(start, start + len(matrix))
-        whole[block, block] = matrix
-        start = block.stop
-    return whole
+    starts = np.cumsum([0, *map(len, parts)])
+    blocks = {name: np.zeros((starts[-1],) * 2) for name in ("mass", "stiffness", "damping")}
+    for name, whole in blocks.items():
+        for start, part in zip(starts, parts, strict=False):
+            block = slice(start, start + len(part))
+            whole[block, block] = getattr(part, name)
+    dofs = [f"{name}.{dof}" for name, part in structures.items() for dof in part.dofs]
+    proportional = all(part.proportional for part in parts)
+    return Structure.of_law(**blocks, dofs=dofs, law=None, proportional=proportional)
 
 
 def _names(dofs: Iterable[str] | None, size: int) -> tuple[str, ...]:
@@ -235,26 +175,10 @@ def _names(dofs: Iterable[str] | None, size: int) -> tuple[str, ...]:
     return tuple(map(str, names))
 
 
-def _require_shape(matrix: Matrix, entry: str, size: int) -> None:
-    rows, columns = matrix.shape
-    if rows != columns:
-        raise ModelError(f"{entry}: {rows} x {columns} is not square; give N x N for N dofs")
-    if rows != size:
-        raise ModelError(f"{entry}: {rows} x {columns}, but the mass matrix is {size} x {size}")
-
-
-def _require_finite(matrix: Matrix, entry: str, names: tuple[str, ...]) -> None:
-    if not np.isfinite(matrix).all():
-        row, column = np.argwhere(~np.isfinite(matrix))[0]
-        raise ModelError(
-            f"{entry}: {matrix[row, column]} at ({brief(names[row])}, {brief(names[column])}); "
-            "every entry must be finite"
-        )
-
-
 def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
     """Average out rounded digits; refuse what cannot be rounding."""
-    _require_finite(matrix, entry, names)
+    require_square(matrix, entry, len(names))
+    require_finite(matrix, entry, names)
     with np.errstate(over="ignore"):
         difference = np.abs(matrix - matrix.T)
     if difference.max() > _ASYMMETRY * np.abs(matrix).max():
@@ -310,6 +234,6 @@ def _damping(
             f"damping: {brief(damping)} is not a matrix; write ModalDamping({brief(damping)})"
         )
     matrix = real_matrix(damping, "damping")
-    _require_shape(matrix, "damping", len(mass))
-    _require_finite(matrix, "damping", names)
+    require_square(matrix, "damping", len(mass))
+    require_finite(matrix, "damping", names)
     return matrix

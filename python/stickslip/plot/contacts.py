@@ -121,7 +121,7 @@ def _stuck_forces(result: ForcedResponse, number: int, index: int, time: Float) 
     model = result.model
     omega = float(result.omega[index])
     linear = limit_model(model, stuck=True)
-    own = model.contacts[number].held(stuck=True)
+    own = model.contacts[number].linear_limit(stuck=True)
     if own is None:
         raise ModelError(
             f"contact {model.contact_names[number]!r}: without friction it never sticks; draw with "

@@ -46,7 +46,7 @@ def limit_model(model: Model, *, stuck: bool) -> Model:
     stiffness = structure.stiffness.copy()
     sticking = []
     for contact in model.contacts:
-        held = contact.held(stuck=stuck)
+        held = contact.linear_limit(stuck=stuck)
         if held is not None:
             sticking.append(held)
     if model.travels:

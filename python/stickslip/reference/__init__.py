@@ -14,6 +14,9 @@ from stickslip.reference.beams import (
     SNECMA_LOADS,
     beam_pair,
     damped_pair,
+    flutter_beam,
+    flutter_mass,
+    negative_damping,
     single_dof,
     snecma_beam,
     snecma_structure,
@@ -25,7 +28,6 @@ from stickslip.reference.elements import (
     rubber_beam,
     turbine_blade,
 )
-from stickslip.reference.flutter import flutter_beam, flutter_mass, negative_damping
 
 __all__ = [
     "BLADE_DAMPER_STIFFNESS",

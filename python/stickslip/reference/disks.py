@@ -20,25 +20,9 @@ def beam_ring(
 ) -> BladedDisk:
     """Return a ring of SNECMA beams, coupled at their tips, each with its damper to ground.
 
-    Parameters
-    ----------
-    sectors : int, optional
-        Number of beams.
-    coupling : float, optional
-        Stiffness of the springs between neighbouring tips [N/m]; see `RING_COUPLINGS`.
-    engine_order : int, optional
-        Engine order of the forces on the tips: 2 for the tuned ring, 3 for the mistuned one.
-    force : float, optional
-        Amplitude of the force on every tip [N].
-
-    Returns
-    -------
-    BladedDisk
-        3 degrees of freedom and 1 contact per sector.
-
-    References
-    ----------
-    Guillen (1999), section 4.5. The couplings have no damping there.
+    The springs between neighbouring tips have the stiffness `coupling` [N/m], see `RING_COUPLINGS`,
+    and no damping. The engine order of the forces on the tips, of amplitude `force` [N], is 2 for
+    the tuned ring and 3 for the mistuned one. From Guillen (1999), section 4.5.
     """
     return BladedDisk(
         snecma_structure(),

@@ -49,6 +49,7 @@ SEVERITIES: Mapping[str, Severity] = MappingProxyType(
         # the model
         "static-traction": _NOTE,
         "start-of-march": _NOTE,
+        "law-not-monotone": _CAUTION,
         "undamped-motion": _CAUTION,
         "negative-damping": _CAUTION,
         # transients and free motions

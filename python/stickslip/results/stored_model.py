@@ -131,7 +131,7 @@ def _mistuned(model: Any) -> dict[Hashable, object]:
 
 
 def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
-    from stickslip.disk.mistuned import rebuilt
+    from stickslip.disk import MistunedDisk
 
     disk = _read_bladed(dataset, "sector_")
     stacks = [_real(dataset, f"blade_{name}") for name in ("mass", "stiffness", "damping")]
@@ -142,7 +142,7 @@ def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
         Structure.of_law(m, k, c, disk.structure.dofs, None, bool(proportional))
         for m, k, c, proportional in zip(*stacks, known, strict=True)
     ]
-    return rebuilt(disk, blades, *_parts(dataset))
+    return MistunedDisk(disk, blades, *_parts(dataset))
 
 
 _WRITERS: Mapping[str, Callable[[Any], Mapping[Hashable, object]]] = {

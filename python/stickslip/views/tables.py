@@ -46,7 +46,7 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
         rows.append(("disk", f"{model.sectors} sectors of their own, {order}"))
     for contact in model.contacts[:_SHOWN_PARTS]:
         place = " - ".join(dof or "ground" for dof in contact.dofs)
-        rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {contact.described()}"))
+        rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {contact.summary()}"))
     for force in model.forces[:_SHOWN_PARTS]:
         values = f"amplitude {force.amplitude:g} N, phase {force.phase:g} rad"
         rows.append(("force", f"{force.dof}: harmonic {force.harmonic}, {values}"))

@@ -1,0 +1,213 @@
+"""Springs in series with Coulomb sliders, one or several on one displacement between two ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from stickslip.checks import Matrix, brief, real_number, set_fields, text
+from stickslip.errors import ModelError
+from stickslip.model.contact import Contact, Sliders, real_numbers
+from stickslip.model.structure import Structure
+
+__all__ = ["Jenkins", "ParallelJenkins"]
+
+
+@dataclass(frozen=True)
+class _TwoEnds(Contact):
+    """A contact of one point, between two degrees of freedom or one and the ground."""
+
+    dof: str
+    other: str | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        entry = f"{self.law} contact"
+        text(self.dof, f"{entry}: dof")
+        if self.other is not None:
+            text(self.other, f"{entry}: other")
+        if self.dof == self.other:
+            raise ModelError(
+                f"{entry}: both ends at dof {brief(self.dof)}; name another dof, or leave `other` "
+                "out for the ground"
+            )
+
+    @property
+    def _elements(self) -> Iterable[tuple[float, float]]:
+        """Stiffness [N/m] and slip force [N] of each element."""
+        raise NotImplementedError
+
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """Names of the degrees of freedom it acts on, one (to ground) or two."""
+        return (self.dof,) if self.other is None else (self.dof, self.other)
+
+    @property
+    def points(self) -> int:
+        """Number of contact points: one."""
+        return 1
+
+    def rows(self, structure: Structure) -> Matrix:
+        """Return B of u = B x, shape (1, N): +1 at `dof`, -1 at `other`; see `Contact.rows`."""
+        rows = np.zeros((1, len(structure)))
+        rows[0, structure.index(self.dof)] = 1.0
+        if self.other is not None:
+            rows[0, structure.index(self.other)] = -1.0
+        return rows
+
+    @property
+    def stuck_stiffness(self) -> Matrix:
+        """Stiffness while it sticks [N/m], shape (1, 1)."""
+        return np.array([[sum(stiffness for stiffness, _ in self._elements)]])
+
+    def linear_limit(self, *, stuck: bool) -> Jenkins | None:
+        """Return the elements that stick in a linear limit as one; see `Contact.linear_limit`."""
+        left = [k for k, limit in self._elements if (limit > 0.0 if stuck else np.isinf(limit))]
+        if not left:
+            return None
+        return Jenkins(self.dof, self.other, stiffness=sum(left), slip_force=np.inf, name=self.name)
+
+    @classmethod
+    def _placed(cls, dofs: tuple[str | None, ...]) -> tuple[Any, ...]:
+        if not 1 <= len(dofs) <= 2:
+            raise ModelError(f"{cls.law} contact: {len(dofs)} dofs; give one (to ground) or two")
+        return dofs
+
+
+@dataclass(frozen=True)
+class Jenkins(_TwoEnds):
+    """A spring in series with a Coulomb slider: the elastic dry-friction element.
+
+    The force follows f = clip(f + k_d du, -F_d, F_d) along the motion.
+
+    Parameters
+    ----------
+    dof : str
+        Degree of freedom it is attached to.
+    other : str, optional
+        Degree of freedom at its other end; the displacement is x_dof - x_other. Default: the
+        ground.
+    stiffness : float
+        Stiffness k_d while it sticks [N/m].
+    slip_force : float
+        Force F_d at which it slips [N]. Zero is no friction, infinity never slips.
+    name : str, optional
+        By which results and settings refer to it.
+
+    Raises
+    ------
+    ModelError
+        If the stiffness is negative or infinite, the slip force negative, either not a number, or
+        both ends are the same degree of freedom.
+
+    References
+    ----------
+    Guillen (1999), eqs. (2.1)-(2.2), with the return map of Table 3.1 corrected.
+    """
+
+    law: ClassVar[str] = "jenkins"
+    keys: ClassVar[tuple[str, ...]] = ("stiffness", "slip_force")
+
+    stiffness: float = field(kw_only=True)
+    slip_force: float = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        entry = f"jenkins contact at {brief(self.dof)}"
+        stiffness = real_number(self.stiffness, f"{entry}: stiffness", finite=False)
+        slip_force = real_number(self.slip_force, f"{entry}: slip_force", finite=False)
+        if stiffness < 0.0:
+            raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
+        if np.isinf(stiffness):
+            raise ModelError(
+                f"{entry}: stiffness inf; take about 1000 times the local structure stiffness as "
+                "the rigid limit"
+            )
+        if slip_force < 0.0:
+            raise ModelError(
+                f"{entry}: slip_force {slip_force:g} is negative; give N, 0 for no friction"
+            )
+        set_fields(self, stiffness=stiffness, slip_force=slip_force)
+
+    @property
+    def _elements(self) -> Iterable[tuple[float, float]]:
+        return [(self.stiffness, self.slip_force)]
+
+
+@dataclass(frozen=True)
+class ParallelJenkins(_TwoEnds, Sliders):
+    """Jenkins elements in parallel: a contact that begins to slip little by little.
+
+    All elements share one displacement, so that the contact has one unknown per harmonic, however
+    many elements it has. Its force is their sum.
+
+    Parameters
+    ----------
+    dof, other : str
+        Its ends, as of `Jenkins`.
+    stiffness : sequence of float
+        Stiffness of each element while it sticks [N/m].
+    slip_forces : sequence of float
+        Force at which each element slips [N]. Zero is no friction, infinity never slips.
+    name : str, optional
+        By which results and settings refer to it.
+
+    Raises
+    ------
+    ModelError
+        As of `Jenkins`, or if there are not as many stiffnesses as slip forces.
+
+    References
+    ----------
+    Iwan (1966): the parallel-series model.
+    """
+
+    law: ClassVar[str] = "parallel-jenkins"
+
+    stiffness: tuple[float, ...] = field(kw_only=True)
+    slip_forces: tuple[float, ...] = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        entry = f"{self.law} contact at {brief(self.dof)}"
+        stiffness = real_numbers(self.stiffness, entry, "stiffness", finite=True)
+        limits = real_numbers(self.slip_forces, entry, "slip_forces", finite=False)
+        if not stiffness:
+            raise ModelError(f"{entry}: stiffness: empty; give at least one element")
+        if len(stiffness) != len(limits):
+            raise ModelError(
+                f"{entry}: {len(limits)} slip_forces for {len(stiffness)} stiffnesses; give one "
+                "of each per element"
+            )
+        set_fields(self, stiffness=stiffness, slip_forces=limits)
+
+    @property
+    def _elements(self) -> Iterable[tuple[float, float]]:
+        return zip(self.stiffness, self.slip_forces, strict=True)
+
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Force at which all elements slip [N]."""
+        return (sum(self.slider_limits),)
+
+    @property
+    def slider_limits(self) -> tuple[float, ...]:
+        """Slip force of each element [N]; elements without stiffness carry none."""
+        return tuple(limit if stiffness else 0.0 for stiffness, limit in self._elements)
+
+    @property
+    def slider_shares(self) -> tuple[float, ...]:
+        """Share of the stiffness that each element has."""
+        total = sum(self.stiffness) or 1.0
+        return tuple(stiffness / total for stiffness in self.stiffness)
+
+    def law_parameters(self) -> dict[str, float | list[float]]:
+        """Return `stiffness` [N/m] and `slip_force` [N] of the elements."""
+        return {"stiffness": [*self.stiffness], "slip_force": [*self.slip_forces]}
+
+    def summary(self) -> str:
+        """Return the parameters in words, in SI units."""
+        return f"{len(self.stiffness)} elements, stiffness {sum(self.stiffness):g} in all"
