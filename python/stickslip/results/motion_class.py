@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
@@ -52,24 +51,17 @@ class MotionArrays(FateArrays):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class MotionClass(ColumnResult):
     """What becomes of a free motion from one start.
 
     Attributes
     ----------
-    settings : ClassifySettings
-        How it was found out.
-    arrays : MotionArrays
-        Every number by its name, of one start.
     step : float
         Time between the instants of `tail` [s].
     """
 
     kind: ClassVar[str] = "motion_class"
     title = "What becomes of a free motion with dry friction"
-    columns = MotionArrays
-    settings_class = ClassifySettings
     attributes: ClassVar[Attributes] = {"interrupted": bool, "step": float}
 
     settings: ClassifySettings
@@ -91,7 +83,7 @@ class MotionClass(ColumnResult):
     @property
     def reason(self) -> Reason:
         """Why; ``reason.advice`` says what to do about it."""
-        return list(Reason)[int(self.arrays.reason[0])]
+        return Reason.from_code(int(self.arrays.reason[0]))
 
     @property
     def mode(self) -> int | None:
@@ -136,20 +128,10 @@ class MotionClass(ColumnResult):
     def amplitude(self, dof: str) -> float:
         """Return half the range of a displacement at the end.
 
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
         Returns
         -------
         float
             [m]; of a settled motion over a period, not-a-number if it is unbounded.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
         """
         return float(self.arrays.amplitude[0, self._column(dof)])
 
@@ -157,11 +139,6 @@ class MotionClass(ColumnResult):
         """Return the power spectral density of a displacement once it was decided.
 
         By Welch's method in Hann windows, which hold the leakage of a motion without period down.
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
 
         Returns
         -------
@@ -171,7 +148,7 @@ class MotionClass(ColumnResult):
         Raises
         ------
         ModelError
-            If there is no such degree of freedom, or no such motion.
+            If there is no such motion.
         """
         column = self._column(dof)
         if not len(self.tail):
@@ -194,8 +171,6 @@ class MotionClass(ColumnResult):
 
         Parameters
         ----------
-        dof : str
-            An observed degree of freedom.
         most : int, optional
             How many at most.
         least : float, optional

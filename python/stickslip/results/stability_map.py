@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -35,22 +34,11 @@ class MapArrays(Columns):
     negative_damping: Numbers = column("row column", "kg/s", "C_neg of the damping C + r C_neg")
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class StabilityMap(ColumnResult):
-    """Largest ratio r with limit cycles, and with stable ones, over a parameter of the contacts.
-
-    Attributes
-    ----------
-    settings : MapSettings
-        What was varied, and how.
-    arrays : MapArrays
-        Every number by its name.
-    """
+    """Largest ratio r with limit cycles, and with stable ones, over a parameter of the contacts."""
 
     kind: ClassVar[str] = "stability_map"
     title = "Negative damping that friction bounds"
-    columns = MapArrays
-    settings_class = MapSettings
 
     settings: MapSettings
     arrays: MapArrays

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.results.stability import stability_counts, worded
+from stickslip.results.stability import STATES, stability_counts
 from stickslip.units import quantity
 from stickslip.views.tables import Row, Table, assumed, counted, model_rows, new_table
 
@@ -46,7 +46,7 @@ def tables(
                 f"{result.omega[index]:#.7g}",
                 *(f"{result.amplitude(dof)[index] / length:.6e}" for dof in shown),
                 f"{sizes.max():.4g}" if sizes.size else "",
-                worded(str(result.stability[index])),
+                STATES[str(result.stability[index])].answer,
             )
     return [table]
 
