@@ -22,11 +22,19 @@ class Columns(griffe.Extension):
             _document(func)
 
     def on_attribute_instance(self, *, attr: griffe.Attribute, **_: Any) -> None:
-        """Say what the column of an attribute is."""
-        if isinstance(attr.value, griffe.ExprCall) and str(attr.value.function).startswith("Shown"):
+        """Say what the column of an attribute is, or which function draws."""
+        if not isinstance(attr.value, griffe.ExprCall):
+            return
+        kind = str(attr.value.function)
+        if kind.startswith("Shown"):
             attr.annotation = attr.value.function.slice
             attr.value, attr.labels = None, {"property"}
             _document(attr)
+        elif kind == "Drawn":
+            name = griffe.dynamic_import(attr.path).__name__
+            text = f"Draw it: the method is the function [`{name}`][stickslip.plot.{name}]."
+            attr.value, attr.labels = None, {"method"}
+            attr.docstring = griffe.Docstring(text, parent=attr)
 
 
 def _document(what: griffe.Object) -> None:

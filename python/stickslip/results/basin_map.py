@@ -15,6 +15,7 @@ from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int, constant
 from stickslip.results.dataset import labels
+from stickslip.results.drawn import plots
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.result import ColumnResult
 from stickslip.settings.motion import BasinSettings
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip.plot.basins import BasinOptions
+
 
 __all__ = ["BasinMap", "Outcome"]
 
@@ -154,6 +156,4 @@ class BasinMap(ColumnResult):
 
     def plot(self, **options: Unpack[BasinOptions]) -> Axes:
         """Draw the basins over the two axes; see `stickslip.plot.basins`."""
-        from stickslip import plot
-
-        return plot.basins(self, **options)
+        return plots.basins(self, **options)

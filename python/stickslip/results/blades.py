@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple, Self, cast
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -12,16 +11,11 @@ from stickslip.checks import brief, text, unknown
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.peaks import Peak
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
     from stickslip.disk import BladedDisk, MistunedDisk
-    from stickslip.plot import BladeBarOptions, BladeCurveOptions
-    from stickslip.results import ForcedResponse
 
 __all__ = ["Amplification", "BladeMotion"]
 
@@ -41,6 +35,9 @@ class Amplification(NamedTuple):
 
 class BladeMotion(ContactMotion):
     """The part of a result that concerns the sectors of a disk."""
+
+    plot_blades = Drawn(lambda: plots.blade_bars)
+    plot_blade_curves = Drawn(lambda: plots.blade_curves)
 
     def sector(self, number: int) -> Self:
         """Return the motion of another sector of a tuned disk.
@@ -186,20 +183,6 @@ class BladeMotion(ContactMotion):
         blade, peak = self.highest_blade(dof, measure)
         reference = tuned.peak(dof, measure)
         return Amplification(peak.amplitude / reference.amplitude, blade, peak, reference)
-
-    def plot_blades(self, dof: str, **options: Unpack[BladeBarOptions]) -> Axes:
-        """Draw the amplitude of every blade as a bar; see `stickslip.plot.blade_bars`."""
-        from stickslip import plot
-
-        return plot.blade_bars(cast("ForcedResponse", self), dof, **options)
-
-    def plot_blade_curves(
-        self, dof: str, blades: Sequence[int] | None = None, **options: Unpack[BladeCurveOptions]
-    ) -> Axes:
-        """Draw the response curves of chosen blades; see `stickslip.plot.blade_curves`."""
-        from stickslip import plot
-
-        return plot.blade_curves(cast("ForcedResponse", self), dof, blades, **options)
 
     def _tuned_disk(self) -> BladedDisk:
         from stickslip.disk import BladedDisk

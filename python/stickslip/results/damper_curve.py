@@ -11,6 +11,7 @@ import numpy as np
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.drawn import plots
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip.plot.damper import DamperOptions
+
 
 __all__ = ["DamperArrays", "DamperCurve", "LeastPeak"]
 
@@ -158,6 +160,4 @@ class DamperCurve(ColumnResult):
 
     def plot(self, **options: Unpack[DamperOptions]) -> Axes:
         """Draw the damper performance curve; see `stickslip.plot.damper`."""
-        from stickslip import plot
-
-        return plot.damper(self, **options)
+        return plots.damper(self, **options)

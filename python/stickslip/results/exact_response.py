@@ -15,6 +15,7 @@ from stickslip.model import ContactRef, PointRef
 from stickslip.model.model import Model, refusal
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Measure, amplitude_in, constant
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import ContactStates, Events, states_of
 from stickslip.results.forced_response import ForcedResponse
@@ -25,13 +26,8 @@ from stickslip.results.sweep import key_of
 from stickslip.settings.orbits import ExactSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
     from stickslip import _core
     from stickslip.disk.wave_ring import Rotation
-    from stickslip.plot import MultiplierOptions
 
 __all__ = ["ExactResponse"]
 
@@ -50,6 +46,9 @@ class ExactResponse(ForcedResponse, FloquetStability):
 
     settings: ExactSettings
     arrays: OrbitArrays
+
+    plot_multipliers = Drawn(lambda: plots.multipliers)
+    plot_events = Drawn(lambda: plots.events)
 
     @cached_property
     def energy(self) -> Energy:
@@ -190,18 +189,6 @@ class ExactResponse(ForcedResponse, FloquetStability):
             for sector in range(rotation.sectors)
             for name in part
         ]
-
-    def plot_multipliers(self, **options: Unpack[MultiplierOptions]) -> Axes:
-        """Draw the multipliers with the unit circle; see `stickslip.plot.multipliers`."""
-        from stickslip import plot
-
-        return plot.multipliers(self, **options)
-
-    def plot_events(self, index: int, *, ax: Axes | None = None) -> Axes:
-        """Draw when the contact points stick and slip, over one period."""
-        from stickslip import plot
-
-        return plot.events(self, index, ax=ax)
 
     def _places(self, contact: PointRef) -> slice | int:
         number, point = self.locate(contact)

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from stickslip.model import PointRef
 from stickslip.results.arrays import Measure
 from stickslip.results.blades import BladeMotion
 from stickslip.results.certificate import Certificate
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.energy import Energy, energy_of
 from stickslip.results.peaks import Peak, Summary
 from stickslip.results.sensitivities import Sensitivities
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
     import xarray as xr
-    from matplotlib.axes import Axes
 
-    from stickslip.plot import CurveOptions, Frame, LoopOptions
 
 __all__ = ["ForcedResponse", "Measure", "Peak", "Summary"]
 
@@ -43,6 +39,11 @@ class ForcedResponse(BladeMotion, Sensitivities):
     title = "Forced response of a structure with dry friction, by harmonic balance"
 
     certificate: Certificate | None = None
+
+    plot = Drawn(lambda: plots.curves)
+    plot_waveform = Drawn(lambda: plots.waveform)
+    plot_hysteresis = Drawn(lambda: plots.hysteresis)
+    plot_slip = Drawn(lambda: plots.slip)
 
     def __repr__(self) -> str:
         omega = self.omega
@@ -70,50 +71,3 @@ class ForcedResponse(BladeMotion, Sensitivities):
     @classmethod
     def _further_arguments(cls, dataset: xr.Dataset) -> dict[str, Any]:
         return {"certificate": Certificate.of_dataset(dataset)}
-
-    def plot(self, dof: str, **options: Unpack[CurveOptions]) -> Axes:
-        """Draw the curve between its stuck and free limits; see `stickslip.plot.curves`."""
-        from stickslip import plot
-
-        return plot.curves(self, dof, **options)
-
-    def plot_waveform(
-        self,
-        dof: str | Sequence[str],
-        index: int,
-        *,
-        samples: int = 512,
-        **options: Unpack[Frame],
-    ) -> Axes:
-        """Draw one period of one or several displacements; see `stickslip.plot.waveform`."""
-        from stickslip import plot
-
-        return plot.waveform(self, dof, index, samples=samples, **options)
-
-    def plot_hysteresis(
-        self, contact: PointRef, index: int | Sequence[int], **options: Unpack[LoopOptions]
-    ) -> Axes:
-        """Draw the contact force against the relative displacement.
-
-        Parameters
-        ----------
-        index : int or sequence of int
-            Positions of points, one loop each.
-        **options
-            See `stickslip.plot.hysteresis`.
-        """
-        from stickslip import plot
-
-        return plot.hysteresis(self, contact, index, **options)
-
-    def plot_slip(
-        self,
-        contact: PointRef | None = None,
-        *,
-        ax: Axes | None = None,
-        omega_unit: Literal["rad/s", "Hz"] = "rad/s",
-    ) -> Axes:
-        """Draw the share of the period that contacts slip; see `stickslip.plot.slip`."""
-        from stickslip import plot
-
-        return plot.slip(self, contact, ax=ax, omega_unit=omega_unit)

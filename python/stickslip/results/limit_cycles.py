@@ -24,17 +24,14 @@ from stickslip.results.arrays import (
     amplitude_of,
     constant,
 )
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.fields import Numbers, Shown, column
 from stickslip.results.periodic import PeriodicMotions
 from stickslip.results.stability import FloquetStability, stability_counts
 from stickslip.settings.cycles import CycleSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
-    from stickslip.plot.cycles import CycleOptions
+    pass
 
 __all__ = ["CycleArrays", "Limit", "LimitCycles", "StabilityChange"]
 
@@ -147,6 +144,9 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     omega = Shown[Float]()
     negative_damping = Shown[Numbers]()
 
+    plot = Drawn(lambda: plots.limit_cycles)
+    plot_multipliers = Drawn(lambda: plots.cycle_multipliers)
+
     @cached_property
     def branch(self) -> NDArray[np.str_]:
         """Side of the branch, "sticking" or "slipping", shape (n,)."""
@@ -253,18 +253,6 @@ class LimitCycles(PeriodicMotions, FloquetStability):
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
         return self._stable("cycle") | super()._further_variables(derived=derived)
-
-    def plot(self, dof: str, **options: Unpack[CycleOptions]) -> Axes:
-        """Draw amplitude and frequency along the branch; see `stickslip.plot.limit_cycles`."""
-        from stickslip import plot
-
-        return plot.limit_cycles(self, dof, **options)
-
-    def plot_multipliers(self, *, ax: Axes | None = None) -> Axes:
-        """Draw the Floquet multipliers; see `stickslip.plot.cycle_multipliers`."""
-        from stickslip import plot
-
-        return plot.cycle_multipliers(self, ax=ax)
 
     def _turn(self, value: float, omega: float) -> Limit:
         ratio = value if self.settings.variation is None else self.settings.ratio

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from stickslip.checks import choice, real_number, unknown
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.mistuning import DistributionOptions, TrendOptions
+    from stickslip.plot.mistuning import TrendOptions
 
 __all__ = ["MistuningArrays", "MistuningStudy"]
 
@@ -111,6 +112,8 @@ class MistuningStudy(ColumnResult):
     deviation = Shown[Float]()
     coupling_stiffness = Shown[Float]("coupling")
     patterns = Shown[Float]()
+
+    plot_distribution = Drawn(lambda: plots.distribution)
 
     @cached_property
     def status(self) -> NDArray[np.object_]:
@@ -224,23 +227,13 @@ class MistuningStudy(ColumnResult):
         fit = self.weibull(dof, deviation=deviation, coupling=coupling, confidence=confidence)
         return fit.percentile(q)
 
-    def plot_distribution(self, dof: str, **options: Unpack[DistributionOptions]) -> Axes:
-        """Draw factors and their fit on extreme-value paper; see `stickslip.plot.distribution`."""
-        from stickslip import plot
-
-        return plot.distribution(self, dof, **options)
-
     def plot_deviation(self, dof: str, **options: Unpack[TrendOptions]) -> Axes:
         """Draw factors against the deviation; see `stickslip.plot.amplification`."""
-        from stickslip import plot
-
-        return plot.amplification(self, dof, "deviation", **options)
+        return plots.amplification(self, dof, "deviation", **options)
 
     def plot_coupling(self, dof: str, **options: Unpack[TrendOptions]) -> Axes:
         """Draw factors against the stiffness of couplings; see `stickslip.plot.amplification`."""
-        from stickslip import plot
-
-        return plot.amplification(self, dof, "coupling", **options)
+        return plots.amplification(self, dof, "coupling", **options)
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
         said = {"units": "1", "long_name": "amplification factor"}

@@ -10,6 +10,7 @@ import numpy as np
 from stickslip.checks import real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.model.state import State
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.fields import Float, Shown, column
 from stickslip.results.result import Attributes, ColumnResult
@@ -17,11 +18,7 @@ from stickslip.results.spectrum import Spectrum, spectrum_of
 from stickslip.settings.motion import ClassifySettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
-    from stickslip.plot.basins import LineOptions
+    pass
 
 __all__ = ["Line", "MotionArrays", "MotionClass"]
 
@@ -69,6 +66,8 @@ class MotionClass(ColumnResult):
     step: float
 
     tail = Shown[Float]()
+
+    plot = Drawn(lambda: plots.lines)
 
     def __repr__(self) -> str:
         where = "" if self.mode is None else f" on mode {self.mode}"
@@ -206,9 +205,3 @@ class MotionClass(ColumnResult):
             lines.append(Line(where, 2.0 * np.pi * where, float(np.sqrt(2.0 * power))))
         lines.sort(key=lambda line: line.amplitude, reverse=True)
         return [line for line in lines[:count] if line.amplitude >= floor * lines[0].amplitude]
-
-    def plot(self, dof: str, **options: Unpack[LineOptions]) -> Axes:
-        """Draw the spectrum with its lines; see `stickslip.plot.lines`."""
-        from stickslip import plot
-
-        return plot.lines(self, dof, **options)

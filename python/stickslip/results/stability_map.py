@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from stickslip.results.drawn import plots
 from stickslip.results.fields import Columns, Float, Numbers, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.settings.cycles import MapSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    pass
 
 __all__ = ["MapArrays", "StabilityMap"]
 
@@ -61,6 +64,4 @@ class StabilityMap(ColumnResult):
 
     def plot(self, *, ax: Axes | None = None) -> Axes:
         """Draw the map; see `stickslip.plot.stability_map`."""
-        from stickslip import plot
-
-        return plot.stability_map(self, ax=ax)
+        return plots.stability_map(self, ax=ax)

@@ -13,6 +13,7 @@ from stickslip.errors import ModelError
 from stickslip.model import PointRef
 from stickslip.model.state import State
 from stickslip.results.arrays import Measure, amplitude_in
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.events import KINDS, Events
 from stickslip.results.fields import Code, Columns, Float, Int, Shown, column
 from stickslip.results.result import Attributes, ColumnResult
@@ -21,11 +22,7 @@ from stickslip.results.status import Settled, TransientStatus
 from stickslip.settings.motion import TransientSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
-    from stickslip.plot import HistoryOptions, PoincareOptions, SpectrumOptions
+    pass
 
 __all__ = ["Transient", "TransientArrays"]
 
@@ -107,6 +104,12 @@ class Transient(ColumnResult):
 
     time = Shown[Float]()
     change = Shown[Float]()
+
+    plot = Drawn(lambda: plots.history)
+    plot_contact_force = Drawn(lambda: plots.contact_history)
+    plot_phase = Drawn(lambda: plots.phase)
+    plot_poincare = Drawn(lambda: plots.poincare)
+    plot_spectrum = Drawn(lambda: plots.spectrum)
 
     @property
     def status(self) -> TransientStatus:
@@ -306,38 +309,6 @@ class Transient(ColumnResult):
         meaning = "half peak-to-peak amplitude in each period"
         values = np.stack([self.amplitudes(dof) for dof in self.dofs], axis=1)
         return {"amplitude": (("period", "dof"), values, {"units": "m", "long_name": meaning})}
-
-    def plot(self, dof: str, **options: Unpack[HistoryOptions]) -> Axes:
-        """Draw a displacement over time; see `stickslip.plot.history`."""
-        from stickslip import plot
-
-        return plot.history(self, dof, **options)
-
-    def plot_contact_force(
-        self, contact: PointRef, *, ax: Axes | None = None, last: int | None = None
-    ) -> Axes:
-        """Draw contact forces over time; see `stickslip.plot.contact_history`."""
-        from stickslip import plot
-
-        return plot.contact_history(self, contact, ax=ax, last=last)
-
-    def plot_phase(self, dof: str, **options: Unpack[HistoryOptions]) -> Axes:
-        """Draw velocity over displacement; see `stickslip.plot.phase`."""
-        from stickslip import plot
-
-        return plot.phase(self, dof, **options)
-
-    def plot_poincare(self, dof: str, **options: Unpack[PoincareOptions]) -> Axes:
-        """Draw the states after each period; see `stickslip.plot.poincare`."""
-        from stickslip import plot
-
-        return plot.poincare(self, dof, **options)
-
-    def plot_spectrum(self, dof: str, **options: Unpack[SpectrumOptions]) -> Axes:
-        """Draw the power spectral density; see `stickslip.plot.spectrum`."""
-        from stickslip import plot
-
-        return plot.spectrum(self, dof, **options)
 
     def _whole(self, motion: Float, periods: int) -> Float:
         """Return the samples of the last whole periods, without the instant that ends them."""
