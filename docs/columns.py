@@ -1,4 +1,4 @@
-"""What the pages say of result columns: what the columns themselves say."""
+"""What the pages say of results: what columns, and methods by their parameters, say themselves."""
 
 from __future__ import annotations
 
@@ -8,21 +8,35 @@ import griffe
 
 
 class Columns(griffe.Extension):
-    """Gives classes of columns, and attributes that show one, the documentation that they have."""
+    """Gives results, their columns and what shows one the documentation that they have."""
 
     def on_class_instance(self, *, cls: griffe.Class, **_: Any) -> None:
-        """List the columns of a class."""
-        if any(str(base).endswith(("Columns", "Arrays")) for base in cls.bases):
+        """List the columns of a class, or the attributes of a result."""
+        if cls.bases and cls.path.startswith("stickslip.results."):
             _document(cls)
 
+    def on_function_instance(self, *, func: griffe.Function, **_: Any) -> None:
+        """Document a method of a result as `help` does."""
+        of_class = func.parent is not None and func.parent.is_class
+        if of_class and func.docstring and func.path.startswith("stickslip.results."):
+            _document(func)
+
     def on_attribute_instance(self, *, attr: griffe.Attribute, **_: Any) -> None:
-        """Say what the column of an attribute is."""
-        if isinstance(attr.value, griffe.ExprCall) and str(attr.value.function).startswith("Shown"):
+        """Say what the column of an attribute is, or which function draws."""
+        if not isinstance(attr.value, griffe.ExprCall):
+            return
+        kind = str(attr.value.function)
+        if kind.startswith("Shown"):
             attr.annotation = attr.value.function.slice
             attr.value, attr.labels = None, {"property"}
             _document(attr)
+        elif kind == "Drawn":
+            name = griffe.dynamic_import(attr.path).__name__
+            text = f"Draw it: the method is the function [`{name}`][stickslip.plot.{name}]."
+            attr.value, attr.labels = None, {"method"}
+            attr.docstring = griffe.Docstring(text, parent=attr)
 
 
 def _document(what: griffe.Object) -> None:
-    text = griffe.dynamic_import(what.path).__doc__
-    what.docstring = griffe.Docstring(text, parent=what)
+    if text := griffe.dynamic_import(what.path).__doc__:
+        what.docstring = griffe.Docstring(text, parent=what)

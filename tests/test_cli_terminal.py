@@ -12,7 +12,7 @@ import pytest
 import stickslip as ss
 from beam_study import COMMAND, EXAMPLE, invoke, study_text
 from stickslip.cli import console
-from stickslip.views import curves
+from stickslip.views.curves import CurveView
 
 
 @pytest.fixture
@@ -92,13 +92,13 @@ def test_a_terminal_gets_a_framed_table(results, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("COLUMNS", "80")
     result = ss.load(results / "beam-20.313.nc")
-    console.show_all(curves.peaks([("a", result)], "level", ["tip"], "mm"))
+    console.show_all(CurveView().tables([("a", result)], "level", ["tip"], "mm"))
     assert "─" in sys.stdout.getvalue()
     assert "…" not in sys.stdout.getvalue()
     assert "peak [mm]" in sys.stdout.getvalue()
     monkeypatch.setattr(sys, "stdout", Screen())
     monkeypatch.setenv("COLUMNS", "50")
-    console.show_all(curves.peaks([("a", result)], "level", ["tip"], "mm"))
+    console.show_all(CurveView().tables([("a", result)], "level", ["tip"], "mm"))
     heading, line = sys.stdout.getvalue().splitlines()
     assert heading.split() == [
         "level",
@@ -117,7 +117,7 @@ def test_a_terminal_gets_a_framed_table(results, monkeypatch):
 
 def test_only_the_peaks_that_are_shown_are_refined(results, monkeypatch):
     result = ss.load(results / "beam-20.313.nc")
-    console.show_all(curves.peaks([("", result)], "", ["tip", "none"], "m"))
+    console.show_all(CurveView().tables([("", result)], "", ["tip", "none"], "m"))
     assert {dof for dof, _ in result._peaks} == {"tip"}
 
 

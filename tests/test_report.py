@@ -3,7 +3,6 @@
 import json
 import re
 import sys
-from dataclasses import dataclass
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
@@ -20,7 +19,8 @@ from stickslip.cli import app
 from stickslip.results.diagnostic import diagnostic
 from stickslip.results.result import Result
 from stickslip.views import kinds
-from stickslip.views.tables import new_table
+from stickslip.views.tables import tabulated
+from stickslip.views.view import View
 
 BEAM = ss.reference.snecma_beam(20.313)
 FLUTTER = ss.destabilised(ss.reference.single_dof(), ss.Rayleigh(mass=-20.0))
@@ -111,7 +111,7 @@ def page(results, tmp_path_factory):
 
 
 def test_every_kind_is_there(results, page):
-    assert {result.kind for result in results.values()} == set(kinds.MODULES)
+    assert {result.kind for result in results.values()} == set(kinds.VIEWS)
     for name in results:
         assert name in page.texts
     assert page.texts[0] == "All kinds"
@@ -352,7 +352,6 @@ def test_names_are_texts_only(hostile, tmp_path):
 # ---------------------------------------------------------------------------------- a new kind
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Branch(Result):
     kind: ClassVar[str] = "branch"
 
@@ -380,25 +379,31 @@ def test_an_unknown_kind_is_refused_with_the_known_ones(tmp_path):
 
 
 def test_a_new_kind_joins_with_its_view(tmp_path, monkeypatch):
-    view = ModuleType("branch_view")
+    class BranchView(View):
+        def rows(self, result, dofs, length):
+            return [("1.25",)]
 
-    def tables(results, label, dofs, length_unit):
-        table = new_table("turning points")
-        table.add_column("ratio", justify="right")
-        table.add_row("1.25")
-        return [table]
+        def tables(self, results, label, dofs, length_unit):
+            rows = [("", row) for row in self.rows(results[0][1], dofs, 1.0)]
+            table = tabulated("", (), ("ratio",), (), rows)
+            table.title = "turning points"
+            return [table]
 
-    def panels(results, dofs, output):
-        return [lambda *, ax: ax.plot([1, 2], [3, 4], label="sticking")]
+        def panels(self, results, dofs, output):
+            return [lambda *, ax: ax.plot([1, 2], [3, 4], label="sticking")]
 
-    view.tables, view.panels = tables, panels
-    view.facts = lambda result: [("branches", "2"), ("assumed", "None.")]
-    view.details = lambda result, dofs, output: []
-    view.failures = lambda result: ["turned back"]
-    monkeypatch.setitem(sys.modules, "branch_view", view)
-    monkeypatch.setitem(kinds.MODULES, "branch", "branch_view")
+        def facts(self, result):
+            return [("branches", "2"), ("assumed", "None.")]
+
+        def failures(self, result):
+            return ["turned back"]
+
+    module = ModuleType("branch_view")
+    module.BranchView = BranchView
+    monkeypatch.setitem(sys.modules, "branch_view", module)
+    monkeypatch.setitem(kinds.VIEWS, "branch", ("branch_view", "BranchView"))
     ss.report({"lco": BRANCH}, tmp_path / "a.html")
     page = Page(tmp_path / "a.html")
     assert "turning points" in page.captions
-    assert {"1.25", "branches", "turned back", "Branch", "None."} <= set(page.texts)
+    assert {"ratio", "1.25", "branches", "turned back", "Branch", "None."} <= set(page.texts)
     assert len(page.figures) == 1

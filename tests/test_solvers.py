@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.reference import SNECMA_LOADS, beam_pair, snecma_beam
 from stickslip.study import Study
-from stickslip.views.curves import facts
+from stickslip.views.curves import CurveView
 
 GRID = np.linspace(20.0, 350.0, 400)
 BAND = np.linspace(150.0, 250.0, 60)
@@ -148,10 +148,13 @@ def test_automatic_samples_keep_the_tolerance_and_say_how_many(frf, tmp_path):
     force = march.contact_force((0, 0), index, 512)
     np.testing.assert_array_equal(loaded.contact_force((0, 0), index, 512), force)
     assert np.abs(force - frf.contact_force((0, 0), index, 512)).max() < 0.01 * 246.048
-    rows = dict(facts(march))
+    rows = dict(CurveView().facts(march))
     assert rows["samples"] == f"auto, 64 to {march.samples.max()} per period"
-    assert dict(facts(beam(evaluation="marched", samples=64)))["samples"] == "64 per period"
-    assert "samples" not in dict(facts(frf))
+    assert (
+        dict(CurveView().facts(beam(evaluation="marched", samples=64)))["samples"]
+        == "64 per period"
+    )
+    assert "samples" not in dict(CurveView().facts(frf))
 
 
 def test_files_without_samples_per_point_are_read_as_long_as_the_settings_name_them():

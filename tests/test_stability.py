@@ -13,7 +13,7 @@ import stickslip as ss
 from stickslip import plot
 from stickslip.html.figures import drawn
 from stickslip.results.stability import stability_of
-from stickslip.views import cycles as view
+from stickslip.views.cycles import CycleView
 
 K = np.array([[1e4, -1e4], [-1e4, 1e4]])
 
@@ -84,11 +84,11 @@ def test_reports_say_what_is_decided(undecided, whole):
 def test_tables_say_what_is_decided(undecided, whole):
     for result, words in ((undecided, {"not decided"}), (whole, {"yes", "no"})):
         screen = Console(file=io.StringIO(), width=200)
-        for table in view.tables([("x", result)], "", ["a"], "m"):
+        for table in CycleView().tables([("x", result)], "", ["a"], "m"):
             screen.print(table)
         assert all(word in screen.file.getvalue() for word in words)
         assert ("not decided" in screen.file.getvalue()) == (result is undecided)
-    facts = dict(view.facts(undecided)[:-1])
+    facts = dict(CycleView().facts(undecided)[:-1])
     assert facts["stability"] == f"{undecided.omega.size} not decided"
 
 

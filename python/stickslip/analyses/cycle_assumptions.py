@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.model import Model
-from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
+from stickslip.results.limit_cycles import CycleArrays
 from stickslip.settings.cycles import MOST_HARMONICS, CycleSettings
 
 if TYPE_CHECKING:

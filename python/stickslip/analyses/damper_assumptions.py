@@ -15,7 +15,7 @@ from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip.results.damper_curve import DamperArrays
-    from stickslip.results.mistuning_arrays import MistuningArrays
+    from stickslip.results.mistuning import MistuningArrays
     from stickslip.settings.peaks import DamperSettings, MistuningSettings
 
 __all__ = ["damper_assumptions", "peak_assumptions"]

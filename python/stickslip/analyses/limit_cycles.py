@@ -24,8 +24,7 @@ from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import is_proportional, negative_matrix
 from stickslip.model.model import refusal
-from stickslip.results.cycle_arrays import CycleArrays
-from stickslip.results.limit_cycles import LimitCycles
+from stickslip.results.limit_cycles import CycleArrays, LimitCycles
 from stickslip.settings.cycles import LOWEST_RATIO, BranchSettings, CycleKeys, CycleSettings
 from stickslip.settings.entries import Span
 from stickslip.settings.settings import configured

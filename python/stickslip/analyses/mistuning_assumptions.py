@@ -7,7 +7,7 @@ import numpy as np
 from stickslip.analyses.assumptions import LARGE_ERROR
 from stickslip.analyses.damper_assumptions import peak_assumptions
 from stickslip.results.diagnostic import Diagnostic, diagnostic, present
-from stickslip.results.mistuning_arrays import MistuningArrays
+from stickslip.results.mistuning import MistuningArrays
 from stickslip.settings.peaks import MistuningSettings
 
 __all__ = ["mistuning_assumptions"]

@@ -18,8 +18,7 @@ from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption
 from stickslip.results.arrays import Float
-from stickslip.results.mistuning import MistuningStudy
-from stickslip.results.mistuning_arrays import MistuningArrays
+from stickslip.results.mistuning import MistuningArrays, MistuningStudy
 from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningSettings
 

@@ -14,8 +14,8 @@ from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.destabilised import is_proportional
-from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
+from stickslip.results.limit_cycles import CycleArrays
 from stickslip.results.stability import stability_of
 from stickslip.results.stability_map import MapArrays, StabilityMap
 from stickslip.settings.cycles import CycleSettings, MapKeys, MapSettings

@@ -24,8 +24,7 @@ from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.model import refusal
 from stickslip.model.state import State
-from stickslip.results.transient import Transient
-from stickslip.results.transient_arrays import TransientArrays
+from stickslip.results.transient import Transient, TransientArrays
 from stickslip.settings.motion import TransientSettings
 from stickslip.settings.settings import configured
 

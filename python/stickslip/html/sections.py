@@ -23,9 +23,10 @@ from stickslip.results.result import Result
 from stickslip.results.store import content_of
 from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
-from stickslip.views.kinds import MODULES, View, cautions, failures, view_of
+from stickslip.views.kinds import VIEWS, cautions, failures, view_of
 from stickslip.views.picture import Panel
 from stickslip.views.tables import Row, Table, new_table
+from stickslip.views.view import View
 
 __all__ = ["Entry", "content"]
 
@@ -121,7 +122,7 @@ def _grouped(entries: Iterable[Entry]) -> list[list[Entry]]:
     for entry in entries:
         view_of([entry.result])  # an unknown kind is refused before anything is drawn
         model = entry.result.model
-        key = MODULES[entry.result.kind], type(model), model.structure.dofs, entry.result.dofs
+        key = VIEWS[entry.result.kind], type(model), model.structure.dofs, entry.result.dofs
         groups.setdefault(key, []).append(entry)
     return list(groups.values())
 
@@ -156,7 +157,7 @@ def _group(
 def _section(
     anchor: str,
     entry: Entry,
-    view: View,
+    view: View[Any],
     dofs: Sequence[str],
     output: OutputTable,
     known: set[Row],

@@ -21,9 +21,11 @@ __all__ = [
     "Bool",
     "Code",
     "Complex",
+    "ExactColumns",
     "Float",
     "Int",
     "Measure",
+    "PeriodicArrays",
     "amplitude_in",
     "amplitude_of",
     "constant",
@@ -52,62 +54,93 @@ def _unknown(dataset: xr.Dataset) -> Float:
     return np.full_like(dataset["error_estimate"].values, np.nan)
 
 
-class Arrays(Columns):
-    """The numbers of a forced response.
+class PeriodicArrays(Columns):
+    """The numbers of periodic motions, along a curve or a branch.
 
-    Coefficients are padded with zeros above the harmonics of their own point. At points without any
-    solution they are not-a-number; at points that stalled they are the last iterate, and
-    `error_estimate`, `sampling_error`, `slip_fraction` and `dissipation` not-a-number.
+    Coefficients are padded with zeros above the harmonics of their own point.
     """
 
-    omega: Float = column("omega", "rad/s", "angular frequency of the excitation", least=0.0)
+    omega: Float = column("*", "rad/s", "angular frequency of the motion", least=0.0)
     harmonics: Int = column(
-        "omega", "1", "highest harmonic kept", least=0, file_name="harmonics_kept"
+        "*",
+        "1",
+        "highest harmonic kept, or reported of exact orbits",
+        least=0,
+        file_name="harmonics_kept",
     )
+    status: Code = column("*", "1", "how the point ended", codes=Status)
+    displacement: Complex = column(
+        "* harmonic dof",
+        "m",
+        "harmonics of the displacement, x(t) = Re sum_k X_k exp(i k omega t)",
+    )
+    contact_displacement: Complex = column(
+        "* harmonic point", "m", "harmonics of the relative displacement at the contacts"
+    )
+    contact_force: Complex = column(
+        "* harmonic point", "N", "harmonics of the contact force against the relative displacement"
+    )
+    error_estimate: Float = column(
+        "* dof",
+        "m",
+        "what the discarded harmonics, and more samples, could still change",
+        least=0.0,
+    )
+    slip_fraction: Float = column(
+        "* point", "1", "share of the period that the contact point slips", least=0.0, most=SHARE
+    )
+    dissipation: Float = column("* point", "J", "work lost to friction per cycle")
+
+
+class ExactColumns(Columns):
+    """What exact orbits have beside; a state is (x, v, f) of all dofs and contact points."""
+
+    range: Float = column("* dof side", "m", "lowest and highest displacement of exact orbits")
+    state: Float = column(
+        "* state_entry", "1", "state at t = 0 of exact orbits (x in m, v in m/s, f in N)"
+    )
+    multipliers: Complex = column(
+        "* multiplier",
+        "1",
+        "Floquet multipliers over the period, the neutral ones first, then by falling modulus; of "
+        "limit cycles without that of the phase",
+    )
+    neutral: Int = column("*", "1", "how many multipliers are neutral, exactly 1", least=0)
+
+    @cached_property
+    def known(self) -> Bool:
+        """(n,) Whether the multipliers are known: not those of travelling waves."""
+        known = np.isfinite(self.multipliers).all(axis=1) & (self.multipliers.shape[1] > 0)
+        return constant(known)
+
+
+class Arrays(PeriodicArrays):
+    """The numbers of a forced response.
+
+    At points without any solution coefficients are not-a-number; at points that stalled they are
+    the last iterate, and `error_estimate`, `sampling_error`, `slip_fraction` and `dissipation`
+    not-a-number.
+    """
+
+    along = "omega"
+
+    omega: Float = column("*", "rad/s", "angular frequency of the excitation", least=0.0)
     samples: Int = column(
-        "omega",
+        "*",
         "1",
         "samples per period of marched friction laws, 0 if not marched",
         least=0,
         absent=_samples,
     )
-    status: Code = column("omega", "1", "how the point ended", codes=Status)
-    residual: Float = column("omega", "1", "relative residual of the balance equations", least=0.0)
-    iterations: Int = column("omega", "1", "iterations of the solver", least=0)
-    displacement: Complex = column(
-        "omega harmonic dof",
-        "m",
-        "harmonics of the displacement, x(t) = Re sum_k X_k exp(i k omega t)",
-    )
-    contact_displacement: Complex = column(
-        "omega harmonic point", "m", "harmonics of the relative displacement at the contacts"
-    )
-    contact_force: Complex = column(
-        "omega harmonic point",
-        "N",
-        "harmonics of the contact force against the relative displacement",
-    )
-    error_estimate: Float = column(
-        "omega dof",
-        "m",
-        "what the discarded harmonics, and more samples, could still change",
-        least=0.0,
-    )
+    residual: Float = column("*", "1", "relative residual of the balance equations", least=0.0)
+    iterations: Int = column("*", "1", "iterations of the solver", least=0)
     sampling_error: Float = column(
-        "omega dof",
+        "* dof",
         "m",
         "part of the error estimate that is due to samples of marched friction laws",
         least=0.0,
         absent=_unknown,
     )
-    slip_fraction: Float = column(
-        "omega point",
-        "1",
-        "share of the period that the contact point slips",
-        least=0.0,
-        most=SHARE,
-    )
-    dissipation: Float = column("omega point", "J", "work lost to friction per cycle")
 
     @classmethod
     def of(cls, solution: Computed, **more: NDArray[Any]) -> Self:
@@ -132,20 +165,7 @@ class Arrays(Columns):
 
 
 def amplitude_of(coefficients: Complex, measure: Measure) -> Float:
-    """Return the amplitudes of harmonic series.
-
-    Parameters
-    ----------
-    coefficients : ndarray of complex128, shape (n, H+1)
-        X_k of x(t) = Re sum_k X_k exp(i k omega t).
-    measure : {"half_range", "max", "fundamental"}
-        See `ForcedResponse.amplitude`.
-
-    Returns
-    -------
-    ndarray of float64, shape (n,)
-        Not-a-number where a coefficient is.
-    """
+    """Return the amplitudes of harmonic series (n, H+1); not-a-number where a coefficient is."""
     from stickslip import _core
 
     finite = np.isfinite(coefficients).all(axis=1)
@@ -164,21 +184,10 @@ def amplitude_in(ranges: Float, measure: Measure) -> Float:
 
 
 def mean_forces(series: Complex, stiffness: float, slip_force: float) -> Float:
-    """Return the mean forces that a contact point could hold without changing the vibration.
+    """Return the mean forces (n, 2) that a contact point could hold with the same vibration.
 
-    Parameters
-    ----------
-    series : ndarray of complex128, shape (n, H+1)
-        Harmonics of its relative displacement [m].
-    stiffness : float
-        Contact stiffness k_d [N/m].
-    slip_force : float
-        Slip limit F_d [N].
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 2)
-        Lower and upper bound [N]; 0 where the point slips.
+    Lower and upper bound [N], 0 where the point slips; `series` are the harmonics (n, H+1) of its
+    relative displacement.
     """
     half = amplitude_of(series, "half_range")
     # Lifted above zero the largest |u| is the maximum of u, which gives the mid-range.

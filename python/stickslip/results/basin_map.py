@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Hashable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -16,6 +15,7 @@ from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int, constant
 from stickslip.results.dataset import labels
+from stickslip.results.drawn import plots
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.result import ColumnResult
 from stickslip.settings.motion import BasinSettings
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip.plot.basins import BasinOptions
+
 
 __all__ = ["BasinMap", "Outcome"]
 
@@ -43,22 +44,11 @@ class Outcome(NamedTuple):
         return f"{self.motion}" if self.mode is None else f"{self.motion}, mode {self.mode}"
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class BasinMap(ColumnResult):
-    """What becomes of many starts.
-
-    Attributes
-    ----------
-    settings : BasinSettings
-        Which starts, and how it was found out.
-    arrays : FateArrays
-        Every number by its name; a map of two axes runs through the second axis first.
-    """
+    """What becomes of many starts; a map of two axes runs through the second axis first."""
 
     kind: ClassVar[str] = "basin_map"
     title = "What becomes of free motions with dry friction"
-    columns = FateArrays
-    settings_class = BasinSettings
 
     settings: BasinSettings
     arrays: FateArrays
@@ -78,8 +68,7 @@ class BasinMap(ColumnResult):
     @cached_property
     def reason(self) -> tuple[Reason, ...]:
         """Why each motion has its class, start by start."""
-        known = list(Reason)
-        return tuple(known[code] for code in self.arrays.reason)
+        return tuple(map(Reason.from_code, self.arrays.reason.tolist()))
 
     @cached_property
     def motion(self) -> tuple[Motion, ...]:
@@ -120,20 +109,10 @@ class BasinMap(ColumnResult):
     def amplitude(self, dof: str) -> Float:
         """Return half the range of a displacement at the end.
 
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
         Returns
         -------
         ndarray of float64, shape `shape`
             [m]; not-a-number of unbounded motions.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
         """
         return self.arrays.amplitude[:, self._column(dof)].reshape(self.shape)
 
@@ -165,7 +144,7 @@ class BasinMap(ColumnResult):
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the map that a dataset holds; see `Result.from_dataset`."""
+        """Return the map that a dataset holds."""
         found = super().from_dataset(dataset, model)
         if np.prod(found.shape) != len(found):
             raise ValueError(f"{len(found)} starts do not fill the axes")
@@ -177,6 +156,4 @@ class BasinMap(ColumnResult):
 
     def plot(self, **options: Unpack[BasinOptions]) -> Axes:
         """Draw the basins over the two axes; see `stickslip.plot.basins`."""
-        from stickslip import plot
-
-        return plot.basins(self, **options)
+        return plots.basins(self, **options)

@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple, Self, cast
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
 from stickslip.checks import brief, text, unknown
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Complex, Float, Measure, constant
+from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.peaks import Peak
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
     from stickslip.disk import BladedDisk, MistunedDisk
-    from stickslip.plot import BladeBarOptions, BladeCurveOptions
-    from stickslip.results import ForcedResponse
 
 __all__ = ["Amplification", "BladeMotion"]
 
@@ -43,17 +36,8 @@ class Amplification(NamedTuple):
 class BladeMotion(ContactMotion):
     """The part of a result that concerns the sectors of a disk."""
 
-    @abstractmethod
-    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
-        """Return the amplitude of a displacement over frequency."""
-
-    @abstractmethod
-    def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
-        """Return the highest point of the response curve."""
-
-    @abstractmethod
-    def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
-        """Return which of some degrees of freedom has the highest peak, and the peak."""
+    plot_blades = Drawn(lambda: plots.blade_bars)
+    plot_blade_curves = Drawn(lambda: plots.blade_curves)
 
     def sector(self, number: int) -> Self:
         """Return the motion of another sector of a tuned disk.
@@ -83,16 +67,9 @@ class BladeMotion(ContactMotion):
         turns = orders * (disk.engine_order % disk.sectors) * number % disk.sectors
         turn = np.exp(2j * np.pi * turns / disk.sectors)[:, np.newaxis]
 
-        def turned(series: Complex) -> Complex:
-            return np.asarray(series * turn, dtype=np.complex128)
-
-        arrays = replace(
-            self.arrays,
-            displacement=turned(self.arrays.displacement),
-            contact_displacement=turned(self.arrays.contact_displacement),
-            contact_force=turned(self.arrays.contact_force),
-        )
-        return replace(self, model=model, arrays=arrays)
+        names = ("displacement", "contact_displacement", "contact_force")
+        turned = {name: getattr(self.arrays, name) * turn for name in names}
+        return replace(self, model=model, arrays=replace(self.arrays, **turned))
 
     def blades(self, dof: str) -> tuple[int, ...]:
         """Return the blades of a mistuned disk at which a degree of freedom was observed.
@@ -110,8 +87,7 @@ class BladeMotion(ContactMotion):
         Raises
         ------
         ModelError
-            If the result is not one of a `MistunedDisk`, there is no such degree of freedom, or it
-            was observed at no blade.
+            If the result is not one of a `MistunedDisk`, or the dof was observed at no blade.
         """
         disk = self._mistuned_disk()
         known = disk.disk.structure.dofs
@@ -132,8 +108,6 @@ class BladeMotion(ContactMotion):
         ----------
         dof : str
             Degree of freedom of a sector: "tip".
-        measure : {"half_range", "max", "fundamental"}, optional
-            As of `amplitude`.
 
         Returns
         -------
@@ -143,7 +117,7 @@ class BladeMotion(ContactMotion):
         Raises
         ------
         ModelError
-            As `blades`; if there is no such measure.
+            As `blades`.
         """
         columns = [self.amplitude(f"{blade}.{dof}", measure) for blade in self.blades(dof)]
         return constant(np.stack(columns, axis=1))
@@ -157,8 +131,6 @@ class BladeMotion(ContactMotion):
         ----------
         dof : str
             Degree of freedom of a sector: "tip".
-        measure : {"half_range", "max", "fundamental"}, optional
-            As of `amplitude`.
 
         Returns
         -------
@@ -192,8 +164,6 @@ class BladeMotion(ContactMotion):
             The response of the tuned disk.
         dof : str
             Degree of freedom of a sector: "tip".
-        measure : {"half_range", "max", "fundamental"}, optional
-            As of `amplitude`.
 
         Returns
         -------
@@ -213,20 +183,6 @@ class BladeMotion(ContactMotion):
         blade, peak = self.highest_blade(dof, measure)
         reference = tuned.peak(dof, measure)
         return Amplification(peak.amplitude / reference.amplitude, blade, peak, reference)
-
-    def plot_blades(self, dof: str, **options: Unpack[BladeBarOptions]) -> Axes:
-        """Draw the amplitude of every blade as a bar; see `stickslip.plot.blade_bars`."""
-        from stickslip import plot
-
-        return plot.blade_bars(cast("ForcedResponse", self), dof, **options)
-
-    def plot_blade_curves(
-        self, dof: str, blades: Sequence[int] | None = None, **options: Unpack[BladeCurveOptions]
-    ) -> Axes:
-        """Draw the response curves of chosen blades; see `stickslip.plot.blade_curves`."""
-        from stickslip import plot
-
-        return plot.blade_curves(cast("ForcedResponse", self), dof, blades, **options)
 
     def _tuned_disk(self) -> BladedDisk:
         from stickslip.disk import BladedDisk

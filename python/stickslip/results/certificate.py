@@ -87,7 +87,7 @@ class Certificate(Columns):
     @cached_property
     def status(self) -> tuple[Status, ...]:
         """How the computation of each orbit ended."""
-        return tuple(Status.from_code(int(code)) for code in self.code)
+        return tuple(map(Status.from_code, self.code.tolist()))
 
     @cached_property
     def relative(self) -> Float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
 
@@ -12,6 +11,7 @@ import numpy as np
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.drawn import plots
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip.plot.damper import DamperOptions
+
 
 __all__ = ["DamperArrays", "DamperCurve", "LeastPeak"]
 
@@ -63,22 +64,11 @@ class DamperArrays(Columns):
         return constant(np.isfinite(self.amplitude))
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class DamperCurve(ColumnResult):
-    """Peak amplitude and frequency along a parameter of the contacts, or the level of the forces.
-
-    Attributes
-    ----------
-    settings : DamperSettings
-        What was varied, which peak was followed, and how.
-    arrays : DamperArrays
-        Every number by its name.
-    """
+    """Peak amplitude and frequency along a parameter of contacts, or the level of the forces."""
 
     kind: ClassVar[str] = "damper_curve"
     title = "Peak of a structure with dry friction along a parameter"
-    columns = DamperArrays
-    settings_class = DamperSettings
 
     settings: DamperSettings
     arrays: DamperArrays
@@ -108,7 +98,7 @@ class DamperCurve(ColumnResult):
     @cached_property
     def status(self) -> tuple[Status, ...]:
         """How each value ended; ``status[i].advice`` says what to do about it."""
-        return tuple(Status.from_code(int(code)) for code in self.arrays.status)
+        return tuple(map(Status.from_code, self.arrays.status.tolist()))
 
     @property
     def objective(self) -> Float:
@@ -156,7 +146,7 @@ class DamperCurve(ColumnResult):
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the curve that a dataset holds; see `Result.from_dataset`."""
+        """Return the curve that a dataset holds."""
         curve = super().from_dataset(dataset, model)
         curve.settings.variation.varied(model)
         return curve
@@ -169,18 +159,5 @@ class DamperCurve(ColumnResult):
         return {"unit": unit, "per_unit": f"/({unit})", "varied": varied}
 
     def plot(self, **options: Unpack[DamperOptions]) -> Axes:
-        """Draw the damper performance curve.
-
-        Parameters
-        ----------
-        **options
-            See `stickslip.plot.damper`.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes of the amplitude.
-        """
-        from stickslip import plot
-
-        return plot.damper(self, **options)
+        """Draw the damper performance curve; see `stickslip.plot.damper`."""
+        return plots.damper(self, **options)

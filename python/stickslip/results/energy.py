@@ -39,25 +39,10 @@ class Energy(NamedTuple):
 
 
 def energy_of(result: ForcedResponse) -> Energy:
-    """Return the energy balance of a harmonic series.
+    """Return the energy balance of a harmonic series, for which all dofs must be observed.
 
     Over one period the force P_k does the work pi k Im(P_k^T conj(X_k)), and the damping matrix
     takes pi omega k^2 X_k^H C X_k.
-
-    Parameters
-    ----------
-    result : ForcedResponse
-        All of its degrees of freedom must be observed.
-
-    Returns
-    -------
-    Energy
-        Per point.
-
-    Raises
-    ------
-    ModelError
-        If a degree of freedom was not observed.
     """
     structure, arrays = result.model.structure, result.arrays
     missing = [dof for dof in structure.dofs if dof not in result.dofs]
@@ -89,19 +74,9 @@ def energy_of(result: ForcedResponse) -> Energy:
 
 
 def apparent_work(result: ForcedResponse) -> Float:
-    """Return the work that the forces would do in phase with the velocity.
+    """Return the work that the forces at observed dofs would do in phase with the velocity.
 
     A static load does none, but it is a scale of rounding, and is counted as if of harmonic 1.
-
-    Parameters
-    ----------
-    result : ForcedResponse
-        Forces at degrees of freedom that are not observed are left out.
-
-    Returns
-    -------
-    ndarray of float64, shape (n,)
-        [J]; not-a-number where the point is not solved.
     """
     series = result.arrays.displacement
     apparent = np.zeros(result.arrays.omega.size)

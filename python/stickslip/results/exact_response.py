@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -15,28 +15,23 @@ from stickslip.model import ContactRef, PointRef
 from stickslip.model.model import Model, refusal
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Measure, amplitude_in, constant
-from stickslip.results.contact_states import ContactStates, states_of
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.energy import Energy, apparent_work
-from stickslip.results.events import Events
-from stickslip.results.forced_response import ForcedResponse, key_of
+from stickslip.results.events import ContactStates, Events, states_of
+from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
-from stickslip.results.stability import FloquetStability, flag_variable
+from stickslip.results.stability import FloquetStability
+from stickslip.results.sweep import key_of
 from stickslip.settings.orbits import ExactSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
     from stickslip import _core
     from stickslip.disk.wave_ring import Rotation
-    from stickslip.plot import MultiplierOptions
 
 __all__ = ["ExactResponse"]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class ExactResponse(ForcedResponse, FloquetStability):
     """Exact periodic orbits over the excitation frequency.
 
@@ -44,22 +39,16 @@ class ExactResponse(ForcedResponse, FloquetStability):
     and contact forces follow them from event to event, and peaks are refined on orbits. Only
     `coefficients`, `phase` and the fundamental amplitude are those of a series. Beside that the
     orbits have events and Floquet multipliers.
-
-    Attributes
-    ----------
-    settings : ExactSettings
-        How it was computed; `harmonics` is the highest one reported.
-    arrays : OrbitArrays
-        Every number by its name.
     """
 
     kind: ClassVar[str] = "exact_response"
     title = "Forced response of a structure with dry friction, by exact periodic orbits"
-    columns = OrbitArrays
-    settings_class = ExactSettings
 
     settings: ExactSettings
     arrays: OrbitArrays
+
+    plot_multipliers = Drawn(lambda: plots.multipliers)
+    plot_events = Drawn(lambda: plots.events)
 
     @cached_property
     def energy(self) -> Energy:
@@ -87,21 +76,11 @@ class ExactResponse(ForcedResponse, FloquetStability):
     def events(self, index: int) -> Events:
         """Return when contact points begin to stick and to slip, over one period.
 
-        Parameters
-        ----------
-        index : int
-            Position of the point; negative ones count from the end.
-
         Returns
         -------
         Events
             In the order of time, from 0 to the period; empty where nothing slips, and at points
             that are not solved.
-
-        Raises
-        ------
-        ModelError
-            If there is no such point.
         """
         position = self.position(index)
         arrays = self.arrays
@@ -113,11 +92,6 @@ class ExactResponse(ForcedResponse, FloquetStability):
     def state(self, index: int) -> State:
         """Return the state at t = 0, from which `stickslip.transient` continues the orbit.
 
-        Parameters
-        ----------
-        index : int
-            Position of a solved point; negative ones count from the end.
-
         Returns
         -------
         State
@@ -126,7 +100,7 @@ class ExactResponse(ForcedResponse, FloquetStability):
         Raises
         ------
         ModelError
-            If there is no such point, or it is not solved.
+            If the point is not solved, or the orbit is one of several sectors.
         """
         position = self.position(index)
         status = self.status[position]
@@ -139,100 +113,47 @@ class ExactResponse(ForcedResponse, FloquetStability):
             )
         return State.of_vector(self.model, self.arrays.state[position])
 
-    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
-        """Return the amplitude of a displacement over frequency, from its exact extrema.
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-        measure : {"half_range", "max", "fundamental"}, optional
-            Half the peak-to-peak range over a period, the largest |x|, or |X_1|.
-
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m].
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom or measure, or the former was not observed.
-        """
-        key = key_of(dof, measure)
-        if key not in self._amplitudes:
-            if measure == "fundamental":
-                values = constant(np.abs(self.coefficients(dof)[:, 1]))
-            else:
-                values = amplitude_in(self.arrays.range[:, self._column(dof)], measure)
-            self._amplitudes[key] = values
-        return self._amplitudes[key]
+    def _amplitude(self, dof: str, measure: Measure) -> Float:
+        if measure == "fundamental":
+            return np.abs(self.coefficients(dof)[:, 1])
+        return amplitude_in(self.arrays.range[:, self._column(dof)], measure)
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
-        """Return one period of a displacement, along the orbit.
-
-        Parameters and errors are those of `ForcedResponse.waveform`.
-        """
+        """Return one period of a displacement, along the orbit."""
         return self._orbit(0, self._column(dof), index, samples)
 
     def waveforms(self, index: int, samples: int = 256) -> Float:
         """Return one period of all observed displacements at once, shape (samples, n_o).
 
-        Parameters and errors are those of `waveform`; the columns are in the order of `dofs`.
+        The columns are in the order of `dofs`.
         """
         return self._orbit(0, slice(None), index, samples)
 
     def velocity_waveform(self, dof: str, index: int, samples: int = 256) -> Float:
         """Return one period of a velocity, along the orbit.
 
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-        index : int
-            Position of the point; negative ones count from the end.
-        samples : int, optional
-            Number of instants t = j T / samples, j = 0, 1, ...
-
         Returns
         -------
         ndarray of float64, shape (samples,)
             [m/s].
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom or point, or the former was not observed.
         """
         return self._orbit(1, self._column(dof), index, samples)
 
     def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:
-        """Return one period of the relative displacement at the contacts, along the orbit.
-
-        Parameters and errors are those of `ForcedResponse.contact_waveform`.
-        """
+        """Return one period of the relative displacement at the contacts, along the orbit."""
         return self._orbit(2, self._places(contact), index, samples)
 
     def contact_force(self, contact: PointRef, index: int, samples: int = 512) -> Float:
-        """Return one period of the contact forces, along the orbit.
-
-        Parameters and errors are those of `ForcedResponse.contact_force`.
-        """
+        """Return one period of the contact forces, along the orbit."""
         return self._orbit(3, self._places(contact), index, samples)
 
     def contact_states(self, contact: ContactRef, index: int) -> ContactStates:
-        """Return when the points of a contact stick and slip, by the events of the orbit.
-
-        Parameters and errors are those of `ForcedResponse.contact_states`.
-        """
+        """Return when the points of a contact stick and slip, by the events of the orbit."""
         columns = self._columns(self.model.contact_index(contact), None)
         return states_of(self.events(index), columns, 2.0 * np.pi / self.omega[index])
 
     def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
-        """Return the highest point of the response curve, refined on exact orbits.
-
-        Parameters, errors and warnings are those of `ForcedResponse.peak`.
-        """
+        """Return the highest point of the response curve, refined on exact orbits."""
         key = key_of(dof, measure)
         if key not in self._peaks:
             self._peaks[key] = highest(self, dof, measure, of_orbits)
@@ -248,8 +169,7 @@ class ExactResponse(ForcedResponse, FloquetStability):
         return max(peaks.items(), key=lambda one: one[1].amplitude)
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
-        stable = {"stable": flag_variable("omega", self.stability)}
-        return super()._further_variables(derived=derived) | stable
+        return super()._further_variables(derived=derived) | self._stable("omega")
 
     @classmethod
     def _states(cls, model: Model, *, half_wave: bool) -> list[str]:
@@ -269,42 +189,6 @@ class ExactResponse(ForcedResponse, FloquetStability):
             for sector in range(rotation.sectors)
             for name in part
         ]
-
-    def plot_multipliers(self, **options: Unpack[MultiplierOptions]) -> Axes:
-        """Draw the multipliers in the complex plane, with the unit circle.
-
-        Parameters
-        ----------
-        **options
-            See `stickslip.plot.multipliers`.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
-        from stickslip import plot
-
-        return plot.multipliers(self, **options)
-
-    def plot_events(self, index: int, *, ax: Axes | None = None) -> Axes:
-        """Draw when the contact points stick and slip, over one period.
-
-        Parameters
-        ----------
-        index : int
-            Position of the point; negative ones count from the end.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw. Default: a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
-        from stickslip import plot
-
-        return plot.events(self, index, ax=ax)
 
     def _places(self, contact: PointRef) -> slice | int:
         number, point = self.locate(contact)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
+from typing import Self
 
 from stickslip.results.arrays import SHARE, Code, Float, Int
 from stickslip.results.fields import Columns, column
+from stickslip.results.status import Ending
 
 __all__ = ["FateArrays", "Motion", "Reason"]
 
@@ -21,97 +22,87 @@ class Motion(StrEnum):
     UNDECIDED = "undecided"
 
 
-class Reason(StrEnum):
+class Reason(Ending):
     """Why a motion was given its class; compares equal to its text."""
 
-    HELD = "held"
-    PASSIVE = "passive"
-    CLOSED = "closed"
-    WANDERS = "wanders"
-    OUTGROWN = "outgrown"
-    OVERFLOW = "overflow"
-    SETTLING = "settling"
-    GROWING = "growing"
-    FALLING = "falling"
-    MONOTONE = "monotone"
-    CONTRADICTION = "contradiction"
-    INTERRUPTED = "interrupted"
+    motion: Motion
+    """The class."""
 
-    @property
-    def code(self) -> int:
-        """Number by which arrays and files hold it."""
-        return list(Reason).index(self)
+    def __new__(cls, text: str, motion: Motion, advice: str) -> Self:
+        """Return a member, defined by its text, the class and its advice."""
+        member = str.__new__(cls, text)
+        member._value_ = text
+        member.motion, member.advice = motion, advice
+        return member
 
-    @property
-    def motion(self) -> Motion:
-        """The class."""
-        return _MEANING[self][0]
-
-    @property
-    def advice(self) -> str:
-        """Cause and next action, one sentence each."""
-        return _MEANING[self][1]
-
-
-_NOTHING = "Nothing needs to be done."
-_MEANING: Mapping[Reason, tuple[Motion, str]] = {
-    Reason.HELD: (
+    HELD = (
+        "held",
         Motion.DECAYING,
-        f"No contact slips any more, and the stuck structure is damped. {_NOTHING}",
-    ),
-    Reason.PASSIVE: (
+        "No contact slips any more, and the stuck structure is damped. Nothing needs to be done.",
+    )
+    PASSIVE = (
+        "passive",
         Motion.DECAYING,
         "The damping takes energy out of every motion, so that it dies away, though not within the "
         "span. Raise periods to see it stick.",
-    ),
-    Reason.CLOSED: (
+    )
+    CLOSED = (
+        "closed",
         Motion.SETTLED,
-        f"The motion repeats itself, and the closing error falls. {_NOTHING}",
-    ),
-    Reason.WANDERS: (
+        "The motion repeats itself, and the closing error falls. Nothing needs to be done.",
+    )
+    WANDERS = (
+        "wanders",
         Motion.APERIODIC,
         "The motion did not repeat itself within the span, and its size no longer changed. Read "
         "its lines; raise periods to see whether it settles after all.",
-    ),
-    Reason.OUTGROWN: (
+    )
+    OUTGROWN = (
+        "outgrown",
         Motion.UNBOUNDED,
         "Negative damping does more work than friction can take at this size, so that the motion "
         "grows for ever. Lower the ratio, or start with less.",
-    ),
-    Reason.OVERFLOW: (
+    )
+    OVERFLOW = (
+        "overflow",
         Motion.UNBOUNDED,
         "The motion grew out of the range of numbers. Lower the ratio, or start with less.",
-    ),
-    Reason.SETTLING: (
+    )
+    SETTLING = (
+        "settling",
         Motion.UNDECIDED,
         "The motion was still settling at the end of the span. Raise periods, or go on with "
         "start=result.final.",
-    ),
-    Reason.GROWING: (
+    )
+    GROWING = (
+        "growing",
         Motion.UNDECIDED,
         "The motion was still growing at the end of the span. Raise periods, or go on with "
         "start=result.final.",
-    ),
-    Reason.FALLING: (
+    )
+    FALLING = (
+        "falling",
         Motion.UNDECIDED,
         "The motion was still falling at the end of the span. Raise periods, or go on with "
         "start=result.final.",
-    ),
-    Reason.MONOTONE: (
+    )
+    MONOTONE = (
+        "monotone",
         Motion.UNDECIDED,
         "The motion did not swing often enough to be judged. Raise periods, or ground the "
         "structure.",
-    ),
-    Reason.CONTRADICTION: (
+    )
+    CONTRADICTION = (
+        "contradiction",
         Motion.UNDECIDED,
         "Contacts changed between stick and slip without end at one instant. Change the start "
         "slightly.",
-    ),
-    Reason.INTERRUPTED: (
+    )
+    INTERRUPTED = (
+        "interrupted",
         Motion.UNDECIDED,
         "The run was stopped before this was decided. Run it again.",
-    ),
-}
+    )
 
 
 class FateArrays(Columns):

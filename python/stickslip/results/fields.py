@@ -104,7 +104,7 @@ def column(
     Parameters
     ----------
     dims : str
-        Names of the dimensions, by spaces.
+        Names of the dimensions, by spaces; ``*`` stands for `Columns.along`.
     unit, meaning : str
         What datasets say; ``{name}`` in braces stands for a word of the result, see `Result.words`.
     least, most : float, optional
@@ -139,6 +139,8 @@ class Columns:
 
     prefix: ClassVar[str] = ""
     """Put before the names in files."""
+    along: ClassVar[str] = ""
+    """The dimension that columns call ``*``."""
     labels: ClassVar[Mapping[str, Sequence[str]]] = MappingProxyType({})
     """Names along dimensions."""
 
@@ -165,7 +167,12 @@ class Columns:
     def table(cls) -> dict[str, _Column]:
         """Return what is known of every column."""
         known = cls.__dataclass_fields__.items()
-        return {name: one.metadata["column"] for name, one in known if "column" in one.metadata}
+        entries = {name: one.metadata["column"] for name, one in known if "column" in one.metadata}
+        dims = {"*": cls.along}
+        return {
+            name: entry._replace(dims=tuple(dims.get(one, one) for one in entry.dims))
+            for name, entry in entries.items()
+        }
 
     @classmethod
     def of(cls, solution: Computed, **more: NDArray[Any]) -> Self:
@@ -249,7 +256,10 @@ class Shown(Generic[Array]):
 
     def __set_name__(self, owner: Any, name: str) -> None:
         self.name = self.name or name
-        self.__doc__ = _about(owner.columns, self.name)
+
+    def document(self, columns: type[Columns]) -> None:
+        """Say what the column says."""
+        self.__doc__ = _about(columns, self.name)
 
     @overload
     def __get__(self, result: None, owner: Any) -> Self: ...

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
+from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, get_args
 
@@ -14,21 +13,27 @@ from stickslip.checks import choice, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
-from stickslip.results.arrays import Float, Measure, amplitude_in, amplitude_of, constant
-from stickslip.results.cycle_arrays import CHANGE_KINDS, CycleArrays
-from stickslip.results.fields import Numbers, Shown
+from stickslip.results.arrays import (
+    Bool,
+    ExactColumns,
+    Float,
+    Int,
+    Measure,
+    PeriodicArrays,
+    amplitude_in,
+    amplitude_of,
+    constant,
+)
+from stickslip.results.drawn import Drawn, plots
+from stickslip.results.fields import Numbers, Shown, column
 from stickslip.results.periodic import PeriodicMotions
-from stickslip.results.stability import FloquetStability, flag_variable, stability_counts
+from stickslip.results.stability import FloquetStability, stability_counts
 from stickslip.settings.cycles import CycleSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
+    pass
 
-    from matplotlib.axes import Axes
-
-    from stickslip.plot.cycles import CycleOptions
-
-__all__ = ["Limit", "LimitCycles", "StabilityChange"]
+__all__ = ["CycleArrays", "Limit", "LimitCycles", "StabilityChange"]
 
 
 class Limit(NamedTuple):
@@ -60,22 +65,66 @@ class StabilityChange(NamedTuple):
     """The same after it."""
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class LimitCycles(PeriodicMotions, FloquetStability):
-    """Limit cycles of a mode, from the sticking to the slipping side of their branch.
+CHANGE_KINDS = ("fold", "complex pair", "symmetry", "grazing")
+"""What can happen where stability changes."""
 
-    Attributes
-    ----------
-    settings : CycleSettings
-        What was followed, and how.
-    arrays : CycleArrays
-        Every number by its name.
+
+class CycleArrays(PeriodicArrays, ExactColumns):
+    """The numbers of limit cycles along a branch.
+
+    What only exact orbits have is not-a-number of other cycles.
     """
+
+    along = "cycle"
+    labels: ClassVar[Mapping[str, Sequence[str]]] = {
+        "side": ("low", "high"),
+        "turn_entry": ("value", "omega"),
+    }
+
+    value: Float = column("*", "{unit}", "{followed} that is followed")
+    ratio: Float = column("*", "1", "factor r on the negative damping")
+    slipping: Bool = column("*", "1", "whether it lies on the slipping side")
+    closed: Bool = column("*", "1", "whether multipliers are of an exact orbit")
+    turn: Float = column(
+        "turn_entry", "1", "value and omega where the branch turns for good, if it does"
+    )
+    folds: Float = column("fold turn_entry", "1", "value and omega where it turns")
+    change: Float = column(
+        "change_of_stability turn_entry", "1", "value and omega where its stability changes"
+    )
+    change_after: Int = column(
+        "change_of_stability",
+        "1",
+        "position of the cycle before the change",
+        least=0,
+        most="cycle",
+    )
+    change_kind: Int = column("change_of_stability", "1", "what happens there", codes=CHANGE_KINDS)
+    change_unstable: Int = column(
+        "change_of_stability side",
+        "1",
+        "multipliers outside the unit circle before and after",
+        least=0,
+    )
+    negative_damping: Numbers = column(
+        "diameter row column",
+        "kg/s",
+        "C_neg of the damping C + r C_neg; of a tuned disk by nodal diameter",
+        optional=True,
+    )
+
+    @property
+    def limit(self) -> tuple[float, float] | None:
+        """Value and frequency where the branch turns for good, if it does."""
+        value, omega = self.turn
+        return None if np.isnan(value) else (float(value), float(omega))
+
+
+class LimitCycles(PeriodicMotions, FloquetStability):
+    """Limit cycles of a mode, from the sticking to the slipping side of their branch."""
 
     kind: ClassVar[str] = "limit_cycles"
     title = "Limit cycles of a structure with dry friction"
-    columns = CycleArrays
-    settings_class = CycleSettings
 
     settings: CycleSettings
     arrays: CycleArrays
@@ -95,6 +144,9 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     omega = Shown[Float]()
     negative_damping = Shown[Numbers]()
 
+    plot = Drawn(lambda: plots.limit_cycles)
+    plot_multipliers = Drawn(lambda: plots.cycle_multipliers)
+
     @cached_property
     def branch(self) -> NDArray[np.str_]:
         """Side of the branch, "sticking" or "slipping", shape (n,)."""
@@ -109,47 +161,23 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     @property
     def folds(self) -> tuple[Limit, ...]:
         """All places where the branch turns, in its order."""
-        return tuple(self._turn(float(value), float(omega)) for value, omega in self.arrays.folds)
+        return tuple(self._turn(*place) for place in self.arrays.folds.tolist())
 
     @property
     def changes(self) -> tuple[StabilityChange, ...]:
         """Where the stability of a whole branch changes, in its order."""
         arrays = self.arrays
-        rows = zip(
-            arrays.change,
-            arrays.change_kind,
-            arrays.change_after,
-            arrays.change_unstable,
-            strict=True,
-        )
+        rows = (arrays.change, arrays.change_kind, arrays.change_after, arrays.change_unstable)
+        listed = zip(*(column.tolist() for column in rows), strict=True)
         return tuple(
-            StabilityChange(
-                float(at[0]), float(at[1]), CHANGE_KINDS[kind], int(after), int(was), int(now)
-            )
-            for at, kind, after, (was, now) in rows
+            StabilityChange(value, omega, CHANGE_KINDS[kind], after, before, beyond)
+            for (value, omega), kind, after, (before, beyond) in listed
         )
 
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
         """Return the amplitude of a displacement along the branch.
 
-        Parameters
-        ----------
-        dof : str
-            The degree of freedom.
-        measure : {"half_range", "max", "fundamental"}, optional
-            Half the peak-to-peak range over a period, the largest absolute displacement, or the
-            modulus of the first harmonic. The first two are equal for these symmetric motions, and
-            exact for exact orbits.
-
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m].
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom or measure.
+        Half range and maximum are equal for these symmetric motions.
         """
         choice(measure, "measure", get_args(Measure))
         column = self._column(dof)
@@ -159,15 +187,6 @@ class LimitCycles(PeriodicMotions, FloquetStability):
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
         """Return one period of a displacement from its harmonics.
-
-        Parameters
-        ----------
-        dof : str
-            The degree of freedom.
-        index : int
-            Position of the cycle; negative ones count from the end.
-        samples : int, optional
-            Number of instants t = j T / samples, j = 0, 1, ...
 
         Returns
         -------
@@ -182,11 +201,6 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     def state(self, index: int) -> State:
         """Return the state at t = 0, from which `stickslip.transient` continues an exact orbit.
 
-        Parameters
-        ----------
-        index : int
-            Position of the cycle; negative ones count from the end.
-
         Returns
         -------
         State
@@ -195,7 +209,7 @@ class LimitCycles(PeriodicMotions, FloquetStability):
         Raises
         ------
         ModelError
-            If there is no such cycle, or it is no exact orbit.
+            If it is no exact orbit.
         """
         values = self.arrays.state[self.position(index)]
         if not np.isfinite(values).all():
@@ -205,11 +219,6 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     def model_at(self, index: int) -> Model:
         """Return the model whose limit cycle one point is, with the damping C + r C_neg in it.
 
-        Parameters
-        ----------
-        index : int
-            Position of the cycle; negative ones count from the end.
-
         Returns
         -------
         Model
@@ -218,7 +227,7 @@ class LimitCycles(PeriodicMotions, FloquetStability):
         Raises
         ------
         ModelError
-            If there is no such cycle, or the model is a sector of a travelling wave.
+            If the model is a sector of a travelling wave.
         """
         from stickslip.model.structure import Structure
 
@@ -239,55 +248,11 @@ class LimitCycles(PeriodicMotions, FloquetStability):
             model = self.settings.variation.apply(model, float(self.values[position]))
         return Model(structure, model.contacts, [])
 
-    def position(self, index: int) -> int:
-        """Return the position of a cycle, counted from the start.
-
-        Raises
-        ------
-        ModelError
-            If there is no such cycle.
-        """
-        count = self.omega.size
-        position = whole_number(index + count if index < 0 else index, "index")
-        if position >= count:
-            raise ModelError(f"index: {index}; there are {count} cycles")
-        return position
-
     def _words(self) -> Mapping[str, str]:
         return {"unit": self.settings.unit, "followed": self.settings.followed}
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
-        made: dict[Hashable, Any] = {"stable": flag_variable("cycle", self.stability)}
-        if derived:
-            meaning = "half peak-to-peak amplitude of the displacement"
-            values = np.stack([self.amplitude(dof) for dof in self.dofs], axis=1)
-            made["amplitude"] = (("cycle", "dof"), values, {"units": "m", "long_name": meaning})
-        return made
-
-    def plot(self, dof: str, **options: Unpack[CycleOptions]) -> Axes:
-        """Draw amplitude and frequency along the branch.
-
-        Parameters
-        ----------
-        dof : str
-            The degree of freedom.
-        **options
-            See `stickslip.plot.limit_cycles`.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes of the amplitude.
-        """
-        from stickslip import plot
-
-        return plot.limit_cycles(self, dof, **options)
-
-    def plot_multipliers(self, *, ax: Axes | None = None) -> Axes:
-        """Draw the Floquet multipliers; see `stickslip.plot.cycle_multipliers`."""
-        from stickslip import plot
-
-        return plot.cycle_multipliers(self, ax=ax)
+        return self._stable("cycle") | super()._further_variables(derived=derived)
 
     def _turn(self, value: float, omega: float) -> Limit:
         ratio = value if self.settings.variation is None else self.settings.ratio

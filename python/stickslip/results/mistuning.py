@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -12,9 +11,9 @@ from numpy.typing import NDArray
 
 from stickslip.checks import choice, real_number, unknown
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float, Int, constant
-from stickslip.results.fields import Shown
-from stickslip.results.mistuning_arrays import ALL, MistuningArrays
+from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.drawn import Drawn, plots
+from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
 from stickslip.results.weibull import Percentile, WeibullFit, empirical_percentile, fit_weibull
@@ -25,12 +24,64 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.mistuning import DistributionOptions, TrendOptions
+    from stickslip.plot.mistuning import TrendOptions
 
-__all__ = ["MistuningStudy"]
+__all__ = ["MistuningArrays", "MistuningStudy"]
+
+ALL = "deviation coupling_stiffness pattern dof"
+_TUNED = "coupling_stiffness dof"
+_ESTIMATE = "what the discarded harmonics could still change"
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class MistuningArrays(Columns):
+    """The numbers of a mistuning study."""
+
+    deviation: Float = column("deviation", "1", "standard deviation of the sectors' stiffness")
+    coupling: Float = column(
+        "coupling_stiffness",
+        "N/m",
+        "stiffness of the couplings; not-a-number: several, or none",
+        least=0.0,
+        file_name="coupling_stiffness",
+    )
+    patterns: Float = column(
+        "pattern sector",
+        "1",
+        "deviation of the sectors in units of the standard deviation: "
+        "``disk.mistuned(deviation * patterns[i])`` is a disk",
+    )
+    omega: Float = column(ALL, "rad/s", "angular frequency of the highest peak", least=0.0)
+    amplitude: Float = column(ALL, "m", "amplitude of the highest peak", least=0.0)
+    blade: Int = column(
+        ALL, "1", "blade of the highest peak, -1: not found", least=-1, most="sector"
+    )
+    status: Code = column(ALL, "1", "how the search ended", codes=Status)
+    harmonics: Int = column(ALL, "1", "highest harmonic kept", least=0, file_name="harmonics_kept")
+    error_estimate: Float = column(ALL, "m", _ESTIMATE, least=0.0)
+    at_edge: Bool = column(ALL, "1", "whether the peak lies at an end of the range")
+    tuned_omega: Float = column(_TUNED, "rad/s", "frequency of the tuned peak", least=0.0)
+    tuned_amplitude: Float = column(_TUNED, "m", "amplitude of the tuned peak", least=0.0)
+    tuned_harmonics: Int = column(
+        _TUNED,
+        "1",
+        "highest harmonic kept, of the tuned peak",
+        least=0,
+        file_name="tuned_harmonics_kept",
+    )
+    tuned_error_estimate: Float = column(_TUNED, "m", _ESTIMATE, least=0.0)
+    tuned_at_edge: Bool = column(_TUNED, "1", "whether the tuned peak lies at an end of the range")
+
+    @cached_property
+    def solved(self) -> Bool:
+        """(d, c, p, q) Whether the peak was found."""
+        return constant(np.isfinite(self.amplitude))
+
+    @cached_property
+    def amplification(self) -> Float:
+        """(d, c, p, q) Amplification factor; not-a-number if the peak was not found."""
+        return constant(self.amplitude / self.tuned_amplitude[np.newaxis, :, np.newaxis, :])
+
+
 class MistuningStudy(ColumnResult):
     """Amplification factors of many mistuned disks.
 
@@ -42,16 +93,10 @@ class MistuningStudy(ColumnResult):
     ----------
     model : BladedDisk
         The tuned disk.
-    settings : MistuningSettings
-        How the disks were made and computed.
-    arrays : MistuningArrays
-        Every number by its name.
     """
 
     kind: ClassVar[str] = "mistuning_study"
     title = "Amplification factors of mistuned disks"
-    columns = MistuningArrays
-    settings_class = MistuningSettings
 
     settings: MistuningSettings
     arrays: MistuningArrays
@@ -66,11 +111,9 @@ class MistuningStudy(ColumnResult):
 
     deviation = Shown[Float]()
     coupling_stiffness = Shown[Float]("coupling")
+    patterns = Shown[Float]()
 
-    @property
-    def patterns(self) -> Float:
-        """Patterns r, shape (p, n): ``disk.mistuned(deviation * patterns[i])`` is a disk."""
-        return self.arrays.patterns
+    plot_distribution = Drawn(lambda: plots.distribution)
 
     @cached_property
     def status(self) -> NDArray[np.object_]:
@@ -81,18 +124,7 @@ class MistuningStudy(ColumnResult):
         return status
 
     def amplification(self, dof: str) -> Float:
-        """Return amplification factors, shape (d, c, p); not-a-number if not found.
-
-        Parameters
-        ----------
-        dof : str
-            Degree of freedom of a sector.
-
-        Raises
-        ------
-        ModelError
-            If it was not studied.
-        """
+        """Return amplification factors, shape (d, c, p); not-a-number if not found."""
         return self.arrays.amplification[..., self._dof(dof)]
 
     def error(self, dof: str) -> Float:
@@ -126,23 +158,10 @@ class MistuningStudy(ColumnResult):
     ) -> Float:
         """Return the amplification factors found for one deviation and one coupling.
 
-        Parameters
-        ----------
-        dof : str
-            Degree of freedom of a sector.
-        deviation, coupling : float, optional
-            One of the values of the study. Default: the only one.
-
         Returns
         -------
         ndarray of float64, shape (found,)
             In the order of the patterns, those that were not found left out.
-
-        Raises
-        ------
-        ModelError
-            If the degree of freedom, deviation or coupling was not studied, or there are several
-            and none is given.
         """
         row = self.amplification(dof)[
             _one(deviation, self.deviation, "deviation"),
@@ -160,13 +179,6 @@ class MistuningStudy(ColumnResult):
     ) -> WeibullFit:
         """Return the three-parameter Weibull distribution of the factors.
 
-        Parameters
-        ----------
-        dof, deviation, coupling
-            See `factors`.
-        confidence : float, optional
-            Probability with which an interval is to hold the true value.
-
         Returns
         -------
         WeibullFit
@@ -175,7 +187,7 @@ class MistuningStudy(ColumnResult):
         Raises
         ------
         ModelError
-            As `factors`; if there are fewer than 30 factors, or all are equal.
+            If there are fewer than 30 factors, or all are equal.
         """
         return fit_weibull(self.factors(dof, deviation=deviation, coupling=coupling), confidence)
 
@@ -193,14 +205,10 @@ class MistuningStudy(ColumnResult):
 
         Parameters
         ----------
-        dof, deviation, coupling
-            See `factors`.
         q : float
             From 0 to 100, exclusive: 99.9.
         method : {"weibull", "empirical"}, optional
             From the fitted distribution, also beyond the data; or from the factors themselves.
-        confidence : float, optional
-            Probability with which the interval is to hold the true percentile.
 
         Returns
         -------
@@ -219,23 +227,13 @@ class MistuningStudy(ColumnResult):
         fit = self.weibull(dof, deviation=deviation, coupling=coupling, confidence=confidence)
         return fit.percentile(q)
 
-    def plot_distribution(self, dof: str, **options: Unpack[DistributionOptions]) -> Axes:
-        """Draw factors and their fit on extreme-value paper; see `stickslip.plot.distribution`."""
-        from stickslip import plot
-
-        return plot.distribution(self, dof, **options)
-
     def plot_deviation(self, dof: str, **options: Unpack[TrendOptions]) -> Axes:
         """Draw factors against the deviation; see `stickslip.plot.amplification`."""
-        from stickslip import plot
-
-        return plot.amplification(self, dof, "deviation", **options)
+        return plots.amplification(self, dof, "deviation", **options)
 
     def plot_coupling(self, dof: str, **options: Unpack[TrendOptions]) -> Axes:
         """Draw factors against the stiffness of couplings; see `stickslip.plot.amplification`."""
-        from stickslip import plot
-
-        return plot.amplification(self, dof, "coupling", **options)
+        return plots.amplification(self, dof, "coupling", **options)
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
         said = {"units": "1", "long_name": "amplification factor"}

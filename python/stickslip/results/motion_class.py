@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
@@ -11,6 +10,7 @@ import numpy as np
 from stickslip.checks import real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.model.state import State
+from stickslip.results.drawn import Drawn, plots
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.fields import Float, Shown, column
 from stickslip.results.result import Attributes, ColumnResult
@@ -18,11 +18,7 @@ from stickslip.results.spectrum import Spectrum, spectrum_of
 from stickslip.settings.motion import ClassifySettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
-    from stickslip.plot.basins import LineOptions
+    pass
 
 __all__ = ["Line", "MotionArrays", "MotionClass"]
 
@@ -52,24 +48,17 @@ class MotionArrays(FateArrays):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class MotionClass(ColumnResult):
     """What becomes of a free motion from one start.
 
     Attributes
     ----------
-    settings : ClassifySettings
-        How it was found out.
-    arrays : MotionArrays
-        Every number by its name, of one start.
     step : float
         Time between the instants of `tail` [s].
     """
 
     kind: ClassVar[str] = "motion_class"
     title = "What becomes of a free motion with dry friction"
-    columns = MotionArrays
-    settings_class = ClassifySettings
     attributes: ClassVar[Attributes] = {"interrupted": bool, "step": float}
 
     settings: ClassifySettings
@@ -77,6 +66,8 @@ class MotionClass(ColumnResult):
     step: float
 
     tail = Shown[Float]()
+
+    plot = Drawn(lambda: plots.lines)
 
     def __repr__(self) -> str:
         where = "" if self.mode is None else f" on mode {self.mode}"
@@ -91,7 +82,7 @@ class MotionClass(ColumnResult):
     @property
     def reason(self) -> Reason:
         """Why; ``reason.advice`` says what to do about it."""
-        return list(Reason)[int(self.arrays.reason[0])]
+        return Reason.from_code(int(self.arrays.reason[0]))
 
     @property
     def mode(self) -> int | None:
@@ -136,20 +127,10 @@ class MotionClass(ColumnResult):
     def amplitude(self, dof: str) -> float:
         """Return half the range of a displacement at the end.
 
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
         Returns
         -------
         float
             [m]; of a settled motion over a period, not-a-number if it is unbounded.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
         """
         return float(self.arrays.amplitude[0, self._column(dof)])
 
@@ -157,11 +138,6 @@ class MotionClass(ColumnResult):
         """Return the power spectral density of a displacement once it was decided.
 
         By Welch's method in Hann windows, which hold the leakage of a motion without period down.
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
 
         Returns
         -------
@@ -171,7 +147,7 @@ class MotionClass(ColumnResult):
         Raises
         ------
         ModelError
-            If there is no such degree of freedom, or no such motion.
+            If there is no such motion.
         """
         column = self._column(dof)
         if not len(self.tail):
@@ -194,8 +170,6 @@ class MotionClass(ColumnResult):
 
         Parameters
         ----------
-        dof : str
-            An observed degree of freedom.
         most : int, optional
             How many at most.
         least : float, optional
@@ -231,9 +205,3 @@ class MotionClass(ColumnResult):
             lines.append(Line(where, 2.0 * np.pi * where, float(np.sqrt(2.0 * power))))
         lines.sort(key=lambda line: line.amplitude, reverse=True)
         return [line for line in lines[:count] if line.amplitude >= floor * lines[0].amplitude]
-
-    def plot(self, dof: str, **options: Unpack[LineOptions]) -> Axes:
-        """Draw the spectrum with its lines; see `stickslip.plot.lines`."""
-        from stickslip import plot
-
-        return plot.lines(self, dof, **options)

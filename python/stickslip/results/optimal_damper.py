@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.model.force import force_from_spec
-from stickslip.model.laws import contact_from_spec
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.fields import Columns, Float, column
 from stickslip.results.result import Result
 from stickslip.results.status import Status
+from stickslip.results.stored_model import part_variables, parts_of
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -39,7 +36,6 @@ class _Minima(Columns):
     amplitude: Float = column("minimum", "m", "amplitude of a minimum", least=0.0)
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class OptimalDamper(Result):
     """The least peak over a parameter, and how it was found.
 
@@ -125,11 +121,6 @@ class OptimalDamper(Result):
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add what follows from the other variables: nothing here.
-
         Returns
         -------
         xarray.Dataset
@@ -138,16 +129,11 @@ class OptimalDamper(Result):
         """
         dataset = self.curve.to_dataset(derived=derived)
         unit = self.curve.settings.variation.unit
-        columns = zip(LeastPeak._fields, np.array(self.minima).T, strict=True)
-        minima = _Minima(**dict(columns))
+        minima = _Minima(**dict(zip(LeastPeak._fields, np.array(self.minima).T, strict=True)))
         dataset = dataset.assign(minima.variables({"unit": unit}))
         bounds = {"units": unit, "long_name": "between which values the least was looked for"}
         dataset["bounds"] = ("bound", np.array(self.bounds), bounds)
-        given = self.curve.model
-        for name, entries in (("contacts", given.contacts), ("forces", given.forces)):
-            specs = np.array([json.dumps(entry.to_spec()) for entry in entries], dtype=np.str_)
-            about = {"units": "1", "long_name": f"{name} of the model that was given, JSON texts"}
-            dataset[f"given_{name}"] = (f"given_{name}_entry", specs, about)
+        dataset = dataset.assign(part_variables(self.curve.model, "given_"))
         dataset.attrs |= {
             "title": "Least peak of a structure with dry friction over a parameter",
             "diagnostics": to_json(self.diagnostics),
@@ -157,36 +143,11 @@ class OptimalDamper(Result):
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the result that a dataset holds.
-
-        Parameters
-        ----------
-        dataset : xarray.Dataset
-            As `to_dataset` makes it.
-        model : Model
-            The model at the best value.
-
-        Returns
-        -------
-        OptimalDamper
-            Equal to the one that made the dataset, bit by bit.
-
-        Raises
-        ------
-        KeyError, ValueError
-            If the dataset is incomplete, or belongs to another model.
-        """
-        given = Model(
-            model.structure,
-            [contact_from_spec(json.loads(text)) for text in dataset["given_contacts"].values],
-            [force_from_spec(json.loads(text)) for text in dataset["given_forces"].values],
-        )
+        """Return the result that a dataset holds; `model` is the one at the best value."""
+        given = Model(model.structure, *parts_of(dataset, "given_"))
         prefix = "curve_"
-        of_curve = {
-            name.removeprefix(prefix): value
-            for name, value in dataset.attrs.items()
-            if name.startswith(prefix)
-        }
+        told = dataset.attrs.items()
+        of_curve = {name.removeprefix(prefix): one for name, one in told if name.startswith(prefix)}
         columns = _Minima.read(dataset)
         rows = zip(columns.value, columns.omega, columns.amplitude, strict=True)
         minima = tuple(LeastPeak(*map(float, row)) for row in rows)
@@ -218,16 +179,5 @@ class OptimalDamper(Result):
         )
 
     def plot(self, **options: Unpack[DamperOptions]) -> Axes:
-        """Draw the damper performance curve with its least peak.
-
-        Parameters
-        ----------
-        **options
-            See `stickslip.plot.damper`.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes of the amplitude.
-        """
+        """Draw the damper performance curve with its least peak; see `stickslip.plot.damper`."""
         return self.curve.plot(**options)

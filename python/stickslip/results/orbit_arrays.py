@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.results.arrays import Arrays, Bool, Code, Complex, Float, Int
+from stickslip.results.arrays import Arrays, Code, ExactColumns, Float, Int
 from stickslip.results.events import KINDS
 from stickslip.results.fields import Computed, column
 from stickslip.results.status import Status
@@ -22,36 +22,24 @@ if TYPE_CHECKING:
 __all__ = ["OrbitArrays"]
 
 
-class OrbitArrays(Arrays):
+class OrbitArrays(Arrays, ExactColumns):
     """The numbers of exact orbits: those of a forced response, and what only orbits have.
 
-    A state is (x, v, f) of all degrees of freedom and contact points. At points without an orbit
+    At points without an orbit
     everything but `omega`, `status`, `residual` and `iterations` is not-a-number, and there are no
     events.
     """
 
     labels: ClassVar[Mapping[str, Sequence[str]]] = {"side": ("lowest", "highest")}
 
-    harmonics: Int = column(
-        "omega", "1", "highest harmonic reported", least=0, file_name="harmonics_kept"
-    )
     residual: Float = column(
-        "omega", "1", "gap of the orbit after a period, relative to the motion", least=0.0
+        "*", "1", "gap of the orbit after a period, relative to the motion", least=0.0
     )
-    iterations: Int = column("omega", "1", "iterations of shooting", least=0)
     error_estimate: Float = column(
-        "omega dof", "m", "what the gap of the orbit could still change", least=0.0
+        "* dof", "m", "what the gap of the orbit could still change", least=0.0
     )
-    range: Float = column("omega dof side", "m", "lowest and highest displacement over the period")
-    state: Float = column("omega state_entry", "1", "state at t = 0 (x in m, v in m/s, f in N)")
-    multipliers: Complex = column(
-        "omega multiplier",
-        "1",
-        "Floquet multipliers over the period, the neutral ones first, then by falling modulus",
-    )
-    neutral: Int = column("omega", "1", "how many multipliers are neutral, exactly 1", least=0)
-    work: Float = column("omega", "J", "work of the external forces per period")
-    viscous: Float = column("omega", "J", "energy lost to damping per period")
+    work: Float = column("*", "J", "work of the external forces per period")
+    viscous: Float = column("*", "J", "energy lost to damping per period")
     event_offset: Int = column("boundary", "1", "first event of each point", least=0)
     event_time: Float = column("event", "s", "time of the event in the period", least=0.0)
     event_point: Int = column(
@@ -72,22 +60,11 @@ class OrbitArrays(Arrays):
         values["event_offset"] = np.append(0, np.cumsum(np.where(solved, counts, 0)))
         # Orbits are not marched.
         values["sampling_error"] = np.zeros_like(values["error_estimate"])
-        for name in (
-            "displacement",
-            "contact_displacement",
-            "contact_force",
-            "error_estimate",
-            "sampling_error",
-            "slip_fraction",
-            "dissipation",
-            "range",
-            "state",
-            "multipliers",
-            "work",
-            "viscous",
-        ):
-            blank = complex(np.nan, np.nan) if values[name].dtype.kind == "c" else np.nan
-            values[name][~solved] = blank
+        told = ("omega", "residual")
+        for name, entry in cls.table().items():
+            kind = values[name].dtype.kind
+            if entry.dims[0] == cls.along and kind in "fc" and name not in told:
+                values[name][~solved] = complex(np.nan, np.nan) if kind == "c" else np.nan
         values["neutral"][~solved] = 0
         return cls(**{name: values[name] for name in cls.table()})
 
@@ -101,25 +78,10 @@ class OrbitArrays(Arrays):
             raise ValueError(f"event_offset does not divide the {events} events")
         return arrays
 
-    @property
-    def known(self) -> Bool:
-        """(n,) Whether the multipliers of a point are known: not those of travelling waves."""
-        return self.solved & ~np.isnan(self.multipliers).any(axis=1)
-
     def of_sector(self, points: int, sectors: int) -> Self:
         """Return what belongs to sector 0 of some equal ones, with the state of all of them.
 
-        Parameters
-        ----------
-        points : int
-            Number of contact points of a sector.
-        sectors : int
-            How many sectors there are.
-
-        Returns
-        -------
-        OrbitArrays
-            Without the contact points of the other sectors; work and losses are those of one.
+        `points` counts the contact points of a sector; work and losses are those of one.
         """
         own = self.event_point < points
         return replace(
@@ -139,21 +101,7 @@ class OrbitArrays(Arrays):
     def turned(self, rotation: Rotation, number: int, share: float, dofs: int) -> Self:
         """Return the orbits seen from another sector, with series that are turned already.
 
-        Parameters
-        ----------
-        rotation : Rotation
-            The symmetry of the wave.
-        number : int
-            The sector.
-        share : float
-            By which part of the period it is ahead.
-        dofs : int
-            Number of degrees of freedom of a sector.
-
-        Returns
-        -------
-        OrbitArrays
-            States and events of that sector.
+        The sector is ahead by a share of the period, and has so many degrees of freedom.
         """
         places = np.arange(rotation.sectors) + number
         factors = rotation.wrap ** (places // rotation.sectors)

@@ -17,7 +17,7 @@ from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip import _core
-    from stickslip.results import ForcedResponse
+    from stickslip.results.sweep import Sweep
 
 __all__ = ["Peak", "Summary", "highest", "of_orbits", "rows", "summits"]
 
@@ -29,7 +29,7 @@ SAME = 1e-10
 
 Bracket: TypeAlias = tuple[float, float, float]
 """Lowest and highest frequency, and a guess between them [rad/s]."""
-Refine: TypeAlias = "Callable[[ForcedResponse, str, Measure, Bracket], tuple[float, float]]"
+Refine: TypeAlias = "Callable[[Sweep, str, Measure, Bracket], tuple[float, float]]"
 """Returns the frequency and the amplitude of the maximum inside a bracket."""
 
 
@@ -65,30 +65,10 @@ class Summary(NamedTuple):
     """Whether a point beside the peak is not solved."""
 
 
-def highest(result: ForcedResponse, dof: str, measure: Measure, refine: Refine) -> Peak:
+def highest(result: Sweep, dof: str, measure: Measure, refine: Refine) -> Peak:
     """Refine every local maximum that may be the highest, and return the highest.
 
-    Parameters
-    ----------
-    result : ForcedResponse
-        The curve. Points that are not solved are passed over, and warned of where they lie beside
-        the peak.
-    dof : str
-        An observed degree of freedom.
-    measure : {"half_range", "max", "fundamental"}
-        Measure of the amplitude.
-    refine : callable
-        Returns the frequency and the amplitude of the maximum inside a bracket.
-
-    Returns
-    -------
-    Peak
-        Not below any computed point.
-
-    Raises
-    ------
-    ModelError
-        If no point is solved.
+    Points that are not solved are passed over, and warned of where they lie beside the peak.
     """
     omega, amplitude, gap = _curve(result, dof, measure)
     best = int(amplitude.argmax())
@@ -104,28 +84,12 @@ def highest(result: ForcedResponse, dof: str, measure: Measure, refine: Refine) 
 
 
 def summits(
-    result: ForcedResponse, groups: Sequence[Sequence[str]], measure: Measure
+    result: Sweep, groups: Sequence[Sequence[str]], measure: Measure
 ) -> list[tuple[int, Peak]]:
     """Return the highest point of each group of degrees of freedom, by harmonic balance.
 
-    Parameters
-    ----------
-    result : ForcedResponse
-        The curves; the range of their points is searched.
-    groups : sequence of sequences of str
-        Observed degrees of freedom, in groups of which the highest counts.
-    measure : {"half_range", "max", "fundamental"}
-        Measure of the amplitude.
-
-    Returns
-    -------
-    list of (int, Peak)
-        The position among the group, and the peak: not below any computed point.
-
-    Raises
-    ------
-    ModelError
-        If no point is solved, or the core refuses.
+    With its degree of freedom, by its position among the group. The range of the computed points
+    is searched; no peak is below any of them.
     """
     from stickslip import _core
 
@@ -147,7 +111,7 @@ def summits(
 
 
 def _summit(
-    result: ForcedResponse, dofs: Sequence[str], measure: Measure, row: _core.Summit | None
+    result: Sweep, dofs: Sequence[str], measure: Measure, row: _core.Summit | None
 ) -> tuple[int, Peak]:
     """Return the higher of what was computed and what was found between."""
     curves = [_curve(result, dof, measure) for dof in dofs]
@@ -167,7 +131,7 @@ def _summit(
 
 
 def _told(
-    result: ForcedResponse, dof: str, omega: Float, peak: tuple[float, float], beside_gap: bool
+    result: Sweep, dof: str, omega: Float, peak: tuple[float, float], beside_gap: bool
 ) -> Peak:
     """Return a peak, and warn of what it may have missed."""
     # The maximisation resolves frequencies to 1e-8.
@@ -205,26 +169,8 @@ def _outside() -> int:
     return level
 
 
-def rows(result: ForcedResponse, dofs: Iterable[str] | str) -> list[Summary]:
-    """Return the peaks of degrees of freedom with the numbers of the nearest solved points.
-
-    Parameters
-    ----------
-    result : ForcedResponse
-        The curves.
-    dofs : iterable of str, or str
-        Observed degrees of freedom.
-
-    Returns
-    -------
-    list of Summary
-        Empty if no point is solved.
-
-    Raises
-    ------
-    ModelError
-        If there is no such degree of freedom, or it was not observed.
-    """
+def rows(result: Sweep, dofs: Iterable[str] | str) -> list[Summary]:
+    """Return the peaks of degrees of freedom with the numbers of the nearest solved points."""
     if not isinstance(dofs, Iterable):
         raise ModelError(f"dofs: {brief(dofs)} is not a list of names; leave it out for all")
     names = (dofs,) if isinstance(dofs, str) else tuple(dofs)
@@ -236,7 +182,7 @@ def rows(result: ForcedResponse, dofs: Iterable[str] | str) -> list[Summary]:
     return [_row(result, dof, peak) for dof, peak in zip(names, peaks, strict=True)]
 
 
-def _row(result: ForcedResponse, dof: str, peak: Peak) -> Summary:
+def _row(result: Sweep, dof: str, peak: Peak) -> Summary:
     solved = np.flatnonzero(result.arrays.solved)
     near = int(solved[np.abs(result.omega[solved] - peak.omega).argmin()])
     return Summary(
@@ -250,7 +196,7 @@ def _row(result: ForcedResponse, dof: str, peak: Peak) -> Summary:
     )
 
 
-def _curve(result: ForcedResponse, dof: str, measure: Measure) -> tuple[Float, Float, Bool]:
+def _curve(result: Sweep, dof: str, measure: Measure) -> tuple[Float, Float, Bool]:
     """Sort the solved points by frequency, and tell which of them have an unsolved neighbour.
 
     Of equal frequencies the larger amplitude is kept.
@@ -275,9 +221,7 @@ def _rivals(amplitude: Float) -> Int:
     return np.flatnonzero(top)
 
 
-def of_orbits(
-    result: ForcedResponse, dof: str, measure: Measure, bracket: Bracket
-) -> tuple[float, float]:
+def of_orbits(result: Sweep, dof: str, measure: Measure, bracket: Bracket) -> tuple[float, float]:
     """Return frequency and amplitude of the maximum inside a bracket, by exact orbits."""
     from stickslip import _core
     from stickslip.disk.wave_ring import moving

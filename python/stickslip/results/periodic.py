@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from abc import abstractmethod
+from collections.abc import Hashable
 from functools import cached_property
+from numbers import Integral
 from typing import Any
 
+import numpy as np
+
+from stickslip.errors import ModelError
 from stickslip.model import PointRef
+from stickslip.results.arrays import Measure, PeriodicArrays
 from stickslip.results.fields import Complex, Float
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
@@ -14,45 +20,38 @@ from stickslip.results.status import Status
 __all__ = ["PeriodicMotions"]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class PeriodicMotions(ColumnResult):
     """Periodic motions, one after the other."""
 
-    arrays: Any
+    arrays: PeriodicArrays
 
     @cached_property
     def status(self) -> tuple[Status, ...]:
         """How each point ended; ``status[i].advice`` says what to do about it."""
-        return tuple(Status.from_code(int(code)) for code in self.arrays.status)
+        return tuple(map(Status.from_code, self.arrays.status.tolist()))
+
+    @abstractmethod
+    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitude of a displacement, motion by motion.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+            [m]. Exact extrema of the harmonic series or of the orbits, not those of samples.
+        """
 
     def coefficients(self, dof: str) -> Complex:
         """Return the harmonics of a displacement, X_k of x(t) = Re sum_k X_k exp(i k omega t).
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
 
         Returns
         -------
         ndarray of complex128, shape (n, H+1)
             [m]. At points that did not converge the last iterate, kept for diagnosis.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
         """
-        series: Complex = self.arrays.displacement[:, :, self._column(dof)]
-        return series
+        return self.arrays.displacement[:, :, self._column(dof)]
 
     def error_estimate(self, dof: str) -> Float:
         """Return what the discarded harmonics, and more samples, could still change.
-
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
 
         Returns
         -------
@@ -61,38 +60,48 @@ class PeriodicMotions(ColumnResult):
             the compliance; of a marched evaluation with the error of its samples, which alone is
             `arrays.sampling_error`. Of exact orbits what their gap could change, of exact limit
             cycles 0.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
         """
-        errors: Float = self.arrays.error_estimate[:, self._column(dof)]
-        return errors
+        return self.arrays.error_estimate[:, self._column(dof)]
 
     def slip_fraction(self, contact: PointRef) -> Float:
         """Return the share of the period that each contact point slips.
-
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
 
         Returns
         -------
         ndarray of float64, shape (n, points) or (n,)
             From 0, it never slips, to 1.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
         """
         return self._select(self.arrays.slip_fraction, contact)
 
     def dissipation(self, contact: PointRef) -> Float:
         """Return the work that each contact point loses to friction per cycle.
 
-        Parameters and errors are those of `slip_fraction`, with values in J.
+        Returns
+        -------
+        ndarray of float64, shape (n, points) or (n,)
+            [J].
         """
         return self._select(self.arrays.dissipation, contact)
+
+    def position(self, index: int) -> int:
+        """Return the position of a motion, counted from 0.
+
+        Returns
+        -------
+        int
+            Position from 0.
+        """
+        count = self.arrays.omega.size
+        if isinstance(index, bool) or not isinstance(index, Integral):
+            raise ModelError(f"index: {index!r} is not an integer; see omega for the positions")
+        if not -count <= index < count:
+            raise ModelError(f"index: {index}; there are {count} points, 0 to {count - 1}")
+        return int(index) % count
+
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        if not derived:
+            return {}
+        meaning = "half peak-to-peak amplitude of the displacement"
+        values = np.stack([self.amplitude(dof) for dof in self.dofs], axis=1)
+        dims = (self.arrays.along, "dof")
+        return {"amplitude": (dims, values, {"units": "m", "long_name": meaning})}

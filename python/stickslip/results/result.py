@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import partial
 from os import PathLike
 from types import MappingProxyType
@@ -25,7 +26,8 @@ from stickslip.results.dataset import (
     state_names,
 )
 from stickslip.results.diagnostic import Diagnostic, from_attributes
-from stickslip.results.fields import Columns
+from stickslip.results.documented import Frozen
+from stickslip.results.fields import Columns, Shown
 from stickslip.settings.settings import Settings
 
 if TYPE_CHECKING:
@@ -38,8 +40,7 @@ Attributes: TypeAlias = Mapping[str, Callable[[Any], object]]
 """Attributes of a result that are attributes of its dataset, with their types."""
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Result(ABC):
+class Result(Frozen, ABC):
     """A computed motion: immutable, with what it belongs to and what it took for granted.
 
     A further kind of result is a subclass of `ColumnResult` and a line in
@@ -82,7 +83,7 @@ class Result(ABC):
 
     def __reduce__(self) -> tuple[Callable[[], Self], tuple[()]]:
         # What is only kept to save time stays behind, and a mapping proxy cannot be pickled.
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.init}
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         values |= {"timings": dict(self.timings), "counters": dict(self.counters)}
         return partial(type(self), **values), ()
 
@@ -93,7 +94,7 @@ class Result(ABC):
         Parameters
         ----------
         derived : bool, optional
-            Whether to add what follows from the other variables.
+            Whether to add what follows from the other variables, as amplitudes.
 
         Returns
         -------
@@ -144,22 +145,12 @@ class Result(ABC):
     def locate(self, contact: PointRef) -> tuple[int, int | None]:
         """Return the position of a contact, and of its point if one is meant.
 
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
-
         Returns
         -------
         contact : int
             Position of the contact.
         point : int or None
             Position of the point in it; None for the whole contact.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
         """
         if isinstance(contact, tuple | list):
             return self.model.point(contact)
@@ -184,9 +175,10 @@ class Result(ABC):
         return columns if point is None else columns[..., 0]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class ColumnResult(Result):
     """A result whose numbers are columns, from which its dataset and its file follow.
+
+    A kind of result annotates `settings` and `arrays` with their classes.
 
     Attributes
     ----------
@@ -207,6 +199,16 @@ class ColumnResult(Result):
     settings: Settings
     arrays: Columns
 
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        known = vars(sys.modules[cls.__module__])
+        for name, derived in (("arrays", "columns"), ("settings", "settings_class")):
+            if cls.__annotations__.get(name) in known:
+                setattr(cls, derived, known[cls.__annotations__[name]])
+        for one in vars(cls).values():
+            if isinstance(one, Shown):
+                one.document(cls.columns)
+
     @classmethod
     def of(cls, solution: object, **given: Any) -> Self:
         """Return a result with the attributes, timings and counters that the core tells."""
@@ -215,11 +217,6 @@ class ColumnResult(Result):
 
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.
-
-        Parameters
-        ----------
-        derived : bool, optional
-            Whether to add what follows from the other variables, as amplitudes.
 
         Returns
         -------
@@ -240,7 +237,7 @@ class ColumnResult(Result):
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
-        """Return the result that a dataset holds; see `Result.from_dataset`."""
+        """Return the result that a dataset holds."""
         told = dataset.attrs
         states = cls._states(model, half_wave=bool(told.get("half_wave", False)))
         arguments: dict[str, Any] = {name: of(told[name]) for name, of in cls.attributes.items()}

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias, get_args, overload
+from typing import TypeAlias, overload
 
 import numpy as np
 
-from stickslip.checks import choice, listed, text, unknown
+from stickslip.checks import listed, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
-
-if TYPE_CHECKING:
-    from stickslip.results.peaks import Peak
+from stickslip.results.sweep import key_of
 
 __all__ = ["COMMON", "Sensitivities"]
 
@@ -33,13 +31,6 @@ class Sensitivities(ContactMotion):
     derivatives of the friction law that Newton's method uses, and nothing is solved anew.
     """
 
-    half_wave: bool
-
-    if TYPE_CHECKING:
-
-        def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
-            """See `ForcedResponse.peak`."""
-
     @overload
     def sensitivity(
         self,
@@ -48,26 +39,14 @@ class Sensitivities(ContactMotion):
         parameter: None = None,
         measure: Measure = "half_range",
     ) -> dict[tuple[Place, str], Float]: ...
-
     @overload
     def sensitivity(
         self,
         dof: str,
         contact: PointRef | None = None,
-        *,
-        parameter: str,
+        parameter: str = ...,
         measure: Measure = "half_range",
     ) -> Float: ...
-
-    @overload
-    def sensitivity(
-        self,
-        dof: str,
-        contact: PointRef | None,
-        parameter: str,
-        measure: Measure = "half_range",
-    ) -> Float: ...
-
     def sensitivity(
         self,
         dof: str,
@@ -84,15 +63,11 @@ class Sensitivities(ContactMotion):
         ----------
         dof : str
             A degree of freedom of the structure; it need not have been observed.
-        contact : int, str or (int or str, int), optional
-            A contact, or one of its points as (contact, point). Default: all.
         parameter : str, optional
             A parameter of the contact's law ("slip_force", "stiffness"). Of several points, and
             without a contact of all contacts: changed together by the same amount. Also "level", a
             factor on all forces, at its value 1, and "omega", the frequency. Default: all
             parameters.
-        measure : {"half_range", "max", "fundamental"}, optional
-            See `ForcedResponse.amplitude`.
 
         Returns
         -------
@@ -105,8 +80,8 @@ class Sensitivities(ContactMotion):
         Raises
         ------
         ModelError
-            If there is no such degree of freedom, contact, point, parameter or measure; if a
-            parameter of all contacts is a factor on some and a value of others.
+            If there is no such parameter, or one of all contacts is a factor on some and a value
+            of others.
         """
         causes = _causes(self.model, contact, parameter)
         slopes = self._slopes(dof, list(causes.values()), measure)
@@ -123,26 +98,14 @@ class Sensitivities(ContactMotion):
         parameter: None = None,
         measure: Measure = "half_range",
     ) -> dict[tuple[Place, str], float]: ...
-
     @overload
     def peak_sensitivity(
         self,
         dof: str,
         contact: PointRef | None = None,
-        *,
-        parameter: str,
+        parameter: str = ...,
         measure: Measure = "half_range",
     ) -> float: ...
-
-    @overload
-    def peak_sensitivity(
-        self,
-        dof: str,
-        contact: PointRef | None,
-        parameter: str,
-        measure: Measure = "half_range",
-    ) -> float: ...
-
     def peak_sensitivity(
         self,
         dof: str,
@@ -204,8 +167,7 @@ class Sensitivities(ContactMotion):
         from stickslip import _core
 
         self._require_balance()
-        position = self.model.structure.index(text(dof, "dof"))
-        choice(measure, "measure", get_args(Measure))
+        position = self.model.structure.index(key_of(dof, measure)[0])
         arrays = self.arrays
         solved = arrays.solved
         slopes = np.full((arrays.omega.size, len(causes)), np.nan)

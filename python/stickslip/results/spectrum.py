@@ -19,25 +19,10 @@ class Spectrum(NamedTuple):
 
 
 def spectrum_of(motion: Float, *, samples: int, rate: float, segment: int, window: str) -> Spectrum:
-    """Return the spectrum of a motion by Welch's method.
+    """Return the spectrum of whole periods of a motion by Welch's method.
 
-    Parameters
-    ----------
-    motion : ndarray of float64, shape (periods * samples,)
-        Whole periods [m].
-    samples : int
-        Instants per period.
-    rate : float
-        Instants per second.
-    segment : int
-        Periods per window; windows overlap by half, in whole periods, and are averaged.
-    window : str
-        Name of the window, as `scipy.signal.get_window` has it.
-
-    Returns
-    -------
-    Spectrum
-        In steps of the excitation frequency over `segment`.
+    `samples` are taken per period, `rate` per second. The windows have `segment` periods each,
+    overlap by half, in whole periods, and are averaged.
 
     References
     ----------

@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Hashable
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.results.arrays import Bool, Complex, Int, constant
+from stickslip.results.arrays import Bool, Complex, ExactColumns, Int, constant
 
-__all__ = [
-    "STATES",
-    "FloquetStability",
-    "States",
-    "flag_variable",
-    "stability_counts",
-    "stability_of",
-    "truth_of",
-    "worded",
-]
+__all__ = ["STATES", "FloquetStability", "States", "stability_counts", "stability_of"]
 
 States = NDArray[np.str_]
 """A name of `STATES` per motion."""
@@ -47,22 +39,10 @@ STATES: dict[str, _State] = {
 
 
 def stability_of(multipliers: Complex, neutral: Int, known: Bool) -> States:
-    """Return the state of every motion by its Floquet multipliers.
+    """Return the state of every motion by its Floquet multipliers, the neutral ones first.
 
-    Parameters
-    ----------
-    multipliers : ndarray of complex128, shape (n, m)
-        The neutral ones first.
-    neutral : ndarray of int, shape (n,)
-        How many are neutral.
-    known : ndarray of bool, shape (n,)
-        Whether they are known.
-
-    Returns
-    -------
-    ndarray of str, shape (n,)
-        Names of `STATES`. Not decided is what has no multipliers, and what has its largest one on
-        the unit circle to rounding, as motions that nothing damps.
+    Not decided is what has no multipliers, and what has its largest one on the unit circle to
+    rounding, as motions that nothing damps.
     """
     size = np.abs(multipliers)
     moving = np.arange(size.shape[1]) >= neutral[:, None]
@@ -71,17 +51,10 @@ def stability_of(multipliers: Complex, neutral: Int, known: Bool) -> States:
     return constant(np.where(decided, np.where(largest < 1.0, "stable", "unstable"), "not decided"))
 
 
-def truth_of(states: States) -> NDArray[np.object_]:
-    """Return True, False or None per motion."""
-    values = np.empty(states.shape, dtype=object)
-    values[:] = [STATES[name].truth for name in states.tolist()]
-    return constant(values)
-
-
 class FloquetStability:
     """The part of a result that concerns the stability of its motions."""
 
-    arrays: Any
+    arrays: ExactColumns
 
     @property
     def multipliers(self) -> Complex:
@@ -91,8 +64,7 @@ class FloquetStability:
         in a period. A contact that slips forgets its force, which gives a multiplier of zero. Of
         limit cycles the trivial 1 of the phase is left out. Not-a-number where they are not known.
         """
-        multipliers: Complex = self.arrays.multipliers
-        return multipliers
+        return self.arrays.multipliers
 
     @property
     def neutral(self) -> Int:
@@ -102,8 +74,7 @@ class FloquetStability:
         around it is the same. A structure that nothing holds stays where it is pushed to, or drifts
         on where nothing slows it: its vibration is the same too.
         """
-        neutral: Int = self.arrays.neutral
-        return neutral
+        return self.arrays.neutral
 
     @cached_property
     def stability(self) -> States:
@@ -123,29 +94,23 @@ class FloquetStability:
         Of Python's objects: write ``result.stable == True`` or ``result.stability == "stable"`` to
         choose motions.
         """
-        return truth_of(self.stability)
+        values = np.empty(self.stability.shape, dtype=object)
+        values[:] = [STATES[name].truth for name in self.stability.tolist()]
+        return constant(values)
+
+    def _stable(self, dimension: str) -> dict[Hashable, Any]:
+        """Return the states as a variable of a dataset, with the flags of the CF conventions."""
+        flags = np.array([STATES[name].flag for name in self.stability.tolist()], dtype=np.int8)
+        about = {
+            "units": "1",
+            "long_name": "whether the motion is stable",
+            "flag_values": np.array([state.flag for state in STATES.values()], dtype=np.int8),
+            "flag_meanings": " ".join(name.replace(" ", "_") for name in STATES),
+        }
+        return {"stable": (dimension, flags, about)}
 
 
 def stability_counts(states: States) -> str:
     """Return how many motions are in each state, for example "3 stable, 2 not decided"."""
     counts = Counter(states.tolist())
     return ", ".join(f"{counts[name]} {name}" for name in STATES if counts[name]) or "none"
-
-
-def worded(state: str) -> str:
-    """Return the answer to "stable?" of one state: "yes", "no" or "not decided"."""
-    return STATES[state].answer
-
-
-def flag_variable(dimension: str, states: States) -> tuple[str, NDArray[np.int8], dict[str, Any]]:
-    """Return the states as a variable of a dataset, with the flags of the CF conventions."""
-    return (
-        dimension,
-        np.array([STATES[name].flag for name in states.tolist()], dtype=np.int8),
-        {
-            "units": "1",
-            "long_name": "whether the motion is stable",
-            "flag_values": np.array([state.flag for state in STATES.values()], dtype=np.int8),
-            "flag_meanings": " ".join(name.replace(" ", "_") for name in STATES),
-        },
-    )

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from stickslip.results.drawn import plots
 from stickslip.results.fields import Columns, Float, Numbers, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.settings.cycles import MapSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    pass
 
 __all__ = ["MapArrays", "StabilityMap"]
 
@@ -35,22 +37,11 @@ class MapArrays(Columns):
     negative_damping: Numbers = column("row column", "kg/s", "C_neg of the damping C + r C_neg")
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class StabilityMap(ColumnResult):
-    """Largest ratio r with limit cycles, and with stable ones, over a parameter of the contacts.
-
-    Attributes
-    ----------
-    settings : MapSettings
-        What was varied, and how.
-    arrays : MapArrays
-        Every number by its name.
-    """
+    """Largest ratio r with limit cycles, and with stable ones, over a parameter of the contacts."""
 
     kind: ClassVar[str] = "stability_map"
     title = "Negative damping that friction bounds"
-    columns = MapArrays
-    settings_class = MapSettings
 
     settings: MapSettings
     arrays: MapArrays
@@ -73,6 +64,4 @@ class StabilityMap(ColumnResult):
 
     def plot(self, *, ax: Axes | None = None) -> Axes:
         """Draw the map; see `stickslip.plot.stability_map`."""
-        from stickslip import plot
-
-        return plot.stability_map(self, ax=ax)
+        return plots.stability_map(self, ax=ax)

@@ -1,53 +1,105 @@
-"""How the computation of one point ended, and what to do about it."""
+"""How the computation of a point or a run ended, and what to do about it."""
 
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import NamedTuple, Self
 
 from stickslip.errors import ModelError
 
-__all__ = ["Status"]
+__all__ = ["Ending", "Settled", "Status", "TransientStatus"]
 
 
-class Status(StrEnum):
-    """How the computation of one point ended.
+class Ending(StrEnum):
+    """How something ended; compares equal to its text (``Status.STALLED == "stalled"``)."""
 
-    A status compares equal to its text (``Status.STALLED == "stalled"``).
-    """
+    advice: str
+    """Cause and next action, one sentence each."""
 
-    CONVERGED = "converged"
-    STALLED = "stalled"
-    SINGULAR = "singular"
-    NOT_COMPUTED = "not computed"
-    HARMONICS_LIMIT = "harmonics limit"
-    ORBIT_STALLED = "orbit stalled"
-    SAMPLES_LIMIT = "samples limit"
-    STEPS_LIMIT = "steps limit"
-    EFFORT_LIMIT = "effort limit"
+    def __new__(cls, text: str, advice: str = "") -> Self:
+        """Return a member, defined by its text and its advice."""
+        member = str.__new__(cls, text)
+        member._value_ = text
+        member.advice = advice
+        return member
 
     @classmethod
-    def from_code(cls, code: int) -> Status:
-        """Return the status that the compiled core, or a file, writes as a number.
+    def from_code(cls, code: int) -> Self:
+        """Return the member that the compiled core, or a file, writes as a number.
 
         Parameters
         ----------
         code : int
-            0 converged, 1 stalled, 2 singular, 3 not computed, 4 harmonics limit,
-            5 orbit stalled, 6 samples limit, 7 steps limit, 8 effort limit.
+            Position among the members, from 0.
 
         Raises
         ------
         ModelError
-            If there is no such status.
+            If there is no such member.
         """
-        if not 0 <= code < len(_MEMBERS):
-            raise ModelError(f"status {code} is unknown; known: 0 to {len(_MEMBERS) - 1}")
-        return _MEMBERS[code]
+        members = tuple(cls)
+        if not 0 <= code < len(members):
+            raise ModelError(f"status {code} is unknown; known: 0 to {len(members) - 1}")
+        return members[code]
 
     @property
     def code(self) -> int:
-        """The number of this status, as written to files."""
+        """The number of this member, as written to files."""
         return tuple(type(self)).index(self)
+
+
+class Status(Ending):
+    """How the computation of one point ended; compares equal to its text."""
+
+    CONVERGED = (
+        "converged",
+        "The balance equations are solved and every tolerance is met. Nothing needs to be done.",
+    )
+    STALLED = (
+        "stalled",
+        "The iteration stopped before the balance equations were met. "
+        "Raise max_iterations, keep more harmonics, or approach this omega in smaller steps.",
+    )
+    SINGULAR = (
+        "singular",
+        "The equations have no unique solution here: an unforced harmonic hits an undamped natural "
+        "frequency of the stuck structure, friction does not bound an undamped resonance, or "
+        "damping is negative and the curve turns. Add damping or shift this omega slightly.",
+    )
+    NOT_COMPUTED = (
+        "not computed",
+        "The run was interrupted before this point was reached. "
+        "Run the analysis again for the missing omega.",
+    )
+    HARMONICS_LIMIT = (
+        "harmonics limit",
+        "max_harmonics was reached before the discarded harmonics met the tolerance. "
+        "Read error_estimate, and raise max_harmonics or tolerance, or use exact_response.",
+    )
+    ORBIT_STALLED = (
+        "orbit stalled",
+        "Shooting stopped before the orbit closed: at an undamped resonance friction may not bound "
+        "the motion. Raise max_iterations, or see with transient whether the motion settles.",
+    )
+    SAMPLES_LIMIT = (
+        "samples limit",
+        "max_samples was reached before the sampling error of the marched friction laws met its "
+        "share of the tolerance. "
+        "Read error_estimate, and raise max_samples or tolerance, or evaluate the laws exactly.",
+    )
+    STEPS_LIMIT = (
+        "steps limit",
+        "The orbit was not found within the steps that it is granted: the motion does not settle, "
+        "or some of it is much faster than omega. See with transient whether it settles, condense "
+        "light dofs statically, or balance harmonics.",
+    )
+    EFFORT_LIMIT = (
+        "effort limit",
+        "Given up early: more harmonics, and an exact orbit, would have cost far more than those "
+        "that are kept, as where omega is low or contacts are nearly rigid. Read error_estimate; "
+        "raise tolerance, name in observe only the dofs that matter, give a number of harmonics, "
+        "or condense light or nearly rigid dofs statically.",
+    )
 
     @property
     def solved(self) -> bool:
@@ -57,62 +109,52 @@ class Status(StrEnum):
         the equations are solved for the harmonics that were kept and the samples that were taken,
         only more of them would be needed for the tolerance.
         """
-        return self in _SOLVED
+        return self is Status.CONVERGED or self in (
+            Status.HARMONICS_LIMIT,
+            Status.SAMPLES_LIMIT,
+            Status.EFFORT_LIMIT,
+        )
 
-    @property
-    def advice(self) -> str:
-        """Cause and next action, one sentence each."""
-        return _ADVICE[self]
+
+class TransientStatus(Ending):
+    """How a transient ended; compares equal to its text."""
+
+    SETTLED = (
+        "settled",
+        "The change over a period has come below the tolerance. Nothing needs to be done.",
+    )
+    NOT_SETTLED = (
+        "not settled",
+        "The limit of periods was reached before the change over a period met the tolerance. "
+        "Continue with start=result.final, or raise periods or tolerance.",
+    )
+    COMPLETED = (
+        "completed",
+        "All periods were computed; without a tolerance nothing was asked of the last ones. "
+        "Read change to see whether the motion has settled.",
+    )
+    UNBOUNDED = (
+        "unbounded",
+        "The motion grew without bound and was cut there: damping is negative, or steps are too "
+        "few for rk4. Add damping, raise steps, or use the exact scheme.",
+    )
+    INTERRUPTED = (
+        "interrupted",
+        "The run was stopped before its end. Continue with start=result.final.",
+    )
+    HALTED = (
+        "halted",
+        "Contacts changed between stick and slip without end at one instant. "
+        "Change the start slightly, or take rk4.",
+    )
 
 
-_MEMBERS = tuple(Status)
-_SOLVED = (
-    Status.CONVERGED,
-    Status.HARMONICS_LIMIT,
-    Status.SAMPLES_LIMIT,
-    Status.EFFORT_LIMIT,
-)
+class Settled(NamedTuple):
+    """One row of `Transient.summary`."""
 
-_ADVICE = {
-    Status.CONVERGED: (
-        "The balance equations are solved and every tolerance is met. Nothing needs to be done."
-    ),
-    Status.STALLED: (
-        "The iteration stopped before the balance equations were met. "
-        "Raise max_iterations, keep more harmonics, or approach this omega in smaller steps."
-    ),
-    Status.SINGULAR: (
-        "The equations have no unique solution here: an unforced harmonic hits an undamped natural "
-        "frequency of the stuck structure, friction does not bound an undamped resonance, or "
-        "damping is negative and the curve turns. "
-        "Add damping or shift this omega slightly."
-    ),
-    Status.NOT_COMPUTED: (
-        "The run was interrupted before this point was reached. "
-        "Run the analysis again for the missing omega."
-    ),
-    Status.HARMONICS_LIMIT: (
-        "max_harmonics was reached before the discarded harmonics met the tolerance. "
-        "Read error_estimate, and raise max_harmonics or tolerance, or use exact_response."
-    ),
-    Status.ORBIT_STALLED: (
-        "Shooting stopped before the orbit closed: at an undamped resonance friction may not bound "
-        "the motion. Raise max_iterations, or see with transient whether the motion settles."
-    ),
-    Status.SAMPLES_LIMIT: (
-        "max_samples was reached before the sampling error of the marched friction laws met its "
-        "share of the tolerance. "
-        "Read error_estimate, and raise max_samples or tolerance, or evaluate the laws exactly."
-    ),
-    Status.STEPS_LIMIT: (
-        "The orbit was not found within the steps that it is granted: the motion does not settle, "
-        "or some of it is much faster than omega. See with transient whether it settles, condense "
-        "light dofs statically, or balance harmonics."
-    ),
-    Status.EFFORT_LIMIT: (
-        "Given up early: more harmonics, and an exact orbit, would have cost far more than those "
-        "that are kept, as where omega is low or contacts are nearly rigid. Read error_estimate; "
-        "raise tolerance, name in observe only the dofs that matter, give a number of harmonics, "
-        "or condense light or nearly rigid dofs statically."
-    ),
-}
+    dof: str
+    """Degree of freedom."""
+    amplitude: float
+    """Half peak-to-peak in the last period [m]."""
+    change: float
+    """Its change from the period before, relative; not-a-number after one period."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from stickslip.disk import BladedDisk, MistunedDisk
 
-__all__ = ["model_of", "model_variables"]
+__all__ = ["model_of", "model_variables", "part_variables", "parts_of"]
 
 _MATRICES = {
     "mass": ("kg", "mass matrix"),
@@ -32,16 +32,8 @@ _MATRICES = {
 def model_variables(model: Model) -> Mapping[Hashable, object]:
     """Return a model as variables of a dataset.
 
-    Parameters
-    ----------
-    model : Model
-        The model; of a `BladedDisk` the matrices are those of a sector, of a `MistunedDisk` those
-        of all sectors are added.
-
-    Returns
-    -------
-    mapping
-        Names with (dimensions, values, attributes).
+    Of a `BladedDisk` the matrices are those of a sector; of a `MistunedDisk` those of all sectors
+    are added.
     """
     kind = type(model).__name__
     return {"model": ((), kind, {"long_name": "kind of model"}), **_WRITERS[kind](model)}
@@ -61,15 +53,11 @@ def model_of(dataset: xr.Dataset) -> Model:
 
 
 def _model(model: Model) -> dict[Hashable, object]:
-    return {
-        **_structure_variables(model.structure),
-        **_texts("contacts", [contact.to_spec() for contact in model.contacts]),
-        **_texts("forces", [force.to_spec() for force in model.forces]),
-    }
+    return _structure_variables(model.structure) | part_variables(model)
 
 
 def _read_model(dataset: xr.Dataset) -> Model:
-    return Model(_structure(dataset), *_parts(dataset))
+    return Model(_structure(dataset), *parts_of(dataset))
 
 
 def _bladed(model: Any) -> dict[Hashable, object]:
@@ -79,11 +67,8 @@ def _bladed(model: Any) -> dict[Hashable, object]:
         "engine_order": disk.engine_order,
         "engine_orders": {str(k): order for k, order in disk.engine_orders.items()},
     }
-    variables = {
-        **_model(disk),
-        **_texts("disk", [settings]),
-        **_texts("couplings", [coupling.to_spec() for coupling in disk.couplings]),
-    }
+    couplings = [coupling.to_spec() for coupling in disk.couplings]
+    variables = _model(disk) | _texts("disk", [settings]) | _texts("couplings", couplings)
     if disk.interface is not None:
         for name, (unit, meaning) in _MATRICES.items():
             said = {"units": unit, "long_name": f"block of the {meaning} to the next sector"}
@@ -96,7 +81,7 @@ def _read_bladed(dataset: xr.Dataset, prefix: str = "") -> BladedDisk:
     from stickslip.disk import BladedDisk, Interface
     from stickslip.disk.coupling import coupling_from_spec
 
-    contacts, forces = _parts(dataset, prefix)
+    contacts, forces = parts_of(dataset, prefix)
     settings = _read_texts(dataset, "disk")[0]
     interface = None
     if "interface_stiffness" in dataset:
@@ -115,11 +100,8 @@ def _read_bladed(dataset: xr.Dataset, prefix: str = "") -> BladedDisk:
 
 def _mistuned(model: Any) -> dict[Hashable, object]:
     mistuned: MistunedDisk = model
-    disk = mistuned.disk
-    variables = _bladed(disk)
-    for name in ("contacts", "forces"):
-        variables |= _texts(f"sector_{name}", [one.to_spec() for one in getattr(disk, name)])
-        variables |= _texts(name, [one.to_spec() for one in getattr(mistuned, name)])
+    variables = _bladed(mistuned.disk)
+    variables |= part_variables(mistuned.disk, "sector_") | part_variables(mistuned)
     for name, (unit, meaning) in _MATRICES.items():
         said = {"units": unit, "long_name": f"{meaning} of each sector by itself"}
         stack = np.stack([getattr(blade, name) for blade in mistuned.blades])
@@ -142,7 +124,7 @@ def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
         Structure.of_law(m, k, c, disk.structure.dofs, None, bool(proportional))
         for m, k, c, proportional in zip(*stacks, known, strict=True)
     ]
-    return MistunedDisk(disk, blades, *_parts(dataset))
+    return MistunedDisk(disk, blades, *parts_of(dataset))
 
 
 _WRITERS: Mapping[str, Callable[[Any], Mapping[Hashable, object]]] = {
@@ -194,7 +176,14 @@ def _real(dataset: xr.Dataset, name: str) -> Float:
     return values
 
 
-def _parts(dataset: xr.Dataset, prefix: str = "") -> tuple[list[Any], list[Any]]:
+def part_variables(model: Model, prefix: str = "") -> dict[Hashable, object]:
+    """Return contacts and forces as variables."""
+    contacts = _texts(f"{prefix}contacts", [contact.to_spec() for contact in model.contacts])
+    return contacts | _texts(f"{prefix}forces", [force.to_spec() for force in model.forces])
+
+
+def parts_of(dataset: xr.Dataset, prefix: str = "") -> tuple[list[Any], list[Any]]:
+    """Return the contacts and forces that `part_variables` wrote."""
     contacts = _read_texts(dataset, f"{prefix}contacts")
     forces = _read_texts(dataset, f"{prefix}forces")
     return [contact_from_spec(spec) for spec in contacts], [force_from_spec(s) for s in forces]

@@ -1,46 +1,50 @@
-"""What every curve over frequency has: its points, and how each of them ended."""
+"""What every curve over frequency has: its points, the motion at each of them, and its peak."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from functools import cached_property
-from numbers import Integral
-from typing import ClassVar
+from typing import ClassVar, get_args
 
 import numpy as np
 
-from stickslip.checks import real_number
-from stickslip.errors import ModelError
-from stickslip.results.arrays import Arrays, Bool, Float, Int, constant
-from stickslip.results.fields import Columns, Shown
+from stickslip.checks import choice, real_number, text, whole_number
+from stickslip.results.arrays import (
+    Arrays,
+    Bool,
+    Complex,
+    Float,
+    Int,
+    Measure,
+    amplitude_of,
+    constant,
+)
+from stickslip.results.fields import Shown
+from stickslip.results.peaks import Peak, Summary, rows, summits
 from stickslip.results.periodic import PeriodicMotions
 from stickslip.results.result import Attributes
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
 from stickslip.settings.orbits import ExactSettings
-from stickslip.settings.settings import Settings
 
-__all__ = ["Sweep"]
+__all__ = ["Sweep", "key_of"]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Sweep(PeriodicMotions):
     """The points of a result.
 
     Attributes
     ----------
-    settings : ForcedSettings or ExactSettings
-        How.
-    arrays : Arrays
-        Every number by its name.
+    half_wave : bool
+        Whether only odd harmonics were solved for, because forces and laws are half-wave symmetric.
     """
 
-    columns: ClassVar[type[Columns]] = Arrays
-    settings_class: ClassVar[type[Settings]] = ForcedSettings
+    settings_class = ForcedSettings
     attributes: ClassVar[Attributes] = {"interrupted": bool, "half_wave": bool}
 
     settings: ForcedSettings | ExactSettings
     arrays: Arrays
+    half_wave: bool
 
     omega = Shown[Float]()
     harmonics = Shown[Int]()
@@ -68,29 +72,124 @@ class Sweep(PeriodicMotions):
         """
         return int(np.abs(self.omega - real_number(omega, "omega")).argmin())
 
-    def position(self, index: int) -> int:
-        """Return the position of a point of the sweep, negative ones counted from the end.
+    @cached_property
+    def _amplitudes(self) -> dict[tuple[str, Measure], Float]:
+        return {}
 
-        Parameters
-        ----------
-        index : int
-            Position.
+    @cached_property
+    def _peaks(self) -> dict[tuple[str, Measure], Peak]:
+        return {}
+
+    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitude of a displacement over frequency.
 
         Returns
         -------
-        int
-            Position from 0.
+        ndarray of float64, shape (n,)
+            [m]. Exact extrema of the harmonic series or of the orbits, not those of samples.
+        """
+        key = key_of(dof, measure)
+        if key not in self._amplitudes:
+            self._amplitudes[key] = constant(self._amplitude(dof, measure))
+        return self._amplitudes[key]
+
+    def _amplitude(self, dof: str, measure: Measure) -> Float:
+        values = amplitude_of(np.ascontiguousarray(self.coefficients(dof)), measure)
+        return np.where(self.arrays.solved, values, np.nan)
+
+    def phase(self, dof: str) -> Float:
+        """Return the phase of the fundamental, x_1(t) = |X_1| cos(omega t + phase).
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+            Phase lead, between -pi and pi [rad]; not-a-number where there is no fundamental.
+        """
+        fundamental = self.coefficients(dof)[:, 1]
+        known = self.arrays.solved & (fundamental != 0.0)
+        return constant(np.where(known, np.angle(fundamental), np.nan))
+
+    def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
+        """Return one period of a displacement.
+
+        Returns
+        -------
+        ndarray of float64, shape (samples,)
+            [m].
+        """
+        return self._period(self.coefficients(dof), index, samples)
+
+    def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
+        """Return the highest point of the response curve, between the computed points.
+
+        The balance equations are solved anew over the range of the computed points: at every
+        resonance that may be the highest, in whatever state of the contacts, and wherever the curve
+        between two points may be higher.
+
+        Returns
+        -------
+        Peak
+            `omega`, `amplitude` (not below any computed point, infinite where neither damping nor
+            friction bounds it), `at_edge` and `beside_gap`.
 
         Raises
         ------
         ModelError
-            If there is no such point.
+            If no point is solved.
+
+        Warns
+        -----
+        UserWarning
+            If a point beside the maximum is not solved, or nothing bounds the response.
         """
-        count = self.arrays.omega.size
-        if isinstance(index, bool) or not isinstance(index, Integral):
-            raise ModelError(
-                f"index: {index!r} is not an integer; see index(omega) for the nearest"
-            )
-        if not -count <= index < count:
-            raise ModelError(f"index: {index}; there are {count} points, 0 to {count - 1}")
-        return int(index) % count
+        key_of(dof, measure)
+        return self._peaks_of([dof], measure)[0]
+
+    def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
+        """Return the peaks of several degrees of freedom, found together."""
+        groups = [[dof] for dof in dofs if (dof, measure) not in self._peaks]
+        found = summits(self, groups, measure) if groups else []
+        for (dof,), (_, peak) in zip(groups, found, strict=True):
+            self._peaks[dof, measure] = peak
+        return [self._peaks[dof, measure] for dof in dofs]
+
+    def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
+        """Return which of some degrees of freedom has the highest peak, and the peak."""
+        return summits(self, [dofs], measure)[0]
+
+    def summary(self, dofs: Iterable[str] | str | None = None) -> list[Summary]:
+        """Return the peaks of degrees of freedom, one row each.
+
+        Parameters
+        ----------
+        dofs : iterable of str, optional
+            Observed degrees of freedom. Default: all.
+
+        Returns
+        -------
+        list of Summary
+            Empty if no point is solved.
+
+        Raises
+        ------
+        ModelError
+            If there is no such degree of freedom, or it was not observed.
+        """
+        return rows(self, self.dofs if dofs is None else dofs)
+
+    def _period(self, series: Complex, index: int, samples: int) -> Float:
+        position = self.position(index)
+        count = whole_number(samples, "samples", smallest=1)
+        if not self.arrays.solved[position]:
+            return constant(np.full((count, *series.shape[2:]), np.nan))
+        # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
+        kept = int(self.arrays.harmonics[position]) + 1
+        turns = np.outer(np.arange(count), np.arange(kept)) % count
+        turn = np.exp(2j * np.pi / count * turns)
+        return constant(np.ascontiguousarray((turn @ series[position, :kept]).real))
+
+
+def key_of(dof: str, measure: Measure) -> tuple[str, Measure]:
+    """Return a degree of freedom and a measure by which amplitudes are kept, or refuse them."""
+    choice(measure, "measure", get_args(Measure))
+    return text(dof, "dof"), measure

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from dataclasses import dataclass
+from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
@@ -13,26 +12,52 @@ from stickslip.checks import choice, text, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
 from stickslip.model.state import State
-from stickslip.results.arrays import Float, Measure, amplitude_in
-from stickslip.results.events import Events
-from stickslip.results.fields import Shown
+from stickslip.results.arrays import Measure, amplitude_in
+from stickslip.results.drawn import Drawn, plots
+from stickslip.results.events import KINDS, Events
+from stickslip.results.fields import Code, Columns, Float, Int, Shown, column
 from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.spectrum import Spectrum, spectrum_of
-from stickslip.results.transient_arrays import TransientArrays
-from stickslip.results.transient_status import Settled, TransientStatus
+from stickslip.results.status import Settled, TransientStatus
 from stickslip.settings.motion import TransientSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
+    pass
 
-    from matplotlib.axes import Axes
-
-    from stickslip.plot import HistoryOptions, PoincareOptions, SpectrumOptions
-
-__all__ = ["Transient"]
+__all__ = ["Transient", "TransientArrays"]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class TransientArrays(Columns):
+    """The numbers of a transient; a state is (x, v, f) of all dofs and contact points."""
+
+    labels: ClassVar[Mapping[str, Sequence[str]]] = {"side": ("lowest", "highest")}
+
+    time: Float = column("time", "s", "time since the start", least=0.0)
+    displacement: Float = column("time dof", "m", "displacement")
+    velocity: Float = column("time dof", "m/s", "velocity")
+    contact_force: Float = column(
+        "time point", "N", "contact force against the relative displacement"
+    )
+    contact_displacement: Float = column("time point", "m", "relative displacement at the contacts")
+    poincare: Float = column(
+        "section state_entry",
+        "1",
+        "state at the start and after each period (x in m, v in m/s, f in N)",
+    )
+    range: Float = column("period dof side", "m", "lowest and highest displacement in each period")
+    change: Float = column(
+        "period",
+        "1",
+        "change of the state over the period, relative to the motion in it, in the norm of energy: "
+        "kinetic, elastic and that of the contact springs",
+    )
+    event_time: Float = column("event", "s", "time of the event since the start", least=0.0)
+    event_point: Int = column(
+        "event", "1", "contact point, over all contacts", least=0, most="point"
+    )
+    event_kind: Code = column("event", "1", "what happens", codes=KINDS)
+
+
 class Transient(ColumnResult):
     """Motion under periodic forces from a start state, period after period.
 
@@ -41,10 +66,6 @@ class Transient(ColumnResult):
 
     Attributes
     ----------
-    settings : TransientSettings
-        How it was computed.
-    arrays : TransientArrays
-        Every number by its name.
     settled : bool
         Whether the change over a period came below the tolerance; False without one.
     unbounded : bool
@@ -53,8 +74,6 @@ class Transient(ColumnResult):
 
     kind: ClassVar[str] = "transient"
     title = "Transient motion of a structure with dry friction"
-    columns = TransientArrays
-    settings_class = TransientSettings
     attributes: ClassVar[Attributes] = {"interrupted": bool, "settled": bool, "unbounded": bool}
 
     settings: TransientSettings
@@ -84,14 +103,13 @@ class Transient(ColumnResult):
         return self.arrays.change.size
 
     time = Shown[Float]()
+    change = Shown[Float]()
 
-    @property
-    def change(self) -> Float:
-        """Change of the state over each period, relative to the motion in it, shape (P,).
-
-        In the norm of energy: kinetic, elastic and that of the contact springs.
-        """
-        return self.arrays.change
+    plot = Drawn(lambda: plots.history)
+    plot_contact_force = Drawn(lambda: plots.contact_history)
+    plot_phase = Drawn(lambda: plots.phase)
+    plot_poincare = Drawn(lambda: plots.poincare)
+    plot_spectrum = Drawn(lambda: plots.spectrum)
 
     @property
     def status(self) -> TransientStatus:
@@ -132,20 +150,10 @@ class Transient(ColumnResult):
     def displacement(self, dof: str) -> Float:
         """Return a displacement over `time`.
 
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-
         Returns
         -------
         ndarray of float64, shape (n,)
             [m].
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom, or it was not observed.
         """
         return self.arrays.displacement[:, self._column(dof)]
 
@@ -156,20 +164,10 @@ class Transient(ColumnResult):
     def contact_force(self, contact: PointRef) -> Float:
         """Return the contact forces over `time`.
 
-        Parameters
-        ----------
-        contact : int, str or (int or str, int)
-            The contact, or one of its points.
-
         Returns
         -------
         ndarray of float64, shape (n, points) or (n,)
             [N], positive against the relative displacement.
-
-        Raises
-        ------
-        ModelError
-            If there is no such contact or point.
         """
         return self._select(self.arrays.contact_force, contact)
 
@@ -189,11 +187,6 @@ class Transient(ColumnResult):
         -------
         displacement, velocity : ndarray of float64, shape (P+1,)
             [m], [m/s]. A motion of the period of the excitation ends in one point.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom.
         """
         structure = self.model.structure
         place = structure.index(text(dof, "dof"))
@@ -205,8 +198,6 @@ class Transient(ColumnResult):
 
         Parameters
         ----------
-        dof : str
-            An observed degree of freedom.
         measure : {"half_range", "max"}, optional
             Half the peak-to-peak range over the period, or the largest |x|.
 
@@ -214,11 +205,6 @@ class Transient(ColumnResult):
         -------
         ndarray of float64, shape (P,)
             [m]. From extrema, not samples.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom or measure, or the former was not observed.
         """
         choice(measure, "measure", ("half_range", "max"))
         return amplitude_in(self.arrays.range[:, self._column(dof)], measure)
@@ -226,23 +212,11 @@ class Transient(ColumnResult):
     def amplitude(self, dof: str, measure: Measure = "half_range") -> float:
         """Return the amplitude of a displacement in the last period.
 
-        Parameters
-        ----------
-        dof : str
-            An observed degree of freedom.
-        measure : {"half_range", "max", "fundamental"}, optional
-            Half the peak-to-peak range, the largest |x|, both from extrema, or |X_1| from the
-            samples of the period.
-
         Returns
         -------
         float
-            [m]; not-a-number if not one period was completed.
-
-        Raises
-        ------
-        ModelError
-            If there is no such degree of freedom or measure, or the former was not observed.
+            [m]; not-a-number if not one period was completed. The fundamental is that of the
+            samples of the period.
         """
         choice(measure, "measure", get_args(Measure))
         motion = self.displacement(dof)
@@ -269,8 +243,6 @@ class Transient(ColumnResult):
 
         Parameters
         ----------
-        dof : str
-            An observed degree of freedom.
         last : int, optional
             How many of the last periods to take. Default: all that are kept.
         segment : int, optional
@@ -287,17 +259,14 @@ class Transient(ColumnResult):
         Raises
         ------
         ModelError
-            If there is no such degree of freedom or window, or fewer periods are kept.
+            If there is no such window, or fewer periods are kept.
         """
         motion, kept = self.displacement(dof), self.kept_periods
         if not kept:
             raise ModelError("spectrum: not one whole period is kept; compute more periods")
-        taken = kept if last is None else whole_number(last, "last", smallest=1, largest=kept)
-        count = (
-            taken
-            if segment is None
-            else whole_number(segment, "segment", smallest=1, largest=taken)
-        )
+        taken = whole_number(kept if last is None else last, "last", smallest=1, largest=kept)
+        count = taken if segment is None else segment
+        count = whole_number(count, "segment", smallest=1, largest=taken)
         samples = self.settings.samples
         name = text(window, "window")
         try:
@@ -340,38 +309,6 @@ class Transient(ColumnResult):
         meaning = "half peak-to-peak amplitude in each period"
         values = np.stack([self.amplitudes(dof) for dof in self.dofs], axis=1)
         return {"amplitude": (("period", "dof"), values, {"units": "m", "long_name": meaning})}
-
-    def plot(self, dof: str, **options: Unpack[HistoryOptions]) -> Axes:
-        """Draw a displacement over time; see `stickslip.plot.history`."""
-        from stickslip import plot
-
-        return plot.history(self, dof, **options)
-
-    def plot_contact_force(
-        self, contact: PointRef, *, ax: Axes | None = None, last: int | None = None
-    ) -> Axes:
-        """Draw contact forces over time; see `stickslip.plot.contact_history`."""
-        from stickslip import plot
-
-        return plot.contact_history(self, contact, ax=ax, last=last)
-
-    def plot_phase(self, dof: str, **options: Unpack[HistoryOptions]) -> Axes:
-        """Draw velocity over displacement; see `stickslip.plot.phase`."""
-        from stickslip import plot
-
-        return plot.phase(self, dof, **options)
-
-    def plot_poincare(self, dof: str, **options: Unpack[PoincareOptions]) -> Axes:
-        """Draw the states after each period; see `stickslip.plot.poincare`."""
-        from stickslip import plot
-
-        return plot.poincare(self, dof, **options)
-
-    def plot_spectrum(self, dof: str, **options: Unpack[SpectrumOptions]) -> Axes:
-        """Draw the power spectral density; see `stickslip.plot.spectrum`."""
-        from stickslip import plot
-
-        return plot.spectrum(self, dof, **options)
 
     def _whole(self, motion: Float, periods: int) -> Float:
         """Return the samples of the last whole periods, without the instant that ends them."""

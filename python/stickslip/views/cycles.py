@@ -1,116 +1,135 @@
-"""What is said and drawn of limit cycles."""
+"""What is said and drawn of limit cycles, and of the ratios that limit them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.results.stability import stability_counts, worded
-from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, assumed, counted, model_rows, new_table
+from stickslip.results.limit_cycles import LimitCycles
+from stickslip.results.stability import STATES, stability_counts
+from stickslip.results.stability_map import StabilityMap
+from stickslip.views.tables import Row, counted
+from stickslip.views.view import View
 
 if TYPE_CHECKING:
-    from stickslip.results.limit_cycles import LimitCycles
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["details", "facts", "failures", "panels", "tables"]
+__all__ = ["CycleView", "MapView"]
 
 
-def tables(
-    results: Sequence[tuple[str, LimitCycles]], label: str, dofs: Iterable[str], length_unit: str
-) -> list[Table]:
-    """Say ends and limit of every branch, or all cycles of a list."""
-    table = new_table()
-    shown = list(dofs)
-    if label:
-        table.add_column(label, overflow="fold")
-    for heading in ("", "followed"):
-        table.add_column(heading, overflow="fold")
-    for heading in ("r", "rad/s", *(f"{dof} [{length_unit}]" for dof in shown), "|multiplier|"):
-        table.add_column(heading, justify="right", overflow="fold")
-    table.add_column("stable")
-    length = quantity(f"1 {length_unit}", "m", "unit of length")
-    for name, result in results:
-        for place, index in _rows(result):
-            neutral = int(result.neutral[index])
-            sizes = np.abs(result.multipliers[index, neutral:])
-            table.add_row(
-                *([name] if label else []),
+class CycleView(View[LimitCycles]):
+    """Ends and limit of every branch, or all cycles of a list."""
+
+    texts = ("", "followed")
+    last = ("stable",)
+
+    def headings(self, dofs: Sequence[str], length_unit: str) -> list[str]:
+        """Return the headings of the numbers, among them one for every DOF."""
+        return ["r", "rad/s", *(f"{dof} [{length_unit}]" for dof in dofs), "|multiplier|"]
+
+    def rows(
+        self, result: LimitCycles, dofs: Sequence[str], length: float
+    ) -> Iterator[Sequence[str]]:
+        """Return a row per cycle."""
+        for place, index in _places(result):
+            sizes = np.abs(result.multipliers[index, int(result.neutral[index]) :])
+            yield (
                 place,
                 f"{result.values[index]:.6g}",
                 f"{result.ratio[index]:.6g}",
                 f"{result.omega[index]:#.7g}",
-                *(f"{result.amplitude(dof)[index] / length:.6e}" for dof in shown),
+                *(f"{result.amplitude(dof)[index] / length:.6e}" for dof in dofs),
                 f"{sizes.max():.4g}" if sizes.size else "",
-                worded(str(result.stability[index])),
+                STATES[str(result.stability[index])].answer,
             )
-    return [table]
 
+    def about(self, result: LimitCycles) -> list[Row]:
+        """Say what was followed, and what was found on the branch."""
+        settings = result.settings
+        rows = [
+            ("followed", f"{settings.followed}, {result.omega.size} limit cycles"),
+            ("mode", f"{settings.mode}"),
+            ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
+            ("harmonics", f"{settings.harmonics}"),
+            ("stability", stability_counts(result.stability)),
+        ]
+        if result.limit is not None:
+            rows.append(("limit", f"{result.limit.value:.8g} at {result.limit.omega:.7g} rad/s"))
+        for change in result.changes:
+            counts = f"{change.unstable_before} to {change.unstable_after} unstable multipliers"
+            rows.append(("change", f"{change.kind} at {change.value:.6g}: {counts}"))
+        return rows
 
-def _rows(result: LimitCycles) -> list[tuple[str, int]]:
-    if result.settings.values is not None:
-        return [(str(side), index) for index, side in enumerate(result.branch)]
-    if not result.omega.size:
-        return []
-    rows = [("sticking end", 0)]
-    limit = result.limit
-    if limit is not None:
-        distance = np.abs(result.values / limit.value - 1.0) + np.abs(
-            result.omega / limit.omega - 1
-        )
-        rows.append(("limit", int(np.argmin(distance))))
-    return [*rows, (f"{result.branch[-1]} end", result.omega.size - 1)]
+    def failures(self, result: LimitCycles) -> list[str]:
+        """Word what was not solved, one line per cause."""
+        return counted(result.status, f"{result.omega.size} cycles")
 
+    def panels(
+        self, results: Sequence[LimitCycles], dofs: Sequence[str], output: OutputTable
+    ) -> list[Panel]:
+        """Return amplitude over what is followed, one panel per DOF, and the multipliers."""
+        from stickslip import plot
 
-def facts(result: LimitCycles) -> list[Row]:
-    """Say what a result is of, how it was computed and what it took for granted."""
-    settings = result.settings
-    rows = [
-        *model_rows(result.model),
-        ("followed", f"{settings.followed}, {result.omega.size} limit cycles"),
-        ("mode", f"{settings.mode}"),
-        ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
-        ("harmonics", f"{settings.harmonics}"),
-        ("stability", stability_counts(result.stability)),
-    ]
-    if result.limit is not None:
-        rows.append(("limit", f"{result.limit.value:.8g} at {result.limit.omega:.7g} rad/s"))
-    for change in result.changes:
-        counts = f"{change.unstable_before} to {change.unstable_after} unstable multipliers"
-        rows.append(("change", f"{change.kind} at {change.value:.6g}: {counts}"))
-    return rows + assumed(result)
-
-
-def failures(result: LimitCycles) -> list[str]:
-    """Word what was not solved, one line per cause."""
-    unsolved = [status for status in result.status if not status.solved]
-    return counted(unsolved, f"{result.omega.size} cycles")
-
-
-def panels(results: Sequence[LimitCycles], dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-    """Return amplitude over what is followed, one panel per DOF, and the multipliers."""
-    from stickslip import plot
-
-    length, omega = output.length_unit, output.omega_unit
-    drawn: list[Panel] = [
-        partial(
+        length, omega = output.length_unit, output.omega_unit
+        curves = partial(
             plot.limit_cycles,
             list(results),
-            dof,
             length_unit=length,
             omega_unit=omega,
             frequency=False,
         )
-        for dof in dofs
-    ]
-    known = [result for result in results if result.arrays.known.any()]
-    return drawn + [partial(plot.cycle_multipliers, result) for result in known]
+        known = [result for result in results if result.arrays.known.any()]
+        return [
+            *(partial(curves, dof) for dof in dofs),
+            *(partial(plot.cycle_multipliers, result) for result in known),
+        ]
 
 
-def details(result: LimitCycles, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-    """Return nothing: the default picture says it all."""
-    return []
+def _places(result: LimitCycles) -> list[tuple[str, int]]:
+    if result.settings.values is not None:
+        return [(str(side), index) for index, side in enumerate(result.branch)]
+    if not result.omega.size:
+        return []
+    rows, limit = [("sticking end", 0)], result.limit
+    if limit is not None:
+        away = np.abs(result.values / limit.value - 1.0) + np.abs(result.omega / limit.omega - 1)
+        rows.append(("limit", int(np.argmin(away))))
+    return [*rows, (f"{result.branch[-1]} end", result.omega.size - 1)]
+
+
+class MapView(View[StabilityMap]):
+    """The limits at every value; the diagnostics name every value without one."""
+
+    numbers = ("varied", "value", "limit r", "rad/s", "stable up to r")
+
+    def rows(
+        self, result: StabilityMap, dofs: Sequence[str], length: float
+    ) -> Iterator[Sequence[str]]:
+        """Return a row per value."""
+        variation = result.settings.variation
+        columns = (result.values, result.limit, result.omega, result.stable_limit)
+        for row in zip(*columns, strict=True):
+            *numbers, stable = (f"{number:.6g}" for number in row)
+            stable = "not decided" if stable == "nan" else stable
+            yield f"{variation.parameter} [{variation.unit}]", *numbers, stable
+
+    def about(self, result: StabilityMap) -> list[Row]:
+        """Say what was varied."""
+        settings = result.settings
+        return [
+            ("varied", f"{settings.variation.parameter} of {', '.join(settings.variation.names)}"),
+            ("mode", f"{settings.mode}"),
+            ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
+        ]
+
+    def panels(
+        self, results: Sequence[StabilityMap], dofs: Sequence[str], output: OutputTable
+    ) -> list[Panel]:
+        """Return the maps."""
+        from stickslip import plot
+
+        return [partial(plot.stability_map, result) for result in results]

@@ -1,38 +1,39 @@
-"""What is said and drawn of damper curves."""
+"""What is said and drawn of damper curves and optimal dampers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, assumed, counted, model_rows, new_table
+from stickslip.results.damper_curve import DamperCurve
+from stickslip.results.optimal_damper import OptimalDamper
+from stickslip.views.tables import Row, assumed, counted
+from stickslip.views.view import View
 
 if TYPE_CHECKING:
-    from stickslip.results.damper_curve import DamperCurve
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["details", "facts", "failures", "panels", "tables"]
+__all__ = ["DamperView", "OptimumView"]
 
 
-def tables(
-    results: Sequence[tuple[str, DamperCurve]], label: str, dofs: Iterable[str], length_unit: str
-) -> list[Table]:
-    """Tabulate the ends of every curve and its lowest peak."""
-    table = new_table()
-    if label:
-        table.add_column(label, overflow="fold")
-    for heading in ("dof", "", "varied"):
-        table.add_column(heading, overflow="fold")
-    for heading in ("value", f"peak [{length_unit}]", "rad/s", "error", "H"):
-        table.add_column(heading, justify="right", overflow="fold")
-    length = quantity(f"1 {length_unit}", "m", "unit of length")
-    for name, result in results:
-        for place, index in _rows(result):
-            table.add_row(
-                *([name] if label else []),
+class DamperView(View[DamperCurve]):
+    """The ends of every curve and its lowest peak."""
+
+    texts = ("dof", "", "varied")
+    numbers = ("value", "peak [{}]", "rad/s", "error", "H")
+
+    def rows(
+        self, result: DamperCurve, dofs: Sequence[str], length: float
+    ) -> Iterator[Sequence[str]]:
+        """Return first, lowest and last solved value."""
+        solved = result.arrays.solved.nonzero()[0].tolist()
+        if not solved:
+            return
+        lowest = min(solved, key=lambda index: float(result.objective[index]))
+        for place, index in (("first", solved[0]), ("lowest", lowest), ("last", solved[-1])):
+            yield (
                 result.settings.dof,
                 place,
                 f"{result.parameter} [{result.settings.variation.unit}]",
@@ -42,55 +43,66 @@ def tables(
                 f"{result.error_estimate[index] / result.amplitude[index]:.1e}",
                 f"{result.harmonics[index]}",
             )
-    return [table]
+
+    def about(self, result: DamperCurve) -> list[Row]:
+        """Say what was varied, and which peak was followed."""
+        settings, values = result.settings, result.values
+        low, high = settings.span
+        varied = ", ".join(settings.variation.names) or "all forces"
+        return [
+            ("varied", f"{result.parameter} of {varied}"),
+            ("values", f"{values.size} from {values.min():.6g} to {values.max():.6g}"),
+            ("peak of", f"{settings.dof} ({settings.measure}), {low:.6g} to {high:.6g} rad/s"),
+            ("harmonics", f"{settings.harmonics}"),
+            ("solutions", f"{result.counters['points']}"),
+        ]
+
+    def failures(self, result: DamperCurve) -> list[str]:
+        """Word what was not solved, one line per cause."""
+        return counted(result.status, f"{result.values.size} values")
+
+    def panels(
+        self, results: Sequence[DamperCurve], dofs: Sequence[str], output: OutputTable
+    ) -> list[Panel]:
+        """Return the damper performance curves: amplitude, frequency, limits and optimum."""
+        from stickslip import plot
+
+        length, omega = output.length_unit, output.omega_unit
+        draw = partial(plot.damper, length_unit=length, omega_unit=omega)
+        return [partial(draw, result) for result in results]
 
 
-def _rows(result: DamperCurve) -> list[tuple[str, int]]:
-    """Return first, lowest and last solved value, each under its name."""
-    solved = [index for index, known in enumerate(result.arrays.solved) if known]
-    if not solved:
-        return []
-    objective = result.objective
-    lowest = min(solved, key=lambda index: float(objective[index]))
-    return [("first", solved[0]), ("lowest", lowest), ("last", solved[-1])]
+class OptimumView(View[OptimalDamper]):
+    """Every local minimum, the least first."""
 
+    texts = ("dof", "varied")
+    numbers = ("value", "peak [{}]", "rad/s")
 
-def facts(result: DamperCurve) -> list[Row]:
-    """Say what a result is of, how it was computed and what it took for granted."""
-    settings = result.settings
-    values = result.values
-    low, high = settings.span
-    varied = settings.variation.names
-    rows = [
-        *model_rows(result.model),
-        (
-            "varied",
-            f"{result.parameter} of {', '.join(varied) or 'all forces'}",
-        ),
-        ("values", f"{values.size} from {values.min():.6g} to {values.max():.6g}"),
-        ("peak of", f"{settings.dof} ({settings.measure}), {low:.6g} to {high:.6g} rad/s"),
-        ("harmonics", f"{settings.harmonics}"),
-        ("solutions", f"{result.counters['points']}"),
-    ]
-    return rows + assumed(result)
+    def rows(
+        self, result: OptimalDamper, dofs: Sequence[str], length: float
+    ) -> Iterator[Sequence[str]]:
+        """Return a row per minimum."""
+        settings = result.curve.settings
+        for minimum in result.minima:
+            yield (
+                settings.dof,
+                f"{result.parameter} [{settings.variation.unit}]",
+                f"{minimum.value:.6g}",
+                f"{minimum.amplitude / length:.6e}",
+                f"{minimum.omega:#.6g}",
+            )
 
+    def facts(self, result: OptimalDamper) -> list[Row]:
+        """Say what is said of the curve, and what the optimum assumes beside."""
+        of_curve = DamperView().facts(result.curve)
+        return of_curve + [row for row in assumed(result) if row not in of_curve]
 
-def failures(result: DamperCurve) -> list[str]:
-    """Word what was not solved, one line per cause."""
-    unsolved = [status for status in result.status if not status.solved]
-    return counted(unsolved, f"{result.values.size} values")
+    def failures(self, result: OptimalDamper) -> list[str]:
+        """Word what was not solved, one line per cause."""
+        return DamperView().failures(result.curve)
 
-
-def panels(results: Sequence[DamperCurve], dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-    """Return the damper performance curves."""
-    from stickslip import plot
-
-    length, omega = output.length_unit, output.omega_unit
-    return [
-        partial(plot.damper, result, length_unit=length, omega_unit=omega) for result in results
-    ]
-
-
-def details(result: DamperCurve, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-    """Return nothing more: the curve shows amplitude, frequency, limits and optimum."""
-    return []
+    def panels(
+        self, results: Sequence[OptimalDamper], dofs: Sequence[str], output: OutputTable
+    ) -> list[Panel]:
+        """Return the damper performance curves."""
+        return DamperView().panels([result.curve for result in results], dofs, output)

@@ -1,67 +1,33 @@
-"""Which module says and draws what of which kind of result."""
+"""Which view says and draws what of which kind of result."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any
 
 from stickslip.errors import ModelError
 from stickslip.results.diagnostic import Severity
 
 if TYPE_CHECKING:
     from stickslip.results.result import Result
-    from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel
-    from stickslip.views.tables import Row, Table
+    from stickslip.views.view import View
 
-__all__ = ["MODULES", "View", "cautions", "failures", "view_of"]
+__all__ = ["VIEWS", "cautions", "failures", "view_of"]
 
-MODULES: Mapping[str, str] = {
-    "forced_response": "stickslip.views.curves",
-    "exact_response": "stickslip.views.curves",
-    "transient": "stickslip.views.transients",
-    "damper_curve": "stickslip.views.dampers",
-    "optimal_damper": "stickslip.views.optima",
-    "motion_class": "stickslip.views.motions",
-    "basin_map": "stickslip.views.basins",
-    "mistuning_study": "stickslip.views.mistuning",
-    "limit_cycles": "stickslip.views.cycles",
-    "stability_map": "stickslip.views.maps",
+VIEWS: Mapping[str, tuple[str, str]] = {
+    "forced_response": ("stickslip.views.curves", "CurveView"),
+    "exact_response": ("stickslip.views.curves", "CurveView"),
+    "transient": ("stickslip.views.transients", "TransientView"),
+    "damper_curve": ("stickslip.views.dampers", "DamperView"),
+    "optimal_damper": ("stickslip.views.dampers", "OptimumView"),
+    "motion_class": ("stickslip.views.motions", "MotionView"),
+    "basin_map": ("stickslip.views.motions", "BasinView"),
+    "mistuning_study": ("stickslip.views.mistuning", "MistuningView"),
+    "limit_cycles": ("stickslip.views.cycles", "CycleView"),
+    "stability_map": ("stickslip.views.cycles", "MapView"),
 }
-"""The module of every kind of result; results of one module are drawn together."""
-
-
-class View(Protocol):
-    """What a module says of its kind of result: the same to terminal, picture and report.
-
-    Nothing is printed here. Tables are those of rich, made by `new_table`; panels draw on
-    Matplotlib axes, from which a report makes its interactive figures.
-    """
-
-    def tables(
-        self, results: Sequence[tuple[str, Any]], label: str, dofs: Iterable[str], length_unit: str
-    ) -> list[Table]:
-        """Tabulate what matters of results, each with what tells it from the others."""
-        ...
-
-    def facts(self, result: Any) -> list[Row]:
-        """Say what a result is of, how it was computed and, as "assumed", what it assumes."""
-        ...
-
-    def panels(
-        self, results: Sequence[Any], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
-        """Return the default picture of results, together."""
-        ...
-
-    def details(self, result: Any, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-        """Return what a report shows of one result beside the default picture."""
-        ...
-
-    def failures(self, result: Any) -> list[str]:
-        """Word what the states of its points say went wrong, one line per cause."""
-        ...
+"""Module and class of the view of every kind; results of one view are drawn together."""
 
 
 def failures(result: Result) -> list[str]:
@@ -78,8 +44,8 @@ def _texts(result: Result, severity: Severity) -> list[str]:
     return [one.text for one in result.diagnostics if one.severity is severity]
 
 
-def view_of(results: Sequence[Result]) -> View:
-    """Return the module for some results.
+def view_of(results: Sequence[Result]) -> View[Any]:
+    """Return the view of some results.
 
     Raises
     ------
@@ -87,15 +53,16 @@ def view_of(results: Sequence[Result]) -> View:
         If there is none for a kind, or they are of kinds that are not drawn together.
     """
     for result in results:
-        if result.kind not in MODULES:
-            known = ", ".join(kind.replace("_", " ") for kind in MODULES)
+        if result.kind not in VIEWS:
+            known = ", ".join(kind.replace("_", " ") for kind in VIEWS)
             raise ModelError(
                 f"results: nothing is known to show of a {result.kind.replace('_', ' ')}; "
                 f"known: {known}"
             )
-    modules = {MODULES[result.kind]: result.kind for result in results}
-    if len(modules) > 1:
-        kinds = " and ".join(kind.replace("_", " ") for kind in modules.values())
+    views = {VIEWS[result.kind]: result.kind for result in results}
+    if len(views) > 1:
+        kinds = " and ".join(kind.replace("_", " ") for kind in views.values())
         raise ModelError(f"results: {kinds} do not go together; name one kind at a time")
-    (module,) = modules
-    return cast("View", import_module(module))
+    ((module, name),) = views
+    view: View[Any] = getattr(import_module(module), name)()
+    return view

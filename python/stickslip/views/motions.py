@@ -1,87 +1,125 @@
-"""What is said and drawn of classified motions."""
+"""What is said and drawn of classified motions and of basin maps."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from stickslip.errors import ModelError
+from stickslip.results.basin_map import BasinMap
 from stickslip.results.fate_arrays import Motion
-from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, assumed, model_rows, new_table
+from stickslip.results.motion_class import MotionClass
+from stickslip.views.tables import Row
+from stickslip.views.view import View
 
 if TYPE_CHECKING:
-    from stickslip.results.motion_class import MotionClass
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["details", "facts", "failures", "panels", "tables"]
+__all__ = ["BasinView", "MotionView"]
 
 
-def tables(
-    results: Sequence[tuple[str, MotionClass]], label: str, dofs: Iterable[str], length_unit: str
-) -> list[Table]:
-    """Say class, mode and amplitudes of motions."""
-    table = new_table()
-    if label:
-        table.add_column(label, overflow="fold")
-    for heading in ("dof", "motion", "mode"):
-        table.add_column(heading, overflow="fold")
-    for heading in (f"amplitude [{length_unit}]", "rad/s", "decided [s]"):
-        table.add_column(heading, justify="right", overflow="fold")
-    length = quantity(f"1 {length_unit}", "m", "unit of length")
-    shown = list(dofs)
-    for name, result in results:
-        settled = result.motion == Motion.SETTLED
-        for dof in shown:
-            if dof in result.dofs:
-                table.add_row(
-                    *([name] if label else []),
-                    dof,
-                    str(result.motion),
-                    "" if result.mode is None else f"{result.mode}",
-                    f"{result.amplitude(dof) / length:.6e}",
-                    f"{result.omega:#.6g}" if settled else "",
-                    f"{result.time:.4g}",
-                )
-    return [table]
+class MotionView(View[MotionClass]):
+    """Class, mode and amplitudes of motions."""
+
+    texts = ("dof", "motion", "mode")
+    numbers = ("amplitude [{}]", "rad/s", "decided [s]")
+
+    def rows(
+        self, result: MotionClass, dofs: Sequence[str], length: float
+    ) -> Iterator[Sequence[str]]:
+        """Return a row per DOF."""
+        for dof in dofs:
+            yield (
+                dof,
+                str(result.motion),
+                "" if result.mode is None else f"{result.mode}",
+                f"{result.amplitude(dof) / length:.6e}",
+                f"{result.omega:#.6g}" if result.motion == Motion.SETTLED else "",
+                f"{result.time:.4g}",
+            )
+
+    def about(self, result: MotionClass) -> list[Row]:
+        """Say the class, and why."""
+        return [
+            ("motion", str(result.motion)),
+            ("because", result.reason.advice),
+            ("span", _span(result)),
+        ]
+
+    def failures(self, result: MotionClass) -> list[str]:
+        """Say that a motion is undecided, in one line; empty if it is not."""
+        undecided = result.motion == Motion.UNDECIDED
+        return [f"{result.motion}. {result.reason.advice}"] if undecided else []
+
+    def panels(
+        self, results: Sequence[MotionClass], dofs: Sequence[str], output: OutputTable
+    ) -> list[Panel]:
+        """Return the spectra of motions that have one."""
+        from stickslip import plot
+
+        unit, drawn = output.omega_unit, [result for result in results if len(result.tail)]
+        if not drawn:
+            raise ModelError("motion: one that decays or grows for ever has no picture")
+        return [partial(plot.lines, one, dof, omega_unit=unit) for one in drawn for dof in dofs]
 
 
-def facts(result: MotionClass) -> list[Row]:
-    """Say what a result is of, how it was computed and what it took for granted."""
-    settings = result.settings
-    rows = [
-        *model_rows(result.model),
-        ("motion", str(result.motion)),
-        ("because", result.reason.advice),
-        ("span", f"at most {settings.periods} periods of the lowest stuck mode"),
-    ]
-    return rows + assumed(result)
+class BasinView(View[BasinMap]):
+    """What the starts lead to, and how many of them."""
+
+    texts = ("motion", "mode")
+    numbers = ("starts", "share", "rad/s")
+
+    def rows(self, result: BasinMap, dofs: Sequence[str], length: float) -> Iterator[Sequence[str]]:
+        """Return a row per outcome."""
+        for place, (outcome, count) in enumerate(result.outcomes.items()):
+            omega = result.omega[result.codes == place]
+            known = omega[np.isfinite(omega)]
+            yield (
+                str(outcome.motion),
+                "" if outcome.mode is None else f"{outcome.mode}",
+                f"{count}",
+                f"{count / len(result):.1%}",
+                f"{np.median(known):#.6g}" if known.size else "",
+            )
+
+    def about(self, result: BasinMap) -> list[Row]:
+        """Say which starts there are."""
+        rows = []
+        for axis, values in result.settings.axes:
+            meant = f"mode {axis}" if isinstance(axis, int) else axis
+            span = f"{len(values)} from {min(values):.6g} to {max(values):.6g} m"
+            rows.append(("axis", f"{meant}: {span}"))
+        return [
+            *rows,
+            ("starts", f"{len(result)}"),
+            ("span", _span(result)),
+            ("events", f"{result.counters['events']}"),
+        ]
+
+    def failures(self, result: BasinMap) -> list[str]:
+        """Word what was not decided, one line per cause."""
+        counts = Counter(reason for reason in result.reason if reason.motion == Motion.UNDECIDED)
+        return [
+            f"{count} of {len(result)} starts undecided. {reason.advice}"
+            for reason, count in counts.items()
+        ]
+
+    def panels(
+        self, results: Sequence[BasinMap], dofs: Sequence[str], output: OutputTable
+    ) -> list[Panel]:
+        """Return the maps over two axes."""
+        from stickslip import plot
+
+        unit, drawn = output.length_unit, [result for result in results if result.settings.axes]
+        if not drawn:
+            raise ModelError("basin map: of a list of starts, which has no picture; give it axes")
+        return [partial(plot.basins, result, length_unit=unit) for result in drawn]
 
 
-def failures(result: MotionClass) -> list[str]:
-    """Say that a motion is undecided, in one line; empty if it is not."""
-    if result.motion != Motion.UNDECIDED:
-        return []
-    return [f"{result.motion}. {result.reason.advice}"]
-
-
-def panels(results: Sequence[MotionClass], dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-    """Return the spectra of motions that have one."""
-    from stickslip import plot
-    from stickslip.errors import ModelError
-
-    drawn: list[Panel] = [
-        partial(plot.lines, result, dof, omega_unit=output.omega_unit)
-        for result in results
-        if len(result.tail)
-        for dof in dofs
-    ]
-    if not drawn:
-        raise ModelError("motion: one that decays or grows for ever has no picture")
-    return drawn
-
-
-def details(result: MotionClass, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-    """Return nothing: the default picture says it all."""
-    return []
+def _span(result: MotionClass | BasinMap) -> str:
+    return f"at most {result.settings.periods} periods of the lowest stuck mode"

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from stickslip.results.result import Result
     from stickslip.results.status import Status
 
-__all__ = ["Row", "Table", "assumed", "counted", "listed", "model_rows", "new_table"]
+__all__ = ["Row", "Table", "assumed", "counted", "listed", "model_rows", "new_table", "tabulated"]
 
 Row: TypeAlias = tuple[str, str]
 """A fact: what it is of, and what it is."""
@@ -22,18 +22,34 @@ _SHOWN_PARTS = 6
 
 
 def new_table(title: str | None = None) -> Table:
-    """Return an empty table.
-
-    Parameters
-    ----------
-    title : str, optional
-        What stands over it; the attribute `caption` is for notes below. Needed where a view has
-        several tables.
-    """
+    """Return an empty table; the attribute `caption` is for notes below."""
     return Table(title=title)
 
 
-def model_rows(model: Model) -> list[tuple[str, str]]:
+def tabulated(
+    label: str,
+    texts: Sequence[str],
+    numbers: Sequence[str],
+    last: Sequence[str],
+    rows: Iterable[tuple[str, Sequence[str]]],
+) -> Table:
+    """Return a table of texts, of numbers flush right, and of texts behind them.
+
+    `label` is the heading of the names of the rows, which are left out if it is empty.
+    """
+    table = new_table()
+    for heading in [*([label] if label else []), *texts]:
+        table.add_column(heading, overflow="fold")
+    for heading in numbers:
+        table.add_column(heading, justify="right", overflow="fold")
+    for heading in last:
+        table.add_column(heading, overflow="fold")
+    for name, cells in rows:
+        table.add_row(*([name] if label else []), *cells)
+    return table
+
+
+def model_rows(model: Model) -> list[Row]:
     """Return what a result is of, as rows of its facts."""
     from stickslip.disk import BladedDisk, MistunedDisk
 
@@ -62,8 +78,8 @@ def assumed(result: Result) -> list[Row]:
 
 
 def counted(states: Iterable[Status], noun: str) -> list[str]:
-    """Count what ended alike, one line per cause with what to do; `noun` is what is counted."""
-    counts = Counter(states)
+    """Count what was not solved, one line per cause with what to do; `noun` is what is counted."""
+    counts = Counter(state for state in states if not state.solved)
     return [f"{count} of {noun} {state}. {state.advice}" for state, count in counts.items()]
 
 

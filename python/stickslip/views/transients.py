@@ -2,97 +2,86 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from stickslip.units import quantity
-from stickslip.views.tables import Row, Table, assumed, model_rows, new_table
+from stickslip.results.transient import Transient
+from stickslip.views.tables import Row
+from stickslip.views.view import View
 
 if TYPE_CHECKING:
-    from stickslip.results.transient import Transient
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel
 
-__all__ = ["details", "facts", "failures", "panels", "tables"]
+__all__ = ["TransientView"]
 
 
-def tables(
-    results: Sequence[tuple[str, Transient]], label: str, dofs: Iterable[str], length_unit: str
-) -> list[Table]:
-    """Tabulate the amplitudes of the last period, per run and DOF."""
-    table = new_table()
-    if label:
-        table.add_column(label, overflow="fold")
-    table.add_column("dof", overflow="fold")
-    for heading in (f"amplitude [{length_unit}]", "periods", "change", "rad/s"):
-        table.add_column(heading, justify="right", overflow="fold")
-    table.add_column("status", overflow="fold")
-    shown = list(dofs)
-    length = quantity(f"1 {length_unit}", "m", "unit of length")
-    for name, result in results:
-        change = f"{result.change[-1]:.1e}" if result.periods else ""
-        for dof in shown:
-            if dof in result.dofs:
-                table.add_row(
-                    *([name] if label else []),
-                    dof,
-                    f"{result.amplitude(dof) / length:.6e}",
-                    f"{result.periods}",
-                    change,
-                    f"{result.omega:#.6g}",
-                    str(result.status),
-                )
-    return [table]
+class TransientView(View[Transient]):
+    """The amplitudes of the last period."""
 
+    texts = ("dof",)
+    numbers = ("amplitude [{}]", "periods", "change", "rad/s")
+    last = ("status",)
 
-def facts(result: Transient) -> list[Row]:
-    """Say what a result is of, how it was computed and what it took for granted."""
-    settings = result.settings
-    limit = "" if settings.tolerance is None else f", until the change is {settings.tolerance:g}"
-    steps = f" of {settings.steps} steps" if settings.scheme == "rk4" else ""
-    rows = [
-        *model_rows(result.model),
-        ("omega", f"{result.omega:.6g} rad/s"),
-        ("scheme", settings.scheme),
-        ("periods", f"{result.periods}{steps} of at most {settings.periods}{limit}"),
-        ("kept", f"{result.time.size} instants of the last {result.kept_periods} periods"),
-        ("status", str(result.status)),
-    ]
-    if settings.scheme == "exact":
-        rows.append(("events", f"{len(result.events)} in the periods kept"))
-    return rows + assumed(result)
+    def rows(
+        self, result: Transient, dofs: Sequence[str], length: float
+    ) -> Iterator[Sequence[str]]:
+        """Return a row per DOF."""
+        for dof in dofs:
+            yield (
+                dof,
+                f"{result.amplitude(dof) / length:.6e}",
+                f"{result.periods}",
+                f"{result.change[-1]:.1e}" if result.periods else "",
+                f"{result.omega:#.6g}",
+                str(result.status),
+            )
 
-
-def failures(result: Transient) -> list[str]:
-    """Say that a run has not come to its end, in one line; empty if it has."""
-    if result.status in ("settled", "completed"):
-        return []
-    return [f"{result.status} after {result.periods} periods. {result.status.advice}"]
-
-
-def panels(results: Sequence[Transient], dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-    """Return the histories of DOFs and contacts, section and spectrum of the first DOF, per run."""
-    from stickslip import plot
-
-    drawn: list[Panel] = []
-    for result in results:
-        unit = output.length_unit
-        drawn += [partial(plot.history, result, dof, length_unit=unit) for dof in dofs]
-        drawn += [
-            partial(plot.contact_history, result, contact)
-            for contact in result.model.contact_names[:2]
+    def about(self, result: Transient) -> list[Row]:
+        """Say how the motion was followed, and how far."""
+        settings = result.settings
+        limit = (
+            "" if settings.tolerance is None else f", until the change is {settings.tolerance:g}"
+        )
+        steps = f" of {settings.steps} steps" if settings.scheme == "rk4" else ""
+        rows = [
+            ("omega", f"{result.omega:.6g} rad/s"),
+            ("scheme", settings.scheme),
+            ("periods", f"{result.periods}{steps} of at most {settings.periods}{limit}"),
+            ("kept", f"{result.time.size} instants of the last {result.kept_periods} periods"),
+            ("status", str(result.status)),
         ]
-        drawn.append(partial(plot.poincare, result, dofs[0], length_unit=unit))
-        if result.kept_periods:
-            drawn.append(partial(plot.spectrum, result, dofs[0], omega_unit=output.omega_unit))
-    return drawn
+        if settings.scheme == "exact":
+            rows.append(("events", f"{len(result.events)} in the periods kept"))
+        return rows
 
+    def failures(self, result: Transient) -> list[str]:
+        """Say that a run has not come to its end, in one line; empty if it has."""
+        if result.status in ("settled", "completed"):
+            return []
+        return [f"{result.status} after {result.periods} periods. {result.status.advice}"]
 
-def details(result: Transient, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
-    """Return the phase plane of the first DOF."""
-    from stickslip import plot
+    def panels(
+        self, results: Sequence[Transient], dofs: Sequence[str], output: OutputTable
+    ) -> list[Panel]:
+        """Return histories of DOFs and contacts, section and spectrum of the first DOF."""
+        from stickslip import plot
 
-    if not result.periods:
-        return []
-    return [partial(plot.phase, result, dofs[0], length_unit=output.length_unit)]
+        drawn: list[Panel] = []
+        for result in results:
+            unit, contacts = output.length_unit, result.model.contact_names[:2]
+            drawn += [partial(plot.history, result, dof, length_unit=unit) for dof in dofs]
+            drawn += [partial(plot.contact_history, result, contact) for contact in contacts]
+            drawn.append(partial(plot.poincare, result, dofs[0], length_unit=unit))
+            if result.kept_periods:
+                drawn.append(partial(plot.spectrum, result, dofs[0], omega_unit=output.omega_unit))
+        return drawn
+
+    def details(self, result: Transient, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
+        """Return the phase plane of the first DOF."""
+        from stickslip import plot
+
+        if not result.periods:
+            return []
+        return [partial(plot.phase, result, dofs[0], length_unit=output.length_unit)]

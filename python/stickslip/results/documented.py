@@ -1,0 +1,142 @@
+"""What results say of themselves: what their methods have in common is written once.
+
+`help` and the pages show it in full: a method has its own sentences, those of the method that it
+overrides, and for each parameter in the table below what it means and how it is refused.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import Field, dataclass
+from inspect import CO_VARARGS, CO_VARKEYWORDS, cleandoc
+from types import FunctionType
+from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
+
+__all__ = ["Frozen"]
+
+_VALUE = (
+    "deviation, coupling : float, optional\n"
+    "    One of the values of the study. Default: the only one."
+)
+_PARAMETERS: Mapping[str, tuple[str, str]] = {
+    "dof": ("dof : str\n    An observed degree of freedom.", "observed degree of freedom"),
+    "measure": (
+        'measure : {"half_range", "max", "fundamental"}, optional\n'
+        "    Half the peak-to-peak range over a period, the largest |x|, or |X_1|.",
+        "measure",
+    ),
+    "contact": (
+        "contact : int, str or (int or str, int)\n    The contact, or one of its points.",
+        "contact",
+    ),
+    "contact: PointRef | None": (
+        "contact : int, str or (int or str, int), optional\n"
+        "    The contact, or one of its points. Default: all.",
+        "contact",
+    ),
+    "contact: ContactRef": ("contact : int or str\n    The contact.", "contact"),
+    "index": (
+        "index : int\n    Position of the motion; negative ones count from the end.",
+        "motion",
+    ),
+    "samples": ("samples : int, optional\n    Instants t = j T / samples, j = 0, 1, ...", ""),
+    "deviation": (_VALUE, "value, or there are several and none is given"),
+    "coupling": (_VALUE, ""),
+    "confidence": (
+        "confidence : float, optional\n"
+        "    Probability with which an interval is to hold the true value.",
+        "",
+    ),
+    "ax": ("ax : matplotlib.axes.Axes, optional\n    Where to draw. Default: a new figure.", ""),
+    "options": ("**options\n    Those of the function of `stickslip.plot`.", ""),
+}
+"""What parameters mean, and what a refused value is none of."""
+
+_ORDER = ("Parameters", "Attributes", "Returns", "Raises", "Warns", "References")
+
+
+@dataclass_transform(eq_default=False, frozen_default=True, kw_only_default=True)
+class Frozen:
+    """Base of immutable classes, whose documentation is completed."""
+
+    if TYPE_CHECKING:
+        __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    def __init_subclass__(cls) -> None:
+        dataclass(frozen=True, eq=False, repr=False, kw_only=True)(cls)
+        for name, value in vars(cls).items():
+            if isinstance(value, FunctionType) and value.__doc__ and not name.startswith("_"):
+                value.__doc__ = _of_method(value, getattr(super(cls, cls), name, None))
+        if cls.__doc__:
+            cls.__doc__ = _of_class(cls)
+
+
+def _of_method(function: FunctionType, overridden: object) -> str:
+    sections = _sections(overridden.__doc__) if overridden is not None else {}
+    inherited = _entries(sections.pop("Parameters", ""))
+    sections |= _sections(function.__doc__)
+    own = _entries(sections.get("Parameters", ""))
+    common = {name: _common(name, function) for name in _arguments(function)}
+    known = {name: said for name, (said, _) in common.items()} | inherited | own
+    # Entries of several names count once.
+    blocks = dict.fromkeys(known[name] for name in common if known[name])
+    sections["Parameters"] = "\n".join(blocks)
+    refused = [
+        kind if known[name] == said else kind.removeprefix("observed ")
+        for name, (said, kind) in common.items()
+        if kind
+    ]
+    if refused:
+        listed = " or ".join(filter(None, [", ".join(refused[:-1]), refused[-1]]))
+        sentence = f"    If there is no such {listed}."
+        others = sections.get("Raises", "").splitlines()[1:]
+        sections["Raises"] = "\n".join(dict.fromkeys(["ModelError", sentence, *others]))
+    if function.__annotations__.get("return") == "Axes":
+        sections["Returns"] = "matplotlib.axes.Axes\n    The axes."
+    return _written(sections)
+
+
+def _of_class(cls: type) -> str:
+    """Add the attributes of the bases, with the types that they have here."""
+    sections = _sections(cls.__doc__)
+    entries: dict[str, str] = {}
+    for base in reversed(cls.__mro__[1:]):
+        entries |= _entries(_sections(base.__doc__).get("Attributes", ""))
+    for name, kind in cls.__annotations__.items():
+        if name in entries:
+            entries[name] = re.sub(r" : .*", f" : {kind}", entries[name], count=1)
+    entries |= _entries(sections.get("Attributes", ""))
+    return _written(sections | {"Attributes": "\n".join(dict.fromkeys(entries.values()))})
+
+
+def _common(name: str, function: FunctionType) -> tuple[str, str]:
+    kind = function.__annotations__.get(name)
+    return _PARAMETERS.get(f"{name}: {kind}") or _PARAMETERS.get(name, ("", ""))
+
+
+def _arguments(function: FunctionType) -> tuple[str, ...]:
+    code = function.__code__
+    count = code.co_argcount + code.co_kwonlyargcount
+    count += bool(code.co_flags & CO_VARARGS) + bool(code.co_flags & CO_VARKEYWORDS)
+    return code.co_varnames[1:count]
+
+
+def _sections(text: str | None) -> dict[str, str]:
+    """Return the sections of a documentation by their names, what precedes them under ""."""
+    head, *rest = re.split(r"\n\n(\w+)\n-+\n", cleandoc(text or ""))
+    return {"": head, **dict(zip(rest[::2], rest[1::2], strict=True))}
+
+
+def _entries(section: str) -> dict[str, str]:
+    """Return the entries of a section by their names."""
+    blocks = re.split(r"\n(?=\S)", section) if section else []
+    names = [(re.split(r" : |\n", block)[0].replace("*", ""), block) for block in blocks]
+    return {name: block for listed, block in names for name in listed.split(", ")}
+
+
+def _written(sections: Mapping[str, str]) -> str:
+    named = [(name, sections[name]) for name in _ORDER if sections.get(name)]
+    return "\n\n".join(
+        [sections[""], *(f"{name}\n{'-' * len(name)}\n{text}" for name, text in named)]
+    )
