@@ -255,7 +255,7 @@ def test_a_stopped_curve_keeps_its_values(beam: ss.Model) -> None:
         ({"slip_force": [1.0, -2.0]}, r"slip_force\[1\] is -2"),
         ({"level": [0.0]}, r"level\[0\] is 0"),
         ({"level": [np.inf]}, r"level\[0\] is inf"),
-        ({"slip_force": []}, "at least one real number"),
+        ({"slip_force": []}, "slip_force: empty"),
         ({"slip_force": [1.0], "contacts": ["jenkin"]}, "did you mean 'jenkins'"),
         ({"slip_force": [1.0], "contacts": []}, "contacts: empty"),
         ({"level": [1.0], "contacts": [0]}, "a level is no parameter of contacts"),

@@ -11,9 +11,9 @@ from stickslip import plot as plot
 from stickslip import reference as reference
 from stickslip import study as study
 from stickslip._core import __version__ as __version__
-from stickslip.analyses.arguments import Progress
 from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle
 from stickslip.analyses.flutter_formulas import single_harmonic_cycles as single_harmonic_cycles
+from stickslip.analyses.run import Progress
 from stickslip.analyses.variation import Contacts
 from stickslip.disk import BladedDisk as BladedDisk
 from stickslip.disk import Coupling as Coupling

@@ -1,10 +1,10 @@
-"""Checks of the arguments of analyses: frequencies, degrees of freedom, preload."""
+"""Checks of the arguments of analyses: lists of numbers, degrees of freedom, preload."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from typing import TypeAlias
+from collections.abc import Callable, Iterable, Mapping
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,38 +13,30 @@ from stickslip.checks import brief, text, unknown
 from stickslip.disk.arguments import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.model.state import State
+from stickslip.results.arrays import Bool, Float, Int
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import Residual, Span, span_of
 
 __all__ = [
-    "Progress",
+    "columns_of",
     "driving_dofs",
     "grid_of",
+    "highest_harmonic",
     "loaded_dofs",
+    "names_of",
     "observed_dofs",
     "physical_dofs",
-    "prepare",
+    "points_of",
+    "positive",
+    "real_list",
     "require_forced",
     "require_held",
-    "require_model",
-    "require_progress",
     "require_time",
+    "state_of",
 ]
 
 _MODAL = re.compile(r"(.*\.)?mode-\d+")
-
-Progress: TypeAlias = Callable[[float], None] | None
-
-
-def require_model(model: object) -> None:
-    """Refuse what is no `Model`."""
-    if not isinstance(model, Model):
-        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
-
-
-def prepare(model: Model) -> None:
-    """Decompose a model while Ctrl-C still ends an analysis at any line: nothing is lost yet."""
-    _ = model.problem
 
 
 def require_time(model: Model) -> None:
@@ -57,37 +49,40 @@ def require_time(model: Model) -> None:
         )
 
 
-def require_progress(progress: object) -> None:
-    """Refuse what cannot be told how far a run is."""
-    if progress is not None and not callable(progress):
-        raise ModelError(
-            f"progress: {brief(progress)} cannot be called; give a function of a fraction"
-        )
+def real_list(
+    values: object, entry: str, remedy: str, allowed: Callable[[Float], Bool] = np.isfinite
+) -> Float:
+    """Return one real number or a list of them, each allowed, as a list."""
+    try:
+        given = np.atleast_1d(np.asarray(values))
+    except ValueError:
+        raise ModelError(f"{entry}: a ragged list; give one list of {remedy}") from None
+    if given.dtype.kind not in "fiu" and given.size:
+        raise ModelError(f"{entry}: {brief(values)} holds no real numbers; give {remedy}")
+    if given.ndim != 1:
+        raise ModelError(f"{entry}: shape {given.shape} instead of (n,); give one list of {remedy}")
+    if not given.size:
+        raise ModelError(f"{entry}: empty; give at least one of {remedy}")
+    numbers = np.array(given, dtype=np.float64)
+    bad = np.flatnonzero(~allowed(numbers))
+    if bad.size:
+        raise ModelError(f"{entry}[{bad[0]}] is {numbers[bad[0]]:g}; give {remedy}")
+    return numbers
 
 
-def grid_of(omega: ArrayLike | Span) -> NDArray[np.float64] | Span:
+def positive(numbers: Float) -> Bool:
+    """Tell which numbers are finite and above 0."""
+    above: Bool = np.isfinite(numbers) & (numbers > 0.0)
+    return above
+
+
+def grid_of(omega: ArrayLike | Span) -> Float | Span:
     """Tell a range from a grid, and return either checked."""
     if isinstance(omega, tuple) and len(omega) == 2:
         return span_of(omega, "omega")
-    try:
-        values = np.asarray(omega)
-    except ValueError:
-        raise ModelError("omega: a ragged list; give one list of frequencies in rad/s") from None
-    if values.dtype.kind not in "fiu":
-        shown = repr(omega) if values.size < 5 else f"an array of {values.dtype}"
-        raise ModelError(f"omega: {shown} holds no real numbers; give frequencies in rad/s")
-    if values.ndim != 1:
-        remedy = f"write [{values:g}]" if values.ndim == 0 else "give one list of frequencies"
-        raise ModelError(f"omega: shape {values.shape} instead of (n,); {remedy}")
-    if not values.size:
-        raise ModelError("omega: empty; give at least one frequency in rad/s")
-    grid = np.array(values, dtype=np.float64)
-    bad = np.flatnonzero(~(np.isfinite(grid) & (grid > 0.0)))
-    if bad.size:
-        raise ModelError(
-            f"omega[{bad[0]}] is {grid[bad[0]]:g}; give finite frequencies above 0 rad/s"
-        )
-    return grid
+    if isinstance(omega, Real):
+        raise ModelError(f"omega: shape () instead of (n,); write [{omega:g}]")
+    return real_list(omega, "omega", "finite frequencies above 0 rad/s", positive)
 
 
 def physical_dofs(model: Model) -> tuple[str, ...]:
@@ -112,7 +107,7 @@ def driving_dofs(
     dofs: tuple[str, ...],
     observe: Iterable[str] | str | None,
     outputs: Iterable[str] | str,
-) -> NDArray[np.int64]:
+) -> Int:
     """Return the positions among `dofs` of those that automatic harmonics and steps follow.
 
     All, if they were named; else the outputs and those with a force or a contact. None are all.
@@ -126,25 +121,55 @@ def driving_dofs(
 
 
 def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:
-    """Return the degrees of freedom to observe, each known and named once.
-
-    By default those with a meaning of their own: all but the modal coordinates of a reduction.
-    """
-    known = model.structure.dofs
+    """Return the degrees of freedom to observe, by default all but modal coordinates."""
     if observe is None:
         return physical_dofs(model)
-    if not isinstance(observe, Iterable):
-        raise ModelError(f"observe: {brief(observe)} is not a list of names; write [{known[0]!r}]")
-    names = (observe,) if isinstance(observe, str) else tuple(observe)
+    return names_of(observe, "observe", "dof", model.structure.dofs)
+
+
+def names_of(
+    given: Iterable[str] | str, entry: str, kind: str, known: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return names of degrees of freedom, each known and given once."""
+    if not isinstance(given, Iterable):
+        raise ModelError(f"{entry}: {brief(given)} is not a list of names; write [{known[0]!r}]")
+    names = (given,) if isinstance(given, str) else tuple(given)
     if not names:
-        raise ModelError("observe: no dof; name at least one, or leave it out for all")
+        raise ModelError(f"{entry}: no dof; name at least one, or leave it out for all")
     for position, name in enumerate(names):
-        text(name, f"observe[{position}]")
-        if name not in known:
-            raise ModelError(f"observe: {unknown('dof', name, known)}")
+        if text(name, f"{entry}[{position}]") not in known:
+            raise ModelError(f"{entry}: {unknown(kind, name, known)}")
         if name in names[:position]:
-            raise ModelError(f"observe: {name!r} is given more than once; name each dof once")
+            raise ModelError(f"{entry}: {name!r} is given more than once; name each dof once")
     return tuple(map(str, names))
+
+
+def columns_of(dofs: Iterable[str], model: Model) -> Int:
+    """Return the positions of degrees of freedom in the structure."""
+    return np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64)
+
+
+def points_of(model: Model) -> int:
+    """Return the number of contact points."""
+    return sum(contact.points for contact in model.contacts)
+
+
+def highest_harmonic(model: Model) -> int:
+    """Return the highest harmonic of the forces, at least 1."""
+    return max((1, *(force.harmonic for force in model.forces)))
+
+
+def state_of(model: Model, start: object, entry: str) -> State:
+    """Return a start as a state of the model; displacements alone are one, too."""
+    if isinstance(start, Mapping):
+        return State(model, displacement=start)
+    if not isinstance(start, State):
+        raise ModelError(
+            f"{entry}: {brief(start)} is no state; give ss.State(model, ...), the final state of "
+            "another run, or {dof: displacement}"
+        )
+    start.require_fit(model, entry)
+    return start
 
 
 def require_forced(model: Model, settings: HarmonicSettings) -> None:

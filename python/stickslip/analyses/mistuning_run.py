@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.analyses.mistuning_assumptions import mistuning_assumptions
 from stickslip.analyses.mistuning_disks import Series
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
+from stickslip.analyses.peak_assumptions import mistuning_assumptions
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption

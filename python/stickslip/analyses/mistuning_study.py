@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from stickslip.analyses.arguments import Progress, require_forced, require_progress
+from stickslip.analyses.arguments import require_forced
 from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.mistuning_arguments import (
     dofs_of,
@@ -21,6 +21,7 @@ from stickslip.analyses.mistuning_arguments import (
 from stickslip.analyses.mistuning_disks import Series, coupled_disks, identity_of, tuned_peaks
 from stickslip.analyses.mistuning_run import Work
 from stickslip.analyses.pattern_store import PatternStore
+from stickslip.analyses.run import Progress
 from stickslip.checks import brief
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
@@ -105,7 +106,6 @@ def mistuning_study(
     """
     if not isinstance(disk, BladedDisk):
         raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give the tuned disk")
-    require_progress(progress)
     rows, drawn = patterns_of(patterns, disk.sectors, settings.distribution, settings.seed)
     kept = MistuningSettings.of(
         **settings.part(PeakSettings),

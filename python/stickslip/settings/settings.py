@@ -8,13 +8,15 @@ import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Self, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar, Union, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from stickslip.calls import misfit
-from stickslip.errors import CallError
+from stickslip.checks import brief
+from stickslip.errors import CallError, ModelError
+from stickslip.model import Model
 from stickslip.settings.entries import CALL, Table
 from stickslip.settings.refusal import refusal
 
@@ -23,7 +25,6 @@ __all__ = ["Settings", "configured", "described", "type_in_words"]
 _Result = TypeVar("_Result")
 _INDENT = 4 * " "
 _WIDTH = 100
-_SECTION = re.compile(r"( *)Parameters\n *-+\n(.*?)\n(?=\n *\w+\n *---)", re.S)
 
 
 class Settings(Table):
@@ -63,21 +64,57 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
+class _Common(NamedTuple):
+    """An argument that most analyses have: what is said of it, and what is refused."""
+
+    said: str
+    check: Callable[[Any], None] = lambda _: None
+
+
+def _require_model(model: object) -> None:
+    if not isinstance(model, Model):
+        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+
+
+def _require_progress(progress: object) -> None:
+    if progress is not None and not callable(progress):
+        raise ModelError(
+            f"progress: {brief(progress)} cannot be called; give a function of a fraction"
+        )
+
+
 _COMMON = {
-    "model": "model : Model\n    Structure, contacts and forces.",
-    "observe": """observe : iterable of str, optional
+    "model": _Common("Model\n    Structure, contacts and forces.", _require_model),
+    "observe": _Common(
+        """iterable of str, optional
     Degrees of freedom whose motion is kept. Default: all but modal coordinates
-    ("mode-1", ...).""",
-    "progress": """progress : callable, optional
+    ("mode-1", ...)."""
+    ),
+    "contacts": _Common(
+        """int, str, (contact, int), or iterable of these, optional
+    The contacts that take the value, or points of them as (contact, point). Of a contact with
+    several points the slip forces that are finite, unless none is. Default: all contacts; of
+    slip forces those that are finite, unless none is."""
+    ),
+    "progress": _Common(
+        """callable, optional
     Called about ten times per second with the fraction of the work that is done.""",
+        _require_progress,
+    ),
 }
-"""What arguments mean that most analyses have."""
+_RAISED = {
+    "ModelError": """
+    If an argument is of the wrong type or outside its range, or the result would not fit into
+    the memory.""",
+    "Interrupted": """
+    On Ctrl-C; its `result` holds what had been computed.""",
+}
 
 
 def configured(
     kind: type[Settings], *placed: str
 ) -> Callable[[Callable[..., _Result]], Callable[..., _Result]]:
-    """Let a function take settings as its keywords.
+    """Let an analysis take settings as its keywords.
 
     Parameters
     ----------
@@ -89,7 +126,8 @@ def configured(
     Returns
     -------
     callable
-        Decorator. Signature and documentation of the function have a parameter for every key.
+        Decorator. Signature and documentation of the function have a parameter for every key;
+        `model` and `progress` are checked, and documented like what most analyses raise.
     """
 
     def decorate(function: Callable[..., _Result]) -> Callable[..., _Result]:
@@ -117,6 +155,9 @@ def configured(
                 given = signature.bind(*args, **keywords).arguments
             except TypeError:
                 raise CallError(str(misfit(call, args, keywords))) from None
+            for name, value in given.items():
+                if name in _COMMON:
+                    _COMMON[name].check(value)
             settings = kind.of(**{name: given.pop(name) for name in keys if name in given})
             return function(**given, settings=settings)
 
@@ -135,19 +176,30 @@ def _parameter(name: str, field: FieldInfo, *, placed: bool = False) -> inspect.
 
 
 def _documented(text: str, signature: inspect.Signature, keys: Mapping[str, FieldInfo]) -> str:
-    """Complete the section "Parameters" by the keys, in the order of the signature."""
-    section = _SECTION.search(text)
-    if section is None:
-        return text
-    indent = section[1]
-    entries = {name: textwrap.indent(said, indent) for name, said in _COMMON.items()}
-    for block in re.split(rf"\n(?={indent}\S)", section[2]):
+    """Complete "Parameters" by the keys, in the order of the signature, and "Raises"."""
+    head, *parts = re.split(r"\n\n(\w+)\n-+\n", inspect.cleandoc(text))
+    sections = dict.fromkeys(("Parameters", "Returns", "Raises"), "")
+    sections |= zip(parts[::2], parts[1::2], strict=True)
+    said = {name: f"{name} : {common.said}" for name, common in _COMMON.items()}
+    for block in _blocks(sections["Parameters"]):
         names = block.split(" : ")[0].replace("*", "").split(", ")
-        entries |= dict.fromkeys((name.strip() for name in names), block)
-    entries |= {name: described(name, field, indent) for name, field in keys.items()}
-    blocks = dict.fromkeys(entries[name] for name in signature.parameters if name in entries)
-    head = text[: section.start(2)]
-    return head + "\n".join(blocks) + text[section.end(2) :]
+        said |= dict.fromkeys(names, block)
+    said |= {name: described(name, field, "") for name, field in keys.items()}
+    sections["Parameters"] = "\n".join(
+        dict.fromkeys(said[name] for name in signature.parameters if name in said)
+    )
+    raised = dict(block.split("\n", 1) for block in _blocks(sections["Raises"]))
+    sections["Raises"] = "\n".join(
+        "\n".join(filter(None, (f"{name}{common}", raised.get(name))))
+        for name, common in _RAISED.items()
+    )
+    written = (f"{name}\n{'-' * len(name)}\n{body}" for name, body in sections.items())
+    return "\n\n".join((head, *written))
+
+
+def _blocks(section: str) -> list[str]:
+    """Return the entries of a section; what is said of them is indented."""
+    return re.split(r"\n(?=\S)", section) if section else []
 
 
 def described(name: str, field: FieldInfo, indent: str) -> str:

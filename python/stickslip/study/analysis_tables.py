@@ -17,7 +17,7 @@ from stickslip.settings.orbits import CertifySettings, OrbitSettings, SingleHarm
 from stickslip.study.analysis_entries import AnalysisEntries, OmegaEntry, OmegaRange, omegas
 
 if TYPE_CHECKING:
-    from stickslip.analyses.arguments import Progress
+    from stickslip.analyses.run import Progress
     from stickslip.results import ForcedResponse
     from stickslip.results.exact_response import ExactResponse
 
