@@ -5,34 +5,31 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
 from stickslip.analyses.arguments import require_forced
 from stickslip.analyses.memory import require_numbers
-from stickslip.analyses.mistuning_arguments import (
+from stickslip.analyses.mistuning_disks import (
+    Series,
+    coupled_disks,
     dofs_of,
+    identity_of,
     numbers_of,
     patterns_of,
-    processors,
     require_stiff,
+    tuned_peaks,
 )
-from stickslip.analyses.mistuning_disks import Series, coupled_disks, identity_of, tuned_peaks
 from stickslip.analyses.mistuning_run import Work
 from stickslip.analyses.pattern_store import PatternStore
-from stickslip.analyses.run import Progress
+from stickslip.analyses.run import Progress, Run
 from stickslip.checks import brief
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
-from stickslip.interruption import Interruption, stopped
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.settings.entries import Span, span_of
 from stickslip.settings.peaks import MistuningKeys, MistuningSettings, PeakSettings
 from stickslip.settings.settings import configured
-
-if TYPE_CHECKING:
-    from os import PathLike
 
 __all__ = ["mistuning_study"]
 
@@ -47,7 +44,7 @@ def mistuning_study(
     patterns: int | ArrayLike = 1000,
     dofs: Iterable[str] | str | None = None,
     coupling_stiffness: ArrayLike | None = None,
-    store: str | PathLike[str] | None = None,
+    store: str | os.PathLike[str] | None = None,
     progress: Progress = None,
 ) -> MistuningStudy:
     """Amplification factors of disks whose blades deviate at random, and their distribution.
@@ -87,10 +84,7 @@ def mistuning_study(
     Raises
     ------
     ModelError
-        If an argument is of the wrong type or outside its range, the peak of the tuned disk cannot
-        be found, or the store holds another study.
-    Interrupted
-        On Ctrl-C; its `result` holds the patterns that had been computed.
+        If the peak of the tuned disk cannot be found, or the store holds another study.
 
     References
     ----------
@@ -117,7 +111,6 @@ def mistuning_study(
     deviations = numbers_of(deviation, "deviation", "0.05 for 5 %")
     require_stiff(deviations, rows)
     require_forced(disk, settings)
-    pool = settings.threads or processors()
     disks = coupled_disks(disk, coupling_stiffness)
     count = deviations.size * len(disks) * len(rows) * len(names)
     # Deviations and peaks; the core has its own of the former.
@@ -128,16 +121,14 @@ def mistuning_study(
     start = time.perf_counter()
     series = [Series(one, value, tuned_peaks(one, kept, names)) for value, one in disks]
     work = Work(disk, kept, names, deviations, series, rows)
-    with Interruption(progress) as watch:
+    with Run("mistuning study", progress) as run:
         if store is None:
-            complete = work.run(pool, watch, None)
+            complete = work.run(settings.threads, run, None)
         else:
             identity = identity_of(disk, kept, names, rows, given=coupling_stiffness is not None)
-            with PatternStore(store, identity, watch.heed) as kept_rows:
+            with PatternStore(store, identity, run.heed) as kept_rows:
                 work.recall(kept_rows)
-                complete = work.run(pool, watch, kept_rows)
+                complete = work.run(settings.threads, run, kept_rows)
         result = work.result(time.perf_counter() - start, interrupted=not complete)
-        if not complete:
-            rest = "" if store is None else f"; {os.fspath(store)} goes on from there"
-            raise stopped("mistuning study", f"{work.done} of {work.total} disks", result, rest)
-        return watch.completed(result, "mistuning study")
+        rest = "" if store is None else f"; {os.fspath(store)} goes on from there"
+        return run.ended(result, f"{work.done} of {work.total} disks", rest)
