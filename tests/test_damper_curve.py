@@ -348,7 +348,7 @@ def test_study_files_ask_for_curves(entry: str, values: list[float], tmp_path: P
 
 
 def test_a_study_file_names_one_parameter() -> None:
-    with pytest.raises(ss.ModelError, match="exactly one of slip_force, stiffness and level"):
+    with pytest.raises(ss.ModelError, match="none is given; give exactly one of them"):
         ss.study.Study.parse(STUDY)
     with pytest.raises(ss.ModelError, match="did you mean 'blade'"):
         ss.study.Study.parse(

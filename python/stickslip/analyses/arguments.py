@@ -3,33 +3,29 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
-from numbers import Real
+from collections.abc import Iterable, Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from stickslip.checks import brief, text, unknown
+from stickslip.checks import brief, unknown
 from stickslip.disk.arguments import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
-from stickslip.results.arrays import Bool, Float, Int
-from stickslip.settings.balance import HarmonicSettings
-from stickslip.settings.entries import Residual, Span, span_of
+from stickslip.results.arrays import Int
+from stickslip.settings.balance import HarmonicSettings, ObserveKeys
+from stickslip.settings.entries import Residual
 
 __all__ = [
     "columns_of",
     "driving_dofs",
-    "grid_of",
     "highest_harmonic",
+    "known_dofs",
     "loaded_dofs",
-    "names_of",
     "observed_dofs",
     "physical_dofs",
     "points_of",
-    "positive",
-    "real_list",
     "require_forced",
     "require_held",
     "require_time",
@@ -47,42 +43,6 @@ def require_time(model: Model) -> None:
             f"model: a tuned BladedDisk is {reason}; give all sectors, disk.mistuned(0)",
             study=f"disk: a tuned disk is {reason}; compute all sectors, {ALL_SECTORS}",
         )
-
-
-def real_list(
-    values: object, entry: str, remedy: str, allowed: Callable[[Float], Bool] = np.isfinite
-) -> Float:
-    """Return one real number or a list of them, each allowed, as a list."""
-    try:
-        given = np.atleast_1d(np.asarray(values))
-    except ValueError:
-        raise ModelError(f"{entry}: a ragged list; give one list of {remedy}") from None
-    if given.dtype.kind not in "fiu" and given.size:
-        raise ModelError(f"{entry}: {brief(values)} holds no real numbers; give {remedy}")
-    if given.ndim != 1:
-        raise ModelError(f"{entry}: shape {given.shape} instead of (n,); give one list of {remedy}")
-    if not given.size:
-        raise ModelError(f"{entry}: empty; give at least one of {remedy}")
-    numbers = np.array(given, dtype=np.float64)
-    bad = np.flatnonzero(~allowed(numbers))
-    if bad.size:
-        raise ModelError(f"{entry}[{bad[0]}] is {numbers[bad[0]]:g}; give {remedy}")
-    return numbers
-
-
-def positive(numbers: Float) -> Bool:
-    """Tell which numbers are finite and above 0."""
-    above: Bool = np.isfinite(numbers) & (numbers > 0.0)
-    return above
-
-
-def grid_of(omega: ArrayLike | Span) -> Float | Span:
-    """Tell a range from a grid, and return either checked."""
-    if isinstance(omega, tuple) and len(omega) == 2:
-        return span_of(omega, "omega")
-    if isinstance(omega, Real):
-        raise ModelError(f"omega: shape () instead of (n,); write [{omega:g}]")
-    return real_list(omega, "omega", "finite frequencies above 0 rad/s", positive)
 
 
 def physical_dofs(model: Model) -> tuple[str, ...]:
@@ -103,45 +63,34 @@ def loaded_dofs(model: Model) -> tuple[str, ...]:
 
 
 def driving_dofs(
-    model: Model,
-    dofs: tuple[str, ...],
-    observe: Iterable[str] | str | None,
-    outputs: Iterable[str] | str,
+    model: Model, dofs: tuple[str, ...], outputs: Iterable[str] | str, *, named: bool
 ) -> Int:
     """Return the positions among `dofs` of those that automatic harmonics and steps follow.
 
     All, if they were named; else the outputs and those with a force or a contact. None are all.
     """
-    named = {outputs} if isinstance(outputs, str) else set(outputs)
-    for name in sorted(named - set(dofs)):
+    shown = {outputs} if isinstance(outputs, str) else set(outputs)
+    for name in sorted(shown - set(dofs)):
         raise ModelError(f"outputs: {unknown('dof', name, dofs)}")
-    followed = named | set(loaded_dofs(model)) if observe is None else set()
+    followed = set() if named else shown | set(loaded_dofs(model))
     driving = [position for position, dof in enumerate(dofs) if dof in followed]
     return np.array(driving, dtype=np.int64)
 
 
-def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:
+def observed_dofs(keys: ObserveKeys, model: Model) -> tuple[str, ...]:
     """Return the degrees of freedom to observe, by default all but modal coordinates."""
-    if observe is None:
+    if keys.observe is None:
         return physical_dofs(model)
-    return names_of(observe, "observe", "dof", model.structure.dofs)
+    return known_dofs(keys.observe, "observe", "dof", model)
 
 
-def names_of(
-    given: Iterable[str] | str, entry: str, kind: str, known: tuple[str, ...]
-) -> tuple[str, ...]:
-    """Return names of degrees of freedom, each known and given once."""
-    if not isinstance(given, Iterable):
-        raise ModelError(f"{entry}: {brief(given)} is not a list of names; write [{known[0]!r}]")
-    names = (given,) if isinstance(given, str) else tuple(given)
-    if not names:
-        raise ModelError(f"{entry}: no dof; name at least one, or leave it out for all")
-    for position, name in enumerate(names):
-        if text(name, f"{entry}[{position}]") not in known:
+def known_dofs(names: Iterable[str], entry: str, kind: str, model: Model) -> tuple[str, ...]:
+    """Return names of degrees of freedom that the model has."""
+    known = model.structure.dofs
+    for name in names:
+        if name not in known:
             raise ModelError(f"{entry}: {unknown(kind, name, known)}")
-        if name in names[:position]:
-            raise ModelError(f"{entry}: {name!r} is given more than once; name each dof once")
-    return tuple(map(str, names))
+    return tuple(names)
 
 
 def columns_of(dofs: Iterable[str], model: Model) -> Int:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from stickslip.analyses.arguments import columns_of, observed_dofs, real_list, state_of
+from stickslip.analyses.arguments import columns_of, observed_dofs, state_of
 from stickslip.analyses.classify import fate_assumptions, fates_of, free
 from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.run import Progress, Run
-from stickslip.checks import brief, members, unknown, whole_number
+from stickslip.checks import members, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
@@ -23,16 +23,15 @@ from stickslip.settings.settings import configured
 
 __all__ = ["basin_map"]
 
+Grid: TypeAlias = tuple[tuple[Axis, tuple[float, ...]], ...]
 
-@configured(BasinKeys)
+
+@configured(BasinKeys, "axes")
 def basin_map(
     model: Model,
-    axes: Mapping[Axis, ArrayLike] | None = None,
     *,
     settings: BasinKeys,
     starts: Iterable[State | Mapping[str, float]] | None = None,
-    base: State | Mapping[str, float] | None = None,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> BasinMap:
     """Find out what becomes of free motions from many starts, on all processors.
@@ -41,14 +40,8 @@ def basin_map(
     ----------
     model : Model
         Structure and contacts; its forces play no part. See `classify`.
-    axes : mapping of str or int to array_like, optional
-        Two axes of a map with their values [m], the first drawn upwards, the second to the right:
-        the displacement of a degree of freedom by its name, or the amplitude of a stuck mode by its
-        number, counted from 0; a mode of amplitude a moves its largest displacement by a.
     starts : iterable of State or mapping, optional
         Instead of axes: the starts, each as `classify` takes it.
-    base : State or mapping, optional
-        What the axes are added to. Default: rest.
 
     Returns
     -------
@@ -66,18 +59,20 @@ def basin_map(
     Guillen (1999), section 5.4.1, which tries eight starts about each orbit.
     """
     alone = free(model)
-    dofs = observed_dofs(observe, alone)
-    if (axes is None) == (starts is None):
-        given = "neither is" if axes is None else "both are"
-        raise ModelError(f"axes, starts: {given} given; give one of them")
-    grid = () if axes is None else _axes(alone, axes)
-    kept = BasinSettings.of(**settings.part(ClassifySettings), axes=grid)
+    dofs = observed_dofs(settings, alone)
+    grid: Grid = ()
     if starts is None:
-        states = _over_axes(alone, grid, state_of(alone, {} if base is None else base, "base"))
+        if settings.axes is None:
+            raise ModelError("axes, starts: neither is given; give one of them")
+        grid = _axes(alone, settings.axes)
+        base = state_of(alone, settings.base or {}, "base")
+        states = _over_axes(alone, grid, base)
     else:
-        if base is not None:
-            raise ModelError("base: given beside starts; put it into them")
+        for name in ("axes", "base"):
+            if getattr(settings, name) is not None:
+                raise ModelError(f"{name}: given beside starts; give one of them")
         states = _listed(alone, starts)
+    kept = BasinSettings.of(**settings.part(ClassifySettings), axes=grid)
     with Run("basin map", progress, alone) as run:
         fates = fates_of(alone, states, kept, settings.threads or 0, run)
         amplitude = fates.columns["amplitude"][:, columns_of(dofs, alone)]
@@ -96,25 +91,18 @@ def basin_map(
         return run.ended(result, f"{done} of {len(result)} starts")
 
 
-def _axes(model: Model, axes: object) -> tuple[tuple[Axis, tuple[float, ...]], ...]:
-    if not isinstance(axes, Mapping) or len(axes) != 2:
-        shown = f"{len(axes)} axes" if isinstance(axes, Mapping) else brief(axes)
-        raise ModelError(f'axes: {shown}; give two, {{"tip": [...], "damper": [...]}}')
+def _axes(model: Model, axes: Mapping[Axis, Sequence[float]]) -> Grid:
+    """Return axes that the model has."""
     known = model.structure.dofs
-    checked = []
-    for axis, values in axes.items():
+    for axis in axes:
         if isinstance(axis, str) and axis not in known:
             raise ModelError(f"axes: {unknown('dof', axis, known)}")
         if not isinstance(axis, str) and whole_number(axis, "axes: mode") >= len(known):
             raise ModelError(f"axes: mode {axis}; there are {len(known)}, counted from 0")
-        numbers = real_list(values, f"axes: {axis!r}", "finite numbers in m")
-        checked.append((axis, tuple(map(float, numbers))))
-    return tuple(checked)
+    return tuple((axis, tuple(values)) for axis, values in axes.items())
 
 
-def _over_axes(
-    model: Model, axes: tuple[tuple[Axis, tuple[float, ...]], ...], base: State
-) -> Float:
+def _over_axes(model: Model, axes: Grid, base: State) -> Float:
     (one, first), (other, second) = axes
     size = len(model.structure)
     _require_room(len(first) * len(second), base)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from stickslip.results.arrays import Float, Int
 from stickslip.results.diagnostic import Diagnostic, diagnostic, present
 from stickslip.results.fate_arrays import Motion, Reason
 from stickslip.results.motion_class import MotionArrays, MotionClass
-from stickslip.settings.motion import ClassifySettings, TransientSettings
+from stickslip.settings.motion import ClassifyKeys, ClassifySettings, TransientSettings
 from stickslip.settings.settings import configured
 
 __all__ = ["classify", "fate_assumptions", "fates_of", "free"]
@@ -39,13 +39,12 @@ RIGID = 1e-5
 """Natural frequencies below this share of the highest are rigid-body motion."""
 
 
-@configured(ClassifySettings)
+@configured(ClassifyKeys)
 def classify(
     model: Model,
     start: State | Mapping[str, float],
-    settings: ClassifySettings,
+    settings: ClassifyKeys,
     *,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> MotionClass:
     """Find out what becomes of a free motion from a start.
@@ -84,7 +83,7 @@ def classify(
     change of amplitude judged by eye. Ferri and Dowell (1985) on free motions of several modes.
     """
     alone = free(model)
-    dofs = observed_dofs(observe, alone)
+    dofs = observed_dofs(settings, alone)
     kept = ClassifySettings.of(**settings.part(ClassifySettings))
     first = state_of(alone, start, "start").vector[None]
     omega, samples = _tail_grid(alone, len(dofs))

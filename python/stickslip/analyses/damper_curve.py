@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import fields
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from stickslip import _core
-from stickslip.analyses.arguments import positive, real_list, require_forced, require_held
+from stickslip.analyses.arguments import require_forced, require_held
 from stickslip.analyses.peak_assumptions import damper_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.variation import (
-    Contacts,
     local_stiffness,
-    parameter_of,
     resonance_range,
     variation_of,
 )
@@ -23,10 +20,9 @@ from stickslip.model import Model
 from stickslip.results.arrays import Bool, Float
 from stickslip.results.damper_curve import DamperArrays, DamperCurve
 from stickslip.results.status import Status
-from stickslip.settings.entries import Span, span_of
-from stickslip.settings.peaks import DamperKeys, DamperSettings, PeakSettings
+from stickslip.settings.peaks import DamperKeys, DamperSettings, PeakKeys, PeakSettings
 from stickslip.settings.settings import configured
-from stickslip.settings.variation import Parameter, Variation
+from stickslip.settings.variation import Variation, one_of
 
 __all__ = ["curve_of", "damper_curve", "settings_for"]
 
@@ -39,33 +35,11 @@ square of its inverse, while the harmonics needed stay at some hundred.
 
 
 @configured(DamperKeys)
-def damper_curve(
-    model: Model,
-    *,
-    settings: DamperKeys,
-    slip_force: ArrayLike | None = None,
-    stiffness: ArrayLike | None = None,
-    level: ArrayLike | None = None,
-    contacts: Contacts | None = None,
-    omega: Span | None = None,
-    progress: Progress = None,
-) -> DamperCurve:
+def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = None) -> DamperCurve:
     """Peak amplitude and frequency against slip force, contact stiffness or level of the forces.
 
     The peak itself is followed: at every value the highest point over frequency is found from
     some twenty solutions with exact slopes, and the next value starts from them.
-
-    Parameters
-    ----------
-    slip_force, stiffness, level : array_like, shape (n,)
-        Values of one of them, in the order to follow: slip forces F_d [N], stiffnesses k_d [N/m]
-        of the contacts, or factors on all forces. An infinite slip force never slips; an infinite
-        stiffness is the limit of a rigid contact, and common values above 500 times the stiffness
-        of the structure lie on the line in 1/k_d towards it.
-    omega : (float, float), optional
-        Range of frequencies in which the peak is the highest point [rad/s]. Default: from 5 %
-        below the free to 5 % above the highest stuck natural frequency of `mode`, over the lowest
-        harmonic of the forces.
 
     Returns
     -------
@@ -77,23 +51,16 @@ def damper_curve(
     Guillen (1999), Figs 2.6, 2.10, 2.11, 4.3 to 4.8, there from full sweeps. Griffin (1980): the
     optimal slip force of a blade damper.
     """
-    given: dict[Parameter, ArrayLike | None] = {
-        "slip_force": slip_force,
-        "stiffness": stiffness,
-        "level": level,
-    }
-    parameter = parameter_of(given)
-    if parameter == "level":
-        values = real_list(level, parameter, "finite factors above 0", positive)
-    else:
-        # Zero friction and zero stiffness are legal, and so are infinite ones.
-        values = real_list(given[parameter], parameter, "values from 0 on", lambda x: x >= 0.0)
+    parameter = one_of(settings, "slip_force", "stiffness", "level")
+    values = getattr(settings, parameter)
+    if isinstance(values, tuple):
+        raise ModelError(f"{parameter}: a range without points; give their number")
     if parameter == "stiffness" and settings.common == "factor" and np.isinf(values).any():
         raise ModelError(
             "stiffness: an infinite factor has no meaning; give finite ones, or values"
         )
-    variation = variation_of(model, parameter, contacts, settings.common)
-    kept = settings_for(model, variation, values, omega, settings)
+    variation = variation_of(model, parameter, settings)
+    kept = settings_for(model, variation, values, settings)
     start = _rigid_from(model, variation)
     rigid = start if _is_rigid(values, start).any() else None
     with Run("damper curve", progress, model) as run:
@@ -106,21 +73,21 @@ def settings_for(
     model: Model,
     variation: Variation,
     values: Float,
-    omega: Span | None,
-    settings: DamperKeys,
+    settings: PeakKeys,
 ) -> DamperSettings:
     """Return the checked settings of a curve over some values."""
     start = _rigid_from(model, variation)
     finite = values[~_is_rigid(values, start)]
     if variation.parameter == "stiffness" and finite.size < values.size:
         finite = np.append(finite, start)
-    if omega is None:
-        omega = resonance_range(model, variation, settings.mode, finite)
+    span = settings.omega
+    if span is None:
+        span = resonance_range(model, variation, settings.mode, finite)
     kept = DamperSettings.of(
         **settings.part(PeakSettings),
         dof=settings.dof,
         variation=variation,
-        span=span_of(omega, "omega"),
+        span=span,
     )
     model.structure.index(kept.dof)
     require_forced(model, kept)

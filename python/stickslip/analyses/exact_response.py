@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
-from numpy.typing import ArrayLike
-
-from stickslip.analyses.arguments import grid_of, observed_dofs, points_of, require_held
+from stickslip.analyses.arguments import observed_dofs, points_of, require_held
 from stickslip.analyses.assumptions import orbit_assumptions
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.orbits import orbits_of
@@ -16,7 +12,7 @@ from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.exact_response import ExactResponse
 from stickslip.settings.entries import Span
-from stickslip.settings.orbits import ExactSettings, OrbitSettings
+from stickslip.settings.orbits import ExactSettings, OrbitKeys, OrbitSettings
 from stickslip.settings.settings import configured
 
 __all__ = ["exact_response"]
@@ -25,14 +21,9 @@ __all__ = ["exact_response"]
 _CHOOSING = 0.2
 
 
-@configured(OrbitSettings)
+@configured(OrbitKeys, "omega")
 def exact_response(
-    model: Model,
-    omega: ArrayLike | Span,
-    settings: OrbitSettings,
-    *,
-    observe: Iterable[str] | str | None = None,
-    progress: Progress = None,
+    model: Model, settings: OrbitKeys, *, progress: Progress = None
 ) -> ExactResponse:
     """Steady response over excitation frequency, by exact periodic orbits.
 
@@ -45,12 +36,6 @@ def exact_response(
     sought on the part of a period after which they have changed their roles; the result shows
     sector 0, and others by `sector`. What breaks the symmetry of the wave is not followed: its
     multipliers are not-a-number, and its stability is not decided. `disk.mistuned(0)` has them.
-
-    Parameters
-    ----------
-    omega : array_like, shape (n,), or (float, float)
-        Angular frequencies [rad/s], in the order given. A tuple of two numbers is a range: its
-        frequencies are chosen by an adaptive harmonic balance first.
 
     Returns
     -------
@@ -71,10 +56,10 @@ def exact_response(
     see R. I. Leine, H. Nijmeijer, "Dynamics and Bifurcations of Non-Smooth Mechanical Systems"
     (Springer, 2004).
     """
-    grid = grid_of(omega)
+    grid = settings.omega
     span = grid if isinstance(grid, tuple) else None
     kept = ExactSettings.of(**settings.part(OrbitSettings), span=span)
-    dofs = observed_dofs(observe, model)
+    dofs = observed_dofs(settings, model)
     require_held(model, settings.residual)
     with Run("exact response", progress, model) as run:
         part: Progress = run

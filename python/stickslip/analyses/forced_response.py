@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from stickslip import _core
 from stickslip.analyses.arguments import (
     columns_of,
     driving_dofs,
-    grid_of,
     highest_harmonic,
     observed_dofs,
     points_of,
@@ -24,20 +22,17 @@ from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Arrays
-from stickslip.settings.balance import BalanceSettings, ForcedSettings
-from stickslip.settings.entries import Span
+from stickslip.settings.balance import BalanceKeys, BalanceSettings, ForcedSettings
 from stickslip.settings.settings import configured
 
 __all__ = ["forced_response"]
 
 
-@configured(BalanceSettings, "harmonics")
+@configured(BalanceKeys, "omega", "harmonics")
 def forced_response(
     model: Model,
-    omega: ArrayLike | Span,
-    settings: BalanceSettings,
+    settings: BalanceKeys,
     *,
-    observe: Iterable[str] | str | None = None,
     outputs: Iterable[str] | str = (),
     progress: Progress = None,
 ) -> ForcedResponse:
@@ -48,16 +43,10 @@ def forced_response(
 
     Parameters
     ----------
-    omega : array_like, shape (n,), or (float, float)
-        Angular frequencies [rad/s], swept in the order given. A tuple of two numbers is a range
-        from the first to the second, upwards or downwards, in which the frequencies are chosen to
-        `tolerance`; write ``[one, two]`` or an array for a grid of two.
-    observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all but modal coordinates
-        ("mode-1", ...). Automatic harmonics, samples and steps follow those that are named, or
-        else those with a force or a contact; `error_estimate` says how accurate the others are.
     outputs : iterable of str, optional
-        Without `observe`: degrees of freedom that the automatic choices follow as well.
+        Without `observe`: degrees of freedom that automatic harmonics, samples and steps follow
+        like those with a force or a contact; `error_estimate` says how accurate the others are.
+        With it, they follow all that are observed.
 
     Returns
     -------
@@ -75,14 +64,15 @@ def forced_response(
     Cameron and Griffin (1989): alternating frequency and time. The receptance form in contact
     displacements, its closed-form tangent and the error estimate are this package's.
     """
-    grid = grid_of(omega)
+    grid = settings.omega
     span = grid if isinstance(grid, tuple) else None
     kept = ForcedSettings.of(**settings.part(BalanceSettings), span=span)
-    dofs = observed_dofs(observe, model)
-    driving = driving_dofs(model, dofs, observe, outputs)
-    if not isinstance(grid, tuple):
+    dofs = observed_dofs(settings, model)
+    driving = driving_dofs(model, dofs, outputs, named=settings.observe is not None)
+    asked = grid.size if isinstance(grid, np.ndarray) else None
+    if asked is not None:
         orders = settings.fixed_harmonics or highest_harmonic(model)
-        require_memory(grid.size, orders, len(dofs), points_of(model))
+        require_memory(asked, orders, len(dofs), points_of(model))
     require_forced(model, settings)
     require_held(model, settings.residual)
     with Run("forced response", progress, model) as run:
@@ -91,7 +81,6 @@ def forced_response(
                 model.problem, grid, columns_of(dofs, model), driving, kept, run
             )
         arrays = Arrays.of(solution)
-        asked = grid.size if isinstance(grid, np.ndarray) else None
         result = ForcedResponse.of(
             solution,
             model=model,

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _core
-from stickslip.analyses.arguments import positive, real_list, require_time
+from stickslip.analyses.arguments import require_time
 from stickslip.analyses.cycle_assumptions import cycle_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
-from stickslip.analyses.variation import Contacts, variation_of
-from stickslip.checks import brief, real_number
+from stickslip.analyses.variation import variation_of
+from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
@@ -22,11 +22,9 @@ from stickslip.model.destabilised import is_proportional, negative_matrix
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.limit_cycles import LimitCycles
 from stickslip.settings.cycles import LOWEST_RATIO, BranchSettings, CycleKeys, CycleSettings
-from stickslip.settings.entries import Span
 from stickslip.settings.settings import configured
-from stickslip.settings.variation import Parameter
 
-__all__ = ["NegativeDamping", "limit_cycles", "wanted"]
+__all__ = ["NegativeDamping", "limit_cycles"]
 
 AROUND = 1e3
 """Factor beyond the values of a parameter of contacts within which the branch is followed."""
@@ -38,10 +36,6 @@ def limit_cycles(
     negative_damping: ArrayLike | DampingLaw,
     *,
     settings: CycleKeys,
-    ratio: ArrayLike | Span | None = None,
-    stiffness: ArrayLike | Span | None = None,
-    slip_force: ArrayLike | Span | None = None,
-    contacts: Contacts | None = None,
     progress: Progress = None,
 ) -> LimitCycles:
     """Limit cycles under the damping C + r C_neg: friction bounds what flutter feeds.
@@ -60,13 +54,6 @@ def limit_cycles(
         C_neg [kg/s], also unsymmetric; or `Rayleigh` or `ModalDamping` with negative numbers. Of
         a tuned disk also complex matrices of shape (n, N, N)
         by nodal diameter, which add i omega r C_neg to the dynamic stiffness.
-    ratio : array_like, (float, float) or float, optional
-        A list: exactly these ratios r, on both sides of the branch. A tuple: the branch from its
-        sticking side on, until it leaves this range. Default: the whole branch from r = 0.01 on.
-        If another parameter is followed: the one r, by default 1.
-    stiffness, slip_force : array_like or (float, float), optional
-        Follow this parameter of contacts [N/m], [N] instead of r, at exactly these values, or in
-        a range.
 
     Returns
     -------
@@ -86,9 +73,7 @@ def limit_cycles(
     blade.
     """
     negative = NegativeDamping.of(negative_damping, model)
-    kept = _settings(
-        model, {"stiffness": stiffness, "slip_force": slip_force}, ratio, contacts, settings
-    )
+    kept = _settings(model, settings)
     if settings.method == "exact":
         require_time(model)
     with Run("limit cycles", progress, model) as run:
@@ -156,45 +141,18 @@ def _matrix(given: ArrayLike | DampingLaw, model: Model) -> NDArray[Any]:
     return np.array(np.broadcast_to(values, shapes[1]), dtype=np.complex128)
 
 
-def _settings(
-    model: Model,
-    parameters: dict[Parameter, ArrayLike | Span | None],
-    ratio: ArrayLike | Span | None,
-    contacts: Contacts | None,
-    settings: CycleKeys,
-) -> CycleSettings:
-    """Return checked settings."""
-    rest = settings.part(BranchSettings)
-    given = [name for name, values in parameters.items() if values is not None]
-    if len(given) > 1:
-        raise ModelError("stiffness, slip_force: both are given; follow one of them")
-    if not given:
-        if contacts is not None:
-            raise ModelError("contacts: the ratio is no parameter of contacts; leave them out")
-        values, span = wanted(ratio, "ratio", (LOWEST_RATIO, inf))
+def _settings(model: Model, keys: CycleKeys) -> CycleSettings:
+    rest = keys.part(BranchSettings)
+    name = keys.followed
+    given = getattr(keys, name)
+    values = tuple(given.tolist()) if isinstance(given, np.ndarray) else None
+    if name == "ratio":
+        span = (LOWEST_RATIO, inf) if given is None else given
+        if values is not None:
+            span = (min(LOWEST_RATIO, values[0]), inf)
         return CycleSettings.of(values=values, span=span, **rest)
-    (name,) = given
-    variation = variation_of(model, name, contacts, settings.common)
-    values, span = wanted(parameters[name], name, (inf, 0.0))
-    if values is not None:
-        # The other side of the branch is reached around a fold that may lie far outside.
-        span = (values[0] / AROUND, values[-1] * AROUND)
-    one = 1.0 if ratio is None else real_number(ratio, f"ratio, with {name} followed,")
-    return CycleSettings.of(variation=variation, ratio=one, values=values, span=span, **rest)
-
-
-def wanted(
-    given: ArrayLike | Span | None, entry: str, span: Span
-) -> tuple[tuple[float, ...] | None, Span]:
-    """Return the values at which cycles are wanted, or none, and the range; `span` by default."""
-    if given is None:
-        return None, span
-    if isinstance(given, tuple) and len(given) == 2:
-        low, high = sorted(
-            real_number(end, f"{entry}: end of the range", finite=False) for end in given
-        )
-        if not 0.0 < low < high:
-            raise ModelError(f"{entry}: the range ({low:g}, {high:g}) must have two ends above 0")
-        return None, (low, high)
-    numbers = real_list(given, entry, "finite values above 0, or (from, to)", positive)
-    return tuple(map(float, np.unique(numbers))), (min(span[0], float(numbers.min())), span[1])
+    # The other side of the branch is reached around a fold that may lie far outside.
+    span = given if values is None else (values[0] / AROUND, values[-1] * AROUND)
+    ratio = 1.0 if keys.ratio is None else float(np.asarray(keys.ratio)[0])
+    variation = variation_of(model, name, keys)
+    return CycleSettings.of(variation=variation, ratio=ratio, values=values, span=span, **rest)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip import _core
-from stickslip.analyses.arguments import columns_of, names_of, real_list, require_held
+from stickslip.analyses.arguments import columns_of, known_dofs, require_held
 from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.pattern_store import Identity, Row, digest
 from stickslip.analyses.run import refusals
@@ -19,19 +19,18 @@ from stickslip.checks import brief, whole_number
 from stickslip.disk.arguments import NEXT
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.coupling import Coupling
-from stickslip.disk.pattern import Distribution, drawn_patterns
+from stickslip.disk.pattern import drawn_patterns
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.status import Status
-from stickslip.settings.peaks import MistuningSettings
+from stickslip.settings.peaks import MistuningKeys, MistuningSettings
 
 __all__ = [
     "Series",
     "coupled_disks",
     "dofs_of",
     "identity_of",
-    "numbers_of",
     "patterns_of",
     "require_stiff",
     "tuned_peaks",
@@ -48,15 +47,14 @@ class Series(NamedTuple):
     """Peaks of the tuned disk, one per degree of freedom."""
 
 
-def patterns_of(
-    patterns: int | ArrayLike, sectors: int, distribution: Distribution, seed: int
-) -> tuple[Float, bool]:
+def patterns_of(disk: BladedDisk, settings: MistuningKeys) -> tuple[Float, bool]:
     """Return the patterns, and whether they were drawn."""
+    patterns, sectors = settings.patterns, disk.sectors
     if isinstance(patterns, int | np.integer):
         count = whole_number(patterns, "patterns", smallest=1)
         what = f"patterns: {count} of {sectors} sectors"
         require_numbers(count * sectors, f"{what} each", "give fewer patterns")
-        return drawn_patterns(sectors, count, distribution, seed=seed), True
+        return drawn_patterns(sectors, count, settings.distribution, seed=settings.seed), True
     try:
         given = np.asarray(patterns)
     except ValueError:
@@ -87,20 +85,10 @@ def require_stiff(deviations: Float, patterns: Float) -> None:
     )
 
 
-def numbers_of(values: ArrayLike, entry: str, remedy: str) -> Float:
-    """Return one or several finite numbers, none of them negative, each once."""
-    numbers = real_list(
-        values, entry, f"{remedy}, not negative", lambda x: np.isfinite(x) & (x >= 0.0)
-    )
-    if np.unique(numbers).size < numbers.size:
-        raise ModelError(f"{entry}: {brief(values)} holds a value twice; give each once")
-    return numbers
-
-
 def dofs_of(dofs: Iterable[str] | str | None, disk: BladedDisk) -> tuple[str, ...]:
     """Return degrees of freedom of a sector; by default those with a force or a contact."""
     if dofs is not None:
-        return names_of(dofs, "dofs", "dof of a sector", disk.structure.dofs)
+        return known_dofs(dofs, "dofs", "dof of a sector", disk)
     ends = (dof for contact in disk.contacts for dof in contact.dofs)
     touched = [dof.removeprefix(NEXT) for dof in ends if dof is not None]
     loaded = [force.dof for force in disk.forces]
@@ -143,7 +131,7 @@ def coupled_disks(disk: BladedDisk, stiffness: ArrayLike | None) -> list[tuple[f
         raise ModelError(
             f"{reason} couplings=[ss.Coupling(...)]", study=f"{reason} a table [[coupling]]"
         )
-    values = numbers_of(stiffness, "coupling_stiffness", "stiffnesses in N/m").tolist()
+    values = np.atleast_1d(np.asarray(stiffness, dtype=np.float64)).tolist()
     return [
         (value, _coupled(disk, [replace(one, stiffness=value) for one in disk.couplings]))
         for value in values

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import get_args
 
 import numpy as np
 
@@ -13,8 +12,7 @@ from stickslip.analyses.arguments import highest_harmonic
 from stickslip.analyses.damper_curve import curve_of, settings_for
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.run import Progress, Run, refusals
-from stickslip.analyses.variation import Contacts, local_stiffness, variation_of
-from stickslip.checks import choice, real_number
+from stickslip.analyses.variation import chosen_contacts, local_stiffness, variation_of
 from stickslip.errors import ModelError
 from stickslip.interruption import stopped
 from stickslip.model import Model
@@ -23,10 +21,9 @@ from stickslip.results.arrays import amplitude_of
 from stickslip.results.damper_curve import DamperArrays, LeastPeak
 from stickslip.results.diagnostic import Diagnostic, diagnostic, present
 from stickslip.results.optimal_damper import OptimalDamper
-from stickslip.settings.entries import Span
-from stickslip.settings.peaks import DamperKeys, DamperSettings
+from stickslip.settings.peaks import DamperSettings, OptimumKeys
 from stickslip.settings.settings import configured
-from stickslip.settings.variation import Chosen, Parameter, Variation, located
+from stickslip.settings.variation import Chosen, Variation, located
 
 __all__ = ["optimal_damper"]
 
@@ -43,16 +40,9 @@ STIFFNESSES = (1e-2, 250.0)
 """Bounds of a stiffness, over that of the structure at the contact."""
 
 
-@configured(DamperKeys)
+@configured(OptimumKeys)
 def optimal_damper(
-    model: Model,
-    *,
-    settings: DamperKeys,
-    parameter: Parameter = "slip_force",
-    bounds: tuple[float, float] | None = None,
-    contacts: Contacts | None = None,
-    omega: Span | None = None,
-    progress: Progress = None,
+    model: Model, *, settings: OptimumKeys, progress: Progress = None
 ) -> OptimalDamper:
     """Find the slip force, stiffness or level at which the peak of a response is least.
 
@@ -61,20 +51,6 @@ def optimal_damper(
     swap, and often least in a kink; such a minimum is found as the crossing of two tangents. With
     automatic harmonics minima count as one if the rise between them is below twice the tolerance.
     All contacts that are varied have one common value or factor.
-
-    Parameters
-    ----------
-    parameter : {"slip_force", "stiffness", "level"}, optional
-        What is varied. With "level", a factor on all forces, the amplitude per unit of level is
-        made least: friction knows the ratio of force and slip force alone.
-    bounds : (float, float), optional
-        Values to look between. Default, for slip forces: from 1/1000 to all of the largest force
-        that the stuck contacts bear in the range of frequencies, beyond which nothing slips. At
-        light damping that rises far above the load: the lower bound is then 0.03 times, and the
-        upper one at most 10 000 times, what they bear at the low end of the range. For levels
-        likewise; for stiffnesses: 1/100 to 250 times that of the structure.
-    omega : (float, float), optional
-        See `stickslip.damper_curve`.
 
     Returns
     -------
@@ -88,12 +64,11 @@ def optimal_damper(
     Interrupted
         That is the curve.
     """
-    choice(parameter, "parameter", get_args(Parameter))
-    variation = variation_of(model, parameter, contacts, settings.common)
-    given = None if bounds is None else _checked(bounds)
-    if given is None and parameter == "stiffness":
+    variation = variation_of(model, settings.parameter, settings)
+    given = settings.bounds
+    if given is None and settings.parameter == "stiffness":
         given = _stiffness_bounds(model, variation)
-    kept = settings_for(model, variation, np.array(given or (1.0,)), omega, settings)
+    kept = settings_for(model, variation, np.array(given or (1.0,)), settings)
     low, high = given or _load_bounds(model, variation, kept)
     with Run("optimal damper", progress, model) as run:
         with refusals(model):
@@ -142,15 +117,6 @@ def _diagnostics(result: OptimalDamper) -> tuple[Diagnostic, ...]:
             *result.curve.diagnostics,
         )
     )
-
-
-def _checked(bounds: tuple[float, float]) -> tuple[float, float]:
-    if not isinstance(bounds, tuple | list) or len(bounds) != 2:
-        raise ModelError("bounds: give two values, (lowest, highest)")
-    low, high = (real_number(value, "bounds") for value in bounds)
-    if not 0.0 < low < high:
-        raise ModelError(f"bounds: ({low:g}, {high:g}); give 0 < lowest < highest")
-    return low, high
 
 
 def _stiffness_bounds(model: Model, variation: Variation) -> tuple[float, float]:
@@ -215,7 +181,7 @@ def _stuck_forces(
 
     Over its own slip force, if that counts.
     """
-    varied = variation.contacts or variation_of(model, "slip_force", None, "value").contacts
+    varied = variation.contacts or chosen_contacts(model, "slip_force", None, "value")
     stuck = Variation(parameter="slip_force", contacts=varied).apply(model, np.inf)
     harmonics = highest_harmonic(model)
     response = forced_response(stuck, settings.span, harmonics, observe=[settings.dof])

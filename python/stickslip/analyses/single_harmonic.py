@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
-from numpy.typing import ArrayLike
+import numpy as np
 
 from stickslip import _core
-from stickslip.analyses.arguments import columns_of, grid_of, observed_dofs, points_of
+from stickslip.analyses.arguments import columns_of, observed_dofs, points_of
 from stickslip.analyses.assumptions import balance_assumptions
 from stickslip.analyses.memory import require_memory
 from stickslip.analyses.run import Progress, Run, refusals
-from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
@@ -19,7 +16,7 @@ from stickslip.results.arrays import Arrays
 from stickslip.results.diagnostic import diagnostic, present
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
-from stickslip.settings.orbits import SingleHarmonicSettings
+from stickslip.settings.orbits import SingleHarmonicKeys
 from stickslip.settings.settings import configured
 
 __all__ = ["single_harmonic"]
@@ -33,14 +30,9 @@ _NO_ESTIMATE = (
 )
 
 
-@configured(SingleHarmonicSettings)
+@configured(SingleHarmonicKeys, "omega")
 def single_harmonic(
-    model: Model,
-    omega: ArrayLike,
-    settings: SingleHarmonicSettings,
-    *,
-    observe: Iterable[str] | str | None = None,
-    progress: Progress = None,
+    model: Model, settings: SingleHarmonicKeys, *, progress: Progress = None
 ) -> ForcedResponse:
     """Steady response over excitation frequency, by a single harmonic.
 
@@ -55,8 +47,6 @@ def single_harmonic(
     model : Model
         Structure, contacts to ground or between degrees of freedom, any number of them, and forces
         of harmonic 1.
-    omega : array_like, shape (n,)
-        Angular frequencies [rad/s], swept in the order given.
 
     Returns
     -------
@@ -74,18 +64,9 @@ def single_harmonic(
     Griffin (1980); Guillen (1999), chapter II, with the sign of eq. (2.13) corrected and the phases
     between several dampers kept, which eqs. (2.40)-(2.43) drop.
     """
-    grid = grid_of(omega)
-    if isinstance(grid, tuple):
-        reason = (
-            f"omega: {brief(omega)} is a range, which a single harmonic cannot choose steps in; "
-            "give a grid, as"
-        )
-        raise ModelError(
-            f"{reason} np.linspace(start, end, 400)",
-            study=f"{reason} {{from = ..., to = ..., points = 400}}",
-        )
+    grid = np.asarray(settings.omega)
     kept = ForcedSettings.of(harmonics=1, max_iterations=settings.max_iterations)
-    dofs = observed_dofs(observe, model)
+    dofs = observed_dofs(settings, model)
     for position, force in enumerate(model.forces, start=1):
         if force.harmonic != 1 and force.amplitude:
             reason = (

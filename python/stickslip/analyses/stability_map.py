@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.analyses.arguments import positive, real_list, require_time
+from stickslip.analyses.arguments import require_time
 from stickslip.analyses.limit_cycles import NegativeDamping
 from stickslip.analyses.run import Progress, Run, share
-from stickslip.analyses.variation import Contacts, parameter_of, variation_of
+from stickslip.analyses.variation import variation_of
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.cycle_arrays import CycleArrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 from stickslip.results.stability import stability_of
 from stickslip.results.stability_map import MapArrays, StabilityMap
-from stickslip.settings.cycles import CycleSettings, MapKeys, MapSettings
+from stickslip.settings.cycles import CycleSettings, LimitSettings, MapKeys, MapSettings
 from stickslip.settings.settings import configured
-from stickslip.settings.variation import Parameter
+from stickslip.settings.variation import one_of
 
 __all__ = ["stability_map"]
 
@@ -28,9 +28,6 @@ def stability_map(
     negative_damping: ArrayLike,
     *,
     settings: MapKeys,
-    stiffness: ArrayLike | None = None,
-    slip_force: ArrayLike | None = None,
-    contacts: Contacts | None = None,
     progress: Progress = None,
 ) -> StabilityMap:
     """Largest negative damping with limit cycles, and with stable ones, over a contact parameter.
@@ -46,9 +43,6 @@ def stability_map(
         Structure and contacts; not a sector of a travelling wave.
     negative_damping : array_like, shape (N, N)
         C_neg of the damping C + r C_neg [kg/s].
-    stiffness, slip_force : array_like, shape (n,)
-        Values of one of them, above 0 [N/m], [N]. Limit ratios depend on slip forces only through
-        their proportions, as all displacements grow with them.
 
     Returns
     -------
@@ -62,13 +56,11 @@ def stability_map(
     """
     require_time(model)
     negative = NegativeDamping.of(negative_damping, model)
-    given: dict[Parameter, ArrayLike | None] = {"stiffness": stiffness, "slip_force": slip_force}
-    name = parameter_of(given)
-    values = np.unique(real_list(given[name], name, "finite values above 0", positive))
+    name = one_of(settings, "stiffness", "slip_force")
+    values = np.unique(getattr(settings, name))
     total = len(values)
-    variation = variation_of(model, name, contacts, settings.common)
-    branch = settings.part(MapKeys)
-    del branch["common"]
+    variation = variation_of(model, name, settings)
+    branch = settings.part(LimitSettings)
     cycles = CycleSettings.of(**branch)
     rows: list[tuple[float, float, float]] = []
     told: list[Diagnostic] = []

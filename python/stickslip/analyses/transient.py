@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
 
 from stickslip import _core
 from stickslip.analyses.arguments import (
@@ -18,10 +17,9 @@ from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.model.state import State
 from stickslip.results.transient import Transient
 from stickslip.results.transient_arrays import TransientArrays
-from stickslip.settings.motion import TransientSettings
+from stickslip.settings.motion import TransientKeys, TransientSettings
 from stickslip.settings.settings import configured
 
 __all__ = ["transient"]
@@ -36,22 +34,9 @@ DROPPED = 16
 """Periods that the core keeps beyond twice the wanted ones before it drops any."""
 
 
-@configured(TransientSettings, "omega", "periods", "scheme")
-def transient(
-    model: Model,
-    settings: TransientSettings,
-    *,
-    start: State | Mapping[str, float] | None = None,
-    observe: Iterable[str] | str | None = None,
-    progress: Progress = None,
-) -> Transient:
+@configured(TransientKeys, "omega", "periods", "scheme")
+def transient(model: Model, settings: TransientKeys, *, progress: Progress = None) -> Transient:
     """Motion from a start state under the forces at one frequency, period after period.
-
-    Parameters
-    ----------
-    start : State or mapping of str to float, optional
-        State at t = 0, or displacements of some degrees of freedom [m], the others and everything
-        else zero. ``other.final`` continues another run. Default: rest.
 
     Returns
     -------
@@ -69,9 +54,10 @@ def transient(
     3.1). The exact flow is this package's.
     """
     require_time(model)
-    dofs = observed_dofs(observe, model)
+    dofs = observed_dofs(settings, model)
     kept = TransientSettings.of(**settings.part(TransientSettings))
     _require_stable(model, kept)
+    start = settings.start
     first = None if start is None else state_of(model, start, "start").vector
     _require_room(model, kept, dofs)
     with Run("transient", progress, model) as run:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TypeAlias
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -13,37 +12,32 @@ from stickslip.model import Model, PointRef, natural_frequencies
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import Float
 from stickslip.settings.entries import Span
-from stickslip.settings.variation import Chosen, Common, Parameter, Variation, located
+from stickslip.settings.variation import (
+    Chosen,
+    Common,
+    ContactKeys,
+    Contacts,
+    Parameter,
+    Variation,
+    located,
+)
 
-__all__ = ["Contacts", "local_stiffness", "parameter_of", "resonance_range", "variation_of"]
-
-Contacts: TypeAlias = Iterable[PointRef] | PointRef
-"""Contacts or points of contacts, or one of them."""
+__all__ = ["chosen_contacts", "local_stiffness", "resonance_range", "variation_of"]
 
 MARGIN = 0.05
 """Share by which the range around a resonance reaches beyond its free and its stuck frequency."""
 
 
-def parameter_of(given: Mapping[Parameter, object]) -> Parameter:
-    """Return the one parameter that is given."""
-    names = [name for name, values in given.items() if values is not None]
-    if len(names) != 1:
-        got = f"{' and '.join(names)} are given" if names else "none is given"
-        raise ModelError(f"{', '.join(given)}: {got}; give exactly one of them")
-    return names[0]
+def variation_of(model: Model, parameter: Parameter, keys: ContactKeys) -> Variation:
+    """Return the variation of a parameter of contacts, or of points of them."""
+    chosen = chosen_contacts(model, parameter, keys.contacts, keys.common)
+    return Variation.of(parameter=parameter, contacts=chosen, common=keys.common)
 
 
-def variation_of(
+def chosen_contacts(
     model: Model, parameter: Parameter, contacts: Contacts | None, common: Common
-) -> Variation:
-    """Return the variation of a parameter of contacts, or of points of them; None are all."""
-    chosen = _chosen_contacts(contacts, parameter, model, common)
-    return Variation.of(parameter=parameter, contacts=chosen, common=common)
-
-
-def _chosen_contacts(
-    contacts: Contacts | None, parameter: Parameter, model: Model, common: Common
 ) -> tuple[Chosen, ...]:
+    """Return the contacts whose parameter is varied, by name, or points of them; None are all."""
     if parameter == "level":
         if contacts is not None:
             raise ModelError("contacts: a level is no parameter of contacts; leave them out")

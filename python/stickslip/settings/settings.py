@@ -18,6 +18,7 @@ from stickslip.checks import brief
 from stickslip.errors import CallError, ModelError
 from stickslip.model import Model
 from stickslip.settings.entries import CALL, Table
+from stickslip.settings.ranges import Or
 from stickslip.settings.refusal import refusal
 
 __all__ = ["Settings", "configured", "described", "type_in_words"]
@@ -85,17 +86,6 @@ def _require_progress(progress: object) -> None:
 
 _COMMON = {
     "model": _Common("Model\n    Structure, contacts and forces.", _require_model),
-    "observe": _Common(
-        """iterable of str, optional
-    Degrees of freedom whose motion is kept. Default: all but modal coordinates
-    ("mode-1", ...)."""
-    ),
-    "contacts": _Common(
-        """int, str, (contact, int), or iterable of these, optional
-    The contacts that take the value, or points of them as (contact, point). Of a contact with
-    several points the slip forces that are finite, unless none is. Default: all contacts; of
-    slip forces those that are finite, unless none is."""
-    ),
     "progress": _Common(
         """callable, optional
     Called about ten times per second with the fraction of the work that is done.""",
@@ -127,7 +117,8 @@ def configured(
     -------
     callable
         Decorator. Signature and documentation of the function have a parameter for every key;
-        `model` and `progress` are checked, and documented like what most analyses raise.
+        `model` and `progress` are checked, and documented like what most analyses raise. A table of
+        a study file, whose keys are checked, is passed on as ``settings``.
     """
 
     def decorate(function: Callable[..., _Result]) -> Callable[..., _Result]:
@@ -151,6 +142,8 @@ def configured(
 
         @wraps(function)
         def call(*args: Any, **keywords: Any) -> _Result:
+            if isinstance(keywords.get("settings"), kind):
+                return function(*args, **keywords)
             try:
                 given = signature.bind(*args, **keywords).arguments
             except TypeError:
@@ -172,7 +165,20 @@ def configured(
 def _parameter(name: str, field: FieldInfo, *, placed: bool = False) -> inspect.Parameter:
     which = inspect.Parameter.POSITIONAL_OR_KEYWORD if placed else inspect.Parameter.KEYWORD_ONLY
     default = inspect.Parameter.empty if field.is_required() else field.default
-    return inspect.Parameter(name, which, default=default, annotation=field.annotation)
+    taken = _taken(field.annotation, field.metadata)
+    return inspect.Parameter(name, which, default=default, annotation=taken)
+
+
+def _taken(annotation: Any, metadata: Iterable[Any] = ()) -> Any:
+    """Return the type of what a call gives; a text where study files write it otherwise."""
+    for one in metadata:
+        if isinstance(one, Or):
+            return one.takes
+    parts = get_args(annotation)
+    if get_origin(annotation) is Annotated:
+        return _taken(parts[0], parts[1:])
+    taken = _taken(parts[0]) if NoneType in parts else annotation
+    return f"{taken} | None" if isinstance(taken, str) else annotation
 
 
 def _documented(text: str, signature: inspect.Signature, keys: Mapping[str, FieldInfo]) -> str:
@@ -216,8 +222,8 @@ def described(name: str, field: FieldInfo, indent: str) -> str:
 def type_in_words(annotation: Any, metadata: Iterable[Any] = ()) -> str:
     """Return a type as numpydoc writes it: ``int or "auto"``, ``{"newton", "broyden"}``."""
     for one in metadata:
-        if isinstance(one, str):
-            return one
+        if isinstance(one, Or):
+            return one.said
     origin, parts = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return type_in_words(parts[0], parts[1:])
