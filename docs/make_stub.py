@@ -17,6 +17,16 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import stickslip as ss
 
 STUB = Path(ss.__file__).with_suffix(".pyi")
+_PLAIN = {
+    "ArrayLike": "numpy.typing",
+    "Contacts": "stickslip.settings.variation",
+    "Iterable": "collections.abc",
+    "Literal": "typing",
+    "Mapping": "collections.abc",
+    "PathLike": "os",
+    "Sequence": "collections.abc",
+}
+"""Where types of keys come from."""
 _HEAD = '"""What the package exports; written by `docs/make_stub.py`."""\n\n'
 
 
@@ -53,7 +63,7 @@ def _function(name: str, function: Any) -> tuple[set[str], str]:
         given.append(f"{one.name}: {kind}{default}")
     text = f"def {name}({', '.join(given)}, ) -> {returned}: ..."
     known = {node.id for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Name)}
-    plain = {"Literal": "typing", "Sequence": "collections.abc"} | origins
+    plain = _PLAIN | origins
     needed = known & plain.keys() - {*ss.__all__}
     return {f"from {plain[one]} import {one}" for one in needed}, text
 

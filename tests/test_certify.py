@@ -8,7 +8,7 @@ import pytest
 
 import stickslip as ss
 from stickslip import _core
-from stickslip.analyses.reference_orbits import Orbits
+from stickslip.analyses.orbits import Orbits
 from stickslip.reference import snecma_beam
 from stickslip.results.certificate import Certificate
 

@@ -124,7 +124,7 @@ def test_ctrl_c_saves_what_was_computed_and_ends_with_130(folder):
 import os, signal, sys
 # a shell in the background has its children ignore Ctrl-C
 signal.signal(signal.SIGINT, signal.default_int_handler)
-import stickslip.study.analysis_tables as tables
+import stickslip.study.analysis as tables
 from stickslip.cli import app
 whole = tables.forced_response
 def interrupted(model, *arguments, **options):

@@ -299,16 +299,16 @@ def test_ctrl_c_saves_the_part_of_a_run(folder):
     write(folder, TRANSIENT.replace("60", "2000000").replace("tolerance = 1e-6\n", ""))
     code = """
 import os, signal
-import stickslip.study.transient_table as table
+from stickslip.study.analysis import TransientTable as table
 from stickslip.cli import app
 signal.signal(signal.SIGINT, signal.default_int_handler)
-whole = table.transient
+whole = table.analysis
 def interrupted(*arguments, **options):
     def interrupt(fraction):
         if fraction > 0:
             os.kill(os.getpid(), signal.SIGINT)
     return whole(*arguments, **(options | {"progress": interrupt}))
-table.transient = interrupted
+table.analysis = interrupted
 app(["run", "study.toml"])
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

@@ -415,7 +415,7 @@ def test_study_files_and_the_command(tmp_path, monkeypatch):
     ).run()
     assert points.limit.value / 2.4e7 == pytest.approx(0.167108, rel=1e-3)
     both = "stiffness = {from = 1e6, to = 1e8}\nslip_force = {from = 1, to = 2}\n"
-    with pytest.raises(ss.ModelError, match="one of stiffness"):
+    with pytest.raises(ss.ModelError, match="follow one of them"):
         Study.parse(STUDY + both, folder=tmp_path)
     (tmp_path / "mass.toml").write_text(STUDY + "ratio = [1, 5]\n")
     for arguments in (["run", "mass.toml"], ["show", "results/mass.nc"]):

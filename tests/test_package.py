@@ -59,4 +59,4 @@ def test_help_names_every_key():
         if not hasattr(value, "__settings__"):
             continue
         for key in inspect.signature(value).parameters:
-            assert re.search(rf"^    (\w+, )*{key}(, \w+)* : ", value.__doc__, re.M), (name, key)
+            assert re.search(rf"^(\w+, )*{key}(, \w+)* : ", value.__doc__, re.M), (name, key)

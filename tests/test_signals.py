@@ -67,7 +67,10 @@ ANALYSES = {
     "single_harmonic": ("ForcedResponse", "ss.single_harmonic(big, np.tile(grid, 100))"),
     "exact_response": ("ExactResponse", "ss.exact_response(big, grid)"),
     "transient": ("Transient", "ss.transient(big, 0.01, 1000, samples=2)"),
-    "rk4": ("Transient", "ss.transient(big, 0.1, 1000, scheme='rk4', steps=20000, samples=2, progress=p)"),
+    "rk4": (
+        "Transient",
+        "ss.transient(big, 0.1, 1000, scheme='rk4', steps=20000, samples=2, progress=p)",
+    ),
     "damper_curve": (
         "DamperCurve",
         "ss.damper_curve(big, slip_force=np.geomspace(0.1, 10, 2000), dof='x3')",
@@ -82,7 +85,8 @@ ANALYSES = {
     "classify": ("MotionClass", "ss.classify(alone, {'x0': 5.0}, periods=10**6)"),
     "basin_map": (
         "BasinMap",
-        "ss.basin_map(alone, {'x0': np.arange(30.0), 'x3': np.arange(30.0)}, threads=1, progress=p)",
+        "ss.basin_map(alone, {'x0': np.arange(30.0), 'x3': np.arange(30.0)}, threads=1, "
+        "progress=p)",
     ),
     "mistuning_study": (
         "MistuningStudy",

@@ -303,7 +303,7 @@ def test_forced_analyses_of_negative_damping_say_that_solutions_may_be_several()
         (lambda m: ss.basin_map(m, {"tip": [0.0], 3: [1.0]}), "mode 3; there are 3"),
         (lambda m: ss.basin_map(m, {"tip": [0.0], "tpi": [1.0]}), "did you mean 'tip'"),
         (lambda m: ss.basin_map(m, {"tip": [], 0: [1.0]}), "finite numbers"),
-        (lambda m: ss.basin_map(m, {"tip": ["a"], 0: [1.0]}), "no numbers"),
+        (lambda m: ss.basin_map(m, {"tip": ["a"], 0: [1.0]}), "no real numbers"),
         (lambda m: ss.basin_map(m, starts=[]), "starts: empty"),
         (lambda m: ss.basin_map(m, starts=[{}, 3]), r"starts\[1\]"),
         (lambda m: ss.basin_map(m, starts=[{}], base={}), "base"),

@@ -84,7 +84,7 @@ def test_every_quantity_may_carry_a_unit():
 )
 def test_a_range_of_omega_is_a_grid_or_adaptive(entry, expected):
     text = SMALL.replace("{from = 1, to = 30, points = 5}", entry)
-    omega = Study.parse(text).tables.analysis.omega.values()
+    omega = Study.parse(text).tables.analysis.omega
     assert type(omega) is type(expected)
     assert omega == pytest.approx(expected)
 

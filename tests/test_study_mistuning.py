@@ -153,15 +153,15 @@ def test_ctrl_c_saves_the_part_and_the_next_run_goes_on(folder):
     Path("ring.toml").write_text(TEXT.replace("patterns = 32", "patterns = 3000"))
     code = """
 import os, signal
-import stickslip.study.mistuning_study_table as table
+from stickslip.study.analysis import MistuningStudyTable as table
 from stickslip.cli import app
 signal.signal(signal.SIGINT, signal.default_int_handler)
-whole = table.mistuning_study
+whole = table.analysis
 def interrupted(*arguments, **options):
     def interrupt(fraction):
         os.kill(os.getpid(), signal.SIGINT)
     return whole(*arguments, **(options | {"progress": interrupt}))
-table.mistuning_study = interrupted
+table.analysis = interrupted
 app(["run", "ring.toml"])
 """
     environment = os.environ | {"OMP_NUM_THREADS": "1"}

@@ -11,10 +11,9 @@ from stickslip import plot as plot
 from stickslip import reference as reference
 from stickslip import study as study
 from stickslip._core import __version__ as __version__
-from stickslip.analyses.arguments import Progress
 from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle
 from stickslip.analyses.flutter_formulas import single_harmonic_cycles as single_harmonic_cycles
-from stickslip.analyses.variation import Contacts
+from stickslip.analyses.run import Progress
 from stickslip.disk import BladedDisk as BladedDisk
 from stickslip.disk import Coupling as Coupling
 from stickslip.disk import InfluenceCoefficients as InfluenceCoefficients
@@ -63,20 +62,18 @@ from stickslip.results.optimal_damper import OptimalDamper as OptimalDamper
 from stickslip.results.stability_map import StabilityMap as StabilityMap
 from stickslip.results.store import load as load
 from stickslip.results.transient import Transient as Transient
-from stickslip.settings.entries import Span
-from stickslip.settings.motion import Axis
-from stickslip.settings.variation import Parameter
+from stickslip.settings.variation import Contacts
 
 def basin_map(
     model: Model,
-    axes: Mapping[Axis, ArrayLike] | None = None,
+    axes: Mapping[str | int, ArrayLike] | None = None,
     *,
+    observe: Iterable[str] | str | None = None,
     periods: int = 3000,
     tolerance: float = 1e-06,
+    base: State | Mapping[str, float] | None = None,
     threads: int | None = None,
     starts: Iterable[State | Mapping[str, float]] | None = None,
-    base: State | Mapping[str, float] | None = None,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> BasinMap: ...
 def certify(
@@ -91,9 +88,9 @@ def classify(
     model: Model,
     start: State | Mapping[str, float],
     *,
+    observe: Iterable[str] | str | None = None,
     periods: int = 3000,
     tolerance: float = 1e-06,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> MotionClass: ...
 def damper_curve(
@@ -101,6 +98,7 @@ def damper_curve(
     *,
     dof: str,
     common: Literal["value", "factor"] = "value",
+    contacts: Contacts | None = None,
     max_iterations: int = 100,
     residual: Literal["centred", "from_rest"] | float = "centred",
     harmonics: int | Literal["auto"] = "auto",
@@ -108,29 +106,29 @@ def damper_curve(
     max_harmonics: int = 255,
     measure: Literal["half_range", "max", "fundamental"] = "half_range",
     mode: int = 0,
+    omega: tuple[float, float] | None = None,
     slip_force: ArrayLike | None = None,
     stiffness: ArrayLike | None = None,
     level: ArrayLike | None = None,
-    contacts: Contacts | None = None,
-    omega: Span | None = None,
     progress: Progress = None,
 ) -> DamperCurve: ...
 def exact_response(
     model: Model,
-    omega: ArrayLike | Span,
+    omega: ArrayLike | tuple[float, float],
     *,
+    observe: Iterable[str] | str | None = None,
     max_iterations: int = 100,
     residual: Literal["centred", "from_rest"] | float = "centred",
     harmonics: int = 32,
     tolerance: float = 0.001,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> ExactResponse: ...
 def forced_response(
     model: Model,
-    omega: ArrayLike | Span,
+    omega: ArrayLike | tuple[float, float],
     harmonics: int | Literal["auto"] = "auto",
     *,
+    observe: Iterable[str] | str | None = None,
     max_iterations: int = 100,
     residual: Literal["centred", "from_rest"] | float = "centred",
     tolerance: float = 0.001,
@@ -140,7 +138,6 @@ def forced_response(
     evaluation: Literal["exact", "marched"] = "exact",
     samples: int | Literal["auto"] = "auto",
     max_samples: int = 16384,
-    observe: Iterable[str] | str | None = None,
     outputs: Iterable[str] | str = (),
     progress: Progress = None,
 ) -> ForcedResponse: ...
@@ -149,6 +146,7 @@ def limit_cycles(
     negative_damping: ArrayLike | DampingLaw,
     *,
     common: Literal["value", "factor"] = "value",
+    contacts: Contacts | None = None,
     mode: int = 0,
     harmonics: int | Literal["auto"] = 31,
     method: Literal["newton", "exact"] = "newton",
@@ -156,30 +154,29 @@ def limit_cycles(
     stability: bool = True,
     max_harmonics: int = 255,
     max_points: int = 5000,
-    ratio: ArrayLike | Span | None = None,
-    stiffness: ArrayLike | Span | None = None,
-    slip_force: ArrayLike | Span | None = None,
-    contacts: Contacts | None = None,
+    ratio: ArrayLike | tuple[float, float] | None = None,
+    stiffness: ArrayLike | tuple[float, float] | None = None,
+    slip_force: ArrayLike | tuple[float, float] | None = None,
     progress: Progress = None,
 ) -> LimitCycles: ...
 def mistuning_study(
     disk: BladedDisk,
     deviation: ArrayLike,
     *,
+    omega: tuple[float, float],
     max_iterations: int = 100,
     residual: Literal["centred", "from_rest"] | float = "centred",
     harmonics: int | Literal["auto"] = "auto",
     tolerance: float = 0.001,
     max_harmonics: int = 255,
     measure: Literal["half_range", "max", "fundamental"] = "half_range",
-    seed: int = 0,
-    distribution: Literal["normal", "uniform"] = "normal",
-    threads: int | None = None,
-    omega: Span,
     patterns: int | ArrayLike = 1000,
     dofs: Iterable[str] | str | None = None,
     coupling_stiffness: ArrayLike | None = None,
     store: str | PathLike[str] | None = None,
+    seed: int = 0,
+    distribution: Literal["normal", "uniform"] = "normal",
+    threads: int | None = None,
     progress: Progress = None,
 ) -> MistuningStudy: ...
 def optimal_damper(
@@ -187,6 +184,7 @@ def optimal_damper(
     *,
     dof: str,
     common: Literal["value", "factor"] = "value",
+    contacts: Contacts | None = None,
     max_iterations: int = 100,
     residual: Literal["centred", "from_rest"] | float = "centred",
     harmonics: int | Literal["auto"] = "auto",
@@ -194,19 +192,18 @@ def optimal_damper(
     max_harmonics: int = 255,
     measure: Literal["half_range", "max", "fundamental"] = "half_range",
     mode: int = 0,
-    parameter: Parameter = "slip_force",
+    omega: tuple[float, float] | None = None,
+    parameter: Literal["slip_force", "stiffness", "level"] = "slip_force",
     bounds: tuple[float, float] | None = None,
-    contacts: Contacts | None = None,
-    omega: Span | None = None,
     progress: Progress = None,
 ) -> OptimalDamper: ...
 def single_harmonic(
     model: Model,
-    omega: ArrayLike,
+    omega: ArrayLike | tuple[float, float],
     *,
+    observe: Iterable[str] | str | None = None,
     max_iterations: int = 100,
     estimate: bool = True,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> ForcedResponse: ...
 def stability_map(
@@ -214,12 +211,12 @@ def stability_map(
     negative_damping: ArrayLike,
     *,
     common: Literal["value", "factor"] = "value",
+    contacts: Contacts | None = None,
     mode: int = 0,
     harmonics: int | Literal["auto"] = 31,
     method: Literal["newton", "exact"] = "exact",
     stiffness: ArrayLike | None = None,
     slip_force: ArrayLike | None = None,
-    contacts: Contacts | None = None,
     progress: Progress = None,
 ) -> StabilityMap: ...
 def transient(
@@ -228,11 +225,11 @@ def transient(
     periods: int = 200,
     scheme: Literal["exact", "rk4"] = "exact",
     *,
+    observe: Iterable[str] | str | None = None,
     tolerance: float | None = None,
     steps: int = 1000,
     samples: int = 128,
     keep: int | None = None,
     start: State | Mapping[str, float] | None = None,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> Transient: ...

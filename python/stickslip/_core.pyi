@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from stickslip.settings.balance import BalanceSettings, HarmonicSettings, SteadySettings
 from stickslip.settings.cycles import CycleSettings
 from stickslip.settings.motion import ClassifySettings, TransientSettings
-from stickslip.settings.orbits import ExactSettings, SingleHarmonicSettings
+from stickslip.settings.orbits import ExactSettings, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperSettings, MistuningSettings
 
 Float = NDArray[np.float64]
@@ -102,7 +102,7 @@ def single_harmonic(
     problem: Problem,
     omega: Float,
     observe: NDArray[np.int64],
-    settings: SingleHarmonicSettings,
+    settings: SingleHarmonicKeys,
     progress: Progress,
 ) -> Solution: ...
 

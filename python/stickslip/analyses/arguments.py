@@ -1,50 +1,38 @@
-"""Checks of the arguments of analyses: frequencies, degrees of freedom, preload."""
+"""Checks of the arguments of analyses: lists of numbers, degrees of freedom, preload."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from typing import TypeAlias
+from collections.abc import Iterable, Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from stickslip.checks import brief, text, unknown
+from stickslip.checks import brief, unknown
 from stickslip.disk.arguments import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.settings.balance import HarmonicSettings
-from stickslip.settings.entries import Residual, Span, span_of
+from stickslip.model.state import State
+from stickslip.results.arrays import Int
+from stickslip.settings.balance import HarmonicSettings, ObserveKeys
+from stickslip.settings.entries import Residual
 
 __all__ = [
-    "Progress",
+    "columns_of",
     "driving_dofs",
-    "grid_of",
+    "highest_harmonic",
+    "known_dofs",
     "loaded_dofs",
     "observed_dofs",
     "physical_dofs",
-    "prepare",
+    "points_of",
     "require_forced",
     "require_held",
-    "require_model",
-    "require_progress",
     "require_time",
+    "state_of",
 ]
 
 _MODAL = re.compile(r"(.*\.)?mode-\d+")
-
-Progress: TypeAlias = Callable[[float], None] | None
-
-
-def require_model(model: object) -> None:
-    """Refuse what is no `Model`."""
-    if not isinstance(model, Model):
-        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
-
-
-def prepare(model: Model) -> None:
-    """Decompose a model while Ctrl-C still ends an analysis at any line: nothing is lost yet."""
-    _ = model.problem
 
 
 def require_time(model: Model) -> None:
@@ -55,39 +43,6 @@ def require_time(model: Model) -> None:
             f"model: a tuned BladedDisk is {reason}; give all sectors, disk.mistuned(0)",
             study=f"disk: a tuned disk is {reason}; compute all sectors, {ALL_SECTORS}",
         )
-
-
-def require_progress(progress: object) -> None:
-    """Refuse what cannot be told how far a run is."""
-    if progress is not None and not callable(progress):
-        raise ModelError(
-            f"progress: {brief(progress)} cannot be called; give a function of a fraction"
-        )
-
-
-def grid_of(omega: ArrayLike | Span) -> NDArray[np.float64] | Span:
-    """Tell a range from a grid, and return either checked."""
-    if isinstance(omega, tuple) and len(omega) == 2:
-        return span_of(omega, "omega")
-    try:
-        values = np.asarray(omega)
-    except ValueError:
-        raise ModelError("omega: a ragged list; give one list of frequencies in rad/s") from None
-    if values.dtype.kind not in "fiu":
-        shown = repr(omega) if values.size < 5 else f"an array of {values.dtype}"
-        raise ModelError(f"omega: {shown} holds no real numbers; give frequencies in rad/s")
-    if values.ndim != 1:
-        remedy = f"write [{values:g}]" if values.ndim == 0 else "give one list of frequencies"
-        raise ModelError(f"omega: shape {values.shape} instead of (n,); {remedy}")
-    if not values.size:
-        raise ModelError("omega: empty; give at least one frequency in rad/s")
-    grid = np.array(values, dtype=np.float64)
-    bad = np.flatnonzero(~(np.isfinite(grid) & (grid > 0.0)))
-    if bad.size:
-        raise ModelError(
-            f"omega[{bad[0]}] is {grid[bad[0]]:g}; give finite frequencies above 0 rad/s"
-        )
-    return grid
 
 
 def physical_dofs(model: Model) -> tuple[str, ...]:
@@ -108,43 +63,62 @@ def loaded_dofs(model: Model) -> tuple[str, ...]:
 
 
 def driving_dofs(
-    model: Model,
-    dofs: tuple[str, ...],
-    observe: Iterable[str] | str | None,
-    outputs: Iterable[str] | str,
-) -> NDArray[np.int64]:
+    model: Model, dofs: tuple[str, ...], outputs: Iterable[str] | str, *, named: bool
+) -> Int:
     """Return the positions among `dofs` of those that automatic harmonics and steps follow.
 
     All, if they were named; else the outputs and those with a force or a contact. None are all.
     """
-    named = {outputs} if isinstance(outputs, str) else set(outputs)
-    for name in sorted(named - set(dofs)):
+    shown = {outputs} if isinstance(outputs, str) else set(outputs)
+    for name in sorted(shown - set(dofs)):
         raise ModelError(f"outputs: {unknown('dof', name, dofs)}")
-    followed = named | set(loaded_dofs(model)) if observe is None else set()
+    followed = set() if named else shown | set(loaded_dofs(model))
     driving = [position for position, dof in enumerate(dofs) if dof in followed]
     return np.array(driving, dtype=np.int64)
 
 
-def observed_dofs(observe: Iterable[str] | str | None, model: Model) -> tuple[str, ...]:
-    """Return the degrees of freedom to observe, each known and named once.
-
-    By default those with a meaning of their own: all but the modal coordinates of a reduction.
-    """
-    known = model.structure.dofs
-    if observe is None:
+def observed_dofs(keys: ObserveKeys, model: Model) -> tuple[str, ...]:
+    """Return the degrees of freedom to observe, by default all but modal coordinates."""
+    if keys.observe is None:
         return physical_dofs(model)
-    if not isinstance(observe, Iterable):
-        raise ModelError(f"observe: {brief(observe)} is not a list of names; write [{known[0]!r}]")
-    names = (observe,) if isinstance(observe, str) else tuple(observe)
-    if not names:
-        raise ModelError("observe: no dof; name at least one, or leave it out for all")
-    for position, name in enumerate(names):
-        text(name, f"observe[{position}]")
+    return known_dofs(keys.observe, "observe", "dof", model)
+
+
+def known_dofs(names: Iterable[str], entry: str, kind: str, model: Model) -> tuple[str, ...]:
+    """Return names of degrees of freedom that the model has."""
+    known = model.structure.dofs
+    for name in names:
         if name not in known:
-            raise ModelError(f"observe: {unknown('dof', name, known)}")
-        if name in names[:position]:
-            raise ModelError(f"observe: {name!r} is given more than once; name each dof once")
-    return tuple(map(str, names))
+            raise ModelError(f"{entry}: {unknown(kind, name, known)}")
+    return tuple(names)
+
+
+def columns_of(dofs: Iterable[str], model: Model) -> Int:
+    """Return the positions of degrees of freedom in the structure."""
+    return np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64)
+
+
+def points_of(model: Model) -> int:
+    """Return the number of contact points."""
+    return sum(contact.points for contact in model.contacts)
+
+
+def highest_harmonic(model: Model) -> int:
+    """Return the highest harmonic of the forces, at least 1."""
+    return max((1, *(force.harmonic for force in model.forces)))
+
+
+def state_of(model: Model, start: object, entry: str) -> State:
+    """Return a start as a state of the model; displacements alone are one, too."""
+    if isinstance(start, Mapping):
+        return State(model, displacement=start)
+    if not isinstance(start, State):
+        raise ModelError(
+            f"{entry}: {brief(start)} is no state; give ss.State(model, ...), the final state of "
+            "another run, or {dof: displacement}"
+        )
+    start.require_fit(model, entry)
+    return start
 
 
 def require_forced(model: Model, settings: HarmonicSettings) -> None:

@@ -1,4 +1,4 @@
-"""What an analysis took for granted."""
+"""What an analysis took for granted, and what to look at before its numbers are used."""
 
 from __future__ import annotations
 
@@ -7,24 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.analyses.contact_assumptions import (
-    contact_assumptions,
-    residual_assumption,
-    start_assumption,
-)
 from stickslip.analyses.uniqueness import uniqueness
-from stickslip.model import Model, natural_frequencies
+from stickslip.model import Model, StructuralDamper, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
 from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
+    from stickslip import _core
     from stickslip.settings.balance import ForcedSettings
+    from stickslip.settings.entries import Span
     from stickslip.settings.motion import TransientSettings
     from stickslip.settings.orbits import ExactSettings
 
 __all__ = [
-    "assumptions_of",
+    "LARGE_ERROR",
+    "balance_assumptions",
     "direct_assumption",
     "orbit_assumptions",
     "transient_assumptions",
@@ -69,59 +67,43 @@ _DIRECT = (
 )
 
 
-def assumptions_of(
+def balance_assumptions(
     model: Model,
     settings: ForcedSettings,
     dofs: tuple[str, ...],
     arrays: Arrays,
+    solution: _core.Solution,
+    asked: int | None,
     *,
-    half_wave: bool,
-    missing: int = 0,
-    interrupted: bool = False,
     single: bool = False,
-    orbits: int = 0,
 ) -> tuple[Diagnostic, ...]:
-    """Say what a forced response took for granted.
+    """Say what a harmonic balance took for granted.
 
-    Parameters
-    ----------
-    model : Model
-        What was computed.
-    settings : ForcedSettings
-        How.
-    dofs : tuple of str
-        The observed degrees of freedom.
-    arrays : Arrays
-        What came out.
-    half_wave : bool
-        Whether only odd harmonics were solved for.
-    missing : int, optional
-        Number of points asked for that are not among the arrays.
-    interrupted : bool, optional
-        Whether the run was stopped before its end.
-    single : bool, optional
-        Whether the method knows one harmonic only, and says so itself.
-    orbits : int, optional
-        Number of points whose harmonics are those of exact orbits.
-
-    Returns
-    -------
-    tuple of Diagnostic
-        Those that do not apply are left out.
+    `asked` counts the frequencies of a grid. A `single` harmonic says itself that it is one.
     """
+    orbits = solution.counters.get("orbits", 0)
+    remedy = "forced_response keeps more of them" if single else "keep more harmonics there"
     # Numbers far outside any unit overflow when squared; what is not finite then is left out.
     with np.errstate(all="ignore"):
         return present(
             (
-                None if single else _harmonics(settings, arrays, half_wave),
-                *contact_assumptions(model, settings, arrays),
+                None if single else _harmonics(settings, arrays, solution.half_wave),
+                _static_traction(model, settings, arrays),
+                _start_of_march(model),
+                bool(model.contacts) and _samples(settings, arrays),
                 _base(model),
                 direct_assumption(model),
-                _frequencies(settings, arrays, missing, interrupted=interrupted),
-                _orbits(orbits),
+                _frequencies(settings.span, settings.tolerance, arrays, solution, asked),
+                orbits > 0
+                and diagnostic(
+                    "exact-orbits",
+                    f"{orbits} {'point takes its' if orbits == 1 else 'points take their'} "
+                    "harmonics from the exact orbit, which costs less than a balance of as many.",
+                    points=orbits,
+                ),
                 _observed(model, dofs),
                 uniqueness(model),
-                _truncation(dofs, arrays, _OTHER_METHOD if single else "keep more harmonics there"),
+                _truncation(dofs, arrays, remedy),
                 missed_tolerances(arrays.status, "points"),
             )
         )
@@ -132,38 +114,17 @@ def orbit_assumptions(
     settings: ExactSettings,
     dofs: tuple[str, ...],
     arrays: Arrays,
-    *,
-    half_wave: bool,
-    missing: int = 0,
+    solution: _core.Solution,
+    asked: int,
 ) -> tuple[Diagnostic, ...]:
-    """Say what exact orbits took for granted.
-
-    Parameters
-    ----------
-    model, settings, dofs, arrays, half_wave, missing
-        As of `assumptions_of`; `half_wave` says that orbits were sought on half a period.
-
-    Returns
-    -------
-    tuple of Diagnostic
-        Those that do not apply are left out.
-    """
+    """Say what exact orbits took for granted."""
+    low, high = sorted(settings.span or (0.0, 0.0))
     half = (
         "Orbits were sought on half a period: the forces and the friction laws are half-wave "
         "symmetric, and so is the steady motion."
-        if half_wave
+        if solution.half_wave
         else "Only motions of the period of the forces were sought."
     )
-    chosen = None
-    if settings.span is not None:
-        low, high = sorted(settings.span)
-        chosen = diagnostic(
-            "frequencies",
-            f"The frequencies between {low:g} and {high:g} rad/s are those that an adaptive "
-            f"harmonic balance chose to a tolerance of {settings.tolerance:g}.",
-            tolerance=settings.tolerance,
-        )
-    without_span = settings.model_copy(update={"span": None})
     with np.errstate(all="ignore"):
         return present(
             (
@@ -174,10 +135,16 @@ def orbit_assumptions(
                     "truncation.",
                     most=settings.harmonics,
                 ),
-                residual_assumption(model, settings, arrays),
-                start_assumption(model),
-                chosen,
-                _frequencies(without_span, arrays, missing, interrupted=missing > 0),
+                _static_traction(model, settings, arrays),
+                _start_of_march(model),
+                settings.span is not None
+                and diagnostic(
+                    "frequencies",
+                    f"The frequencies between {low:g} and {high:g} rad/s are those that an "
+                    f"adaptive harmonic balance chose to a tolerance of {settings.tolerance:g}.",
+                    tolerance=settings.tolerance,
+                ),
+                _frequencies(None, settings.tolerance, arrays, solution, asked),
                 _observed(model, dofs),
                 uniqueness(model),
                 missed_tolerances(arrays.status, "points"),
@@ -190,34 +157,13 @@ def transient_assumptions(
     settings: TransientSettings,
     dofs: tuple[str, ...],
     start: object,
-    *,
-    settled: bool,
-    unbounded: bool,
+    history: _core.History,
 ) -> tuple[Diagnostic, ...]:
-    """Say what a transient took for granted.
-
-    Parameters
-    ----------
-    model : Model
-        What was computed.
-    settings : TransientSettings
-        How.
-    dofs : tuple of str
-        The observed degrees of freedom.
-    start : object
-        What the run was started from, as it was given.
-    settled, unbounded : bool
-        How it ended.
-
-    Returns
-    -------
-    tuple of Diagnostic
-        Those that do not apply are left out.
-    """
+    """Say what a transient took for granted; `start` as it was given."""
     begun = "rest" if start is None else "a given state"
     if isinstance(start, Mapping):
         begun = "given displacements, without velocities and contact forces"
-    history = (
+    mean = (
         "; a contact that never slips keeps for ever the mean force of its start, so that means "
         "depend on it while half ranges do not"
         if model.contacts
@@ -229,19 +175,97 @@ def transient_assumptions(
         if settings.scheme == "rk4"
         else "The motion was followed exactly between the instants of stick and slip."
     )
-    open_end = not settled and not unbounded and settings.tolerance is None
-    with np.errstate(all="ignore"):
-        return present(
-            (
-                diagnostic("start", f"The run starts from {begun}{history}."),
-                diagnostic("time-steps", stepped, scheme=settings.scheme),
-                _coarse_steps(model, settings),
-                diagnostic("no-tolerance", _UNASKED) if open_end else None,
-                _kept(settings),
-                _observed(model, dofs),
-                uniqueness(model),
-            )
+    turn = turn_per_step(model, settings)
+    needed = int(np.ceil(settings.steps * turn / COARSE_TURN))
+    return present(
+        (
+            diagnostic("start", f"The run starts from {begun}{mean}."),
+            diagnostic("time-steps", stepped, scheme=settings.scheme),
+            turn > COARSE_TURN
+            and diagnostic(
+                "coarse-steps",
+                f"The highest stuck natural frequency turns by {turn:.2g} rad in a Runge-Kutta "
+                f"step, too much to be followed well; take {needed} steps per period.",
+                turn=turn,
+                needed=needed,
+            ),
+            not (history.settled or history.unbounded)
+            and settings.tolerance is None
+            and diagnostic(
+                "no-tolerance",
+                "No tolerance was given, so that the last period need not be a steady one; see "
+                "change.",
+            ),
+            settings.keep is not None
+            and settings.keep < settings.periods
+            and diagnostic(
+                "kept-periods",
+                f"Time histories and events are kept of the last {settings.keep} periods only.",
+                periods=settings.keep,
+            ),
+            _observed(model, dofs),
+            uniqueness(model),
         )
+    )
+
+
+def _static_traction(
+    model: Model, settings: ForcedSettings | ExactSettings, arrays: Arrays
+) -> Diagnostic | None:
+    """Say what contacts that never slip were taken to hold."""
+    stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
+    if all(contact.points > 1 for contact in model.contacts) or not stuck.any():
+        return None
+    held = {
+        "centred": "no force at mid-range of its displacement",
+        "from_rest": "the force it built up from zero displacement",
+    }.get(str(settings.residual), f"{settings.residual} N at mid-range of its displacement")
+    return diagnostic(
+        "static-traction",
+        f"A contact that never slips was taken to hold {held} (residual={settings.residual!r}, "
+        f"of effect at {stuck.sum()} of {stuck.size} points); residual_bounds gives what it could "
+        "hold.",
+        residual=settings.residual,
+        points=int(stuck.sum()),
+    )
+
+
+def _start_of_march(model: Model) -> Diagnostic | None:
+    """Say how dampers of several points begin, and what holds them."""
+    several = [one for one in model.contacts if isinstance(one, StructuralDamper)]
+    told = [
+        "The march through a damper of several points begins without slip, so that points which "
+        "never slip hold what they built up from zero displacement, and no mean force where the "
+        "motion is half-wave symmetric",
+        *(
+            f"the rows of the stiffness of {one.name!r} do not sum to zero "
+            f"({one.grounding:.3g} N/m): it is also held by the ground, and its forces have a "
+            "resultant"
+            for one in several
+            if one.grounding
+        ),
+    ]
+    return diagnostic("start-of-march", f"{'; '.join(told)}.") if several else None
+
+
+def _samples(settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
+    taken = arrays.samples[arrays.solved]
+    if settings.march is None or not taken.size:
+        return None
+    least, most = int(taken.min()), int(taken.max())
+    count = f"{least}" if least == most else f"{least} to {most}"
+    chosen = (
+        f", chosen per point to a quarter of the tolerance of {settings.tolerance:g}"
+        if settings.march == "auto"
+        else ""
+    )
+    return diagnostic(
+        "samples",
+        f"The contact forces were marched through {count} samples per period{chosen}; the error "
+        "of the sampling is part of the error estimate.",
+        least=least,
+        most=most,
+    )
 
 
 def _base(model: Model) -> Diagnostic | None:
@@ -250,68 +274,19 @@ def _base(model: Model) -> Diagnostic | None:
 
 
 def direct_assumption(model: Model) -> Diagnostic | None:
-    """Say that points cost factorisations, and why, where no modes carry the compliance.
-
-    Parameters
-    ----------
-    model : Model
-        What was computed.
-
-    Returns
-    -------
-    Diagnostic or None
-        None where modes serve.
-    """
+    """Say that points cost factorisations, and why, where no modes carry the compliance."""
     return diagnostic("direct-solution", _DIRECT) if model.problem.is_direct else None
 
 
 def turn_per_step(model: Model, settings: TransientSettings) -> float:
     """Return the angle by which the fastest stuck motion turns in a Runge-Kutta step [rad].
 
-    Parameters
-    ----------
-    model : Model
-        What moves.
-    settings : TransientSettings
-        The frequency of the forces and the steps per period.
-
-    Returns
-    -------
-    float
-        Highest natural frequency with all contacts stuck times the step; 0 for another scheme.
+    The highest natural frequency with all contacts stuck times the step; 0 for another scheme.
     """
     if settings.scheme != "rk4":
         return 0.0
     step = 2.0 * np.pi / (settings.omega * settings.steps)
     return step * float(natural_frequencies(model)[-1])
-
-
-def _coarse_steps(model: Model, settings: TransientSettings) -> Diagnostic | None:
-    turn = turn_per_step(model, settings)
-    if not turn > COARSE_TURN:
-        return None
-    needed = int(np.ceil(settings.steps * turn / COARSE_TURN))
-    return diagnostic(
-        "coarse-steps",
-        f"The highest stuck natural frequency turns by {turn:.2g} rad in a Runge-Kutta step, too "
-        f"much to be followed well; take {needed} steps per period.",
-        turn=turn,
-        needed=needed,
-    )
-
-
-_OTHER_METHOD = "forced_response keeps more of them"
-_UNASKED = "No tolerance was given, so that the last period need not be a steady one; see change."
-
-
-def _kept(settings: TransientSettings) -> Diagnostic | None:
-    if settings.keep is None or settings.keep >= settings.periods:
-        return None
-    return diagnostic(
-        "kept-periods",
-        f"Time histories and events are kept of the last {settings.keep} periods only.",
-        periods=settings.keep,
-    )
 
 
 def _harmonics(settings: ForcedSettings, arrays: Arrays, half_wave: bool) -> Diagnostic | None:
@@ -340,27 +315,31 @@ def _harmonics(settings: ForcedSettings, arrays: Arrays, half_wave: bool) -> Dia
 
 
 def _frequencies(
-    settings: ForcedSettings | ExactSettings, arrays: Arrays, missing: int, *, interrupted: bool
+    span: Span | None,
+    tolerance: float,
+    arrays: Arrays,
+    solution: _core.Solution,
+    asked: int | None,
 ) -> Diagnostic | None:
     count = int((arrays.status != Status.NOT_COMPUTED.code).sum())
+    missing = 0 if asked is None else asked - solution.computed
     reached = f"{arrays.omega[-1] if count else np.nan:.6g} rad/s"
-    if settings.span is None:
+    if span is None:
         if not missing:
             return None
         text = (
             f"The run was interrupted after {count} of {count + missing} frequencies, at {reached}."
         )
-    elif interrupted:
-        start, end = settings.span
+    elif solution.interrupted:
         text = (
-            f"The run from {start:g} to {end:g} rad/s was interrupted: its {count} frequencies, "
-            f"chosen to a tolerance of {settings.tolerance:g}, end at {reached}."
+            f"The run from {span[0]:g} to {span[1]:g} rad/s was interrupted: its {count} "
+            f"frequencies, chosen to a tolerance of {tolerance:g}, end at {reached}."
         )
     else:
-        low, high = sorted(settings.span)
+        low, high = sorted(span)
         text = (
             f"The {count} frequencies between {low:g} and {high:g} rad/s were chosen to a "
-            f"tolerance of {settings.tolerance:g}."
+            f"tolerance of {tolerance:g}."
         )
     return diagnostic("frequencies", text, count=count, missing=missing)
 
@@ -375,17 +354,6 @@ def _observed(model: Model, dofs: tuple[str, ...]) -> Diagnostic | None:
         f"Only {len(dofs)} of {total} dofs are kept in the result: {listed}.",
         kept=len(dofs),
         total=total,
-    )
-
-
-def _orbits(count: int) -> Diagnostic | None:
-    if not count:
-        return None
-    return diagnostic(
-        "exact-orbits",
-        f"{count} {'point takes its' if count == 1 else 'points take their'} harmonics from the "
-        "exact orbit, which costs less than a balance of as many.",
-        points=count,
     )
 
 

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from stickslip.analyses.arguments import Progress, observed_dofs, prepare, require_progress
-from stickslip.analyses.classify import (
-    fate_assumptions,
-    fates_of,
-    free,
-    start_of,
-)
+from stickslip.analyses.arguments import columns_of, observed_dofs, state_of
+from stickslip.analyses.classify import fate_assumptions, fates_of, free
 from stickslip.analyses.memory import require_numbers
-from stickslip.checks import brief, members, unknown, whole_number
+from stickslip.analyses.run import Progress, Run
+from stickslip.checks import members, unknown, whole_number
 from stickslip.errors import ModelError
-from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
@@ -28,16 +23,15 @@ from stickslip.settings.settings import configured
 
 __all__ = ["basin_map"]
 
+Grid: TypeAlias = tuple[tuple[Axis, tuple[float, ...]], ...]
 
-@configured(BasinKeys)
+
+@configured(BasinKeys, "axes")
 def basin_map(
     model: Model,
-    axes: Mapping[Axis, ArrayLike] | None = None,
     *,
     settings: BasinKeys,
     starts: Iterable[State | Mapping[str, float]] | None = None,
-    base: State | Mapping[str, float] | None = None,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> BasinMap:
     """Find out what becomes of free motions from many starts, on all processors.
@@ -45,15 +39,9 @@ def basin_map(
     Parameters
     ----------
     model : Model
-        As of `classify`.
-    axes : mapping of str or int to array_like, optional
-        Two axes of a map with their values [m], the first drawn upwards, the second to the right:
-        the displacement of a degree of freedom by its name, or the amplitude of a stuck mode by its
-        number, counted from 0; a mode of amplitude a moves its largest displacement by a.
+        Structure and contacts; its forces play no part. See `classify`.
     starts : iterable of State or mapping, optional
         Instead of axes: the starts, each as `classify` takes it.
-    base : State or mapping, optional
-        What the axes are added to. Default: rest.
 
     Returns
     -------
@@ -63,33 +51,31 @@ def basin_map(
     Raises
     ------
     ModelError
-        As `classify`; if not exactly one of axes and starts is given, or there are not two axes.
-    Interrupted
-        On Ctrl-C; its `result` holds the starts that had been decided, the others as undecided.
+        If the model is a travelling wave, not exactly one of axes and starts is given, or there
+        are not two axes.
 
     References
     ----------
     Guillen (1999), section 5.4.1, which tries eight starts about each orbit.
     """
     alone = free(model)
-    require_progress(progress)
-    dofs = observed_dofs(observe, alone)
-    if (axes is None) == (starts is None):
-        given = "neither is" if axes is None else "both are"
-        raise ModelError(f"axes, starts: {given} given; give one of them")
-    grid = () if axes is None else _axes(alone, axes)
-    kept = BasinSettings.of(**settings.part(ClassifySettings), axes=grid)
+    dofs = observed_dofs(settings, alone)
+    grid: Grid = ()
     if starts is None:
-        states = _over_axes(alone, grid, start_of(alone, {} if base is None else base, "base"))
+        if settings.axes is None:
+            raise ModelError("axes, starts: neither is given; give one of them")
+        grid = _axes(alone, settings.axes)
+        base = state_of(alone, settings.base or {}, "base")
+        states = _over_axes(alone, grid, base)
     else:
-        if base is not None:
-            raise ModelError("base: given beside starts; put it into them")
+        for name in ("axes", "base"):
+            if getattr(settings, name) is not None:
+                raise ModelError(f"{name}: given beside starts; give one of them")
         states = _listed(alone, starts)
-    prepare(alone)
-    with Interruption(progress) as watch:
-        fates = fates_of(alone, states, kept, settings.threads or 0, watch)
-        observed = [alone.structure.index(dof) for dof in dofs]
-        amplitude = fates.columns["amplitude"][:, observed]
+    kept = BasinSettings.of(**settings.part(ClassifySettings), axes=grid)
+    with Run("basin map", progress, alone) as run:
+        fates = fates_of(alone, states, kept, settings.threads or 0, run)
+        amplitude = fates.columns["amplitude"][:, columns_of(dofs, alone)]
         arrays = FateArrays.of(fates, start=states, amplitude=amplitude)
         result = BasinMap(
             model=alone,
@@ -101,39 +87,22 @@ def basin_map(
             counters={"events": int(arrays.events.sum())},
             diagnostics=fate_assumptions(model, kept),
         )
-        if result.interrupted:
-            done = sum(reason != "interrupted" for reason in result.reason)
-            raise stopped("basin map", f"{done} of {len(result)} starts", result)
-        return watch.completed(result, "basin map")
+        done = sum(reason != "interrupted" for reason in result.reason)
+        return run.ended(result, f"{done} of {len(result)} starts")
 
 
-def _axes(model: Model, axes: object) -> tuple[tuple[Axis, tuple[float, ...]], ...]:
-    if not isinstance(axes, Mapping) or len(axes) != 2:
-        shown = f"{len(axes)} axes" if isinstance(axes, Mapping) else brief(axes)
-        raise ModelError(f'axes: {shown}; give two, {{"tip": [...], "damper": [...]}}')
+def _axes(model: Model, axes: Mapping[Axis, Sequence[float]]) -> Grid:
+    """Return axes that the model has."""
     known = model.structure.dofs
-    checked = []
-    for axis, values in axes.items():
+    for axis in axes:
         if isinstance(axis, str) and axis not in known:
             raise ModelError(f"axes: {unknown('dof', axis, known)}")
         if not isinstance(axis, str) and whole_number(axis, "axes: mode") >= len(known):
             raise ModelError(f"axes: mode {axis}; there are {len(known)}, counted from 0")
-        try:
-            numbers = np.asarray(values, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise ModelError(f"axes: {brief(values)} of {axis!r} are no numbers") from None
-        if numbers.ndim != 1 or not numbers.size or not np.isfinite(numbers).all():
-            raise ModelError(
-                f"axes: values of {axis!r} of shape {numbers.shape}; give a list of finite numbers "
-                "in m"
-            )
-        checked.append((axis, tuple(map(float, numbers))))
-    return tuple(checked)
+    return tuple((axis, tuple(values)) for axis, values in axes.items())
 
 
-def _over_axes(
-    model: Model, axes: tuple[tuple[Axis, tuple[float, ...]], ...], base: State
-) -> Float:
+def _over_axes(model: Model, axes: Grid, base: State) -> Float:
     (one, first), (other, second) = axes
     size = len(model.structure)
     _require_room(len(first) * len(second), base)
@@ -163,7 +132,7 @@ def _listed(model: Model, starts: Iterable[State | Mapping[str, float]]) -> Floa
     given: Sequence[object] = members(starts, "starts", "starts=[...]")
     if not given:
         raise ModelError("starts: empty; give at least one")
-    states = [start_of(model, one, f"starts[{place}]") for place, one in enumerate(given)]
+    states = [state_of(model, one, f"starts[{place}]") for place, one in enumerate(given)]
     _require_room(len(states), states[0])
     return np.stack([state.vector for state in states])
 

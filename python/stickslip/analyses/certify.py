@@ -8,16 +8,16 @@ from time import monotonic
 
 import numpy as np
 
-from stickslip.analyses.arguments import Progress, prepare, require_progress
-from stickslip.analyses.reference_orbits import Orbits, orbits_of
+from stickslip.analyses.arguments import require_held
+from stickslip.analyses.orbits import Orbits, orbits_of
+from stickslip.analyses.run import Progress, Run, share
 from stickslip.checks import brief, members
 from stickslip.errors import Interrupted, ModelError
-from stickslip.interruption import Interruption
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Int
 from stickslip.results.certificate import Certificate
 from stickslip.results.exact_response import ExactResponse
-from stickslip.settings.orbits import CertifySettings
+from stickslip.settings.orbits import CertifySettings, OrbitSettings
 from stickslip.settings.settings import configured
 
 __all__ = ["certify"]
@@ -62,41 +62,41 @@ def certify(
     Raises
     ------
     ModelError
-        If the result is no harmonic balance or has no solved point, or an argument is of the wrong
-        type or outside its range.
+        If the result is no harmonic balance or has no solved point.
     Interrupted
-        On Ctrl-C; its `result` is certified at the points whose orbits had been found. Their
-        `waveform_error` is not-a-number where the orbit had not been followed yet.
+        Certified are the points whose orbits had been found. Their `waveform_error` is not-a-number
+        where the orbit had not been followed yet.
     """
     _require_balance(result)
-    require_progress(progress)
-    compared = _dofs(result, dofs)
+    compared = result.dofs if dofs is None else _dofs(result, dofs)
     indices = _indices(result, settings)
-    prepare(result.model)
-    with Interruption(progress) as watch:
+    model, residual = result.model, result.settings.residual
+    require_held(model, residual)
+    with Run("certification", progress, model) as run:
         exact = orbits_of(
-            result, result.omega[indices], compared, lambda share: watch(_ORBITS * share)
+            model,
+            result.omega[indices],
+            compared,
+            OrbitSettings.of(harmonics=1, residual=residual),
+            share(run, 0.0, _ORBITS),
+            half_wave=result.half_wave,
         )
-        apart = _unknown(exact)
-        if exact.interrupted:
+        apart = np.full((exact.arrays.omega.size, len(compared)), np.nan)
+        if exact.solution.interrupted:
             raise _interrupted(result, exact, indices, apart, 0)
         reported, place = monotonic(), 0
         try:
-            with watch.at_once():
+            with run.at_once():
                 compare = _comparison(result, exact, indices)
                 for place in range(indices.size):
                     apart[place] = compare(place)
                     if monotonic() > reported + _REPORT_EVERY:
-                        watch(_ORBITS + (1.0 - _ORBITS) * (place + 1) / indices.size)
+                        run(_ORBITS + (1.0 - _ORBITS) * (place + 1) / indices.size)
                         reported = monotonic()
         except KeyboardInterrupt:
             raise _interrupted(result, exact, indices, apart, place) from None
         certified = replace(result, certificate=_certificate(result, exact, indices, apart))
-        return watch.completed(certified, "certification")
-
-
-def _unknown(exact: Orbits) -> Float:
-    return np.full((exact.arrays.omega.size, len(exact.dofs)), np.nan)
+        return run.completed(certified, "certification")
 
 
 def _interrupted(
@@ -158,10 +158,10 @@ def _require_balance(result: object) -> None:
         )
 
 
-def _dofs(result: ForcedResponse, dofs: Iterable[str] | str | None) -> tuple[str, ...]:
-    if dofs is None:
-        return result.dofs
-    names = (dofs,) if isinstance(dofs, str) else members(dofs, "dofs", "dofs=[...]")
+def _dofs(result: ForcedResponse, dofs: Iterable[str] | str) -> tuple[str, ...]:
+    names = tuple(
+        dict.fromkeys((dofs,) if isinstance(dofs, str) else members(dofs, "dofs", "dofs=[...]"))
+    )
     if not names:
         raise ModelError("dofs: empty; name at least one, or leave it out for all")
     for name in names:

@@ -4,44 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.analyses.arguments import (
-    Progress,
+    columns_of,
     observed_dofs,
-    prepare,
-    require_model,
-    require_progress,
+    points_of,
     require_time,
+    state_of,
 )
 from stickslip.analyses.memory import require_numbers
-from stickslip.checks import brief
+from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.errors import Interrupted, ModelError
-from stickslip.interruption import Interruption
 from stickslip.model import Model, natural_frequencies
-from stickslip.model.model import refusal
 from stickslip.model.state import State
-from stickslip.results.arrays import Float
+from stickslip.results.arrays import Float, Int
 from stickslip.results.diagnostic import Diagnostic, diagnostic, present
 from stickslip.results.fate_arrays import Motion, Reason
 from stickslip.results.motion_class import MotionArrays, MotionClass
-from stickslip.settings.motion import ClassifySettings, TransientSettings
+from stickslip.settings.motion import ClassifyKeys, ClassifySettings, TransientSettings
 from stickslip.settings.settings import configured
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from stickslip import _core
-
-__all__ = [
-    "classify",
-    "fate_assumptions",
-    "fates_of",
-    "free",
-    "start_of",
-]
+__all__ = ["classify", "fate_assumptions", "fates_of", "free"]
 
 TAIL = 512
 """Slow periods of the motion that are kept for its spectrum."""
@@ -53,13 +39,12 @@ RIGID = 1e-5
 """Natural frequencies below this share of the highest are rigid-body motion."""
 
 
-@configured(ClassifySettings)
+@configured(ClassifyKeys)
 def classify(
     model: Model,
     start: State | Mapping[str, float],
-    settings: ClassifySettings,
+    settings: ClassifyKeys,
     *,
-    observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> MotionClass:
     """Find out what becomes of a free motion from a start.
@@ -88,10 +73,9 @@ def classify(
     Raises
     ------
     ModelError
-        If an argument is of the wrong type or outside its range, the model is a travelling wave,
-        or nothing in it oscillates.
+        If the model is a travelling wave, or nothing in it oscillates.
     Interrupted
-        On Ctrl-C; its `result` is undecided.
+        It is undecided.
 
     References
     ----------
@@ -99,77 +83,51 @@ def classify(
     change of amplitude judged by eye. Ferri and Dowell (1985) on free motions of several modes.
     """
     alone = free(model)
-    dofs = observed_dofs(observe, alone)
-    require_progress(progress)
-    first = start_of(alone, start, "start")
+    dofs = observed_dofs(settings, alone)
+    kept = ClassifySettings.of(**settings.part(ClassifySettings))
+    first = state_of(alone, start, "start").vector[None]
     omega, samples = _tail_grid(alone, len(dofs))
-    columns = [alone.structure.index(dof) for dof in dofs]
-    prepare(alone)
-    with Interruption(progress) as watch:
-        fates = fates_of(alone, first.vector[None], settings, 1, watch)
-        tail, interrupted = _tail(alone, fates, omega, samples, columns, watch)
+    columns = columns_of(dofs, alone)
+    with Run("classification", progress, alone) as run:
+        fates = fates_of(alone, first, kept, 1, run)
+        tail, interrupted = _tail(alone, fates, omega, samples, columns, run)
         amplitude = fates.columns["amplitude"][:, columns]
-        arrays = MotionArrays.of(fates, start=first.vector[None], amplitude=amplitude, tail=tail)
+        arrays = MotionArrays.of(fates, start=first, amplitude=amplitude, tail=tail)
         result = MotionClass(
             model=alone,
             dofs=dofs,
-            settings=settings,
+            settings=kept,
             arrays=arrays,
             step=2.0 * np.pi / omega / samples,
             interrupted=interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
-            diagnostics=fate_assumptions(model, settings),
+            diagnostics=fate_assumptions(model, kept),
         )
         if interrupted:
             raise Interrupted(
                 "classification interrupted; the result of this exception is undecided", result
             )
-        return watch.completed(result, "classification")
+        return run.completed(result, "classification")
 
 
 def free(model: Model) -> Model:
     """Return a model without its forces, if its motion in time can be followed."""
-    require_model(model)
     require_time(model)
     # The whole of a mistuned disk has the same matrices, and a motion in time needs no ring.
     return Model(model.structure, model.contacts)
-
-
-def start_of(model: Model, start: object, entry: str) -> State:
-    """Return a start as a state of the model."""
-    if isinstance(start, Mapping):
-        return State(model, displacement=start)
-    if not isinstance(start, State):
-        raise ModelError(
-            f"{entry}: {brief(start)} is no state; give ss.State(model, ...), or "
-            "{dof: displacement}"
-        )
-    start.require_fit(model, entry)
-    return start
 
 
 def fates_of(
     model: Model, starts: Float, settings: ClassifySettings, threads: int, progress: Progress
 ) -> _core.Fates:
     """Let the core follow motions from starts, shape (n, 2 N + n_p)."""
-    from stickslip import _core
-
-    try:
+    with refusals(model):
         return _core.fates(model.problem, starts, settings, threads, progress)
-    except ModelError:
-        raise
-    except ValueError as error:
-        raise refusal(error, model) from error
 
 
 def fate_assumptions(model: Model, settings: ClassifySettings) -> tuple[Diagnostic, ...]:
     """Say what a classification took for granted."""
-    left_out = diagnostic(
-        "forces-left-out",
-        f"The {len(model.forces)} force(s) of the model were left out: the motion is free.",
-        forces=len(model.forces),
-    )
     return present(
         (
             diagnostic(
@@ -178,7 +136,12 @@ def fate_assumptions(model: Model, settings: ClassifySettings) -> tuple[Diagnost
                 "and unbounded are bounds that hold for ever, settled and aperiodic what was seen "
                 "of it.",
             ),
-            left_out if model.forces else None,
+            bool(model.forces)
+            and diagnostic(
+                "forces-left-out",
+                f"The {len(model.forces)} force(s) of the model were left out: the motion is free.",
+                forces=len(model.forces),
+            ),
             diagnostic(
                 "criterion",
                 f"A motion counts as settled at a closing error of {settings.tolerance:g} that is "
@@ -204,7 +167,7 @@ def _tail_grid(model: Model, observed: int) -> tuple[float, int]:
         raise ModelError("model: no motion of the stuck structure oscillates; ground the structure")
     samples = max(64, math.ceil(SAMPLES * float(stuck[-1] / swinging[0])))
     require_numbers(
-        TAIL * samples * (2 * observed + 2 * sum(contact.points for contact in model.contacts)),
+        TAIL * samples * (2 * observed + 2 * points_of(model)),
         f"the motion of {TAIL * samples} instants and {observed} dofs",
         "name fewer dofs with observe=[...]",
     )
@@ -212,26 +175,18 @@ def _tail_grid(model: Model, observed: int) -> tuple[float, int]:
 
 
 def _tail(
-    model: Model,
-    fates: _core.Fates,
-    omega: float,
-    samples: int,
-    columns: list[int],
-    watch: Interruption,
+    model: Model, fates: _core.Fates, omega: float, samples: int, columns: Int, run: Run
 ) -> tuple[Float, bool]:
     """Return the motion from its last state on, and whether the run was interrupted."""
-    from stickslip import _core
-
     reason = list(Reason)[int(fates.columns["reason"][0])]
     unknown = reason in (Reason.CONTRADICTION, Reason.INTERRUPTED)
     if fates.interrupted or unknown or reason.motion in (Motion.UNBOUNDED, Motion.DECAYING):
         return np.zeros((0, len(columns))), fates.interrupted
-    observe = np.array(columns, dtype=np.int64)
     history = _core.transient(
         model.problem,
         TransientSettings(omega=omega, periods=TAIL, samples=samples),
         fates.columns["final"][0],
-        observe,
-        lambda _: watch.heed(),
+        columns,
+        lambda _: run.heed(),
     )
     return history.columns["displacement"][1:], history.interrupted

@@ -3,46 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
+from stickslip import _core
 from stickslip.analyses.arguments import (
-    Progress,
+    columns_of,
     driving_dofs,
-    grid_of,
+    highest_harmonic,
     observed_dofs,
-    prepare,
+    points_of,
     require_forced,
     require_held,
-    require_model,
-    require_progress,
 )
-from stickslip.analyses.assumptions import assumptions_of
+from stickslip.analyses.assumptions import balance_assumptions
 from stickslip.analyses.memory import require_memory
-from stickslip.errors import ModelError
-from stickslip.interruption import Interruption, stopped
+from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Arrays
-from stickslip.settings.balance import BalanceSettings, ForcedSettings
-from stickslip.settings.entries import Span
+from stickslip.settings.balance import BalanceKeys, BalanceSettings, ForcedSettings
 from stickslip.settings.settings import configured
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 __all__ = ["forced_response"]
 
 
-@configured(BalanceSettings, "harmonics")
+@configured(BalanceKeys, "omega", "harmonics")
 def forced_response(
     model: Model,
-    omega: ArrayLike | Span,
-    settings: BalanceSettings,
+    settings: BalanceKeys,
     *,
-    observe: Iterable[str] | str | None = None,
     outputs: Iterable[str] | str = (),
     progress: Progress = None,
 ) -> ForcedResponse:
@@ -53,16 +43,10 @@ def forced_response(
 
     Parameters
     ----------
-    omega : array_like, shape (n,), or (float, float)
-        Angular frequencies [rad/s], swept in the order given. A tuple of two numbers is a range
-        from the first to the second, upwards or downwards, in which the frequencies are chosen to
-        `tolerance`; write ``[one, two]`` or an array for a grid of two.
-    observe : iterable of str, optional
-        Degrees of freedom whose motion is kept. Default: all but modal coordinates
-        ("mode-1", ...). Automatic harmonics, samples and steps follow those that are named, or
-        else those with a force or a contact; `error_estimate` says how accurate the others are.
     outputs : iterable of str, optional
-        Without `observe`: degrees of freedom that the automatic choices follow as well.
+        Without `observe`: degrees of freedom that automatic harmonics, samples and steps follow
+        like those with a force or a contact; `error_estimate` says how accurate the others are.
+        With it, they follow all that are observed.
 
     Returns
     -------
@@ -72,10 +56,7 @@ def forced_response(
     Raises
     ------
     ModelError
-        If an argument is of the wrong type or outside its range, the result would not fit into
-        the memory, or the model has a static load that nothing holds.
-    Interrupted
-        On Ctrl-C; its `result` holds the points that had been computed.
+        If the model has a static load that nothing holds.
 
     References
     ----------
@@ -83,78 +64,30 @@ def forced_response(
     Cameron and Griffin (1989): alternating frequency and time. The receptance form in contact
     displacements, its closed-form tangent and the error estimate are this package's.
     """
-    require_model(model)
-    grid = grid_of(omega)
-    kept = ForcedSettings.of(**dict(settings), span=grid if isinstance(grid, tuple) else None)
-    dofs = observed_dofs(observe, model)
-    driving = driving_dofs(model, dofs, observe, outputs)
-    require_progress(progress)
-    if not isinstance(grid, tuple):
-        orders = settings.fixed_harmonics or max(
-            (force.harmonic for force in model.forces), default=1
-        )
-        points = sum(contact.points for contact in model.contacts)
-        require_memory(grid.size, max(orders, 1), len(dofs), points)
+    grid = settings.omega
+    span = grid if isinstance(grid, tuple) else None
+    kept = ForcedSettings.of(**settings.part(BalanceSettings), span=span)
+    dofs = observed_dofs(settings, model)
+    driving = driving_dofs(model, dofs, outputs, named=settings.observe is not None)
+    asked = grid.size if isinstance(grid, np.ndarray) else None
+    if asked is not None:
+        orders = settings.fixed_harmonics or highest_harmonic(model)
+        require_memory(asked, orders, len(dofs), points_of(model))
     require_forced(model, settings)
     require_held(model, settings.residual)
-    prepare(model)
-    with Interruption(progress) as watch:
-        solution = _solve(model, grid, dofs, driving, kept, watch)
-        result = _result(model, kept, dofs, solution, grid)
-        if result.interrupted:
-            of_all = f" of {grid.size}" if isinstance(grid, np.ndarray) else ""
-            raise stopped("forced response", f"{solution.computed}{of_all} points", result)
-        return watch.completed(result, "forced response")
-
-
-def _solve(
-    model: Model,
-    grid: NDArray[np.float64] | Span,
-    dofs: tuple[str, ...],
-    driving: NDArray[np.int64],
-    settings: ForcedSettings,
-    progress: Progress,
-) -> _core.Solution:
-    from stickslip import _core
-
-    try:
-        return _core.forced_response(
-            model.problem,
-            grid,
-            np.array([model.structure.index(dof) for dof in dofs], dtype=np.int64),
-            driving,
-            settings,
-            progress,
+    with Run("forced response", progress, model) as run:
+        with refusals(model):
+            solution = _core.forced_response(
+                model.problem, grid, columns_of(dofs, model), driving, kept, run
+            )
+        arrays = Arrays.of(solution)
+        result = ForcedResponse.of(
+            solution,
+            model=model,
+            settings=kept,
+            dofs=dofs,
+            arrays=arrays,
+            diagnostics=balance_assumptions(model, kept, dofs, arrays, solution, asked),
         )
-    except ModelError:
-        raise
-    except ValueError as error:
-        raise ModelError(str(error)) from error
-
-
-def _result(
-    model: Model,
-    settings: ForcedSettings,
-    dofs: tuple[str, ...],
-    solution: _core.Solution,
-    grid: NDArray[np.float64] | Span,
-) -> ForcedResponse:
-    arrays = Arrays.of(solution)
-    missing = grid.size - solution.computed if isinstance(grid, np.ndarray) else 0
-    return ForcedResponse.of(
-        solution,
-        model=model,
-        settings=settings,
-        dofs=dofs,
-        arrays=arrays,
-        diagnostics=assumptions_of(
-            model,
-            settings,
-            dofs,
-            arrays,
-            half_wave=solution.half_wave,
-            missing=missing,
-            interrupted=solution.interrupted,
-            orbits=solution.counters["orbits"],
-        ),
-    )
+        of_all = "" if asked is None else f" of {asked}"
+        return run.ended(result, f"{solution.computed}{of_all} points")

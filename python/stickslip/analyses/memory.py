@@ -25,23 +25,8 @@ def require_memory(
 ) -> None:
     """Refuse a curve that would not fit into the memory while it is computed and saved.
 
-    Parameters
-    ----------
-    points : int
-        Number of frequencies.
-    harmonics : int
-        Highest harmonic that is at least kept.
-    observed : int
-        Number of observed degrees of freedom.
-    contact_points : int
-        Number of contact points, of each of which displacement and force are kept.
-    extra : int, optional
-        How many real numbers more the result holds per point.
-
-    Raises
-    ------
-    ModelError
-        If the curve takes more than `SHARE` of the memory.
+    `harmonics` is the highest that is at least kept, `extra` how many real numbers the result
+    holds per point beside the series.
     """
     series = 2 * (harmonics + 1) * (observed + 2 * contact_points)
     kept = series + observed + 2 * contact_points + 7 + extra
@@ -58,21 +43,8 @@ def require_memory(
 def require_numbers(numbers: int, what: str, remedy: str, *, core: int | None = None) -> None:
     """Refuse a result that would not fit into the memory while it is computed and saved.
 
-    Parameters
-    ----------
-    numbers : int
-        Real numbers of eight bytes in the result.
-    what : str
-        The entry that makes it large, and its value.
-    remedy : str
-        How to need fewer.
-    core : int, optional
-        Real numbers in the core, from which the result is made. Default: as many.
-
-    Raises
-    ------
-    ModelError
-        If it takes more than `SHARE` of the memory.
+    It holds `numbers` of eight bytes each, and is made from as many or `core` others; `what` names
+    the entry that makes it large, and `remedy` how to need fewer.
     """
     needed = 8 * max((numbers if core is None else core) + numbers, COPIES * numbers)
     there = physical_memory()

@@ -1,28 +1,40 @@
-"""The tuned disks of a mistuning study, their peaks, and what tells the study from others."""
+"""The disks of a mistuning study: their patterns, couplings and tuned peaks."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.analyses.arguments import require_held
-from stickslip.analyses.mistuning_arguments import numbers_of
+from stickslip import _core
+from stickslip.analyses.arguments import columns_of, known_dofs, require_held
+from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.pattern_store import Identity, Row, digest
+from stickslip.analyses.run import refusals
+from stickslip.checks import brief, whole_number
+from stickslip.disk.arguments import NEXT
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.coupling import Coupling
+from stickslip.disk.pattern import drawn_patterns
 from stickslip.errors import ModelError
+from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.status import Status
-from stickslip.settings.peaks import MistuningSettings
+from stickslip.settings.peaks import MistuningKeys, MistuningSettings
 
-if TYPE_CHECKING:
-    from stickslip.disk.mistuned import MistunedDisk
-
-__all__ = ["Series", "coupled_disks", "identity_of", "tuned_peaks"]
+__all__ = [
+    "Series",
+    "coupled_disks",
+    "dofs_of",
+    "identity_of",
+    "patterns_of",
+    "require_stiff",
+    "tuned_peaks",
+]
 
 
 class Series(NamedTuple):
@@ -35,30 +47,67 @@ class Series(NamedTuple):
     """Peaks of the tuned disk, one per degree of freedom."""
 
 
+def patterns_of(disk: BladedDisk, settings: MistuningKeys) -> tuple[Float, bool]:
+    """Return the patterns, and whether they were drawn."""
+    patterns, sectors = settings.patterns, disk.sectors
+    if isinstance(patterns, int | np.integer):
+        count = whole_number(patterns, "patterns", smallest=1)
+        what = f"patterns: {count} of {sectors} sectors"
+        require_numbers(count * sectors, f"{what} each", "give fewer patterns")
+        return drawn_patterns(sectors, count, settings.distribution, seed=settings.seed), True
+    try:
+        given = np.asarray(patterns)
+    except ValueError:
+        raise ModelError(f"patterns: ragged lists; give ({sectors},) numbers each") from None
+    if given.dtype.kind not in "fiu" or given.ndim not in (1, 2) or not given.size:
+        raise ModelError(f"patterns: {brief(patterns)}; give their number, or an array of them")
+    rows = np.array(np.atleast_2d(given), dtype=np.float64)
+    if rows.shape[1] != sectors:
+        raise ModelError(
+            f"patterns: shape {given.shape} for {sectors} sectors; give (p, {sectors})"
+        )
+    bad = np.argwhere(~np.isfinite(rows))
+    if bad.size:
+        place = ", ".join(map(str, bad[0]))
+        raise ModelError(f"patterns[{place}] is {rows[tuple(bad[0])]}; give finite numbers")
+    return rows, False
+
+
+def require_stiff(deviations: Float, patterns: Float) -> None:
+    """Refuse a blade without stiffness."""
+    least, largest = patterns.min(), deviations.max(initial=0.0)
+    if largest * least > -1.0:
+        return
+    pattern, blade = (int(at) for at in np.unravel_index(patterns.argmin(), patterns.shape))
+    raise ModelError(
+        f"deviation: {largest:g} leaves blade {blade} of pattern {pattern} the stiffness "
+        f'{1.0 + largest * least:.3g} K; give a smaller one, or distribution="uniform"'
+    )
+
+
+def dofs_of(dofs: Iterable[str] | str | None, disk: BladedDisk) -> tuple[str, ...]:
+    """Return degrees of freedom of a sector; by default those with a force or a contact."""
+    if dofs is not None:
+        return known_dofs(dofs, "dofs", "dof of a sector", disk)
+    ends = (dof for contact in disk.contacts for dof in contact.dofs)
+    touched = [dof.removeprefix(NEXT) for dof in ends if dof is not None]
+    loaded = [force.dof for force in disk.forces]
+    return tuple(dict.fromkeys([*loaded, *touched])) or disk.structure.dofs
+
+
 def tuned_peaks(
     disk: BladedDisk, settings: MistuningSettings, dofs: Sequence[str]
 ) -> tuple[Row, ...]:
     """Return the peaks of the tuned disk, by one sector if its motion is one wave."""
-    from stickslip import _core
-
-    model: BladedDisk | MistunedDisk = disk
+    model: Model = disk
     groups = [[dof] for dof in dofs]
     if not _is_one_wave(disk):
         model = disk.mistuned(0.0)
         groups = [[f"{blade}.{dof}" for blade in range(disk.sectors)] for dof in dofs]
     require_held(model, settings.residual)
-    try:
-        found = _core.summits(
-            model.problem,
-            [[model.structure.index(dof) for dof in group] for group in groups],
-            settings.measure,
-            settings.span,
-            settings,
-        )
-    except ModelError:
-        raise
-    except ValueError as error:
-        raise ModelError(str(error)) from error
+    columns = [columns_of(group, model).tolist() for group in groups]
+    with refusals(model):
+        found = _core.summits(model.problem, columns, settings.measure, settings.span, settings)
     rows = tuple(Row(*row) for row in found)
     for dof, row in zip(dofs, rows, strict=True):
         status = Status.from_code(row.status)
@@ -82,7 +131,7 @@ def coupled_disks(disk: BladedDisk, stiffness: ArrayLike | None) -> list[tuple[f
         raise ModelError(
             f"{reason} couplings=[ss.Coupling(...)]", study=f"{reason} a table [[coupling]]"
         )
-    values = numbers_of(stiffness, "coupling_stiffness", "stiffnesses in N/m").tolist()
+    values = np.atleast_1d(np.asarray(stiffness, dtype=np.float64)).tolist()
     return [
         (value, _coupled(disk, [replace(one, stiffness=value) for one in disk.couplings]))
         for value in values

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -11,12 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.analyses.mistuning_assumptions import mistuning_assumptions
+from stickslip import _core
 from stickslip.analyses.mistuning_disks import Series
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
+from stickslip.analyses.peak_assumptions import mistuning_assumptions
+from stickslip.analyses.run import Run, refusals
 from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.mistuned import tuned_disk
 from stickslip.errors import ModelError
-from stickslip.interruption import Interruption
 from stickslip.results.arrays import Float
 from stickslip.results.mistuning import MistuningArrays, MistuningStudy
 from stickslip.results.status import Status
@@ -55,13 +58,7 @@ class Work:
         }
 
     def recall(self, store: PatternStore) -> None:
-        """Take over what a store holds of this study.
-
-        Raises
-        ------
-        ModelError
-            If a row cannot be one of this study.
-        """
+        """Take over what a store holds of this study; refuse a row that cannot be one of it."""
         places = {
             (float(deviation), one.coupling.hex()): (d, c)
             for d, deviation in enumerate(self.deviations)
@@ -118,15 +115,12 @@ class Work:
         for name, value in row._replace(blade=blade)._asdict().items():
             self.arrays[name][place] = value
 
-    def run(self, threads: int, watch: Interruption, store: PatternStore | None) -> bool:
+    def run(self, threads: int | None, run: Run, store: PatternStore | None) -> bool:
         """Compute what is missing; False if Ctrl-C has ended it."""
-        from stickslip import _core
-        from stickslip.disk.mistuned import tuned_disk
-
         missing = np.argwhere(~self.known)
         if not missing.size:
             return True
-        report = _reporter(watch)
+        report = _reporter(run)
 
         def deliver(index: int, found: list[_core.Summit], points: int) -> None:
             d, c, p = (int(at) for at in missing[index])
@@ -141,7 +135,7 @@ class Work:
             self._take((d, c, p), enumerate(rows), points)
             report(self.done / self.total)
 
-        try:
+        with refusals(self.disk):
             return _core.mistuning_study(
                 [tuned_disk(one.disk) for one in self.series],
                 missing[:, 1].tolist(),
@@ -150,14 +144,10 @@ class Work:
                 self.settings,
                 self.settings,
                 [max(row.harmonics for row in one.tuned) for one in self.series],
-                threads,
+                threads or _processors(),
                 deliver,
-                lambda _: watch.heed(),
+                lambda _: run.heed(),
             )
-        except ModelError:
-            raise
-        except ValueError as error:
-            raise ModelError(str(error)) from error
 
     def result(self, seconds: float, *, interrupted: bool) -> MistuningStudy:
         """Return what is there."""
@@ -186,7 +176,7 @@ class Work:
         )
 
 
-def _reporter(watch: Interruption) -> Callable[[float], None]:
+def _reporter(run: Run) -> Callable[[float], None]:
     """Return what tells a callback how far a run is, not too often."""
     last = time.monotonic()
 
@@ -194,6 +184,14 @@ def _reporter(watch: Interruption) -> Callable[[float], None]:
         nonlocal last
         if time.monotonic() - last >= OFTEN:
             last = time.monotonic()
-            watch(share)
+            run(share)
 
     return report
+
+
+def _processors() -> int:
+    """Return how many processors this program may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        return os.cpu_count() or 1

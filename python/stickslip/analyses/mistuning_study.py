@@ -4,50 +4,36 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
-from numpy.typing import ArrayLike
+import numpy as np
 
-from stickslip.analyses.arguments import Progress, require_forced, require_progress
+from stickslip.analyses.arguments import require_forced
 from stickslip.analyses.memory import require_numbers
-from stickslip.analyses.mistuning_arguments import (
+from stickslip.analyses.mistuning_disks import (
+    Series,
+    coupled_disks,
     dofs_of,
-    numbers_of,
+    identity_of,
     patterns_of,
-    processors,
     require_stiff,
+    tuned_peaks,
 )
-from stickslip.analyses.mistuning_disks import Series, coupled_disks, identity_of, tuned_peaks
 from stickslip.analyses.mistuning_run import Work
 from stickslip.analyses.pattern_store import PatternStore
+from stickslip.analyses.run import Progress, Run
 from stickslip.checks import brief
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
-from stickslip.interruption import Interruption, stopped
 from stickslip.results.mistuning import MistuningStudy
-from stickslip.settings.entries import Span, span_of
 from stickslip.settings.peaks import MistuningKeys, MistuningSettings, PeakSettings
 from stickslip.settings.settings import configured
-
-if TYPE_CHECKING:
-    from os import PathLike
 
 __all__ = ["mistuning_study"]
 
 
-@configured(MistuningKeys)
+@configured(MistuningKeys, "deviation")
 def mistuning_study(
-    disk: BladedDisk,
-    deviation: ArrayLike,
-    *,
-    settings: MistuningKeys,
-    omega: Span,
-    patterns: int | ArrayLike = 1000,
-    dofs: Iterable[str] | str | None = None,
-    coupling_stiffness: ArrayLike | None = None,
-    store: str | PathLike[str] | None = None,
-    progress: Progress = None,
+    disk: BladedDisk, *, settings: MistuningKeys, progress: Progress = None
 ) -> MistuningStudy:
     """Amplification factors of disks whose blades deviate at random, and their distribution.
 
@@ -61,22 +47,6 @@ def mistuning_study(
     ----------
     disk : BladedDisk
         The tuned disk.
-    deviation : float or array_like, shape (m,)
-        Standard deviations S of the sectors' stiffness: sector i of a pattern r has (1 + S r_i) K,
-        as ``disk.mistuned(S * r)``.
-    omega : (float, float)
-        Range of frequencies in which peaks are the highest points [rad/s].
-    patterns : int or array_like, shape (p, n), optional
-        How many patterns are drawn; or the patterns themselves, in units of S.
-    dofs : str or iterable of str, optional
-        Degrees of freedom of a sector whose amplification is sought. Default: all that carry a
-        contact or a force.
-    coupling_stiffness : float or array_like, shape (c,), optional
-        Stiffnesses that all couplings take in turn [N/m]. Default: those of the disk.
-    store : path-like, optional
-        File in which the results are kept as they come. If there is one of the same study already,
-        with as many patterns, deviations and couplings or with others, only what is missing is
-        computed: a run that was stopped, however rudely, goes on where it was.
 
     Returns
     -------
@@ -86,10 +56,7 @@ def mistuning_study(
     Raises
     ------
     ModelError
-        If an argument is of the wrong type or outside its range, the peak of the tuned disk cannot
-        be found, or the store holds another study.
-    Interrupted
-        On Ctrl-C; its `result` holds the patterns that had been computed.
+        If the peak of the tuned disk cannot be found, or the store holds another study.
 
     References
     ----------
@@ -105,20 +72,18 @@ def mistuning_study(
     """
     if not isinstance(disk, BladedDisk):
         raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give the tuned disk")
-    require_progress(progress)
-    rows, drawn = patterns_of(patterns, disk.sectors, settings.distribution, settings.seed)
+    rows, drawn = patterns_of(disk, settings)
     kept = MistuningSettings.of(
         **settings.part(PeakSettings),
-        span=span_of(omega, "omega"),
+        span=settings.omega,
         distribution=settings.distribution if drawn else None,
         seed=settings.seed if drawn else None,
     )
-    names = dofs_of(dofs, disk)
-    deviations = numbers_of(deviation, "deviation", "0.05 for 5 %")
+    names = dofs_of(settings.dofs, disk)
+    deviations = np.atleast_1d(settings.deviation)
     require_stiff(deviations, rows)
     require_forced(disk, settings)
-    pool = settings.threads or processors()
-    disks = coupled_disks(disk, coupling_stiffness)
+    disks = coupled_disks(disk, settings.coupling_stiffness)
     count = deviations.size * len(disks) * len(rows) * len(names)
     # Deviations and peaks; the core has its own of the former.
     each = disk.sectors * deviations.size * len(disks) * len(rows)
@@ -128,16 +93,16 @@ def mistuning_study(
     start = time.perf_counter()
     series = [Series(one, value, tuned_peaks(one, kept, names)) for value, one in disks]
     work = Work(disk, kept, names, deviations, series, rows)
-    with Interruption(progress) as watch:
-        if store is None:
-            complete = work.run(pool, watch, None)
+    with Run("mistuning study", progress) as run:
+        if settings.store is None:
+            complete = work.run(settings.threads, run, None)
         else:
-            identity = identity_of(disk, kept, names, rows, given=coupling_stiffness is not None)
-            with PatternStore(store, identity, watch.heed) as kept_rows:
+            identity = identity_of(
+                disk, kept, names, rows, given=settings.coupling_stiffness is not None
+            )
+            with PatternStore(settings.store, identity, run.heed) as kept_rows:
                 work.recall(kept_rows)
-                complete = work.run(pool, watch, kept_rows)
+                complete = work.run(settings.threads, run, kept_rows)
         result = work.result(time.perf_counter() - start, interrupted=not complete)
-        if not complete:
-            rest = "" if store is None else f"; {os.fspath(store)} goes on from there"
-            raise stopped("mistuning study", f"{work.done} of {work.total} disks", result, rest)
-        return watch.completed(result, "mistuning study")
+        rest = "" if settings.store is None else f"; {os.fspath(settings.store)} goes on from there"
+        return run.ended(result, f"{work.done} of {work.total} disks", rest)

@@ -2,36 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 
-from stickslip.analyses.arguments import (
-    Progress,
-    prepare,
-    require_model,
-    require_progress,
-)
+from stickslip import _core
+from stickslip.analyses.arguments import highest_harmonic
 from stickslip.analyses.damper_curve import curve_of, settings_for
 from stickslip.analyses.forced_response import forced_response
-from stickslip.analyses.variation import (
-    Contacts,
-    chosen_contacts,
-    local_stiffness,
-)
-from stickslip.checks import choice, real_number
+from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.variation import chosen_contacts, local_stiffness, variation_of
 from stickslip.errors import ModelError
-from stickslip.interruption import Interruption, stopped
+from stickslip.interruption import stopped
 from stickslip.model import Model
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import amplitude_of
 from stickslip.results.damper_curve import DamperArrays, LeastPeak
-from stickslip.results.diagnostic import Diagnostic, diagnostic
+from stickslip.results.diagnostic import Diagnostic, diagnostic, present
 from stickslip.results.optimal_damper import OptimalDamper
-from stickslip.settings.entries import Span
-from stickslip.settings.peaks import DamperKeys, DamperSettings
+from stickslip.settings.peaks import DamperSettings, OptimumKeys
 from stickslip.settings.settings import configured
-from stickslip.settings.variation import Chosen, Parameter, Variation, located
+from stickslip.settings.variation import Chosen, Variation, located
 
 __all__ = ["optimal_damper"]
 
@@ -48,16 +40,9 @@ STIFFNESSES = (1e-2, 250.0)
 """Bounds of a stiffness, over that of the structure at the contact."""
 
 
-@configured(DamperKeys)
+@configured(OptimumKeys)
 def optimal_damper(
-    model: Model,
-    *,
-    settings: DamperKeys,
-    parameter: Parameter = "slip_force",
-    bounds: tuple[float, float] | None = None,
-    contacts: Contacts | None = None,
-    omega: Span | None = None,
-    progress: Progress = None,
+    model: Model, *, settings: OptimumKeys, progress: Progress = None
 ) -> OptimalDamper:
     """Find the slip force, stiffness or level at which the peak of a response is least.
 
@@ -65,23 +50,7 @@ def optimal_damper(
     the peak. The peak is continuous in the parameter, with kinks where two maxima of the response
     swap, and often least in a kink; such a minimum is found as the crossing of two tangents. With
     automatic harmonics minima count as one if the rise between them is below twice the tolerance.
-
-    Parameters
-    ----------
-    parameter : {"slip_force", "stiffness", "level"}, optional
-        What is varied. With "level", a factor on all forces, the amplitude per unit of level is
-        made least: friction knows the ratio of force and slip force alone.
-    bounds : (float, float), optional
-        Values to look between. Default, for slip forces: from 1/1000 to all of the largest force
-        that the stuck contacts bear in the range of frequencies, beyond which nothing slips. At
-        light damping that rises far above the load: the lower bound is then 0.03 times, and the
-        upper one at most 10 000 times, what they bear at the low end of the range. For levels
-        likewise; for stiffnesses: 1/100 to 250 times that of the structure.
-    contacts : int, str, (contact, int), or iterable of these, optional
-        Which contacts or points are varied, all by one common value or factor; see
-        `stickslip.damper_curve`. Different values for each are not looked for.
-    omega : (float, float), optional
-        See `stickslip.damper_curve`.
+    All contacts that are varied have one common value or factor.
 
     Returns
     -------
@@ -91,42 +60,26 @@ def optimal_damper(
     Raises
     ------
     ModelError
-        If an argument is of the wrong type or outside its range, or no peak is found.
+        If no peak is found.
     Interrupted
-        On Ctrl-C; its `result` holds the curve as far as it had been computed.
+        That is the curve.
     """
-    from stickslip import _core
-
-    require_model(model)
-    require_progress(progress)
-    choice(parameter, "parameter", ("slip_force", "stiffness", "level"))
-    variation = Variation.of(
-        parameter=parameter,
-        contacts=chosen_contacts(contacts, parameter, model, settings.common),
-        common=settings.common,
-    )
-    given = None if bounds is None else _checked(bounds)
-    values = np.array(given if given is not None else (1.0,))
-    if parameter == "stiffness" and given is None:
-        given = _default_bounds(model, variation, None)
-        values = np.array(given)
-    kept = settings_for(model, variation, values, omega, settings)
-    low, high = given if given is not None else _default_bounds(model, variation, kept)
-    prepare(model)
-    with Interruption(progress) as watch:
-        try:
+    variation = variation_of(model, settings.parameter, settings)
+    given = settings.bounds
+    if given is None and settings.parameter == "stiffness":
+        given = _stiffness_bounds(model, variation)
+    kept = settings_for(model, variation, np.array(given or (1.0,)), settings)
+    low, high = given or _load_bounds(model, variation, kept)
+    with Run("optimal damper", progress, model) as run:
+        with refusals(model):
             minima, peaks = _core.optimal_damper(
                 model.problem,
                 variation.varied(model),
                 model.structure.index(kept.dof),
                 (low, high),
                 kept,
-                watch,
+                run,
             )
-        except ModelError:
-            raise
-        except ValueError as error:
-            raise ModelError(str(error)) from error
         curve = curve_of(model, kept, (DamperArrays.of(peaks), peaks))
         if curve.interrupted:
             raise stopped("optimal damper", f"{curve.values.size} peaks", curve)
@@ -140,50 +93,43 @@ def optimal_damper(
             )
         result = OptimalDamper.of(found, (low, high), curve, ())
         result = replace(result, diagnostics=_diagnostics(result))
-        return watch.completed(result, "optimal damper")
+        return run.completed(result, "optimal damper")
 
 
 def _diagnostics(result: OptimalDamper) -> tuple[Diagnostic, ...]:
     low, high = result.bounds
     unit = result.curve.settings.variation.unit
-    told = [
-        diagnostic(
-            "coarse-search",
-            f"The least peak was looked for between {low:.6g} and {high:.6g} {unit}; a local "
-            "minimum narrower than the coarse curve of 40 values may have been passed over.",
-            low=low,
-            high=high,
-        )
-    ]
-    if result.at_bound:
-        told.append(
+    return present(
+        (
             diagnostic(
+                "coarse-search",
+                f"The least peak was looked for between {low:.6g} and {high:.6g} {unit}; a local "
+                "minimum narrower than the coarse curve of 40 values may have been passed over.",
+                low=low,
+                high=high,
+            ),
+            result.at_bound
+            and diagnostic(
                 "optimum-at-bound",
                 "The least peak lies at a bound; a better one may lie outside.",
                 value=result.value,
-            )
+            ),
+            *result.curve.diagnostics,
         )
-    return (*told, *result.curve.diagnostics)
+    )
 
 
-def _checked(bounds: tuple[float, float]) -> tuple[float, float]:
-    if not isinstance(bounds, tuple | list) or len(bounds) != 2:
-        raise ModelError("bounds: give two values, (lowest, highest)")
-    low, high = (real_number(value, "bounds") for value in bounds)
-    if not 0.0 < low < high:
-        raise ModelError(f"bounds: ({low:g}, {high:g}); give 0 < lowest < highest")
-    return low, high
+def _stiffness_bounds(model: Model, variation: Variation) -> tuple[float, float]:
+    """Return bounds around the stiffness of the structure."""
+    of_structure = _factor if variation.common == "factor" else local_stiffness
+    stiffness = of_structure(model, variation.contacts)
+    return STIFFNESSES[0] * stiffness, STIFFNESSES[1] * stiffness
 
 
-def _default_bounds(
-    model: Model, variation: Variation, settings: DamperSettings | None
+def _load_bounds(
+    model: Model, variation: Variation, settings: DamperSettings
 ) -> tuple[float, float]:
-    """Return bounds around the scale of the load, or of the stiffness of the structure."""
-    if settings is None:
-        stiffness = local_stiffness(model, variation.contacts)
-        if variation.common == "factor":
-            stiffness = _factor(model, variation.contacts)
-        return STIFFNESSES[0] * stiffness, STIFFNESSES[1] * stiffness
+    """Return bounds around the scale of the load."""
     load, ratio = _stuck_forces(model, variation, settings)
     if not ratio > 0.0:
         raise ModelError(
@@ -196,7 +142,7 @@ def _default_bounds(
     return (1.0 / high, 1.0 / low) if variation.parameter == "level" else (low, high)
 
 
-def _factor(model: Model, contacts: tuple[Chosen, ...]) -> float:
+def _factor(model: Model, contacts: Iterable[Chosen]) -> float:
     """Return the factor that makes contacts as stiff as the structure."""
     factors, springs = [], []
     for ref in contacts:
@@ -237,10 +183,10 @@ def _stuck_forces(
 
     Over its own slip force, if that counts.
     """
-    varied = variation.contacts or chosen_contacts(None, "slip_force", model, "value")
+    varied = variation.contacts or chosen_contacts(model, "slip_force", None, "value")
     stuck = Variation(parameter="slip_force", contacts=varied).apply(model, np.inf)
-    highest = max((force.harmonic for force in model.forces), default=1)
-    response = forced_response(stuck, settings.span, max(highest, 1), observe=[settings.dof])
+    harmonics = highest_harmonic(model)
+    response = forced_response(stuck, settings.span, harmonics, observe=[settings.dof])
     load = largest = 0.0
     for ref in varied:
         position, point = model.slider(ref)

@@ -10,10 +10,10 @@ import hashlib
 import json
 import math
 import sqlite3
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from time import monotonic, sleep
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +21,6 @@ from numpy.typing import NDArray
 from stickslip.checks import brief, file_path, is_file
 from stickslip.errors import ModelError
 from stickslip.files import require_place
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
 
 __all__ = ["Identity", "Key", "PatternStore", "Row", "digest"]
 
@@ -103,20 +100,9 @@ _REMEDIES = {
 class PatternStore:
     """The results of a study, in a file.
 
-    Parameters
-    ----------
-    path : path-like
-        The file; it is made if there is none.
-    identity : mapping
-        What makes the study; a file of another one is refused.
-    look : callable, optional
-        Called several times per second while another program holds the file; it may raise.
-
-    Raises
-    ------
-    ModelError
-        If the file holds another study, is of a newer format, damaged, no store, or cannot be
-        written.
+    The file is made if there is none. Refused is one of another study, of a newer format, damaged,
+    no store, or that cannot be written. `look` is called several times per second while another
+    program holds the file; it may raise.
     """
 
     def __init__(
@@ -146,13 +132,7 @@ class PatternStore:
         self._base.close()
 
     def rows(self) -> Iterator[tuple[Key, int, Row, int]]:
-        """Yield what is there: what it belongs to, the DOF, the row, and the solutions it took.
-
-        Raises
-        ------
-        ModelError
-            If a row was changed since it was stored.
-        """
+        """Yield what is there: what it belongs to, the DOF, the row, and the solutions it took."""
         with self._named():
             found = self._execute("SELECT * FROM summit").fetchall()
         for *values, mark in found:
@@ -162,13 +142,7 @@ class PatternStore:
             yield Key(deviation, float.fromhex(coupling), pattern), dof, _row(numbers), points
 
     def add(self, key: Key, rows: Sequence[Row], points: int) -> None:
-        """Keep the rows of one pattern, one per DOF, together or not at all.
-
-        Raises
-        ------
-        ModelError
-            If they cannot be written; what was stored before stays.
-        """
+        """Keep the rows of one pattern, one per DOF, together or not at all."""
         found = [
             (key.deviation, float(key.coupling).hex(), key.pattern, dof, *map(_kept, row), points)
             for dof, row in enumerate(rows)

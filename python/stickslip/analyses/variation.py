@@ -3,65 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TypeAlias, get_args
 
 import numpy as np
 
-from stickslip.checks import brief, listed, unknown, whole_number
+from stickslip.checks import brief, listed, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef, natural_frequencies
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import Float
 from stickslip.settings.entries import Span
-from stickslip.settings.variation import Chosen, Common, Parameter, Variation, located
+from stickslip.settings.variation import (
+    Chosen,
+    Common,
+    ContactKeys,
+    Contacts,
+    Parameter,
+    Variation,
+    located,
+)
 
-__all__ = [
-    "PARAMETERS",
-    "Contacts",
-    "chosen_contacts",
-    "local_stiffness",
-    "resonance_range",
-]
-
-Contacts: TypeAlias = Iterable[PointRef] | PointRef
-"""Contacts or points of contacts, or one of them."""
-
-PARAMETERS: tuple[Parameter, ...] = get_args(Parameter)
-"""What can be varied: a parameter of the contacts, or a factor on all forces."""
+__all__ = ["chosen_contacts", "local_stiffness", "resonance_range", "variation_of"]
 
 MARGIN = 0.05
 """Share by which the range around a resonance reaches beyond its free and its stuck frequency."""
 
 
+def variation_of(model: Model, parameter: Parameter, keys: ContactKeys) -> Variation:
+    """Return the variation of a parameter of contacts, or of points of them."""
+    chosen = chosen_contacts(model, parameter, keys.contacts, keys.common)
+    return Variation.of(parameter=parameter, contacts=chosen, common=keys.common)
+
+
 def chosen_contacts(
-    contacts: Contacts | None, parameter: Parameter, model: Model, common: Common
+    model: Model, parameter: Parameter, contacts: Contacts | None, common: Common
 ) -> tuple[Chosen, ...]:
-    """Return the contacts whose parameter is varied, by name, or points of them.
-
-    Parameters
-    ----------
-    contacts : int, str, (contact, int), or iterable of these, or None
-        Contacts, or points of them; ``("structural", 0)`` alone is a point. Of a contact with
-        several points the slip forces that are finite, unless none is. Default: all contacts that
-        have the parameter; of slip forces those that are finite, unless none is.
-    parameter : {"slip_force", "stiffness", "level"}
-        What is varied.
-    model : Model
-        Whose contacts they are.
-    common : {"value", "factor"}
-        Whether they take a value, which not every parameter can, or a factor.
-
-    Returns
-    -------
-    tuple of str or (str, int)
-        None for a level.
-
-    Raises
-    ------
-    ModelError
-        If there is no such contact or point, or one without the parameter, or whose parameter takes
-        no value; if there is none at all.
-    """
+    """Return the contacts whose parameter is varied, by name, or points of them; None are all."""
     if parameter == "level":
         if contacts is not None:
             raise ModelError("contacts: a level is no parameter of contacts; leave them out")
@@ -141,50 +117,29 @@ def _without_value(name: str, parameter: Parameter) -> ModelError:
 def resonance_range(model: Model, variation: Variation, mode: int, values: Float) -> Span:
     """Return the range of frequencies between the free and the stuck resonance of a mode.
 
-    Parameters
-    ----------
-    model : Model
-        The model.
-    variation : Variation
-        What is varied.
-    mode : int
-        The mode, counted from 0.
-    values : ndarray of float64
-        Values of the parameter; stiffnesses move the stuck frequency.
-
-    Returns
-    -------
-    (float, float)
-        From 5 % below the free natural frequency, or a twentieth of the stuck one if the free
-        structure moves as a rigid body, to 5 % above the highest stuck one [rad/s]; both over the
-        lowest harmonic of the forces.
-
-    Raises
-    ------
-    ModelError
-        If there is no such mode, or the structure has no resonance there.
+    From 5 % below the free natural frequency, or a twentieth of the stuck one if the free structure
+    moves as a rigid body, to 5 % above the highest stuck one [rad/s]; both over the lowest harmonic
+    of the forces. `values` of a stiffness move the stuck frequency.
     """
     count = len(model.structure)
-    position = whole_number(mode, "mode")
-    if position >= count:
-        raise ModelError(f"mode: {position}; the structure has {count}, counted from 0")
+    if mode >= count:
+        raise ModelError(f"mode: {mode}; the structure has {count}, counted from 0")
     members = [model]
     if variation.parameter == "stiffness":
         members = [variation.apply(model, value) for value in (min(values), max(values))]
-    stuck = max(float(natural_frequencies(one)[position]) for one in members)
+    stuck = max(float(natural_frequencies(one)[mode]) for one in members)
     points = [
         (number, point)
         for number, contact in enumerate(model.contacts)
         for point in range(contact.points)
     ]
-    free = float(natural_frequencies(model, points)[position])
+    free = float(natural_frequencies(model, points)[mode])
     harmonic = min((force.harmonic for force in model.forces if force.harmonic), default=1)
     low = max((1.0 - MARGIN) * min(free, stuck), MARGIN * stuck) / harmonic
     high = (1.0 + MARGIN) * max(free, stuck) / harmonic
     if not 0.0 < low < high:
         reason = (
-            f"omega: mode {position} is a motion without stiffness even with all contacts stuck; "
-            "give"
+            f"omega: mode {mode} is a motion without stiffness even with all contacts stuck; give"
         )
         raise ModelError(
             f"{reason} omega=(from, to)", study=f"{reason} omega = {{from = ..., to = ...}}"
@@ -193,20 +148,10 @@ def resonance_range(model: Model, variation: Variation, mode: int, values: Float
 
 
 def local_stiffness(model: Model, contacts: Iterable[Chosen]) -> float:
-    """Return the largest stiffness that the structure itself opposes to a force at a contact.
+    """Return the largest stiffness that the structure itself opposes to a force at a contact [N/m].
 
-    Parameters
-    ----------
-    model : Model
-        The model.
-    contacts : iterable of str or (str, int)
-        Names of contacts, or points of them.
-
-    Returns
-    -------
-    float
-        Inverse static flexibility without any contact; where the structure is not grounded, the
-        stiffness with all other degrees of freedom held [N/m].
+    It is the inverse static flexibility without any contact; where the structure is not grounded,
+    the stiffness with all other degrees of freedom held.
     """
     stiffness = model.structure.stiffness
     chosen = [model.contact_rows(model.contacts[located(model, ref)[0]]) for ref in contacts]

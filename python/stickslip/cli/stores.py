@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.study.mistuning_study_table import MistuningStudyTable
+from stickslip.study.analysis import MistuningStudyTable
 
 if TYPE_CHECKING:
     from stickslip.study import Study

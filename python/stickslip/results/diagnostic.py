@@ -120,9 +120,9 @@ def diagnostic(code: str, text: str, **data: float | str) -> Diagnostic:
     return Diagnostic(code, SEVERITIES[code], text, data)
 
 
-def present(diagnostics: Iterable[Diagnostic | None]) -> tuple[Diagnostic, ...]:
-    """Leave out what does not apply."""
-    return tuple(one for one in diagnostics if one is not None)
+def present(diagnostics: Iterable[Diagnostic | bool | None]) -> tuple[Diagnostic, ...]:
+    """Leave out what does not apply: None, and conditions that do not hold."""
+    return tuple(one for one in diagnostics if isinstance(one, Diagnostic))
 
 
 def missed_tolerances(codes: NDArray[np.integer[Any]], noun: str) -> Diagnostic | None:

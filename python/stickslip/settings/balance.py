@@ -16,15 +16,42 @@ from stickslip.settings.entries import (
     Tolerance,
     Whole,
 )
+from stickslip.settings.ranges import Dofs, Frequencies
 from stickslip.settings.settings import Settings
 
 __all__ = [
+    "BalanceKeys",
     "BalanceSettings",
+    "CurveKeys",
     "ForcedSettings",
     "HarmonicSettings",
+    "ObserveKeys",
     "PointSettings",
     "SteadySettings",
 ]
+
+
+class ObserveKeys(Settings):
+    """What is kept of a motion."""
+
+    observe: Dofs | None = Field(
+        default=None,
+        description="Degrees of freedom whose motion is kept. Default: all but modal coordinates "
+        '("mode-1", ...).',
+        examples=[["tip"]],
+    )
+
+
+class CurveKeys(ObserveKeys):
+    """Where a curve is computed."""
+
+    omega: Frequencies = Field(
+        description="Angular frequencies [rad/s], swept in the order given. A range, of functions "
+        "a tuple of two numbers, goes from the first to the second, upwards or downwards, and the "
+        "frequencies in it are chosen to `tolerance`; write ``[one, two]`` or an array for a grid "
+        "of two.",
+        examples=[{"from": "20 rad/s", "to": "350 rad/s", "points": 400}, ["25 Hz", "26 Hz"]],
+    )
 
 
 class PointSettings(Settings):
@@ -156,3 +183,7 @@ class ForcedSettings(BalanceSettings):
         default=None,
         description="Ends of an adaptive sweep [rad/s]; none: omega was given point by point.",
     )
+
+
+class BalanceKeys(BalanceSettings, CurveKeys):
+    """What a forced response is computed of, and how."""

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import AfterValidator, Field, Strict
+import numpy as np
+from pydantic import AfterValidator, Field, Strict, model_validator
 
 from stickslip.checks import whole_number
+from stickslip.errors import ModelError
 from stickslip.settings.entries import ONE_OF, Factor, Flag, Harmonics, Index, Tolerance, Whole
+from stickslip.settings.ranges import BranchSlipForces, BranchStiffnesses, PositiveList, Ratios
 from stickslip.settings.settings import Settings
-from stickslip.settings.variation import CommonSettings, Variation
+from stickslip.settings.variation import ContactKeys, Variation
 
 __all__ = [
     "LOWEST_RATIO",
@@ -19,6 +22,7 @@ __all__ = [
     "CycleKeys",
     "CycleMethod",
     "CycleSettings",
+    "LimitSettings",
     "MapKeys",
     "MapSettings",
 ]
@@ -87,8 +91,41 @@ class BranchSettings(_ModeSettings):
         return self.harmonics
 
 
-class CycleKeys(BranchSettings, CommonSettings):
-    """How limit cycles are computed."""
+class CycleKeys(BranchSettings, ContactKeys):
+    """Along what limit cycles are followed, and how."""
+
+    ratio: Ratios | None = Field(
+        default=None,
+        description="A list: exactly these ratios r, on both sides of the branch. A range, of "
+        "functions a tuple: the branch from its sticking side on, until it leaves this range. "
+        "Default: the whole branch from r = 0.01 on. If another parameter is followed: the one r, "
+        "by default 1.",
+    )
+    stiffness: BranchStiffnesses | None = Field(
+        default=None,
+        description="Follow this parameter of contacts [N/m] instead of r, at exactly these "
+        "values, or in a range.",
+    )
+    slip_force: BranchSlipForces | None = Field(
+        default=None, description="Follow this one [N], likewise."
+    )
+
+    @model_validator(mode="after")
+    def _require_sense(self) -> Self:
+        if self.stiffness is not None and self.slip_force is not None:
+            raise ModelError("stiffness, slip_force: both are given; follow one of them")
+        if self.followed != "ratio" and self.ratio is not None and np.size(self.ratio) != 1:
+            raise ModelError(f"ratio: give one number while {self.followed} is followed")
+        if self.followed == "ratio" and self.contacts is not None:
+            raise ModelError("contacts: the ratio is no parameter of contacts; leave them out")
+        return self
+
+    @property
+    def followed(self) -> Literal["ratio", "stiffness", "slip_force"]:
+        """What is followed."""
+        if self.stiffness is not None:
+            return "stiffness"
+        return "ratio" if self.slip_force is None else "slip_force"
 
 
 class CycleSettings(BranchSettings):
@@ -118,18 +155,29 @@ class CycleSettings(BranchSettings):
         return "1" if self.variation is None else self.variation.unit
 
 
-class _LimitSettings(_ModeSettings):
+class LimitSettings(_ModeSettings):
+    """How limits of stability are computed."""
+
     method: CycleMethod = Field(
         default="exact",
         description="Exact orbits, or harmonic balance; see `stickslip.limit_cycles`.",
     )
 
 
-class MapKeys(_LimitSettings, CommonSettings):
-    """How a stability map is computed."""
+class MapKeys(LimitSettings, ContactKeys):
+    """Over which parameter of contacts limits are computed, and how; give one of the two."""
+
+    stiffness: PositiveList | None = Field(
+        default=None, description="Stiffnesses of the contacts, above 0 [N/m]."
+    )
+    slip_force: PositiveList | None = Field(
+        default=None,
+        description="Instead: slip forces, above 0 [N]. Limit ratios depend on them only through "
+        "their proportions, as all displacements grow with them.",
+    )
 
 
-class MapSettings(_LimitSettings):
+class MapSettings(LimitSettings):
     """How a stability map was computed."""
 
     variation: Variation = Field(description="What was varied.")

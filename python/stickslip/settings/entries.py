@@ -37,7 +37,6 @@ __all__ = [
     "ONE_OF",
     "RESIDUALS",
     "Angle",
-    "Contacts",
     "Count",
     "Dof",
     "Factor",
@@ -48,6 +47,7 @@ __all__ = [
     "ListOr",
     "Many",
     "Measure",
+    "NamedContact",
     "Newtons",
     "Number",
     "Omega",
@@ -202,12 +202,11 @@ Dof = Annotated[
     str, BeforeValidator(_dof), WithJsonSchema({"type": ["string", "integer"], "examples": ["tip"]})
 ]
 Text = Annotated[str, Field(min_length=1)]
-_Contact = Annotated[
+NamedContact = Annotated[
     str | tuple[str, int],
     PlainValidator(_contact),
     WithJsonSchema({"type": ["string", "array"], "examples": ["blade", ["structural", 0]]}),
 ]
-Contacts = Some[_Contact]
 
 # ------------------------------------------------------------------------- numbers or words, ranges
 
@@ -235,7 +234,10 @@ def span_of(span: object, entry: str = "") -> tuple[float, float]:
         raise EntryError(entry, ": give a range (from, to) in rad/s")
     if len(span) != 2:
         raise EntryError(entry, f": a range has two ends, not {len(span)}; write (start, end)")
-    start, end = (real_number(value, f"{entry}: end of the range") for value in span)
+    try:
+        start, end = (real_number(value, "") for value in span)
+    except EntryError as error:
+        raise EntryError(entry, f": end of the range{error.said}") from None
     if not (start > 0.0 and end > 0.0 and start != end):
         raise EntryError(
             entry,
@@ -267,7 +269,12 @@ Span = Annotated[tuple[float, float], BeforeValidator(span_of)]
 class Table(BaseModel):
     """Entries by their names: known ones only, immutable once read."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    model_config = ConfigDict(
+        extra="forbid",
+        strict=True,
+        frozen=True,
+        field_title_generator=lambda name, field: field.alias or name,
+    )
 
     @model_validator(mode="before")
     @classmethod

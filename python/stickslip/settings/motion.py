@@ -2,17 +2,48 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from collections.abc import Mapping
+from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import Field, Strict
+import numpy as np
+from pydantic import AfterValidator, Field, Strict, model_validator
 
-from stickslip.settings.entries import ONE_OF, Count, Omega, Whole, Within, percent
+from stickslip.checks import brief
+from stickslip.errors import EntryError
+from stickslip.model.state import State
+from stickslip.settings.balance import ObserveKeys
+from stickslip.settings.entries import (
+    ONE_OF,
+    Count,
+    Dof,
+    Index,
+    Length,
+    Omega,
+    Table,
+    Whole,
+    Within,
+    percent,
+)
+from stickslip.settings.ranges import Or, numbers
 from stickslip.settings.settings import Settings
 
-__all__ = ["Axis", "BasinKeys", "BasinSettings", "ClassifySettings", "TransientSettings"]
+__all__ = [
+    "Axis",
+    "BasinKeys",
+    "BasinSettings",
+    "ClassifyKeys",
+    "ClassifySettings",
+    "TransientKeys",
+    "TransientSettings",
+]
 
 Axis: TypeAlias = str | int
 """What an axis of a map is: the displacement of a degree of freedom, or the amplitude of a mode."""
+
+_Start = Annotated[
+    State | Mapping[str, float],
+    Or(Mapping[str, Length], "State | Mapping[str, float]", "State or mapping of str to float"),
+]
 
 
 class TransientSettings(Settings):
@@ -47,6 +78,17 @@ class TransientSettings(Settings):
     )
 
 
+class TransientKeys(TransientSettings, ObserveKeys):
+    """Which motion is followed, and how."""
+
+    start: _Start | None = Field(
+        default=None,
+        description="State at t = 0, or displacements of some degrees of freedom [m], the others "
+        "and everything else zero. ``other.final`` continues another run. Default: rest.",
+        examples=[{"tip": "1 mm"}],
+    )
+
+
 class ClassifySettings(Settings):
     """How it is found out what becomes of a motion."""
 
@@ -60,9 +102,75 @@ class ClassifySettings(Settings):
     )
 
 
-class BasinKeys(ClassifySettings):
-    """How it is found out what becomes of many motions."""
+class ClassifyKeys(ClassifySettings, ObserveKeys):
+    """How it is found out what becomes of a motion, and what is kept of it."""
 
+
+class AxisTable(Table):
+    """An axis of the map: a displacement or the amplitude of a mode at the start."""
+
+    dof: Dof | None = Field(default=None, description="DOF whose displacement it is.")
+    mode: Index | None = Field(
+        default=None, description="Instead: stuck mode, counted from 0, whose amplitude it is."
+    )
+    begin: Length = Field(alias="from", description="First value.", examples=["-1 mm"])
+    end: Length = Field(alias="to", description="Last value.", examples=["1 mm"])
+    points: Annotated[int, Whole(1, 100_000)] = Field(description="Number of values.")
+
+    @model_validator(mode="after")
+    def _require_one(self) -> Self:
+        if (self.dof is None) == (self.mode is None):
+            raise ValueError("give exactly one of dof and mode")
+        return self
+
+
+def _written_axes(given: tuple[AxisTable, AxisTable]) -> dict[Axis, list[float]]:
+    axes: dict[Axis, list[float]] = {
+        one.mode or 0 if one.dof is None else one.dof: np.linspace(
+            one.begin, one.end, one.points
+        ).tolist()
+        for one in given
+    }
+    if len(axes) < len(given):
+        raise ValueError("axes holds the same axis twice; give two of them")
+    return axes
+
+
+def _axes(given: object) -> dict[Axis, list[float]]:
+    if not isinstance(given, Mapping) or len(given) != 2:
+        shown = f"{len(given)} axes" if isinstance(given, Mapping) else brief(given)
+        raise EntryError("", f': {shown}; give two, {{"tip": [...], "damper": [...]}}')
+    return {
+        axis: numbers(values, "give finite numbers in m").tolist() for axis, values in given.items()
+    }
+
+
+_Axes = Annotated[
+    dict[Axis, list[float]],
+    Or(
+        Annotated[tuple[AxisTable, AxisTable], Strict(False), AfterValidator(_written_axes)],
+        "Mapping[str | int, ArrayLike]",
+        "mapping of str or int to array_like",
+        _axes,
+    ),
+]
+
+
+class BasinKeys(ClassifyKeys):
+    """Which motions are followed, and how it is found out what becomes of them."""
+
+    axes: _Axes | None = Field(
+        default=None,
+        description="Two axes of a map with their values [m], the first drawn upwards, the second "
+        "to the right: the displacement of a degree of freedom by its name, or the amplitude of a "
+        "stuck mode by its number, counted from 0; a mode of amplitude a moves its largest "
+        "displacement by a.",
+        examples=[[{"mode": 2, "from": "0 mm", "to": "0.4 mm", "points": 31}]],
+    )
+    base: _Start | None = Field(
+        default=None,
+        description="What the axes are added to. Default: rest.",
+    )
     threads: Count | None = Field(
         default=None,
         description="How many processors to use. Default: all. The result does not depend on it.",

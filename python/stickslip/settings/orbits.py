@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from numbers import Integral
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from stickslip.checks import brief, members, whole_number
-from stickslip.errors import EntryError
-from stickslip.settings.balance import PointSettings, SteadySettings
+from stickslip.errors import EntryError, ModelError
+from stickslip.settings.balance import CurveKeys, PointSettings, SteadySettings
 from stickslip.settings.entries import ONE_OF, Flag, Index, Span, Tolerance, Whole
 from stickslip.settings.settings import Settings
 
-__all__ = ["CertifySettings", "ExactSettings", "OrbitSettings", "SingleHarmonicSettings"]
+__all__ = [
+    "CertifySettings",
+    "ExactSettings",
+    "OrbitKeys",
+    "OrbitSettings",
+    "SingleHarmonicKeys",
+]
 
 
 class OrbitSettings(SteadySettings):
@@ -49,14 +55,28 @@ class ExactSettings(OrbitSettings):
         return None
 
 
-class SingleHarmonicSettings(PointSettings):
-    """How a single harmonic is balanced."""
+class OrbitKeys(OrbitSettings, CurveKeys):
+    """Where exact orbits are computed, and how; those of a range are of a harmonic balance."""
+
+
+class SingleHarmonicKeys(PointSettings, CurveKeys):
+    """Where a single harmonic is balanced, and how."""
 
     estimate: Flag = Field(
         default=True,
         description="Estimate the error of leaving the higher harmonics out, which takes most of "
         "the time. Without it `ForcedResponse.error_estimate` is not-a-number.",
     )
+
+    @model_validator(mode="after")
+    def _require_points(self) -> Self:
+        if isinstance(self.omega, tuple):
+            raise ModelError(
+                f"omega: {self.omega} is a range, which a single harmonic cannot choose steps in; "
+                "give a grid, as np.linspace(start, end, 400)",
+                study="omega: a range needs 'points' here; steps are not chosen",
+            )
+        return self
 
 
 def _points(value: object) -> int | str | tuple[int, ...]:

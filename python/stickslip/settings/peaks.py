@@ -2,15 +2,51 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Callable
+from os import PathLike
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field
+import numpy as np
+from pydantic import BeforeValidator, Field, PlainValidator, Strict, model_validator
 
+from stickslip.checks import brief, real_number
+from stickslip.errors import EntryError
 from stickslip.settings.balance import HarmonicSettings
-from stickslip.settings.entries import ONE_OF, Count, Dof, Index, Measure, span_of
-from stickslip.settings.variation import CommonSettings, Variation
+from stickslip.settings.entries import (
+    ONE_OF,
+    Count,
+    Dof,
+    Index,
+    ListOr,
+    Many,
+    Measure,
+    Ratio,
+    Some,
+    StiffnessValue,
+    Text,
+    span_of,
+)
+from stickslip.settings.ranges import (
+    Dofs,
+    Float,
+    Levels,
+    Or,
+    PeakRange,
+    SlipForces,
+    Stiffnesses,
+    numbers,
+)
+from stickslip.settings.variation import ContactKeys, Parameter, Variation, one_of
 
-__all__ = ["DamperKeys", "DamperSettings", "MistuningKeys", "MistuningSettings", "PeakSettings"]
+__all__ = [
+    "DamperKeys",
+    "DamperSettings",
+    "MistuningKeys",
+    "MistuningSettings",
+    "OptimumKeys",
+    "PeakKeys",
+    "PeakSettings",
+]
 
 
 def _ascending(span: object) -> tuple[float, float]:
@@ -20,6 +56,43 @@ def _ascending(span: object) -> tuple[float, float]:
 
 _PeakRange = Annotated[tuple[float, float], BeforeValidator(_ascending)]
 _Distribution = Annotated[Literal["normal", "uniform"], ONE_OF]
+
+
+def _bounds(bounds: object) -> tuple[float, float]:
+    if not isinstance(bounds, tuple | list) or len(bounds) != 2:
+        raise EntryError("", ": give two values, (lowest, highest)")
+    low, high = (real_number(value, "") for value in bounds)
+    if not 0.0 < low < high:
+        raise EntryError("", f": ({low:g}, {high:g}); give 0 < lowest < highest")
+    return low, high
+
+
+def _unsigned(remedy: str) -> Callable[[Any], Float]:
+    """Return what reads one or several finite numbers, none of them negative, each once."""
+
+    def read(values: Any) -> Float:
+        found = numbers(
+            values, f"give {remedy}, not negative", lambda x: np.isfinite(x) & (x >= 0.0)
+        )
+        if np.unique(found).size < found.size:
+            raise EntryError("", f": {brief(values)} holds a value twice; give each once")
+        return found
+
+    return read
+
+
+_SEVERAL = "ArrayLike", "float or array_like"
+_Deviations = Annotated[Float, Or(ListOr[Ratio, Ratio], *_SEVERAL, _unsigned("0.05 for 5 %"))]
+_Couplings = Annotated[Float, Or(Some[StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m"))]
+_Patterns = Annotated[
+    int | Float,
+    Or(
+        ListOr[Many[Annotated[float, Strict(False)]], Count],
+        "int | ArrayLike",
+        "int or array_like, shape (p, n)",
+    ),
+]
+_Path = Annotated[str | PathLike[str], Or(Text, "str | PathLike[str]", "path-like")]
 
 
 class PeakSettings(HarmonicSettings):
@@ -35,11 +108,57 @@ class _FollowedPeak(PeakSettings):
     dof: Dof = Field(description="The degree of freedom whose peak is followed.", examples=["tip"])
 
 
-class DamperKeys(_FollowedPeak, CommonSettings):
-    """How a damper curve is computed."""
+class PeakKeys(_FollowedPeak, ContactKeys):
+    """Which peak is followed, and how."""
 
     mode: Index = Field(
         default=0, description="The mode around whose resonance the peak is sought, counted from 0."
+    )
+    omega: PeakRange | None = Field(
+        default=None,
+        description="Range of frequencies in which the peak is the highest point [rad/s]. Default: "
+        "from 5 % below the free to 5 % above the highest stuck natural frequency of `mode`, over "
+        "the lowest harmonic of the forces.",
+    )
+
+
+class DamperKeys(PeakKeys):
+    """Along which parameter a peak is followed, and how; give exactly one of the three."""
+
+    slip_force: SlipForces | None = Field(
+        default=None,
+        description="Slip forces F_d [N], in the order to follow; an infinite one never slips.",
+        examples=[{"from": "1 N", "to": "10 kN", "points": 60}],
+    )
+    stiffness: Stiffnesses | None = Field(
+        default=None,
+        description="Instead: stiffnesses k_d of the contacts [N/m]. An infinite one is the limit "
+        "of a rigid contact, and common values above 500 times the stiffness of the structure lie "
+        "on the line in 1/k_d towards it.",
+    )
+    level: Levels | None = Field(default=None, description="Instead: factors on all forces.")
+
+    @model_validator(mode="after")
+    def _require_one(self) -> Self:
+        one_of(self, "slip_force", "stiffness", "level")
+        return self
+
+
+class OptimumKeys(PeakKeys):
+    """What is varied to make a peak least, and how."""
+
+    parameter: Annotated[Parameter, ONE_OF] = Field(
+        default="slip_force",
+        description='What is varied. With "level", a factor on all forces, the amplitude per unit '
+        "of level is made least: friction knows the ratio of force and slip force alone.",
+    )
+    bounds: Annotated[tuple[float, float], PlainValidator(_bounds)] | None = Field(
+        default=None,
+        description="Values to look between. Default, for slip forces: from 1/1000 to all of the "
+        "largest force that the stuck contacts bear in the range of frequencies, beyond which "
+        "nothing slips. At light damping that rises far above the load: the lower bound is then "
+        "0.03 times, and the upper one at most 10 000 times, what they bear at the low end of the "
+        "range. For levels likewise; for stiffnesses: 1/100 to 250 times that of the structure.",
     )
 
 
@@ -55,6 +174,37 @@ class DamperSettings(_FollowedPeak):
 class MistuningKeys(PeakSettings):
     """How the disks of a mistuning study are made and computed."""
 
+    deviation: _Deviations = Field(
+        description="Standard deviations S of the sectors' stiffness: sector i of a pattern r has "
+        "(1 + S r_i) K, as ``disk.mistuned(S * r)``.",
+        examples=["7 %", ["1 %", "3 %", "5 %"]],
+    )
+    omega: PeakRange = Field(
+        description="Range of frequencies in which peaks are the highest points [rad/s]."
+    )
+    patterns: _Patterns = Field(
+        default=1000,
+        description="How many patterns are drawn; or the patterns themselves, in units of S.",
+    )
+    dofs: Dofs | None = Field(
+        default=None,
+        description="Degrees of freedom of a sector whose amplification is sought. Default: all "
+        "that carry a contact or a force.",
+        examples=[["tip"]],
+    )
+    coupling_stiffness: _Couplings | None = Field(
+        default=None,
+        description="Stiffnesses that all couplings take in turn [N/m]. Default: those of the "
+        "disk.",
+        examples=[["1e3 N/m", "1e4 N/m"]],
+    )
+    store: _Path | None = Field(
+        default=None,
+        description="File in which the results are kept as they come. If there is one of the same "
+        "study already, with as many patterns, deviations and couplings or with others, only what "
+        "is missing is computed: a run that was stopped, however rudely, goes on where it was. "
+        "Default: none, and beside the result of a study file.",
+    )
     seed: Index = Field(
         default=0,
         description="Of the patterns drawn. Pattern i of a seed is the same however many there "

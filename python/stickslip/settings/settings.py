@@ -8,14 +8,17 @@ import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Self, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar, Union, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from stickslip.calls import misfit
-from stickslip.errors import CallError
+from stickslip.checks import brief
+from stickslip.errors import CallError, ModelError
+from stickslip.model import Model
 from stickslip.settings.entries import CALL, Table
+from stickslip.settings.ranges import Or
 from stickslip.settings.refusal import refusal
 
 __all__ = ["Settings", "configured", "described", "type_in_words"]
@@ -23,7 +26,6 @@ __all__ = ["Settings", "configured", "described", "type_in_words"]
 _Result = TypeVar("_Result")
 _INDENT = 4 * " "
 _WIDTH = 100
-_SECTION = re.compile(r"( *)Parameters\n *-+\n(.*?)\n(?=\n *\w+\n *---)", re.S)
 
 
 class Settings(Table):
@@ -63,21 +65,46 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
+class _Common(NamedTuple):
+    """An argument that most analyses have: what is said of it, and what is refused."""
+
+    said: str
+    check: Callable[[Any], None] = lambda _: None
+
+
+def _require_model(model: object) -> None:
+    if not isinstance(model, Model):
+        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
+
+
+def _require_progress(progress: object) -> None:
+    if progress is not None and not callable(progress):
+        raise ModelError(
+            f"progress: {brief(progress)} cannot be called; give a function of a fraction"
+        )
+
+
 _COMMON = {
-    "model": "model : Model\n    Structure, contacts and forces.",
-    "observe": """observe : iterable of str, optional
-    Degrees of freedom whose motion is kept. Default: all but modal coordinates
-    ("mode-1", ...).""",
-    "progress": """progress : callable, optional
+    "model": _Common("Model\n    Structure, contacts and forces.", _require_model),
+    "progress": _Common(
+        """callable, optional
     Called about ten times per second with the fraction of the work that is done.""",
+        _require_progress,
+    ),
 }
-"""What arguments mean that most analyses have."""
+_RAISED = {
+    "ModelError": """
+    If an argument is of the wrong type or outside its range, or the result would not fit into
+    the memory.""",
+    "Interrupted": """
+    On Ctrl-C; its `result` holds what had been computed.""",
+}
 
 
 def configured(
     kind: type[Settings], *placed: str
 ) -> Callable[[Callable[..., _Result]], Callable[..., _Result]]:
-    """Let a function take settings as its keywords.
+    """Let an analysis take settings as its keywords.
 
     Parameters
     ----------
@@ -89,7 +116,9 @@ def configured(
     Returns
     -------
     callable
-        Decorator. Signature and documentation of the function have a parameter for every key.
+        Decorator. Signature and documentation of the function have a parameter for every key;
+        `model` and `progress` are checked, and documented like what most analyses raise. A table of
+        a study file, whose keys are checked, is passed on as ``settings``.
     """
 
     def decorate(function: Callable[..., _Result]) -> Callable[..., _Result]:
@@ -113,10 +142,15 @@ def configured(
 
         @wraps(function)
         def call(*args: Any, **keywords: Any) -> _Result:
+            if isinstance(keywords.get("settings"), kind):
+                return function(*args, **keywords)
             try:
                 given = signature.bind(*args, **keywords).arguments
             except TypeError:
                 raise CallError(str(misfit(call, args, keywords))) from None
+            for name, value in given.items():
+                if name in _COMMON:
+                    _COMMON[name].check(value)
             settings = kind.of(**{name: given.pop(name) for name in keys if name in given})
             return function(**given, settings=settings)
 
@@ -131,23 +165,47 @@ def configured(
 def _parameter(name: str, field: FieldInfo, *, placed: bool = False) -> inspect.Parameter:
     which = inspect.Parameter.POSITIONAL_OR_KEYWORD if placed else inspect.Parameter.KEYWORD_ONLY
     default = inspect.Parameter.empty if field.is_required() else field.default
-    return inspect.Parameter(name, which, default=default, annotation=field.annotation)
+    taken = _taken(field.annotation, field.metadata)
+    return inspect.Parameter(name, which, default=default, annotation=taken)
+
+
+def _taken(annotation: Any, metadata: Iterable[Any] = ()) -> Any:
+    """Return the type of what a call gives; a text where study files write it otherwise."""
+    for one in metadata:
+        if isinstance(one, Or):
+            return one.takes
+    parts = get_args(annotation)
+    if get_origin(annotation) is Annotated:
+        return _taken(parts[0], parts[1:])
+    taken = _taken(parts[0]) if NoneType in parts else annotation
+    return f"{taken} | None" if isinstance(taken, str) else annotation
 
 
 def _documented(text: str, signature: inspect.Signature, keys: Mapping[str, FieldInfo]) -> str:
-    """Complete the section "Parameters" by the keys, in the order of the signature."""
-    section = _SECTION.search(text)
-    if section is None:
-        return text
-    indent = section[1]
-    entries = {name: textwrap.indent(said, indent) for name, said in _COMMON.items()}
-    for block in re.split(rf"\n(?={indent}\S)", section[2]):
+    """Complete "Parameters" by the keys, in the order of the signature, and "Raises"."""
+    head, *parts = re.split(r"\n\n(\w+)\n-+\n", inspect.cleandoc(text))
+    sections = dict.fromkeys(("Parameters", "Returns", "Raises"), "")
+    sections |= zip(parts[::2], parts[1::2], strict=True)
+    said = {name: f"{name} : {common.said}" for name, common in _COMMON.items()}
+    for block in _blocks(sections["Parameters"]):
         names = block.split(" : ")[0].replace("*", "").split(", ")
-        entries |= dict.fromkeys((name.strip() for name in names), block)
-    entries |= {name: described(name, field, indent) for name, field in keys.items()}
-    blocks = dict.fromkeys(entries[name] for name in signature.parameters if name in entries)
-    head = text[: section.start(2)]
-    return head + "\n".join(blocks) + text[section.end(2) :]
+        said |= dict.fromkeys(names, block)
+    said |= {name: described(name, field, "") for name, field in keys.items()}
+    sections["Parameters"] = "\n".join(
+        dict.fromkeys(said[name] for name in signature.parameters if name in said)
+    )
+    raised = dict(block.split("\n", 1) for block in _blocks(sections["Raises"]))
+    sections["Raises"] = "\n".join(
+        "\n".join(filter(None, (f"{name}{common}", raised.get(name))))
+        for name, common in _RAISED.items()
+    )
+    written = (f"{name}\n{'-' * len(name)}\n{body}" for name, body in sections.items())
+    return "\n\n".join((head, *written))
+
+
+def _blocks(section: str) -> list[str]:
+    """Return the entries of a section; what is said of them is indented."""
+    return re.split(r"\n(?=\S)", section) if section else []
 
 
 def described(name: str, field: FieldInfo, indent: str) -> str:
@@ -164,8 +222,8 @@ def described(name: str, field: FieldInfo, indent: str) -> str:
 def type_in_words(annotation: Any, metadata: Iterable[Any] = ()) -> str:
     """Return a type as numpydoc writes it: ``int or "auto"``, ``{"newton", "broyden"}``."""
     for one in metadata:
-        if isinstance(one, str):
-            return one
+        if isinstance(one, Or):
+            return one.said
     origin, parts = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return type_in_words(parts[0], parts[1:])

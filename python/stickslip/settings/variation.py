@@ -2,23 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 import numpy as np
 from pydantic import Field, Strict
 
-from stickslip.model import Model
+from stickslip.errors import ModelError
+from stickslip.model import Model, PointRef
 from stickslip.model.contact import Contact
-from stickslip.settings.entries import ONE_OF
+from stickslip.settings.entries import ONE_OF, NamedContact, Some
+from stickslip.settings.ranges import Or
 from stickslip.settings.settings import Settings
 
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["Chosen", "Common", "CommonSettings", "Parameter", "Variation", "located"]
+__all__ = [
+    "Chosen",
+    "Common",
+    "CommonSettings",
+    "ContactKeys",
+    "Contacts",
+    "Parameter",
+    "Variation",
+    "located",
+    "one_of",
+]
 
 Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
 Common = Annotated[Literal["value", "factor"], ONE_OF]
+
+Contacts: TypeAlias = Iterable[PointRef] | PointRef
+"""Contacts or points of contacts, or one of them."""
 
 Chosen: TypeAlias = str | tuple[str, int]
 """A contact by its name, or one of its points."""
@@ -31,6 +47,23 @@ class CommonSettings(Settings):
         default="value",
         description="Whether the contacts all take the value, or multiply their own by it. The "
         "stiffness of a structure-like damper is a matrix, and takes a factor alone.",
+    )
+
+
+_Contacts = Annotated[
+    Contacts,
+    Or(Some[NamedContact], "Contacts", "int, str, (contact, int), or iterable of these"),
+]
+
+
+class ContactKeys(CommonSettings):
+    """Which contacts have a parameter in common."""
+
+    contacts: _Contacts | None = Field(
+        default=None,
+        description="The contacts that take the value, or points of them as (contact, point). Of "
+        "a contact with several points the slip forces that are finite, unless none is. Default: "
+        "all contacts; of slip forces those that are finite, unless none is.",
     )
 
 
@@ -114,6 +147,15 @@ class Variation(CommonSettings):
         if self.common == "value":
             return value
         return own if np.isinf(own) else value * own
+
+
+def one_of(keys: Settings, *names: Parameter) -> Parameter:
+    """Return which of some keys is given: exactly one of them."""
+    given = [name for name in names if getattr(keys, name) is not None]
+    if len(given) != 1:
+        got = f"{' and '.join(given)} are given" if given else "none is given"
+        raise ModelError(f"{', '.join(names)}: {got}; give exactly one of them")
+    return given[0]
 
 
 def _name(ref: Chosen) -> str:

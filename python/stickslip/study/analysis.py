@@ -2,47 +2,221 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from operator import or_
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
 
-from pydantic import Tag
+from pydantic import Field, GetCoreSchemaHandler, Tag, model_validator
 
-from stickslip.settings.entries import chosen_by
-from stickslip.study.analysis_tables import (
-    CertifyTable,
-    ExactTable,
-    ForcedResponseTable,
-    SingleHarmonicTable,
-)
-from stickslip.study.basin_map_table import BasinMapTable
-from stickslip.study.damper_curve_table import DamperCurveTable
-from stickslip.study.limit_cycles_table import LimitCyclesTable
-from stickslip.study.mistuning_study_table import MistuningStudyTable
-from stickslip.study.transient_table import TransientTable
+from stickslip.analyses.basin_map import basin_map
+from stickslip.analyses.certify import certify
+from stickslip.analyses.damper_curve import damper_curve
+from stickslip.analyses.exact_response import exact_response
+from stickslip.analyses.forced_response import forced_response
+from stickslip.analyses.limit_cycles import limit_cycles
+from stickslip.analyses.mistuning_study import mistuning_study
+from stickslip.analyses.run import Progress, share
+from stickslip.analyses.single_harmonic import single_harmonic
+from stickslip.analyses.transient import transient
+from stickslip.checks import real_matrix
+from stickslip.model import Model
+from stickslip.settings.balance import BalanceKeys
+from stickslip.settings.cycles import CycleKeys
+from stickslip.settings.entries import Factor, Some, Table, chosen_by
+from stickslip.settings.motion import BasinKeys, TransientKeys
+from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
+from stickslip.settings.peaks import DamperKeys, MistuningKeys
+from stickslip.study.matrices import damping_of, matrix_of
+from stickslip.study.structure_table import DampingSource, ModalDampingTable, RayleighDamping
 
-__all__ = ["AnalysisTable"]
+if TYPE_CHECKING:
+    from pydantic_core import CoreSchema
 
-AnalysisTable = Annotated[
-    Annotated[ForcedResponseTable, Tag("<forced-response>")]
-    | Annotated[ExactTable, Tag("<exact>")]
-    | Annotated[TransientTable, Tag("<transient>")]
-    | Annotated[CertifyTable, Tag("<certify>")]
-    | Annotated[SingleHarmonicTable, Tag("<single-harmonic>")]
-    | Annotated[DamperCurveTable, Tag("<damper-curve>")]
-    | Annotated[BasinMapTable, Tag("<basin-map>")]
-    | Annotated[MistuningStudyTable, Tag("<mistuning-study>")]
-    | Annotated[LimitCyclesTable, Tag("<limit-cycles>")],
-    chosen_by(
-        "kind",
-        "forced-response",
-        "exact",
-        "transient",
-        "certify",
-        "single-harmonic",
-        "damper-curve",
-        "basin-map",
-        "mistuning-study",
-        "limit-cycles",
-        default="forced-response",
-    ),
-]
-"""Each further analysis joins this union with a table of its own."""
+    from stickslip.results.result import Result
+
+__all__ = ["KINDS", "AnalysisTable", "ByKind", "MistuningStudyTable", "level_name"]
+
+# Share of the progress that the balance is given before it is certified.
+_BALANCE = 0.5
+
+
+def level_name(level: float) -> str:
+    """Return a level as the name of its curve has it."""
+    return f"{level:.10g}"
+
+
+class AnalysisTable(Table):
+    """What to compute: the keys of an analysis."""
+
+    analysis: ClassVar[Callable[..., Result]]
+    """What takes the table as its settings."""
+    dof_keys: ClassVar[tuple[str, ...]] = ("observe",)
+    """Keys that name DOFs; the first names those that the result has."""
+
+    kind: str
+
+    @property
+    def levels(self) -> tuple[float, ...] | None:
+        """Factors on every force, one result each; None: there is one result."""
+        return getattr(self, "level_factors", None)
+
+    @property
+    def named_dofs(self) -> Mapping[str, Sequence[str]]:
+        """The DOFs that each key names."""
+        given = {key: getattr(self, key) or () for key in self.dof_keys}
+        return {
+            key: (names,) if isinstance(names, str) else [n for n in names if isinstance(n, str)]
+            for key, names in given.items()
+        }
+
+    @property
+    def observed(self) -> Sequence[str]:
+        """The DOFs that the result has; none are all that are no modal coordinates."""
+        return next(iter(self.named_dofs.values()), ())
+
+    def with_matrices(self, folder: Path) -> Self:
+        """Return the table with the numbers of the files that it names."""
+        return self
+
+    def run(self, model: Model, progress: Progress, shown: Sequence[str] = ()) -> Result:
+        """Compute one result, accurate at the DOFs that the study shows."""
+        return type(self).analysis(model, settings=self, progress=progress)
+
+
+class LevelEntries(AnalysisTable):
+    """The keys of every analysis with forces."""
+
+    level_factors: Some[Factor] | None = Field(
+        default=None,
+        alias="levels",
+        description="Factors on every force: one result each; left out: the forces as written.",
+        examples=[[0.5, 1, 2]],
+    )
+
+    @model_validator(mode="after")
+    def _require_distinct_levels(self) -> Self:
+        names = [level_name(level) for level in self.levels or ()]
+        if len(set(names)) < len(names):
+            twice = next(name for name in names if names.count(name) > 1)
+            raise ValueError(f"levels holds {twice} twice, to 10 digits; each level is one curve")
+        return self
+
+
+class ForcedResponseTable(BalanceKeys, LevelEntries):
+    """Steady response to the forces, by harmonic balance."""
+
+    kind: Literal["forced-response"] = Field(default="forced-response", description="The analysis.")
+
+    def run(self, model: Model, progress: Progress, shown: Sequence[str] = ()) -> Any:
+        """Compute one curve."""
+        return forced_response(model, settings=self, outputs=shown, progress=progress)
+
+
+class CertifyTable(CertifySettings, ForcedResponseTable):
+    """Steady response by harmonic balance, compared with exact orbits at some points."""
+
+    kind: Literal["certify"] = Field(description="The analysis.")  # type: ignore[assignment]
+
+    def run(self, model: Model, progress: Progress, shown: Sequence[str] = ()) -> Any:
+        """Compute one curve, and compare it."""
+        balance = super().run(model, share(progress, 0.0, _BALANCE), shown)
+        return certify(balance, settings=self, progress=share(progress, _BALANCE, 1.0))
+
+
+class ExactTable(OrbitKeys, LevelEntries):
+    """Steady response to the forces, by exact periodic orbits."""
+
+    kind: Literal["exact"] = Field(description="The analysis.")
+    analysis: ClassVar = exact_response
+
+
+class SingleHarmonicTable(SingleHarmonicKeys, LevelEntries):
+    """Steady response to harmonic forces, by a single harmonic."""
+
+    kind: Literal["single-harmonic"] = Field(description="The analysis.")
+    analysis: ClassVar = single_harmonic
+
+
+class TransientTable(TransientKeys, LevelEntries):
+    """Motion from rest or given displacements, period after period."""
+
+    kind: Literal["transient"] = Field(description="The analysis.")
+    analysis: ClassVar = transient
+    dof_keys = ("observe", "start")
+
+
+class DamperCurveTable(DamperKeys, AnalysisTable):
+    """Peak amplitude and frequency along a parameter of the contacts or the level of the forces."""
+
+    kind: Literal["damper-curve"] = Field(description="The analysis.")
+    analysis: ClassVar = damper_curve
+    dof_keys = ("dof",)
+
+
+class BasinMapTable(BasinKeys, AnalysisTable):
+    """What becomes of free motions from many starts."""
+
+    kind: Literal["basin-map"] = Field(description="The analysis.")
+    analysis: ClassVar = basin_map
+    dof_keys = ("observe", "axes", "base")
+
+
+class MistuningStudyTable(MistuningKeys, AnalysisTable):
+    """Amplification factors of many disks whose sectors deviate, and their distribution."""
+
+    kind: Literal["mistuning-study"] = Field(description="The analysis.")
+    analysis: ClassVar = mistuning_study
+    dof_keys = ("dofs",)
+
+
+class LimitCyclesTable(CycleKeys, AnalysisTable):
+    """Limit cycles under the damping C + r C_neg, along the ratio r or a parameter of contacts."""
+
+    kind: Literal["limit-cycles"] = Field(description="The analysis.")
+    dof_keys = ()
+    negative_damping: DampingSource = Field(
+        description="C_neg: a matrix, Rayleigh damping or modal damping with negative numbers.",
+        examples=[{"rayleigh": {"mass": -7.49, "stiffness": -2.6e-5}}, {"modal": [-0.01, 0.0]}],
+    )
+
+    def with_matrices(self, folder: Path) -> Self:
+        """Return the table with the numbers of the file of its negative damping."""
+        source = self.negative_damping
+        if isinstance(source, RayleighDamping | ModalDampingTable | tuple):
+            return self
+        matrix = real_matrix(matrix_of(source, folder, "negative_damping"), "negative_damping")
+        rows = tuple(tuple(map(float, row)) for row in matrix)
+        return self.model_copy(update={"negative_damping": rows})
+
+    def run(self, model: Model, progress: Progress, shown: Sequence[str] = ()) -> Any:
+        """Compute the branch."""
+        negative = damping_of(self.negative_damping, Path())
+        return limit_cycles(model, negative, settings=self, progress=progress)
+
+
+KINDS: Mapping[str, type[AnalysisTable]] = {
+    get_args(table.model_fields["kind"].annotation)[0]: table
+    for table in (
+        ForcedResponseTable,
+        ExactTable,
+        TransientTable,
+        CertifyTable,
+        SingleHarmonicTable,
+        DamperCurveTable,
+        BasinMapTable,
+        MistuningStudyTable,
+        LimitCyclesTable,
+    )
+}
+"""Each further analysis has a table of its own here."""
+
+
+class ByKind:
+    """An analysis whose key `kind` chooses the table."""
+
+    def __get_pydantic_core_schema__(self, _: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        tables: Any = (Annotated[table, Tag(f"<{kind}>")] for kind, table in KINDS.items())
+        chosen = chosen_by("kind", *KINDS, default="forced-response")
+        return handler.generate_schema(Annotated[reduce(or_, tables), chosen])

@@ -112,7 +112,6 @@ class DiskTable(Table):
     )
     interface: InterfaceTable | None = Field(
         default=None,
-        title="Interface",
         description="Blocks that couple each sector to the next.",
     )
     boundary: Mapping[str, str] = Field(
@@ -123,7 +122,6 @@ class DiskTable(Table):
     )
     mistuning: MistuningTable | None = Field(
         default=None,
-        title="Mistuning",
         description="Deviations of the sectors; left out: all are equal.",
     )
 

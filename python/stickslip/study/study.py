@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from pydantic import ValidationError
 
 from stickslip.analyses.arguments import loaded_dofs, physical_dofs
+from stickslip.analyses.run import share
 from stickslip.checks import brief, file_path, is_file, is_reserved, unknown, vanished
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.arguments import NEXT, stranger
@@ -20,9 +21,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Structure
 from stickslip.settings.refusal import refusal
-from stickslip.study.analysis_entries import level_name
-from stickslip.study.analysis_tables import ForcedResponseTable
-from stickslip.study.limit_cycles_table import with_matrices
+from stickslip.study.analysis import level_name
 from stickslip.study.matrices import damping_of, matrix_of, named, neighbour
 from stickslip.study.tables import ForceTable, StudyTables
 
@@ -143,7 +142,9 @@ class Study:
             As `load`.
         """
         with named(source):
-            tables = with_matrices(_read(text), Path(folder))
+            tables = _read(text)
+            analysis = tables.analysis.with_matrices(Path(folder))
+            tables = tables.model_copy(update={"analysis": analysis})
             model = _model(tables, Path(folder))
             _check_dofs(tables, model)
             _check_name(tables.name or name)
@@ -165,7 +166,7 @@ class Study:
         """The DOFs to tabulate and draw: of `[output]`, or else those with a force or a contact."""
         if self.tables.output.dofs is not None:
             return self.tables.output.dofs
-        observed = self.tables.analysis.observe
+        observed = self.tables.analysis.observed
         return notable_dofs(self.model, observed or physical_dofs(self.model))
 
     def models(self) -> tuple[Model, ...]:
@@ -194,12 +195,11 @@ class Study:
             Ctrl-C; carries the part of the current curve that was done.
         """
         cases = self.cases
-        analysis = self.tables.analysis
-        if isinstance(analysis, ForcedResponseTable):
-            analysis = analysis.showing(self.tables.output.dofs or ())
+        shown = self.tables.output.dofs or ()
         for number, case in enumerate(cases):
+            part = share(progress, number / len(cases), (number + 1) / len(cases))
             with named(self.source):
-                result = analysis.run(case.model, _part(progress, number, len(cases)))
+                result = self.tables.analysis.run(case.model, part, shown)
             yield result
 
 
@@ -379,7 +379,7 @@ def _check_name(name: str) -> None:
 
 
 def _check_dofs(tables: StudyTables, model: Model) -> None:
-    observed = tables.analysis.observe or physical_dofs(model)
+    observed = tables.analysis.observed or physical_dofs(model)
     for key, names in tables.analysis.named_dofs.items():
         _check_names(f"analysis: {key}", names, model)
     _check_names("output: dofs", tables.output.dofs or (), model)
@@ -399,11 +399,3 @@ def _check_names(entry: str, names: Sequence[str], model: Model) -> None:
             model.structure.index(name)
             if first.setdefault(name, number) < number:
                 raise ModelError(f"{brief(name)} is {key}[{first[name]}] too; name it once")
-
-
-def _part(
-    progress: Callable[[float], None] | None, number: int, total: int
-) -> Callable[[float], None] | None:
-    if progress is None:
-        return None
-    return lambda fraction: progress((number + fraction) / total)

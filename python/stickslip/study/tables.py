@@ -29,7 +29,7 @@ from stickslip.settings.entries import (
     Text,
     chosen_by,
 )
-from stickslip.study.analysis import AnalysisTable
+from stickslip.study.analysis import AnalysisTable, ByKind
 from stickslip.study.disk_table import CouplingTable, DiskTable
 from stickslip.study.structural_table import StructuralTable
 from stickslip.study.structure_table import StructureTable
@@ -182,13 +182,12 @@ class StudyTables(Table):
     force: Many[ForceTable] = Field(default=(), description="The forces.")
     disk: DiskTable | None = Field(
         default=None,
-        title="Disk",
         description="Makes the structure a sector of a bladed disk; left out: it is the whole.",
     )
     coupling: Many[CouplingTable] = Field(
         default=(), description="Springs between neighbouring sectors of the disk."
     )
-    analysis: AnalysisTable = Field(description="What to compute.")
+    analysis: Annotated[AnalysisTable, ByKind()] = Field(description="What to compute.")
     output: OutputTable = Field(default=OutputTable(), description="What to tabulate and draw.")
 
     @model_validator(mode="after")

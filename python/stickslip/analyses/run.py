@@ -1,0 +1,68 @@
+"""What every analysis does around its own: it calls the core, and it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeAlias, TypeVar
+
+from stickslip.errors import ModelError
+from stickslip.interruption import Interruption, stopped
+from stickslip.model import Model
+from stickslip.model.model import refusal
+from stickslip.results.result import Result
+
+__all__ = ["Progress", "Run", "refusals", "share"]
+
+Progress: TypeAlias = Callable[[float], None] | None
+
+_Kind = TypeVar("_Kind", bound=Result)
+
+
+class Run(Interruption):
+    """A block in which an analysis computes; signals wait until what was computed is safe.
+
+    Parameters
+    ----------
+    what : str
+        What is computed, in words.
+    progress : callable or None
+        Called with the share of the work done.
+    model : Model, optional
+        Decomposed now, while Ctrl-C still ends an analysis at any line: nothing is lost yet.
+    """
+
+    def __init__(self, what: str, progress: Progress, model: Model | None = None) -> None:
+        super().__init__(progress)
+        self._what = what
+        _ = None if model is None else model.problem
+
+    def ended(self, result: _Kind, count: str, advice: str = "") -> _Kind:
+        """Return the result of a run that is complete.
+
+        Raises
+        ------
+        Interrupted
+            If it is not; the exception holds what there is, and says how much by `count`.
+        """
+        if result.interrupted:
+            raise stopped(self._what, count, result, advice)
+        return self.completed(result, self._what)
+
+
+@contextmanager
+def refusals(model: Model) -> Iterator[None]:
+    """Say by the names of the model what the core refuses."""
+    try:
+        yield
+    except ModelError:
+        raise
+    except ValueError as error:
+        raise refusal(error, model) from error
+
+
+def share(progress: Progress, start: float, end: float) -> Progress:
+    """Return what a part of the work tells of its own progress."""
+    if progress is None:
+        return None
+    return lambda done: progress((1.0 - done) * start + done * end)

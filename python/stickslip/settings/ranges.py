@@ -1,0 +1,276 @@
+"""Lists and ranges, as a function takes them and as a study file writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from math import inf
+from numbers import Real
+from typing import Annotated, Any, Generic, Literal, Self, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import (
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    Tag,
+    ValidationInfo,
+    WithJsonSchema,
+    model_validator,
+)
+from pydantic_core import core_schema
+
+from stickslip.checks import brief, real_number
+from stickslip.errors import EntryError
+from stickslip.settings.entries import (
+    CALL,
+    ONE_OF,
+    Dof,
+    Factor,
+    ListOr,
+    Omega,
+    SlipForce,
+    Some,
+    Span,
+    Table,
+    Whole,
+    quantity_of,
+    span_of,
+)
+
+__all__ = [
+    "BranchSlipForces",
+    "BranchStiffnesses",
+    "Dofs",
+    "Frequencies",
+    "Levels",
+    "Or",
+    "PeakRange",
+    "PositiveList",
+    "Ratios",
+    "SlipForces",
+    "Stiffnesses",
+    "numbers",
+]
+
+Float: TypeAlias = NDArray[np.float64]
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True)
+class Or:
+    """What a study file writes in one form, and a call gives in another, read by `call`."""
+
+    written: Any
+    takes: str
+    """Type of what a call gives."""
+    said: str
+    """The same in words."""
+    call: Callable[[Any], Any] = lambda value: value
+
+    def __get_pydantic_core_schema__(
+        self, _: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        def read(value: Any, inner: Callable[[Any], Any], info: ValidationInfo) -> Any:
+            if info.context == CALL:
+                return self.call(value)
+            found = inner(value)
+            if isinstance(found, _Ends):
+                return found.values()
+            numeric = isinstance(found, tuple) and isinstance(found[0], float)
+            return np.array(found) if numeric else found
+
+        return core_schema.with_info_wrap_validator_function(
+            read,
+            handler.generate_schema(self.written),
+            serialization=core_schema.plain_serializer_function_ser_schema(
+                lambda value: value.tolist() if isinstance(value, np.ndarray) else value
+            ),
+        )
+
+
+# ------------------------------------------------------------------------------------------- calls
+
+
+def positive(values: Float) -> Any:
+    """Tell which numbers are finite and above 0."""
+    return np.isfinite(values) & (values > 0.0)
+
+
+def numbers(values: object, remedy: str, allowed: Callable[[Float], Any] = np.isfinite) -> Float:
+    """Return one real number or a list of them, each allowed, as a list."""
+    try:
+        given = np.atleast_1d(np.asarray(values))
+    except ValueError:
+        raise EntryError("", f": a ragged list; {remedy} in one list") from None
+    if given.dtype.kind not in "fiu" and given.size:
+        raise EntryError("", f": {brief(values)} holds no real numbers; {remedy}")
+    if given.ndim != 1:
+        raise EntryError("", f": shape {given.shape} instead of (n,); {remedy} in one list")
+    if not given.size:
+        raise EntryError("", f": empty; {remedy}")
+    found = np.array(given, dtype=np.float64)
+    bad = np.flatnonzero(~allowed(found))
+    if bad.size:
+        raise EntryError("", f"[{bad[0]}] is {found[bad[0]]:g}; {remedy}")
+    return found
+
+
+def _grid(omega: object) -> Float | Span:
+    if isinstance(omega, tuple) and len(omega) == 2:
+        return span_of(omega)
+    if isinstance(omega, Real):
+        raise EntryError("", f": shape () instead of (n,); write [{omega:g}]")
+    return numbers(omega, "give finite frequencies above 0 rad/s", positive)
+
+
+def _branch(values: object) -> Float | Span:
+    if not isinstance(values, tuple) or len(values) != 2:
+        return np.unique(numbers(values, "give finite values above 0, or (from, to)", positive))
+    low, high = sorted(real_number(end, "", finite=False) for end in values)
+    if not 0.0 < low < high:
+        raise EntryError("", f": the range ({low:g}, {high:g}) must have two ends above 0")
+    return low, high
+
+
+def _names(given: object) -> tuple[str, ...]:
+    if not isinstance(given, Iterable):
+        raise EntryError("", f": {brief(given)} is not a list of names; write [...]")
+    names = (given,) if isinstance(given, str) else tuple(given)
+    if not names:
+        raise EntryError("", ": no dof; name at least one, or leave it out for all")
+    for position, name in enumerate(names):
+        if not isinstance(name, str):
+            raise EntryError("", f"[{position}]: {brief(name)} is not text; give a name in quotes")
+        if name in names[:position]:
+            raise EntryError("", f": {name!r} is given more than once; name each dof once")
+    return names
+
+
+# ------------------------------------------------------------------------------------- study files
+
+
+class _Ends(Table, Generic[_T]):
+    """The two ends of a range."""
+
+    begin: _T = Field(alias="from", description="First value.")
+    end: _T = Field(alias="to", description="Last value.")
+
+    def values(self) -> Any:
+        """Return what a call would give."""
+        return self.begin, self.end
+
+
+class _Range(_Ends[_T], Generic[_T]):
+    """A range, or values in it that are spaced logarithmically."""
+
+    points: Annotated[int, Whole(2, 100_000)] | None = Field(
+        default=None, description="Number of values; left out: the whole range, to be followed."
+    )
+
+    def values(self) -> Any:
+        """Return what a call would give."""
+        ends: Any = super().values()
+        return ends if self.points is None else np.geomspace(ends[0], ends[1], self.points)
+
+
+class PeakEnds(_Ends[Omega]):
+    """The range of frequencies in which peaks are looked for."""
+
+
+class OmegaRange(_Ends[Omega]):
+    """A range of angular frequencies: a grid, or left to the step control."""
+
+    points: Annotated[int, Whole(2, 10_000_000)] | None = Field(
+        default=None,
+        description="Number of points; left out: chosen to the tolerance.",
+        examples=[400],
+    )
+    spacing: Annotated[Literal["linear", "log"], ONE_OF] | None = Field(
+        default=None, description="Spacing of the points; left out: linear."
+    )
+
+    @model_validator(mode="after")
+    def _require_sense(self) -> Self:
+        if self.begin == self.end:
+            raise ValueError("'from' and 'to' are equal; for one frequency write omega = [...]")
+        if self.points is None and self.spacing is not None:
+            raise ValueError("'spacing' needs 'points'; without points the steps are adaptive")
+        return self
+
+    def values(self) -> Any:
+        """Return the grid, or the two ends of an adaptive range."""
+        if self.points is None:
+            return self.begin, self.end
+        space = np.geomspace if self.spacing == "log" else np.linspace
+        return space(self.begin, self.end, self.points)
+
+
+def _omega_form(value: object) -> str | None:
+    if isinstance(value, Mapping | OmegaRange):
+        return "<range>"
+    return "<list>" if isinstance(value, list | tuple) else None
+
+
+_Rigid = Annotated[
+    float,
+    quantity_of("N/m", "not be negative", finite=False),
+    WithJsonSchema({"type": ["number", "string"]}),
+]
+
+
+class SlipForceRange(_Range[SlipForce]):
+    """A range of slip forces."""
+
+
+class StiffnessRange(_Range[_Rigid]):
+    """A range of contact stiffnesses."""
+
+
+class LevelRange(_Range[Factor]):
+    """A range of levels of the forces."""
+
+
+class RatioRange(_Range[Factor]):
+    """A range of the ratio r."""
+
+    end: Factor = Field(default=inf, alias="to", description="Highest ratio; left out: no limit.")
+
+
+# ----------------------------------------------------------------------------------------- entries
+
+_LIST = "ArrayLike", "array_like, shape (n,)"
+_BOTH = "ArrayLike | tuple[float, float]", "array_like, shape (n,), or (float, float)"
+
+
+def _from_zero(values: object) -> Float:
+    return numbers(values, "give values from 0 on", lambda x: x >= 0.0)
+
+
+def _above_zero(values: object) -> Float:
+    return numbers(values, "give finite values above 0", positive)
+
+
+_Omegas = Annotated[
+    Annotated[OmegaRange, Tag("<range>")] | Annotated[Some[Omega], Tag("<list>")],
+    Discriminator(
+        _omega_form,
+        custom_error_type="omega_form",
+        custom_error_message="is neither {from = ..., to = ..., points = ...} nor a list",
+    ),
+]
+_Ratios = ListOr[Factor, RatioRange]
+_Stiffnesses = ListOr[_Rigid, StiffnessRange]
+_SlipForces = ListOr[SlipForce, SlipForceRange]
+
+Frequencies = Annotated[Float | Span, Or(_Omegas, *_BOTH, _grid)]
+PeakRange = Annotated[Span, Or(PeakEnds, "tuple[float, float]", "(float, float)", span_of)]
+SlipForces = Annotated[Float | Span, Or(_SlipForces, *_LIST, _from_zero)]
+Stiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_LIST, _from_zero)]
+Levels = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_LIST, _above_zero)]
+Ratios = Annotated[Float | Span, Or(_Ratios, *_BOTH, _branch)]
+BranchStiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_BOTH, _branch)]
+BranchSlipForces = Annotated[Float | Span, Or(_SlipForces, *_BOTH, _branch)]
+PositiveList = Annotated[Float, Or(Some[Factor], *_LIST, _above_zero)]
+Dofs = Annotated[tuple[str, ...], Or(Some[Dof], "Iterable[str] | str", "iterable of str", _names)]
