@@ -1,4 +1,4 @@
-"""Shows in the pages what is derived at run time: keys of settings as parameters of functions."""
+"""Shows in the pages what is derived at run time: parameters of functions, keys of settings."""
 
 from __future__ import annotations
 
@@ -16,10 +16,13 @@ class Derived(griffe.Extension):
 
     def on_function_instance(self, *, func: griffe.Function, **_: Any) -> None:
         """Document a function as `help` does."""
-        if not any("configured" in str(one.value) for one in func.decorators):
+        names = {str(one.value).partition("(")[0] for one in func.decorators}
+        if not names & {"configured", "figure"}:
             return
         value = getattr(import_module(func.module.path), func.name)
         func.docstring = _docstring(inspect.cleandoc(value.__doc__), func)
+        if "figure" in names:
+            return
         func.parameters = griffe.Parameters(
             *(
                 griffe.Parameter(

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot import DiameterOptions, SafeOptions
+    from stickslip.plot.options import DiameterOptions, SafeOptions
 
 __all__ = ["NodalDiameters", "nodal_diameters"]
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.waves import WaveOptions
+    from stickslip.plot.options import WaveOptions
 
 __all__ = ["AerodynamicWaves", "Wave", "aerodynamic_waves"]
 

@@ -4,29 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.plot.style import GREY
+from stickslip.plot.style import GREY, Colour, Looks, mark
 from stickslip.results.stability import STATES, States
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["LINES", "Colour", "marks", "name_states", "pieces"]
-
-Colour: TypeAlias = tuple[float, float, float, float] | str
+__all__ = ["LINES", "marks", "name_states", "pieces"]
 
 LINES = {"stable": "-", "unstable": "--", "not decided": ":"}
 """Style of the line by state."""
 
 
-def marks(state: str, colour: Colour) -> dict[str, Any]:
+def marks(state: str, colour: Colour) -> Looks:
     """Return how single motions of a state are marked: full and hollow circles, and crosses."""
     fill = {"stable": colour, "unstable": "white", "not decided": "none"}[state]
-    marker = "x" if state == "not decided" else "o"
-    return {"ls": "", "marker": marker, "ms": 4, "mfc": fill, "mec": colour}
+    return mark("x" if state == "not decided" else "o", 4, colour, fill)
 
 
 def name_states(ax: Axes, states: Iterable[States], *, single: bool = False) -> None:

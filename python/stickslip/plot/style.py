@@ -1,9 +1,10 @@
-"""The looks of every figure: axes, colours, units and number formats."""
+"""The looks of every figure: axes, colours, marks, units and number formats."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -16,30 +17,42 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 __all__ = [
+    "BLUE",
     "FREE",
     "GREY",
     "LIMIT",
+    "ORANGE",
     "RESPONSE",
     "STUCK",
+    "Colour",
     "LengthUnit",
+    "Looks",
     "OmegaUnit",
     "Scale",
+    "bare",
     "colours",
     "finish",
     "fit",
+    "framed",
     "length_scale",
+    "mark",
     "new_axes",
     "omega_scale",
     "prefixed",
+    "slip_limits",
+    "unit_circle",
 ]
 
 OmegaUnit: TypeAlias = Literal["rad/s", "Hz"]
 LengthUnit: TypeAlias = Literal["m", "mm", "um", "µm"]
+Colour: TypeAlias = tuple[float, float, float, float] | str
+Looks: TypeAlias = dict[str, Any]
+"""Keywords of Matplotlib."""
 
 RESPONSE, LIMIT = "response", "limit"
 """Group names (gid) by which a figure finds its own lines again."""
 
-GREY = "0.45"
+GREY, BLUE, ORANGE = "0.45", "#31688e", "#d8863b"
 STUCK = (0, (6, 2))
 FREE = (0, (1, 1.5))
 
@@ -86,9 +99,16 @@ def new_axes(ax: Axes | None) -> Axes:
         return ax
     if ax is not None:
         raise ModelError(f"ax: {brief(ax)} is not a matplotlib Axes; leave it out for a new figure")
-
     _, made = pyplot.subplots(figsize=_SIZE, layout="constrained")
     return made
+
+
+@contextmanager
+def framed(ax: Axes | None) -> Iterator[Axes]:
+    """Give the axes to draw on, of a new figure where there are none, and finish them."""
+    drawn = new_axes(ax)
+    yield drawn
+    finish(drawn, made=ax is None)
 
 
 def colours(count: int) -> list[tuple[float, float, float, float]]:
@@ -99,45 +119,59 @@ def colours(count: int) -> list[tuple[float, float, float, float]]:
     return [colormaps["viridis"](float(position)) for position in positions]
 
 
+def mark(marker: str, size: float, edge: Colour, fill: Colour = "white") -> Looks:
+    """Return the looks of single points without a line."""
+    return {"ls": "", "marker": marker, "ms": size, "mfc": fill, "mec": edge}
+
+
+def slip_limits(ax: Axes, limit: float, *, lw: float = 0.9, ls: Any = STUCK) -> None:
+    """Draw the forces at which a contact slips, in either direction."""
+    for side in (-limit, limit):
+        ax.axhline(side, color=GREY, lw=lw, ls=ls, zorder=1.5)
+
+
+def unit_circle(ax: Axes) -> None:
+    """Draw the circle inside which Floquet multipliers are stable, and name the axes."""
+    turn = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 361))
+    ax.plot(turn.real, turn.imag, color=GREY, lw=0.9, zorder=1.5)
+    ax.set_aspect("equal")
+    ax.set(xlabel="real part of the multiplier", ylabel="imaginary part")
+
+
+def bare(ax: Axes) -> None:
+    """Put a grid behind everything, and leave the frame open."""
+    ax.grid(visible=True, which="major", color="0.9", lw=0.7)
+    ax.set_axisbelow(True)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
 def finish(ax: Axes, *, made: bool) -> None:
     """Put grid, frame and, where there is something to tell apart, a legend on the axes.
 
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        The axes.
-    made : bool
-        Whether the figure is ours: then the legend stands outside and hides no curve. On axes of
-        others it does so if it is long and their layout makes room for it.
+    On a figure of ours (`made`) the legend stands outside and hides no curve. On axes of others it
+    does so if it is long and their layout makes room for it.
     """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    ax.grid(visible=True, which="major", color="0.9", lw=0.7)
-    ax.set_axisbelow(True)
-    ax.spines[["top", "right"]].set_visible(False)
+    bare(ax)
     handles, _ = ax.get_legend_handles_labels()
     if len(handles) < 2:
         return
-    looks = {"frameon": False, "fontsize": "small", "handlelength": 2.4}
+    looks: Looks = {"frameon": False, "fontsize": "small", "handlelength": 2.4}
+    outside = looks | {"borderaxespad": 0.0}
     figure = ax.figure
     roomy = made or isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine)
     long = len(handles) > _FEW
     if not made and not (roomy and long):
         ax.legend(**looks | {"frameon": True, "framealpha": 0.85, "edgecolor": "none"})
     elif long or ax.get_title():
-        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, **looks)
+        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), **outside)
         if made and isinstance(figure, Figure):
             figure.set_size_inches(_WIDE)
     else:
-        ax.legend(
-            loc="lower left",
-            bbox_to_anchor=(0.0, 1.01),
-            borderaxespad=0.0,
-            ncols=3,
-            columnspacing=1.4,
-            **looks,
-        )
+        place: Looks = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.01)}
+        ax.legend(**place, ncols=3, columnspacing=1.4, **outside)
 
 
 def fit(ax: Axes, *, log: bool) -> None:
@@ -172,13 +206,11 @@ def _number_decades(ax: Axes) -> None:
     low, high = ax.get_ylim()
     plain = low > 1e-4 and high < 1e5
     written = FuncFormatter(lambda value, _: f"{value:g}") if plain else LogFormatterMathtext()
+    between = plain and np.log10(high / low) < 2.5
     ax.yaxis.set_major_formatter(written)
-    between = np.log10(high / low) < 2.5
-    if between and plain:
+    ax.yaxis.set_minor_formatter(written if between else NullFormatter())
+    if between:
         ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
-        ax.yaxis.set_minor_formatter(written)
-    else:
-        ax.yaxis.set_minor_formatter(NullFormatter())
 
 
 def _drawn(ax: Axes, groups: Sequence[str]) -> list[Line2D]:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.plot.basins import BasinOptions
+    from stickslip.plot.options import BasinOptions
 
 __all__ = ["BasinMap", "Outcome"]
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from stickslip.disk import BladedDisk, MistunedDisk
-    from stickslip.plot import BladeBarOptions, BladeCurveOptions
+    from stickslip.plot.options import BladeBarOptions, BladeCurveOptions
     from stickslip.results import ForcedResponse
 
 __all__ = ["Amplification", "BladeMotion"]

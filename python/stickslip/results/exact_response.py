@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from stickslip import _core
     from stickslip.disk.wave_ring import Rotation
-    from stickslip.plot import MultiplierOptions
+    from stickslip.plot.options import MultiplierOptions
 
 __all__ = ["ExactResponse"]
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.plot import CurveOptions, Frame, LoopOptions
+    from stickslip.plot.options import CurveOptions, Frame, LoopOptions
 
 __all__ = ["ForcedResponse", "Measure", "Peak", "Summary", "key_of"]
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.cycles import CycleOptions
+    from stickslip.plot.options import CycleOptions
 
 __all__ = ["Limit", "LimitCycles", "StabilityChange"]
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.mistuning import DistributionOptions, TrendOptions
+    from stickslip.plot.options import DistributionOptions, TrendOptions
 
 __all__ = ["MistuningStudy"]
 

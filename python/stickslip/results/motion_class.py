@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.basins import LineOptions
+    from stickslip.plot.options import LineOptions
 
 __all__ = ["Line", "MotionArrays", "MotionClass"]
 

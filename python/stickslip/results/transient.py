@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot import HistoryOptions, PoincareOptions, SpectrumOptions
+    from stickslip.plot.options import HistoryOptions, PoincareOptions, SpectrumOptions
 
 __all__ = ["Transient"]
 

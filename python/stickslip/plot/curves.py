@@ -1,0 +1,316 @@
+"""Response curves over frequency, drawn on Matplotlib axes.
+
+Every function takes the axes to draw on, or makes a figure where none are given, and returns the
+axes: ``frf.plot("tip").figure.savefig("tip.pdf")``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from stickslip.checks import choice
+from stickslip.errors import ModelError
+from stickslip.model import Model, PointRef
+from stickslip.plot.arguments import checked_labels, of_kind, several
+from stickslip.plot.documentation import figure
+from stickslip.plot.limits import force_level, limit_curve
+from stickslip.plot.states import LINES, name_states, pieces
+from stickslip.plot.style import (
+    FREE,
+    GREY,
+    LIMIT,
+    RESPONSE,
+    STUCK,
+    Colour,
+    LengthUnit,
+    Looks,
+    OmegaUnit,
+    Scale,
+    colours,
+    fit,
+    framed,
+    length_scale,
+    mark,
+    omega_scale,
+)
+from stickslip.results import ForcedResponse
+from stickslip.results.arrays import Float, Measure
+from stickslip.results.exact_response import ExactResponse
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["curves", "slip"]
+
+_MEASURE = {
+    "half_range": "half peak-to-peak",
+    "max": "largest displacement",
+    "fundamental": "fundamental amplitude",
+}
+# A band thinner than the line it lies under says nothing.
+_VISIBLE_ERROR = 5e-3
+
+
+@figure
+def curves(
+    results: ForcedResponse | Sequence[ForcedResponse],
+    dof: str,
+    *,
+    ax: Axes | None = None,
+    measure: Measure = "half_range",
+    normalise: Literal["force"] | None = None,
+    omega_unit: OmegaUnit = "rad/s",
+    length_unit: LengthUnit = "m",
+    log: bool = True,
+    stuck: bool = True,
+    free: bool = True,
+    peaks: bool = True,
+    labels: Sequence[str] | None = None,
+    error_band: bool | None = None,
+) -> Axes:
+    """Draw response curves over frequency, between their two linear limits.
+
+    Parameters
+    ----------
+    log : bool, optional
+        Logarithmic amplitude axis. A linear one ends above the curves and cuts the linear limits.
+    stuck, free : bool, optional
+        Draw the linear responses with every contact stuck, and with none. Unless normalised, they
+        are those to the largest force among the results.
+    peaks : bool, optional
+        Mark the refined peaks.
+    labels : sequence of str, optional
+        One per result. Default: what distinguishes them (force, slip force, harmonics).
+    error_band : bool, optional
+        Shade what the discarded harmonics could still change. Default: for a single curve.
+    """
+    listed = several(ForcedResponse, results)
+    names = checked_labels(labels, _names_of(listed))
+    if normalise is not None:
+        choice(normalise, "normalise", ["force"])
+    omega, length = omega_scale(omega_unit), length_scale(length_unit)
+    for result in listed:
+        result.amplitude(dof, measure)  # what is unknown is refused before anything is drawn
+    with framed(ax) as ax:
+        view = _View(ax, dof, measure, omega, length, per_force=normalise == "force")
+        _draw_limits(view, listed, stuck=stuck, free=free)
+        single = len(listed) == 1
+        for result, name, colour in zip(listed, names, colours(len(listed)), strict=True):
+            view.draw(result, colour, name)
+            if error_band or (error_band is None and single):
+                view.shade_error(result, colour)
+            view.mark_certificate(result)
+            if peaks:
+                view.mark_peak(result, colour, named=single)
+        view.label_axes()
+        fit(ax, log=log)
+    return ax
+
+
+@figure
+def slip(
+    result: ForcedResponse,
+    contact: PointRef | None = None,
+    *,
+    ax: Axes | None = None,
+    omega_unit: OmegaUnit = "rad/s",
+) -> Axes:
+    """Draw the share of the period that contact points slip, over frequency.
+
+    Parameters
+    ----------
+    contact : int, str or (int or str, int), optional
+        The contact, or one of its points. Default: all.
+    """
+    result, omega = of_kind(ForcedResponse, result), omega_scale(omega_unit)
+    contacts = range(len(result.model.contacts)) if contact is None else [contact]
+    lines = [line for one in contacts for line in _shares(result, one)]
+    if not lines:
+        raise ModelError("contact: the model has none, so that nothing slips")
+    with framed(ax) as ax:
+        x = omega.factor * result.omega
+        for (label, share), colour in zip(lines, colours(len(lines)), strict=True):
+            ax.plot(x, share, color=colour, lw=1.6, label=label)
+        if x.min() < x.max():
+            ax.set_xlim(x.min(), x.max())
+        ax.set(ylim=(-0.03, 1.03), xlabel=omega.label, ylabel="slipping share of the period")
+        if len(lines) == 1:
+            ax.set_title(lines[0][0], fontsize="medium")
+    return ax
+
+
+@dataclass(frozen=True)
+class _View:
+    """What of responses is drawn, where, and in which units."""
+
+    ax: Axes
+    dof: str
+    measure: Measure
+    omega: Scale
+    length: Scale
+    per_force: bool
+    """Whether amplitudes are divided by the largest force amplitude."""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the amplitudes."""
+        return f"{self.length.label}/N" if self.per_force else self.length.label
+
+    def label_axes(self) -> None:
+        """Write what the axes show."""
+        per_force = " per force" if self.per_force else ""
+        self.ax.set_xlabel(self.omega.label)
+        self.ax.set_ylabel(f"{_MEASURE[self.measure]} of {self.dof}{per_force} [{self.unit}]")
+
+    def draw(self, result: ForcedResponse, colour: Colour, label: str) -> None:
+        """Draw the curve, and crosses on the axis where there is no solution.
+
+        Exact orbits that are unstable or undecided are dashed or dotted, and named in the legend.
+        """
+        omega = self.omega.factor * result.omega
+        height = self._factor(result.model) * result.amplitude(self.dof, self.measure)
+        looks: Looks = {"color": colour, "lw": 1.6, "marker": "." if omega.size == 1 else ""}
+        solved = result.arrays.solved
+        states = np.full(omega.size, "stable")
+        if isinstance(result, ExactResponse):
+            states = np.where(solved, result.stability, "stable")
+        for number, (piece, state) in enumerate(pieces(states)):
+            named: Looks = {"ls": LINES[state], "label": "_" if number else label, "gid": RESPONSE}
+            self.ax.plot(omega[piece], height[piece], **looks, **named)
+        if not (states == "stable").all():
+            name_states(self.ax, [states])
+        if not solved.all():
+            self.ax.plot(
+                omega[~solved],
+                np.full((~solved).sum(), 0.02),
+                transform=self.ax.get_xaxis_transform(),
+                color=colour,
+                label=f"{(~solved).sum()} not solved",
+                ls="",
+                marker="x",
+                ms=5,
+            )
+
+    def draw_limit(self, model: Model, span: tuple[float, float], at: str, *, stuck: bool) -> None:
+        """Draw the linear response with all contacts stuck, or with none."""
+        omega, amplitude = limit_curve(model, self.dof, span, self.measure, stuck=stuck)
+        self.ax.plot(
+            self.omega.factor * omega,
+            self._factor(model) * amplitude,
+            color=GREY,
+            lw=1.1,
+            ls=STUCK if stuck else FREE,
+            label=f"{'stuck' if stuck else 'free'} (linear{at})",
+            zorder=1.5,
+            gid=LIMIT,
+        )
+
+    def shade_error(self, result: ForcedResponse, colour: Colour) -> None:
+        """Shade what the discarded harmonics could still change."""
+        amplitude = result.amplitude(self.dof, self.measure)
+        error = result.error_estimate(self.dof)
+        if not (error > _VISIBLE_ERROR * amplitude).any():
+            return
+        factor = self._factor(result.model)
+        self.ax.fill_between(
+            self.omega.factor * result.omega,
+            # A logarithmic axis has no place for zero.
+            factor * np.maximum(amplitude - error, 1e-3 * amplitude),
+            factor * (amplitude + error),
+            color=colour,
+            alpha=0.22,
+            lw=0.0,
+            label="estimated truncation error",
+        )
+
+    def mark_certificate(self, result: ForcedResponse) -> None:
+        """Mark the amplitudes of exact orbits, each with a bar to the curve: the true error."""
+        certificate = result.certificate
+        if certificate is None or self.dof not in certificate.dofs or self.measure != "half_range":
+            return
+        column = certificate.column(self.dof)
+        x, factor = self.omega.factor * certificate.omega, self._factor(result.model)
+        exact = factor * certificate.amplitude[:, column]
+        curve = exact + factor * certificate.error[:, column]
+        self.ax.vlines(x, exact, curve, color="crimson", lw=1.4, zorder=2.6)
+        largest = np.abs(certificate.relative[:, column])
+        worst = f" (error ≤ {np.nanmax(largest):.2g})" if np.isfinite(largest).any() else ""
+        self.ax.plot(x, exact, **mark("D", 4, "crimson"), zorder=2.7, label=f"exact{worst}")
+
+    def mark_peak(self, result: ForcedResponse, colour: Colour, *, named: bool) -> None:
+        """Mark the refined peak, unless there is none or it may lie outside or in a gap."""
+        if not result.arrays.solved.any():
+            return
+        peak = result.peak(self.dof, self.measure)
+        if peak.at_edge or peak.beside_gap or not np.isfinite(peak.amplitude):
+            return
+        x, y = self.omega.factor * peak.omega, self._factor(result.model) * peak.amplitude
+        unit = self.omega.label.rpartition("[")[2].rstrip("]")
+        label = f"peak {y:.4g} {self.unit} at {x:.5g} {unit}" if named else None
+        self.ax.plot(x, y, **mark("o", 5, colour), mew=1.3, label=label)
+
+    def _factor(self, model: Model) -> float:
+        if not self.per_force:
+            return self.length.factor
+        level = force_level(model)
+        if level == 0.0:
+            raise ModelError(
+                'normalise: "force" needs a harmonic force, and a result has none; use None'
+            )
+        return self.length.factor / level
+
+
+def _draw_limits(
+    view: _View, results: Sequence[ForcedResponse], *, stuck: bool, free: bool
+) -> None:
+    """Draw the linear limits of the most strongly forced result."""
+    levels = [force_level(result.model) for result in results]
+    model = results[int(np.argmax(levels))].model
+    omega: Float = np.concatenate([result.omega for result in results])
+    low, high = float(omega.min()), float(omega.max())
+    if not model.contacts or low == high or not max(levels):
+        return
+    at = "" if view.per_force or len(set(levels)) == 1 else f", {max(levels):.5g} N"
+    for is_stuck, wanted in ((True, stuck), (False, free)):
+        if wanted:
+            view.draw_limit(model, (low, high), at, stuck=is_stuck)
+
+
+def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float]]:
+    """Return label and slip fraction of every point meant by an address."""
+    number, only = result.locate(contact)
+    shares = result.slip_fraction(contact).reshape(result.omega.size, -1)
+    name = result.model.contact_names[number]
+    if only is None and shares.shape[1] == 1:
+        return [(name, shares[:, 0])]
+    return [(f"{name}[{point}]", share) for point, share in enumerate(shares.T, only or 0)]
+
+
+def _names_of(results: Sequence[ForcedResponse]) -> list[str]:
+    """Return what distinguishes the results, one label each."""
+    traits = [_traits(result) for result in results]
+    telling = [key for key in traits[0] if len({trait.get(key) for trait in traits}) > 1]
+    if len(results) == 1:
+        telling = ["P"]
+    elif not telling:
+        return [f"result {position}" for position in range(len(results))]
+    return [", ".join(trait[key] for key in telling if key in trait) for trait in traits]
+
+
+def _traits(result: ForcedResponse) -> dict[str, str]:
+    """Say in what results may differ, each in the notation of a legend."""
+    traits = {"P": f"P = {force_level(result.model):.5g} N"}
+    for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
+        of = f" ({name})" if len(result.model.contacts) > 1 else ""
+        parameters = contact.adjustable()
+        for key, symbol, unit in (("slip_force", "F_d", "N"), ("stiffness", "k_d", "N/m")):
+            if key in parameters and key not in contact.factors:
+                values = ", ".join(f"{value:.4g}" for value in parameters[key])
+                traits[f"{symbol}{of}"] = f"${symbol}$ = {values} {unit}{of}"
+    exact = isinstance(result, ExactResponse)
+    traits["H"] = "exact" if exact else f"H = {result.settings.harmonics}"
+    return traits
