@@ -402,7 +402,7 @@ harmonics = 9
 def test_study_files_and_the_command(tmp_path, monkeypatch):
     from typer.testing import CliRunner
 
-    from stickslip.cli.commands import app
+    from stickslip.cli import app
     from stickslip.study import Study
 
     monkeypatch.chdir(tmp_path)
