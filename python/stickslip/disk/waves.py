@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.options import WaveOptions
+    from stickslip.plot.options import Drawing
 
 __all__ = ["AerodynamicWaves", "Wave", "aerodynamic_waves"]
 
@@ -170,7 +170,7 @@ class AerodynamicWaves:
             interface=disk.interface,
         )
 
-    def plot(self, **options: Unpack[WaveOptions]) -> Axes:
+    def plot(self, **options: Unpack[Drawing]) -> Axes:
         """Draw the damping ratio over the nodal diameter; see `stickslip.plot.aerodynamic`."""
         from stickslip import plot
 

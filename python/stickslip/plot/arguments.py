@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import TypeVar
 
@@ -14,28 +15,19 @@ __all__ = ["at", "checked_labels", "dofs_of", "label_of", "of_kind", "require_so
 
 _Kind = TypeVar("_Kind")
 _SYMBOLS = {"slip_force": "slip force $F_d$", "stiffness": "contact stiffness $k_d$"}
-_SOURCES = {
-    "AerodynamicWaves": "aerodynamic_waves",
-    "BasinMap": "basin_map",
-    "DamperCurve": "damper_curve",
-    "ExactResponse": "exact_response",
-    "ForcedResponse": "forced_response",
-    "LimitCycles": "limit_cycles",
-    "MistuningStudy": "mistuning_study",
-    "MotionClass": "classify",
-    "StabilityMap": "stability_map",
-    "Transient": "transient",
-}
-"""What returns the results that are drawn."""
+_SOURCES = {"motion_class": "classify"}
+"""What returns the results that are not called as their function is."""
 
 
 def of_kind(kind: type[_Kind], result: object, entry: str = "result") -> _Kind:
     """Return a result, or refuse anything else."""
     if not isinstance(result, kind):
-        article = "an" if kind.__name__[0] in "AE" else "a"
+        name = kind.__name__
+        source = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+        article = "an" if name[0] in "AE" else "a"
         raise ModelError(
-            f"{entry}: {brief(result)} is not {article} {kind.__name__}; "
-            f"give what {_SOURCES[kind.__name__]} returned"
+            f"{entry}: {brief(result)} is not {article} {name}; "
+            f"give what {_SOURCES.get(source, source)} returned"
         )
     return result
 

@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Unpack
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap, to_hex
+from matplotlib.patches import Patch
 
 from stickslip.errors import ModelError
-from stickslip.plot.arguments import of_kind
-from stickslip.plot.documentation import figure
-from stickslip.plot.style import (
-    BLUE,
-    LengthUnit,
-    Looks,
-    OmegaUnit,
-    framed,
-    length_scale,
-    mark,
-    omega_scale,
-)
+from stickslip.plot import style
+from stickslip.plot.figure import figure
+from stickslip.plot.options import Frame, LineOptions
+from stickslip.plot.style import Looks
+from stickslip.results.arrays import Float
 from stickslip.results.basin_map import BasinMap, Outcome
 from stickslip.results.fate_arrays import Motion
 from stickslip.results.motion_class import MotionClass
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from stickslip.results.arrays import Float
 
 __all__ = ["basins", "lines"]
 
@@ -42,73 +34,52 @@ _CLOSE = 0.07
 
 
 @figure
-def basins(result: BasinMap, *, ax: Axes | None = None, length_unit: LengthUnit = "m") -> Axes:
+def basins(ax: Axes, /, result: BasinMap, **options: Unpack[Frame]) -> None:
     """Draw what the starts of a map lead to, over its two axes."""
-    from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
-
-    if len(of_kind(BasinMap, result).settings.axes) != 2:
+    if len(result.settings.axes) != 2:
         raise ModelError(
             "basins: the map is of a list of starts, without axes; give basin_map axes to draw"
         )
-    length = length_scale(length_unit)
+    length = style.LENGTH[options["length_unit"]]
     outcomes = result.outcomes
     colours = [_colour(outcome) for outcome in outcomes]
-    with framed(ax) as ax:
-        (up, rows), (right, columns) = result.settings.axes
-        ax.pcolormesh(
-            _edges(length.factor * np.array(columns)),
-            _edges(length.factor * np.array(rows)),
-            result.codes[np.ix_(np.argsort(rows), np.argsort(columns))],
-            cmap=ListedColormap(colours),
-            vmin=-0.5,
-            vmax=len(outcomes) - 0.5,
-            rasterized=True,
-        )
-        ax.set_xlabel(f"{_named(right)} [{length.label}]")
-        ax.set_ylabel(f"{_named(up)} [{length.label}]")
-    ax.grid(visible=False)
+    (up, rows), (right, columns) = result.settings.axes
+    ax.pcolormesh(
+        _edges(length.factor * np.array(columns)),
+        _edges(length.factor * np.array(rows)),
+        result.codes[np.ix_(np.argsort(rows), np.argsort(columns))],
+        cmap=ListedColormap(colours),
+        vmin=-0.5,
+        vmax=len(outcomes) - 0.5,
+        rasterized=True,
+    )
+    ax.set_xlabel(f"{_named(right)} [{length.label}]")
+    ax.set_ylabel(f"{_named(up)} [{length.label}]")
     patches = [
         Patch(facecolor=colour, edgecolor="0.6", lw=0.5, label=f"{outcome} ({count})")
         for (outcome, count), colour in zip(outcomes.items(), colours, strict=True)
     ]
     place: Looks = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.01), "borderaxespad": 0.0}
     ax.legend(handles=patches, **place, ncols=2, frameon=False, fontsize="small")
-    return ax
 
 
 @figure
-def lines(
-    result: MotionClass,
-    dof: str,
-    *,
-    ax: Axes | None = None,
-    omega_unit: OmegaUnit = "Hz",
-    most: int = 8,
-) -> Axes:
-    """Draw the spectrum of a motion that neither decays nor grows for ever, its lines marked.
-
-    Parameters
-    ----------
-    most : int, optional
-        How many lines to mark at most.
-    """
-    omega = omega_scale(omega_unit)
-    frequency, density = of_kind(MotionClass, result).spectrum(dof)
-    found = result.lines(dof, most)
-    with framed(ax) as ax:
-        scale = 2.0 * np.pi * omega.factor
-        shown = density > 0.0
-        ax.semilogy(scale * frequency[shown], density[shown], lw=0.9, color=BLUE, label=dof)
-        if found:
-            where = np.array([line.frequency for line in found])
-            height = np.interp(where, frequency, density)
-            ax.plot(scale * where, height, **mark("v", 4, "crimson"), label="lines")
-            _number(ax, scale * where, height)
-            ax.set(xlim=(0.0, 1.5 * scale * where.max()))
-            ax.set(ylim=(1e-9 * density.max(), 10.0 * density.max()))
-        ax.set(xlabel=omega.label, ylabel="power spectral density [m²/Hz]")
-    return ax
+def lines(ax: Axes, /, result: MotionClass, dof: str, **options: Unpack[LineOptions]) -> None:
+    """Draw the spectrum of a motion that neither decays nor grows for ever, its lines marked."""
+    omega = style.OMEGA[options["omega_unit"]]
+    frequency, density = result.spectrum(dof)
+    found = result.lines(dof, options["most"])
+    scale = 2.0 * np.pi * omega.factor
+    shown = density > 0.0
+    ax.semilogy(scale * frequency[shown], density[shown], lw=0.9, color=style.BLUE, label=dof)
+    if found:
+        where = np.array([line.frequency for line in found])
+        height = np.interp(where, frequency, density)
+        ax.plot(scale * where, height, **style.mark("v", 4, "crimson"), label="lines")
+        _number(ax, scale * where, height)
+        ax.set(xlim=(0.0, 1.5 * scale * where.max()))
+        ax.set(ylim=(1e-9 * density.max(), 10.0 * density.max()))
+    ax.set(xlabel=omega.label, ylabel="power spectral density [m²/Hz]")
 
 
 def _number(ax: Axes, where: Float, height: Float) -> None:
@@ -122,9 +93,6 @@ def _number(ax: Axes, where: Float, height: Float) -> None:
 
 
 def _colour(outcome: Outcome) -> str:
-    from matplotlib import colormaps
-    from matplotlib.colors import to_hex
-
     if outcome.mode is None or outcome.motion not in _SHADES:
         return _COLOURS[outcome.motion]
     shade = _SHADES.index(outcome.motion)

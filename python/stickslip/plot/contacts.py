@@ -3,159 +3,125 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import Unpack
 
 import numpy as np
+from matplotlib import pyplot
+from matplotlib.axes import Axes
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
-from stickslip.plot.arguments import at, dofs_of, of_kind, require_solved
-from stickslip.plot.documentation import figure
+from stickslip.plot import style
+from stickslip.plot.arguments import at, dofs_of, require_solved
+from stickslip.plot.figure import figure, keywords
 from stickslip.plot.limits import limit_model
-from stickslip.plot.style import (
-    BLUE,
-    GREY,
-    ORANGE,
-    STUCK,
-    LengthUnit,
-    Looks,
-    bare,
-    colours,
-    framed,
-    length_scale,
-    new_axes,
-    prefixed,
-    slip_limits,
-)
+from stickslip.plot.options import Drawing, ForceOptions, LoopOptions
+from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
 from stickslip.results.dataset import point_names
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 __all__ = ["contact_forces", "events", "hysteresis", "waveform"]
 
-_STATES = {0: ("stuck", "0.85"), 1: ("slips forward", BLUE), -1: ("slips backward", ORANGE)}
+_FORWARD, _BACKWARD = ("slips forward", style.BLUE), ("slips backward", style.ORANGE)
+_STATES = {0: ("stuck", "0.85"), 1: _FORWARD, -1: _BACKWARD}
 """Name and colour by the direction of slip."""
 
 
 @figure
 def waveform(
+    ax: Axes,
+    /,
     result: ForcedResponse,
     dof: str | Sequence[str],
     index: int,
-    *,
-    ax: Axes | None = None,
-    length_unit: LengthUnit = "m",
-    samples: int = 512,
-) -> Axes:
+    **options: Unpack[LoopOptions],
+) -> None:
     """Draw one period of the motion of one or several degrees of freedom."""
-    dofs = dofs_of(dof)
-    result, length = of_kind(ForcedResponse, result), length_scale(length_unit)
+    dofs, length = dofs_of(dof), style.LENGTH[options["length_unit"]]
     require_solved(result, [index])
-    waves = [result.waveform(one, index, samples) for one in dofs]
-    with framed(ax) as ax:
-        time = np.linspace(0.0, 1.0, samples + 1)
-        for one, wave, colour in zip(dofs, waves, colours(len(dofs)), strict=True):
-            ax.plot(time, length.factor * _closed(wave), color=colour, lw=1.6, label=one)
-        of = f" of {dofs[0]}" if len(dofs) == 1 else ""
-        ax.set(xlim=(0.0, 1.0), xlabel="time over period t/T")
-        ax.set_ylabel(f"displacement{of} [{length.label}]")
-        ax.set_title(at(result, index), fontsize="medium")
-    return ax
+    waves = [result.waveform(one, index, options["samples"]) for one in dofs]
+    time = np.linspace(0.0, 1.0, options["samples"] + 1)
+    for one, wave, colour in zip(dofs, waves, style.colours(len(dofs)), strict=True):
+        ax.plot(time, length.factor * _closed(wave), color=colour, lw=1.6, label=one)
+    of = f" of {dofs[0]}" if len(dofs) == 1 else ""
+    ax.set(xlim=(0.0, 1.0), xlabel="time over period t/T")
+    ax.set_ylabel(f"displacement{of} [{length.label}]")
+    ax.set_title(at(result, index), fontsize="medium")
 
 
 @figure
 def hysteresis(
+    ax: Axes,
+    /,
     result: ForcedResponse,
     contact: PointRef,
     index: int | Sequence[int],
-    *,
-    ax: Axes | None = None,
-    length_unit: LengthUnit = "m",
-    samples: int = 512,
-) -> Axes:
+    **options: Unpack[LoopOptions],
+) -> None:
     """Draw the contact force against the relative displacement, over one period.
 
     Parameters
     ----------
-    contact : int, str or (int or str, int)
-        The contact, or one of its points.
     index : int or sequence of int
         Positions of points of the sweep, one loop each; see `ForcedResponse.index`.
     """
     indices = list(index) if isinstance(index, Sequence | np.ndarray) else [index]
     if not indices:
         raise ModelError("index: empty; give the position of at least one point")
-    result, length = of_kind(ForcedResponse, result), length_scale(length_unit)
+    length = style.LENGTH[options["length_unit"]]
     require_solved(result, indices)
-    loops = [loop for one in indices for loop in _loops(result, contact, one, samples)]
+    loops = [loop for one in indices for loop in _loops(result, contact, one, options["samples"])]
     labels = [label for _, _, label in loops]
     if len(indices) > 1:
         where = np.repeat(indices, len(loops) // len(indices))
         labels = [f"{at(result, i)}: {label}" for i, label in zip(where, labels, strict=True)]
-    with framed(ax) as ax:
-        for (u, f, _), label, colour in zip(loops, labels, colours(len(loops)), strict=True):
-            looks: Looks = {"color": colour, "lw": 1.6, "solid_joinstyle": "round", "label": label}
-            ax.plot(length.factor * u, f, **looks)
-        number, point = result.locate(contact)
-        _draw_slip_limits(ax, result.model.contacts[number].limits, point)
-        ax.set(xlabel=f"relative displacement u [{length.label}]", ylabel="contact force f [N]")
-        title = result.model.contact_names[number] + ("" if point is None else f"[{point}]")
-        if len(indices) == 1:
-            title += f" at {at(result, indices[0])}"
-        if len(loops) == 1:
-            title += f": {labels[0]}"
-        ax.set_title(title, fontsize="medium")
-    return ax
+    for (u, f, _), label, colour in zip(loops, labels, style.colours(len(loops)), strict=True):
+        looks: Looks = {"color": colour, "lw": 1.6, "solid_joinstyle": "round", "label": label}
+        ax.plot(length.factor * u, f, **looks)
+    number, point = result.locate(contact)
+    _draw_slip_limits(ax, result.model.contacts[number].limits, point)
+    ax.set(xlabel=f"relative displacement u [{length.label}]", ylabel="contact force f [N]")
+    title = result.model.contact_names[number] + ("" if point is None else f"[{point}]")
+    if len(indices) == 1:
+        title += f" at {at(result, indices[0])}"
+    if len(loops) == 1:
+        title += f": {labels[0]}"
+    ax.set_title(title, fontsize="medium")
 
 
 @figure
-def events(result: ForcedResponse, index: int, *, ax: Axes | None = None) -> Axes:
+def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Drawing]) -> None:
     """Draw when contact points stick and slip, one strip each over the period.
 
     Of exact orbits the events themselves are drawn.
     """
-    result = of_kind(ForcedResponse, result)
     require_solved(result, [index])
     names = point_names(result.model)
     if not names:
         raise ModelError("result: the model has no contact, so that nothing sticks or slips")
-    with framed(ax) as ax:
-        shown: set[int] = set()
-        count = 0
-        for row, strips in enumerate(_strips(result, index)):
-            # A phase may go on over the end of the period.
-            count += len(strips) - (strips[0][2] == strips[-1][2])
-            for begin, length, direction in strips:
-                label, colour = _STATES[direction]
-                named = None if direction in shown else label
-                shown.add(direction)
-                place = [(begin, length)], (row - 0.35, 0.7)
-                ax.broken_barh(*place, color=colour, lw=0.0, label=named)
-        ax.set(xlim=(0.0, 1.0), ylim=(len(names) - 0.4, -0.6), xlabel="time over period t/T")
-        ax.set_yticks(range(len(names)), names)
-        ax.set_title(f"{at(result, index)}: {count} events per period", fontsize="medium")
-    return ax
+    shown: set[int] = set()
+    count = 0
+    for row, strips in enumerate(_strips(result, index)):
+        # A phase may go on over the end of the period.
+        count += len(strips) - (strips[0][2] == strips[-1][2])
+        for begin, length, direction in strips:
+            label, colour = _STATES[direction]
+            named = None if direction in shown else label
+            shown.add(direction)
+            strip = [(begin, length)], (row - 0.35, 0.7)
+            ax.broken_barh(*strip, color=colour, lw=0.0, label=named)
+    ax.set(xlim=(0.0, 1.0), ylim=(len(names) - 0.4, -0.6), xlabel="time over period t/T")
+    ax.set_yticks(range(len(names)), names)
+    ax.set_title(f"{at(result, index)}: {count} events per period", fontsize="medium")
 
 
-@figure
+@keywords
 def contact_forces(
-    result: ForcedResponse,
-    contact: ContactRef,
-    index: int,
-    *,
-    stuck: bool = True,
-    samples: int = 1024,
+    result: ForcedResponse, contact: ContactRef, index: int, **options: Unpack[ForceOptions]
 ) -> list[Axes]:
     """Draw the forces of a contact over a period, one panel per point, and their sum.
-
-    Parameters
-    ----------
-    stuck : bool, optional
-        Whether to draw, dashed, the forces if no contact of the model ever slipped.
 
     Returns
     -------
@@ -163,39 +129,37 @@ def contact_forces(
         One per point and, for several points, one for the sum. Shaded where the point slips; its
         slip limits are dotted.
     """
-    from matplotlib import pyplot
-
-    result = of_kind(ForcedResponse, result)
     require_solved(result, [index])
     number = result.model.contact_index(contact)
-    count = whole_number(samples, "samples", smallest=8)
+    count = whole_number(options["samples"], "samples", smallest=8)
     one = result.model.contacts[number]
     time = np.linspace(0.0, 1.0, count + 1)
     forces = _closed(result.contact_force(number, index, count).reshape(count, -1))
-    linear = _stuck_forces(result, number, index, count) if stuck else None
+    linear = _stuck_forces(result, number, index, count) if options["stuck"] else None
     states = result.contact_states(number, index)
     rows = one.points + (one.points > 1)
     size = (8.2, 0.6 + 1.6 * rows)
     _, grid = pyplot.subplots(rows, figsize=size, sharex=True, layout="constrained", squeeze=False)
-    axes = [new_axes(ax) for ax in grid[:, 0]]
+    axes = [style.new_axes(ax) for ax in grid[:, 0]]
     for point, ax in enumerate(axes[: one.points]):
         if linear is not None:
-            ax.plot(time, linear[:, point], color=GREY, ls=STUCK, lw=1.1, label="stuck, linear")
-        ax.plot(time, forces[:, point], color=BLUE, lw=1.6, label="force")
+            looks: Looks = {"color": style.GREY, "ls": style.STUCK, "lw": 1.1}
+            ax.plot(time, linear[:, point], label="stuck, linear", **looks)
+        ax.plot(time, forces[:, point], color=style.BLUE, lw=1.6, label="force")
         limit = one.limits[point]
         if np.isfinite(limit) and np.abs(forces[:, point]).max() > 0.3 * limit:
-            slip_limits(ax, limit, lw=0.8, ls=":")
+            style.slip_limits(ax, limit, lw=0.8, ls=":")
         slips = states.direction[:, point] != 0
         for start, length in zip(states.start[slips], states.length[slips], strict=True):
-            ax.axvspan(start, start + length, color=ORANGE, alpha=0.25, lw=0.0)
+            ax.axvspan(start, start + length, color=style.ORANGE, alpha=0.25, lw=0.0)
         dof = one.dofs[point] if len(one.dofs) == one.points else " - ".join(map(str, one.dofs))
         ax.set_ylabel(f"{point}: {dof or 'ground'}\nforce [N]")
     if one.points > 1:
-        axes[-1].plot(time, forces.sum(axis=1), color=BLUE, lw=1.6)
+        axes[-1].plot(time, forces.sum(axis=1), color=style.BLUE, lw=1.6)
         edge = 0.05 * float(np.abs(forces).max())
         axes[-1].set(ylim=(-edge, edge), ylabel="sum\nforce [N]")
     for ax in axes:
-        bare(ax)
+        style.bare(ax)
     place: Looks = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.01)}
     axes[0].legend(**place, ncols=2, frameon=False, fontsize="small")
     name = result.model.contact_names[number]
@@ -217,7 +181,7 @@ def _loops(
     f = _closed(result.contact_force(contact, index, samples).reshape(samples, -1))
     lost = np.atleast_1d(result.dissipation(contact)[index])
     for point, work in enumerate(lost):
-        label = f"{prefixed(float(work), 'J')} per cycle" if work else "sticks"
+        label = f"{style.prefixed(float(work), 'J')} per cycle" if work else "sticks"
         yield u[:, point], f[:, point], f"point {point}: {label}" if len(lost) > 1 else label
 
 
@@ -226,8 +190,8 @@ def _draw_slip_limits(ax: Axes, limits: Sequence[float], point: int | None) -> N
     limit = limits[point or 0] if point is not None or len(limits) == 1 else np.inf
     if not np.isfinite(limit):
         return
-    slip_limits(ax, limit)
-    looks: Looks = {"ha": "right", "va": "bottom", "color": GREY, "fontsize": "small"}
+    style.slip_limits(ax, limit)
+    looks: Looks = {"ha": "right", "va": "bottom", "color": style.GREY, "fontsize": "small"}
     frame = ax.get_yaxis_transform()
     place: Looks = {"xytext": (0.0, 2.0), "xycoords": frame, "textcoords": "offset points"}
     ax.annotate(f"$F_d$ = {limit:.4g} N", (1.0, limit), **place, **looks)

@@ -8,41 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Unpack
 
 import numpy as np
+from matplotlib.axes import Axes
 
-from stickslip.checks import choice
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
-from stickslip.plot.arguments import checked_labels, of_kind, several
-from stickslip.plot.documentation import figure
+from stickslip.plot import style
+from stickslip.plot.arguments import checked_labels, several
+from stickslip.plot.figure import figure
 from stickslip.plot.limits import force_level, limit_curve
+from stickslip.plot.options import CurveOptions, Swept
 from stickslip.plot.states import LINES, name_states, pieces
-from stickslip.plot.style import (
-    FREE,
-    GREY,
-    LIMIT,
-    RESPONSE,
-    STUCK,
-    Colour,
-    LengthUnit,
-    Looks,
-    OmegaUnit,
-    Scale,
-    colours,
-    fit,
-    framed,
-    length_scale,
-    mark,
-    omega_scale,
-)
+from stickslip.plot.style import Colour, Looks, Scale
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Measure
 from stickslip.results.exact_response import ExactResponse
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 __all__ = ["curves", "slip"]
 
@@ -57,68 +39,37 @@ _VISIBLE_ERROR = 5e-3
 
 @figure
 def curves(
+    ax: Axes,
+    /,
     results: ForcedResponse | Sequence[ForcedResponse],
     dof: str,
-    *,
-    ax: Axes | None = None,
-    measure: Measure = "half_range",
-    normalise: Literal["force"] | None = None,
-    omega_unit: OmegaUnit = "rad/s",
-    length_unit: LengthUnit = "m",
-    log: bool = True,
-    stuck: bool = True,
-    free: bool = True,
-    peaks: bool = True,
-    labels: Sequence[str] | None = None,
-    error_band: bool | None = None,
-) -> Axes:
-    """Draw response curves over frequency, between their two linear limits.
-
-    Parameters
-    ----------
-    log : bool, optional
-        Logarithmic amplitude axis. A linear one ends above the curves and cuts the linear limits.
-    stuck, free : bool, optional
-        Draw the linear responses with every contact stuck, and with none. Unless normalised, they
-        are those to the largest force among the results.
-    peaks : bool, optional
-        Mark the refined peaks.
-    labels : sequence of str, optional
-        One per result. Default: what distinguishes them (force, slip force, harmonics).
-    error_band : bool, optional
-        Shade what the discarded harmonics could still change. Default: for a single curve.
-    """
-    listed = several(ForcedResponse, results)
-    names = checked_labels(labels, _names_of(listed))
-    if normalise is not None:
-        choice(normalise, "normalise", ["force"])
-    omega, length = omega_scale(omega_unit), length_scale(length_unit)
+    **options: Unpack[CurveOptions],
+) -> None:
+    """Draw response curves over frequency, between their two linear limits."""
+    listed, measure = several(ForcedResponse, results), options["measure"]
+    names = checked_labels(options["labels"], _names_of(listed))
+    omega = style.OMEGA[options["omega_unit"]]
+    length = style.LENGTH[options["length_unit"]]
     for result in listed:
         result.amplitude(dof, measure)  # what is unknown is refused before anything is drawn
-    with framed(ax) as ax:
-        view = _View(ax, dof, measure, omega, length, per_force=normalise == "force")
-        _draw_limits(view, listed, stuck=stuck, free=free)
-        single = len(listed) == 1
-        for result, name, colour in zip(listed, names, colours(len(listed)), strict=True):
-            view.draw(result, colour, name)
-            if error_band or (error_band is None and single):
-                view.shade_error(result, colour)
-            view.mark_certificate(result)
-            if peaks:
-                view.mark_peak(result, colour, named=single)
-        view.label_axes()
-        fit(ax, log=log)
-    return ax
+    view = _View(ax, dof, measure, omega, length, per_force=options["normalise"] == "force")
+    _draw_limits(view, listed, stuck=options["stuck"], free=options["free"])
+    single = len(listed) == 1
+    for result, name, colour in zip(listed, names, style.colours(len(listed)), strict=True):
+        view.draw(result, colour, name)
+        if options["error_band"] or (options["error_band"] is None and single):
+            view.shade_error(result, colour)
+        view.mark_certificate(result)
+        if options["peaks"]:
+            view.mark_peak(result, colour, named=single)
+    view.label_axes()
+    style.fit(ax, log=options["log"])
 
 
 @figure
 def slip(
-    result: ForcedResponse,
-    contact: PointRef | None = None,
-    *,
-    ax: Axes | None = None,
-    omega_unit: OmegaUnit = "rad/s",
-) -> Axes:
+    ax: Axes, /, result: ForcedResponse, contact: PointRef | None = None, **options: Unpack[Swept]
+) -> None:
     """Draw the share of the period that contact points slip, over frequency.
 
     Parameters
@@ -126,21 +77,19 @@ def slip(
     contact : int, str or (int or str, int), optional
         The contact, or one of its points. Default: all.
     """
-    result, omega = of_kind(ForcedResponse, result), omega_scale(omega_unit)
+    omega = style.OMEGA[options["omega_unit"]]
     contacts = range(len(result.model.contacts)) if contact is None else [contact]
     lines = [line for one in contacts for line in _shares(result, one)]
     if not lines:
         raise ModelError("contact: the model has none, so that nothing slips")
-    with framed(ax) as ax:
-        x = omega.factor * result.omega
-        for (label, share), colour in zip(lines, colours(len(lines)), strict=True):
-            ax.plot(x, share, color=colour, lw=1.6, label=label)
-        if x.min() < x.max():
-            ax.set_xlim(x.min(), x.max())
-        ax.set(ylim=(-0.03, 1.03), xlabel=omega.label, ylabel="slipping share of the period")
-        if len(lines) == 1:
-            ax.set_title(lines[0][0], fontsize="medium")
-    return ax
+    x = omega.factor * result.omega
+    for (label, share), colour in zip(lines, style.colours(len(lines)), strict=True):
+        ax.plot(x, share, color=colour, lw=1.6, label=label)
+    if x.min() < x.max():
+        ax.set_xlim(x.min(), x.max())
+    ax.set(ylim=(-0.03, 1.03), xlabel=omega.label, ylabel="slipping share of the period")
+    if len(lines) == 1:
+        ax.set_title(lines[0][0], fontsize="medium")
 
 
 @dataclass(frozen=True)
@@ -179,7 +128,11 @@ class _View:
         if isinstance(result, ExactResponse):
             states = np.where(solved, result.stability, "stable")
         for number, (piece, state) in enumerate(pieces(states)):
-            named: Looks = {"ls": LINES[state], "label": "_" if number else label, "gid": RESPONSE}
+            named: Looks = {
+                "ls": LINES[state],
+                "label": "_" if number else label,
+                "gid": style.RESPONSE,
+            }
             self.ax.plot(omega[piece], height[piece], **looks, **named)
         if not (states == "stable").all():
             name_states(self.ax, [states])
@@ -201,12 +154,12 @@ class _View:
         self.ax.plot(
             self.omega.factor * omega,
             self._factor(model) * amplitude,
-            color=GREY,
+            color=style.GREY,
             lw=1.1,
-            ls=STUCK if stuck else FREE,
+            ls=style.STUCK if stuck else style.FREE,
             label=f"{'stuck' if stuck else 'free'} (linear{at})",
             zorder=1.5,
-            gid=LIMIT,
+            gid=style.LIMIT,
         )
 
     def shade_error(self, result: ForcedResponse, colour: Colour) -> None:
@@ -239,7 +192,7 @@ class _View:
         self.ax.vlines(x, exact, curve, color="crimson", lw=1.4, zorder=2.6)
         largest = np.abs(certificate.relative[:, column])
         worst = f" (error ≤ {np.nanmax(largest):.2g})" if np.isfinite(largest).any() else ""
-        self.ax.plot(x, exact, **mark("D", 4, "crimson"), zorder=2.7, label=f"exact{worst}")
+        self.ax.plot(x, exact, **style.mark("D", 4, "crimson"), zorder=2.7, label=f"exact{worst}")
 
     def mark_peak(self, result: ForcedResponse, colour: Colour, *, named: bool) -> None:
         """Mark the refined peak, unless there is none or it may lie outside or in a gap."""
@@ -251,7 +204,7 @@ class _View:
         x, y = self.omega.factor * peak.omega, self._factor(result.model) * peak.amplitude
         unit = self.omega.label.rpartition("[")[2].rstrip("]")
         label = f"peak {y:.4g} {self.unit} at {x:.5g} {unit}" if named else None
-        self.ax.plot(x, y, **mark("o", 5, colour), mew=1.3, label=label)
+        self.ax.plot(x, y, **style.mark("o", 5, colour), mew=1.3, label=label)
 
     def _factor(self, model: Model) -> float:
         if not self.per_force:

@@ -3,66 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Unpack
 
 import numpy as np
+from matplotlib import pyplot
+from matplotlib.axes import Axes
 
 from stickslip.errors import ModelError
-from stickslip.plot.arguments import checked_labels, label_of, of_kind, several
-from stickslip.plot.documentation import figure
+from stickslip.plot import style
+from stickslip.plot.arguments import checked_labels, label_of, several
+from stickslip.plot.figure import figure, keywords
+from stickslip.plot.options import CycleOptions, Drawing
 from stickslip.plot.states import LINES, marks, name_states, pieces
-from stickslip.plot.style import (
-    BLUE,
-    GREY,
-    ORANGE,
-    Colour,
-    LengthUnit,
-    Looks,
-    OmegaUnit,
-    colours,
-    finish,
-    framed,
-    length_scale,
-    mark,
-    new_axes,
-    omega_scale,
-)
-from stickslip.results.arrays import Float, Measure
+from stickslip.plot.style import Colour, Looks
+from stickslip.results.arrays import Float
 from stickslip.results.limit_cycles import LimitCycles
 from stickslip.results.stability import STATES, States
 from stickslip.results.stability_map import StabilityMap
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 __all__ = ["limit_cycles", "stability_map"]
 
 _AXES = {"ratio": "negative damping ratio r", "stiffness": "$k_d$", "slip_force": "$F_d$"}
 
 
-@figure
+@keywords
 def limit_cycles(
-    results: LimitCycles | Sequence[LimitCycles],
-    dof: str,
-    *,
-    ax: Axes | None = None,
-    measure: Measure = "half_range",
-    length_unit: LengthUnit = "m",
-    omega_unit: OmegaUnit = "rad/s",
-    frequency: bool = True,
-    labels: Sequence[str] | None = None,
+    results: LimitCycles | Sequence[LimitCycles], dof: str, **options: Unpack[CycleOptions]
 ) -> Axes:
     """Draw amplitude and frequency of limit cycles, and say by the lines what is stable.
 
     Stable cycles are solid, unstable ones dashed, those whose stability is not decided dotted; the
     legend says which there are. Single cycles are full and hollow circles, and crosses.
-
-    Parameters
-    ----------
-    frequency : bool, optional
-        Draw the frequency too, on axes below those of a new figure.
-    labels : sequence of str, optional
-        One per branch. Default: the mode.
 
     Returns
     -------
@@ -70,17 +41,16 @@ def limit_cycles(
         The axes of the amplitude. Circles mark where a branch turns for good.
     """
     branches = several(LimitCycles, results, lambda one: one.settings.followed)
-    names = checked_labels(labels, [f"mode {one.settings.mode}" for one in branches])
-    length, omega = length_scale(length_unit), omega_scale(omega_unit)
-    made = ax is None
-    below = None
-    if made and frequency:
-        import matplotlib.pyplot as plt
-
-        _, (ax, below) = plt.subplots(2, 1, sharex=True, figsize=(6.4, 6.4), layout="constrained")
-    ax = new_axes(ax)
-    for one, name, colour in zip(branches, names, colours(len(branches)), strict=True):
-        _line(ax, one, length.factor * one.amplitude(dof, measure), colour, name)
+    names = checked_labels(options["labels"], [f"mode {one.settings.mode}" for one in branches])
+    omega = style.OMEGA[options["omega_unit"]]
+    length = style.LENGTH[options["length_unit"]]
+    made, ax, below = options["ax"] is None, options["ax"], None
+    if made and options["frequency"]:
+        tall = pyplot.figure(figsize=(6.4, 6.4), layout="constrained")
+        ax, below = tall.subplots(2, 1, sharex=True)
+    ax = style.new_axes(ax)
+    for one, name, colour in zip(branches, names, style.colours(len(branches)), strict=True):
+        _line(ax, one, length.factor * one.amplitude(dof, options["measure"]), colour, name)
         if below is not None:
             _line(below, one, omega.factor * one.omega, colour, name)
     followed, unit = branches[0].settings.followed, branches[0].settings.unit
@@ -94,34 +64,32 @@ def limit_cycles(
     ax.set(yscale="log", ylabel=f"amplitude of {dof} [{length.label}]")
     if below is not None:
         below.set_ylabel(omega.label)
-    finish(ax, made=made)
+    style.finish(ax, made=made)
     return ax
 
 
 @figure
-def stability_map(result: StabilityMap, *, ax: Axes | None = None) -> Axes:
+def stability_map(ax: Axes, /, result: StabilityMap, **options: Unpack[Drawing]) -> None:
     """Draw where friction bounds negative damping, and where the bounded motion is stable.
 
     Crosses stand at values of which the stability is not decided.
     """
-    known = np.isfinite(of_kind(StabilityMap, result).limit)
+    known = np.isfinite(result.limit)
     if not known.any():
         raise ModelError("result: no branch turns, so that there is nothing to draw")
-    with framed(ax) as ax:
-        x, limit, stable = (a[known] for a in (result.values, result.limit, result.stable_limit))
-        # Not-a-number leaves a gap in both areas: nothing is decided there.
-        area: Looks = {"alpha": 0.25, "lw": 0.0}
-        ax.fill_between(x, 0.0, stable, color=BLUE, **area, label="stable limit cycle")
-        ax.fill_between(x, stable, limit, color=ORANGE, **area, label="unstable one")
-        none = np.isnan(stable)
-        if none.any():
-            looks = marks("not decided", GREY)
-            ax.plot(x[none], 0.5 * limit[none], **looks, label="not decided")
-        ax.plot(x, limit, color="0.2", lw=1.5, label="no limit cycle above")
-        ax.set(xlabel=label_of(result.settings.variation), ylabel="negative damping ratio r")
-        ax.set_xscale("log")
-        ax.set_ylim(bottom=0.0)
-    return ax
+    x, limit, stable = (a[known] for a in (result.values, result.limit, result.stable_limit))
+    # Not-a-number leaves a gap in both areas: nothing is decided there.
+    area: Looks = {"alpha": 0.25, "lw": 0.0}
+    ax.fill_between(x, 0.0, stable, color=style.BLUE, **area, label="stable limit cycle")
+    ax.fill_between(x, stable, limit, color=style.ORANGE, **area, label="unstable one")
+    none = np.isnan(stable)
+    if none.any():
+        looks = marks("not decided", style.GREY)
+        ax.plot(x[none], 0.5 * limit[none], **looks, label="not decided")
+    ax.plot(x, limit, color="0.2", lw=1.5, label="no limit cycle above")
+    ax.set(xlabel=label_of(result.settings.variation), ylabel="negative damping ratio r")
+    ax.set_xscale("log")
+    ax.set_ylim(bottom=0.0)
 
 
 def _line(ax: Axes, one: LimitCycles, height: Float, colour: Colour, name: str) -> None:
@@ -139,7 +107,7 @@ def _line(ax: Axes, one: LimitCycles, height: Float, colour: Colour, name: str) 
     limit = one.limit
     if limit is not None:
         at = int(np.argmin(np.abs(one.values - limit.value) + np.abs(one.omega - limit.omega)))
-        ax.plot(limit.value, height[at], **mark("o", 5, colour))
+        ax.plot(limit.value, height[at], **style.mark("o", 5, colour))
 
 
 def _refined(one: LimitCycles, height: Float) -> tuple[Float, Float, States]:

@@ -3,69 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import NamedTuple, Unpack
 
 import numpy as np
+from matplotlib.axes import Axes
 
-from stickslip.checks import choice
 from stickslip.errors import ModelError
+from stickslip.plot import style
 from stickslip.plot.arguments import checked_labels, label_of, several
-from stickslip.plot.documentation import figure
+from stickslip.plot.figure import figure
 from stickslip.plot.limits import force_level, limit_curve
-from stickslip.plot.style import (
-    FREE,
-    GREY,
-    LIMIT,
-    RESPONSE,
-    STUCK,
-    LengthUnit,
-    Looks,
-    OmegaUnit,
-    Scale,
-    colours,
-    framed,
-    length_scale,
-    mark,
-    omega_scale,
-)
+from stickslip.plot.options import DamperOptions
+from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float, Int
 from stickslip.results.damper_curve import DamperCurve
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 __all__ = ["damper"]
 
 
 @figure
 def damper(
-    results: DamperCurve | Sequence[DamperCurve],
-    *,
-    ax: Axes | None = None,
-    normalise: Literal["force"] | None = None,
-    length_unit: LengthUnit = "m",
-    omega_unit: OmegaUnit = "rad/s",
-    frequency: bool = True,
-    limits: bool = True,
-    optimum: bool = True,
-    labels: Sequence[str] | None = None,
-) -> Axes:
+    ax: Axes, /, results: DamperCurve | Sequence[DamperCurve], **options: Unpack[DamperOptions]
+) -> None:
     """Draw damper performance curves: the peak against what was varied, on logarithmic axes.
-
-    Parameters
-    ----------
-    normalise : {"force"}, optional
-        Divide amplitudes by the largest force, and show curves over the level against the force
-        over the slip force, P/F_d. Without it curves over the level rise with the force.
-    frequency : bool, optional
-        Draw the frequency of the peak too, dashed, on an axis at the right.
-    limits : bool, optional
-        Draw the peaks of the two linear limits: all contacts free, and all stuck unless the
-        stiffness was varied.
-    optimum : bool, optional
-        Mark the lowest computed peak.
-    labels : sequence of str, optional
-        One per curve. Default: the degree of freedom.
 
     Returns
     -------
@@ -73,41 +33,34 @@ def damper(
         The axes of the amplitude.
     """
     curves = several(DamperCurve, results, lambda one: one.parameter)
-    if normalise is not None:
-        choice(normalise, "normalise", ["force"])
-    names = checked_labels(labels, [one.settings.dof for one in curves])
-    length, omega = length_scale(length_unit), omega_scale(omega_unit)
-    views = [_view(curve, length, per_force=normalise == "force") for curve in curves]
-    with framed(ax) as ax:
-        beside = ax.twinx() if frequency else None
-        for one, view, name, colour in zip(curves, views, names, colours(len(curves)), strict=True):
-            x, y, single = view.x, view.y, view.x.size == 1
-            looks: Looks = {
-                "color": colour,
-                "lw": 1.6,
-                "marker": "." if single else "",
-                "gid": RESPONSE,
-            }
-            ax.plot(x, y, label=name, **looks)
-            if beside is not None:
-                shown = omega.factor * one.omega[view.shown]
-                beside.plot(x, shown, color=colour, lw=1.0, ls="--", alpha=0.8)
-            if optimum:
-                x, y = x[view.best], y[view.best]
-                label = f"lowest: {y:.4g} {view.unit} at {x:.4g}"
-                ax.plot(x, y, **mark("o", 5, colour), mew=1.3, label=label)
-            rigid = np.flatnonzero(np.isinf(one.values) & one.arrays.solved)
-            if rigid.size and one.parameter == "stiffness":
-                # The limit of a rigid contact has no place on the axis.
-                height = float(view.factor[0] * one.amplitude[rigid[0]])
-                ax.axhline(height, color=colour, lw=1.0, ls=":", label="rigid contact", zorder=1.5)
-        if limits:
-            _draw_limits(ax, curves[0], views[0])
-        ax.set(xscale="log", yscale="log", xlabel=views[0].label)
-        ax.set_ylabel(f"peak amplitude [{views[0].unit}]")
+    names = checked_labels(options["labels"], [one.settings.dof for one in curves])
+    omega = style.OMEGA[options["omega_unit"]]
+    length = style.LENGTH[options["length_unit"]]
+    views = [_view(curve, length, per_force=options["normalise"] == "force") for curve in curves]
+    beside = ax.twinx() if options["frequency"] else None
+    shades = style.colours(len(curves))
+    for one, view, name, colour in zip(curves, views, names, shades, strict=True):
+        x, y = view.x, view.y
+        looks: Looks = {"color": colour, "lw": 1.6, "gid": style.RESPONSE}
+        ax.plot(x, y, marker="." if x.size == 1 else "", label=name, **looks)
         if beside is not None:
-            beside.set_ylabel(f"peak {omega.label} (dashed)")
-    return ax
+            shown = omega.factor * one.omega[view.shown]
+            beside.plot(x, shown, color=colour, lw=1.0, ls="--", alpha=0.8)
+        if options["optimum"]:
+            x, y = x[view.best], y[view.best]
+            label = f"lowest: {y:.4g} {view.unit} at {x:.4g}"
+            ax.plot(x, y, **style.mark("o", 5, colour), mew=1.3, label=label)
+        rigid = np.flatnonzero(np.isinf(one.values) & one.arrays.solved)
+        if rigid.size and one.parameter == "stiffness":
+            # The limit of a rigid contact has no place on the axis.
+            height = float(view.factor[0] * one.amplitude[rigid[0]])
+            ax.axhline(height, color=colour, lw=1.0, ls=":", label="rigid contact", zorder=1.5)
+    if options["limits"]:
+        _draw_limits(ax, curves[0], views[0])
+    ax.set(xscale="log", yscale="log", xlabel=views[0].label)
+    ax.set_ylabel(f"peak amplitude [{views[0].unit}]")
+    if beside is not None:
+        beside.set_ylabel(f"peak {omega.label} (dashed)")
 
 
 class _View(NamedTuple):
@@ -170,6 +123,6 @@ def _draw_limits(ax: Axes, curve: DamperCurve, view: _View) -> None:
             continue
         _, amplitude = limit_curve(curve.model, kept.dof, kept.span, kept.measure, stuck=stuck)
         height = float(amplitude.max()) * view.stretch * view.factor
-        label, ls = ("stuck (linear)", STUCK) if stuck else ("free (linear)", FREE)
-        looks: Looks = {"color": GREY, "lw": 1.1, "zorder": 1.5, "gid": LIMIT}
+        label, ls = ("stuck (linear)", style.STUCK) if stuck else ("free (linear)", style.FREE)
+        looks: Looks = {"color": style.GREY, "lw": 1.1, "zorder": 1.5, "gid": style.LIMIT}
         ax.plot(view.x, height, label=label, ls=ls, **looks)

@@ -3,61 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Unpack
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from stickslip.checks import brief, members, real_number, whole_number
 from stickslip.disk import BladedDisk, NodalDiameters
 from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
-from stickslip.plot.arguments import of_kind
-from stickslip.plot.documentation import figure
-from stickslip.plot.style import (
-    BLUE,
-    FREE,
-    GREY,
-    ORANGE,
-    STUCK,
-    Looks,
-    OmegaUnit,
-    framed,
-    mark,
-    omega_scale,
-)
+from stickslip.plot import style
+from stickslip.plot.figure import figure
+from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
+from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 __all__ = ["aerodynamic", "nodal_diameters", "safe"]
 
 
 @figure
 def nodal_diameters(
-    table: NodalDiameters | BladedDisk,
-    *,
-    ax: Axes | None = None,
-    omega_unit: OmegaUnit = "Hz",
-    slipping: bool = True,
-) -> Axes:
+    ax: Axes, /, table: NodalDiameters | BladedDisk, **options: Unpack[DiameterOptions]
+) -> None:
     """Draw the natural frequencies of a disk over its nodal diameters."""
-    table = _table_of(table)
-    with framed(ax) as ax:
-        _draw_diameters(ax, table, omega_unit, slipping=slipping)
-    return ax
+    omega = style.OMEGA[options["omega_unit"]]
+    _draw_diameters(ax, _table_of(table), omega, slipping=options["slipping"])
 
 
 @figure
 def safe(
-    table: NodalDiameters | BladedDisk,
-    speed: float,
-    *,
-    orders: int | Sequence[int] | None = None,
-    ax: Axes | None = None,
-    omega_unit: OmegaUnit = "Hz",
-    slipping: bool = True,
-) -> Axes:
+    ax: Axes, /, table: NodalDiameters | BladedDisk, speed: float, **options: Unpack[SafeOptions]
+) -> None:
     """Draw the SAFE diagram of a disk, folded at half the sectors (ZZENF).
 
     Engine order E excites nodal diameter d = E modulo n, folded to n - d above n/2, with the
@@ -68,36 +45,31 @@ def safe(
     ----------
     speed : float
         Angular speed of the rotor [rad/s].
-    orders : int or sequence of int, optional
-        Engine orders to mark, or up to which. Default: the engine order of the disk and the
-        harmonics of it that its forces have; the line reaches up to the highest frequency drawn.
     """
     rate = real_number(speed, "speed")
     if rate <= 0.0:
         raise ModelError(f"speed: {rate:g} is not above zero; give the speed of the rotor in rad/s")
-    table = _table_of(table)
-    with framed(ax) as ax:
-        _draw_diameters(ax, table, omega_unit, slipping=slipping)
-        n, factor = table.disk.sectors, omega_scale(omega_unit).factor
-        top = 1.05 * max(table.stuck.max(), table.slipping.max() if slipping else 0.0)
-        marked = _orders(orders, table.disk)
-        reach = max(int(np.ceil(top / rate)), *marked, 1)
-        # The corners of the line lie at whole orders only where n is even.
-        line = np.unique(np.append(np.arange(reach + 1.0), np.arange(0.0, reach, n / 2)))
-        label = f"excitation at {rate:.5g} rad/s"
-        ax.plot(_folded(line, n), factor * rate * line, color="crimson", lw=0.9, label=label)
-        chosen = np.array(marked, dtype=np.float64)
-        x, y = _folded(chosen, n), factor * rate * chosen
-        ax.plot(x, y, **mark("D", 5, "crimson"), label="engine orders")
-        looks: Looks = {"textcoords": "offset points", "color": "crimson", "fontsize": "small"}
-        for order, place in zip(marked, zip(x.tolist(), y.tolist(), strict=True), strict=True):
-            ax.annotate(f"{order}", place, (4.0, 4.0), **looks)
-        ax.set_ylim(0.0, factor * top)
-    return ax
+    table, omega = _table_of(table), style.OMEGA[options["omega_unit"]]
+    _draw_diameters(ax, table, omega, slipping=options["slipping"])
+    n, factor = table.disk.sectors, omega.factor
+    top = 1.05 * max(table.stuck.max(), table.slipping.max() if options["slipping"] else 0.0)
+    marked = _orders(options["orders"], table.disk)
+    reach = max(int(np.ceil(top / rate)), *marked, 1)
+    # The corners of the line lie at whole orders only where n is even.
+    line = np.unique(np.append(np.arange(reach + 1.0), np.arange(0.0, reach, n / 2)))
+    label = f"excitation at {rate:.5g} rad/s"
+    ax.plot(_folded(line, n), factor * rate * line, color="crimson", lw=0.9, label=label)
+    chosen = np.array(marked, dtype=np.float64)
+    x, y = _folded(chosen, n), factor * rate * chosen
+    ax.plot(x, y, **style.mark("D", 5, "crimson"), label="engine orders")
+    looks: Looks = {"textcoords": "offset points", "color": "crimson", "fontsize": "small"}
+    for order, place in zip(marked, zip(x.tolist(), y.tolist(), strict=True), strict=True):
+        ax.annotate(f"{order}", place, (4.0, 4.0), **looks)
+    ax.set_ylim(0.0, factor * top)
 
 
 @figure
-def aerodynamic(waves: AerodynamicWaves, *, ax: Axes | None = None) -> Axes:
+def aerodynamic(ax: Axes, /, waves: AerodynamicWaves, **options: Unpack[Drawing]) -> None:
     """Draw the damping ratio of the travelling waves over their nodal diameter: the S-curve.
 
     Parameters
@@ -110,26 +82,19 @@ def aerodynamic(waves: AerodynamicWaves, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes. Waves above n/2 are drawn at d - n: they run backwards.
     """
-    n = of_kind(AerodynamicWaves, waves, "waves").disk.sectors
-    with framed(ax) as ax:
-        signed = np.where(waves.diameters > n / 2, waves.diameters - n, waves.diameters)
-        order = np.argsort(signed)
-        x = signed[order]
-        looks: Looks = {"ms": 3.5, "lw": 1.0}
-        ax.axhline(0.0, color=GREY, lw=0.8)
-        ax.plot(x, 100.0 * waves.aerodynamic_ratio[order], marker="o", label="flow", **looks)
-        if not np.array_equal(waves.ratio, waves.aerodynamic_ratio):
-            ax.plot(x, 100.0 * waves.ratio[order], marker="s", label="flow and disk", **looks)
-        least = int(waves.ratio.argmin())
-        label = f"least stable: {signed[least]}"
-        ax.plot(
-            signed[least],
-            100.0 * waves.ratio[least],
-            **mark("o", 8, "crimson", "none"),
-            label=label,
-        )
-        _over_diameters(ax, "damping ratio [%]")
-    return ax
+    n = waves.disk.sectors
+    signed = np.where(waves.diameters > n / 2, waves.diameters - n, waves.diameters)
+    order = np.argsort(signed)
+    x = signed[order]
+    looks: Looks = {"ms": 3.5, "lw": 1.0}
+    ax.axhline(0.0, color=style.GREY, lw=0.8)
+    ax.plot(x, 100.0 * waves.aerodynamic_ratio[order], marker="o", label="flow", **looks)
+    if not np.array_equal(waves.ratio, waves.aerodynamic_ratio):
+        ax.plot(x, 100.0 * waves.ratio[order], marker="s", label="flow and disk", **looks)
+    least = int(waves.ratio.argmin())
+    looks = style.mark("o", 8, "crimson", "none") | {"label": f"least stable: {signed[least]}"}
+    ax.plot(signed[least], 100.0 * waves.ratio[least], **looks)
+    _over_diameters(ax, "damping ratio [%]")
 
 
 def _table_of(table: object) -> NodalDiameters:
@@ -142,15 +107,15 @@ def _table_of(table: object) -> NodalDiameters:
     return table
 
 
-def _draw_diameters(
-    ax: Axes, table: NodalDiameters, omega_unit: OmegaUnit, *, slipping: bool
-) -> None:
-    omega, x = omega_scale(omega_unit), table.diameters
+def _draw_diameters(ax: Axes, table: NodalDiameters, omega: Scale, *, slipping: bool) -> None:
+    x = table.diameters
     looks: Looks = {"lw": 0.9, "marker": "o", "ms": 3.5}
     label = "stuck" if table.disk.contacts else "natural frequencies"
-    ax.plot(x, omega.factor * table.stuck, color=BLUE, ls=STUCK, **looks)[0].set_label(label)
+    ax.plot(x, omega.factor * table.stuck, color=style.BLUE, ls=style.STUCK, **looks)[0].set_label(
+        label
+    )
     if slipping and table.disk.contacts:
-        looks |= {"color": ORANGE, "ls": FREE, "mfc": "white"}
+        looks |= {"color": style.ORANGE, "ls": style.FREE, "mfc": "white"}
         ax.plot(x, omega.factor * table.slipping, **looks)[0].set_label("slipping")
     _over_diameters(ax, omega.label.replace("angular frequency ω", "natural frequency"))
     ax.set_xlim(-0.3, float(x[-1]) + 0.3)
@@ -158,8 +123,6 @@ def _draw_diameters(
 
 
 def _over_diameters(ax: Axes, label: str) -> None:
-    from matplotlib.ticker import MaxNLocator
-
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set(xlabel="nodal diameter", ylabel=label)
 

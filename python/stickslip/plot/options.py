@@ -1,147 +1,231 @@
-"""Keywords of the drawing functions, as methods of results pass them on."""
+"""Keywords of the functions that draw, each once: type, default and meaning.
+
+`figure` of `figure.py` makes signatures and documentation of them; results pass them on.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, TypedDict
+from typing import Annotated, Literal, TypedDict
+
+from matplotlib.axes import Axes
 
 from stickslip.plot.style import LengthUnit, OmegaUnit
+from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Measure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from stickslip.results import ForcedResponse
+_OF_AXIS = "Unit of frequencies."
 
 
-class WaveOptions(TypedDict, total=False):
-    """Keywords of `aerodynamic`."""
+class Drawing(TypedDict, total=False):
+    """Keywords of all figures."""
 
-    ax: Axes | None
-
-
-class Frame(WaveOptions, total=False):
-    """Where, and in which unit, a displacement is drawn."""
-
-    length_unit: LengthUnit
+    ax: Annotated[Axes | None, None, "Where to draw. Default: a new figure."]
 
 
-BasinOptions = Frame
+class Frame(Drawing, total=False):
+    """Keywords of figures of displacements."""
+
+    length_unit: Annotated[LengthUnit, "m", "Unit of displacements."]
 
 
-class _Frequency(WaveOptions, total=False):
-    omega_unit: OmegaUnit
+class Swept(Drawing, total=False):
+    """Keywords of figures over frequency."""
+
+    omega_unit: Annotated[OmegaUnit, "rad/s", _OF_AXIS]
 
 
-class _Amplitude(Frame, total=False):
-    measure: Measure
+class Spectral(Drawing, total=False):
+    """Keywords of figures over frequency in Hz."""
+
+    omega_unit: Annotated[OmegaUnit, "Hz", _OF_AXIS]
 
 
-class _Labelled(Frame, _Frequency, total=False):
-    labels: Sequence[str] | None
+class Amplitude(Frame, total=False):
+    """Keywords of figures of amplitudes."""
+
+    measure: Annotated[Measure, "half_range", "Measure of the amplitude."]
+
+
+class Several(Frame, Swept, total=False):
+    """Keywords of figures of several results."""
+
+    labels: Annotated[
+        Sequence[str] | None,
+        None,
+        "One per result. Default: what distinguishes them, as forces, modes or degrees of freedom.",
+    ]
 
 
 class LoopOptions(Frame, total=False):
-    """Keywords of `hysteresis`."""
+    """Keywords of `waveform` and `hysteresis`."""
 
-    samples: int
+    samples: Annotated[int, 512, "Instants per period."]
 
 
-class CurveOptions(_Labelled, _Amplitude, total=False):
+class ForceOptions(TypedDict, total=False):
+    """Keywords of `contact_forces`."""
+
+    stuck: Annotated[bool, True, "Draw, dashed, the forces if no contact of the model slipped."]
+    samples: Annotated[int, 1024, "Instants per period."]
+
+
+class CurveOptions(Several, Amplitude, total=False):
     """Keywords of `curves`."""
 
-    normalise: Literal["force"] | None
-    log: bool
-    stuck: bool
-    free: bool
-    peaks: bool
-    error_band: bool | None
+    normalise: Annotated[
+        Literal["force"] | None, None, "Divide every curve by its largest force amplitude."
+    ]
+    log: Annotated[
+        bool,
+        True,
+        "Logarithmic amplitude axis. A linear one ends above the curves and cuts the limits.",
+    ]
+    stuck: Annotated[
+        bool,
+        True,
+        "Draw the linear response with every contact stuck. Unless normalised, it is that to the "
+        "largest force among the results.",
+    ]
+    free: Annotated[bool, True, "Draw the same without any contact."]
+    peaks: Annotated[bool, True, "Mark the refined peaks."]
+    error_band: Annotated[
+        bool | None,
+        None,
+        "Shade what the discarded harmonics could still change. Default: for a single curve.",
+    ]
 
 
-class DamperOptions(_Labelled, total=False):
+class DamperOptions(Several, total=False):
     """Keywords of `damper`."""
 
-    normalise: Literal["force"] | None
-    frequency: bool
-    limits: bool
-    optimum: bool
+    normalise: Annotated[
+        Literal["force"] | None,
+        None,
+        "Divide amplitudes by the largest force, and show curves over the level against the force "
+        "over the slip force, P/F_d. Without it curves over the level rise with the force.",
+    ]
+    frequency: Annotated[
+        bool, True, "Draw the frequency of the peak too, dashed, on an axis at the right."
+    ]
+    limits: Annotated[
+        bool,
+        True,
+        "Draw the peaks of the two linear limits: all contacts free, and all stuck unless the "
+        "stiffness was varied.",
+    ]
+    optimum: Annotated[bool, True, "Mark the lowest computed peak."]
 
 
-class CycleOptions(_Labelled, _Amplitude, total=False):
+class CycleOptions(Several, Amplitude, total=False):
     """Keywords of `limit_cycles`."""
 
-    frequency: bool
+    frequency: Annotated[bool, True, "Draw the frequency too, on axes below those of a new figure."]
 
 
-class MultiplierOptions(_Frequency, total=False):
+class MultiplierOptions(Swept, total=False):
     """Keywords of `multipliers`."""
 
-    index: int | Sequence[int] | None
+    index: Annotated[
+        int | Sequence[int] | None, None, "Positions of points of the sweep. Default: all."
+    ]
 
 
-class BladeBarOptions(_Amplitude, total=False):
+class BladeBarOptions(Amplitude, total=False):
     """Keywords of `blade_bars`."""
 
-    index: int | None
-    tuned: ForcedResponse | None
+    index: Annotated[
+        int | None,
+        None,
+        "Position of a point of the sweep. Default: the largest amplitude of each blade among the "
+        "computed points.",
+    ]
+    tuned: Annotated[
+        ForcedResponse | None,
+        None,
+        "The response of the tuned disk, drawn as a line: its peak, or its amplitude at the "
+        "computed frequency nearest to that of `index`.",
+    ]
 
 
-class BladeCurveOptions(_Amplitude, _Frequency, total=False):
+class BladeCurveOptions(Amplitude, Swept, total=False):
     """Keywords of `blade_curves`."""
 
-    tuned: ForcedResponse | None
-    log: bool
+    tuned: Annotated[
+        ForcedResponse | None, None, "The response of the tuned disk, drawn beside them."
+    ]
+    log: Annotated[bool, True, "Logarithmic amplitude axis."]
 
 
-class DiameterOptions(_Frequency, total=False):
+class DiameterOptions(Spectral, total=False):
     """Keywords of `nodal_diameters`."""
 
-    slipping: bool
+    slipping: Annotated[bool, True, "Draw the frequencies with slipping contacts too."]
 
 
 class SafeOptions(DiameterOptions, total=False):
     """Keywords of `safe`."""
 
-    orders: int | Sequence[int] | None
+    orders: Annotated[
+        int | Sequence[int] | None,
+        None,
+        "Engine orders to mark, or up to which. Default: the engine order of the disk and the "
+        "harmonics of it that its forces have; the line reaches up to the highest frequency drawn.",
+    ]
 
 
-class HistoryOptions(Frame, total=False):
+class LastOptions(Drawing, total=False):
+    """Keywords of `contact_history`."""
+
+    last: Annotated[
+        int | None, None, "How many of the last periods to draw. Default: all that are kept."
+    ]
+
+
+class HistoryOptions(Frame, LastOptions, total=False):
     """Keywords of `history` and `phase`."""
-
-    last: int | None
 
 
 class PoincareOptions(Frame, total=False):
     """Keywords of `poincare`."""
 
-    skip: int
+    skip: Annotated[int, 0, "How many of the first periods to leave out."]
 
 
-class SpectrumOptions(_Frequency, total=False):
+class SpectrumOptions(Spectral, LastOptions, total=False):
     """Keywords of `spectrum`."""
 
-    last: int | None
-    segment: int | None
-    window: str
+    segment: Annotated[int | None, None, "As of `Transient.spectrum`."]
+    window: Annotated[str, "boxcar", "As of `Transient.spectrum`."]
 
 
-class LineOptions(_Frequency, total=False):
+class LineOptions(Spectral, total=False):
     """Keywords of `lines`."""
 
-    most: int
+    most: Annotated[int, 8, "How many lines to mark at most."]
 
 
-class TrendOptions(WaveOptions, total=False):
+class Confidence(Drawing, total=False):
+    """Keywords of figures of statistics."""
+
+    confidence: Annotated[
+        float, 0.95, "Probability with which the interval is to hold the true percentile."
+    ]
+
+
+class TrendOptions(Confidence, total=False):
     """Keywords of `amplification`."""
 
-    percentile: float
-    confidence: float
+    percentile: Annotated[float, 99.0, "The percentile."]
 
 
-class DistributionOptions(WaveOptions, total=False):
+class DistributionOptions(Confidence, total=False):
     """Keywords of `distribution`."""
 
-    deviation: float | None
-    coupling: float | None
-    percentile: float | None
-    confidence: float
+    deviation: Annotated[float | None, None, "See `MistuningStudy.factors`."]
+    coupling: Annotated[float | None, None, "See `MistuningStudy.factors`."]
+    percentile: Annotated[
+        float | None,
+        99.9,
+        "Percentile of the fit that is marked with its interval; None marks none.",
+    ]

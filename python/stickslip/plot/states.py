@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 
-from stickslip.plot.style import GREY, Colour, Looks, mark
+from stickslip.plot import style
+from stickslip.plot.style import Colour, Looks
 from stickslip.results.stability import STATES, States
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 __all__ = ["LINES", "marks", "name_states", "pieces"]
 
@@ -23,7 +21,7 @@ LINES = {"stable": "-", "unstable": "--", "not decided": ":"}
 def marks(state: str, colour: Colour) -> Looks:
     """Return how single motions of a state are marked: full and hollow circles, and crosses."""
     fill = {"stable": colour, "unstable": "white", "not decided": "none"}[state]
-    return mark("x" if state == "not decided" else "o", 4, colour, fill)
+    return style.mark("x" if state == "not decided" else "o", 4, colour, fill)
 
 
 def name_states(ax: Axes, states: Iterable[States], *, single: bool = False) -> None:
@@ -31,7 +29,9 @@ def name_states(ax: Axes, states: Iterable[States], *, single: bool = False) -> 
     occurring = {str(state) for some in states for state in some}
     for state in STATES:
         if state in occurring:
-            looks = marks(state, GREY) if single else {"color": GREY, "ls": LINES[state]}
+            looks = (
+                marks(state, style.GREY) if single else {"color": style.GREY, "ls": LINES[state]}
+            )
             ax.plot([], [], label=state, **looks)
 
 

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
+from matplotlib import colormaps, pyplot
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter
 
-from stickslip.checks import brief, choice
+from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
 
 __all__ = [
     "BLUE",
     "FREE",
     "GREY",
+    "LENGTH",
     "LIMIT",
+    "OMEGA",
     "ORANGE",
     "RESPONSE",
     "STUCK",
@@ -33,11 +36,8 @@ __all__ = [
     "colours",
     "finish",
     "fit",
-    "framed",
-    "length_scale",
     "mark",
     "new_axes",
-    "omega_scale",
     "prefixed",
     "slip_limits",
     "unit_circle",
@@ -69,11 +69,11 @@ class Scale(NamedTuple):
     label: str
 
 
-_OMEGA: dict[str, Scale] = {
+OMEGA: dict[str, Scale] = {
     "rad/s": Scale(1.0, "angular frequency ω [rad/s]"),
     "Hz": Scale(0.5 / np.pi, "frequency [Hz]"),
 }
-_LENGTH: dict[str, Scale] = {
+LENGTH: dict[str, Scale] = {
     "m": Scale(1.0, "m"),
     "mm": Scale(1e3, "mm"),
     "um": Scale(1e6, "µm"),
@@ -81,21 +81,9 @@ _LENGTH: dict[str, Scale] = {
 }
 
 
-def omega_scale(unit: str) -> Scale:
-    """Return the factor on angular frequencies, and the label of their axis."""
-    return _OMEGA[choice(unit, "omega_unit", _OMEGA)]
-
-
-def length_scale(unit: str) -> Scale:
-    """Return the factor on lengths, and the symbol of the unit."""
-    return _LENGTH[choice(unit, "length_unit", _LENGTH)]
-
-
 def new_axes(ax: Axes | None) -> Axes:
     """Return the given axes, or those of a new figure that `plt.show()` will show."""
-    from matplotlib import axes, pyplot
-
-    if isinstance(ax, axes.Axes):
+    if isinstance(ax, Axes):
         return ax
     if ax is not None:
         raise ModelError(f"ax: {brief(ax)} is not a matplotlib Axes; leave it out for a new figure")
@@ -103,18 +91,8 @@ def new_axes(ax: Axes | None) -> Axes:
     return made
 
 
-@contextmanager
-def framed(ax: Axes | None) -> Iterator[Axes]:
-    """Give the axes to draw on, of a new figure where there are none, and finish them."""
-    drawn = new_axes(ax)
-    yield drawn
-    finish(drawn, made=ax is None)
-
-
 def colours(count: int) -> list[tuple[float, float, float, float]]:
     """Return colours in a perceptual sequence, from dark to light, the palest left out."""
-    from matplotlib import colormaps
-
     positions = np.linspace(0.05, 0.85, count) if count > 1 else np.array([0.25])
     return [colormaps["viridis"](float(position)) for position in positions]
 
@@ -151,9 +129,6 @@ def finish(ax: Axes, *, made: bool) -> None:
     On a figure of ours (`made`) the legend stands outside and hides no curve. On axes of others it
     does so if it is long and their layout makes room for it.
     """
-    from matplotlib.figure import Figure
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
-
     bare(ax)
     handles, _ = ax.get_legend_handles_labels()
     if len(handles) < 2:
@@ -201,8 +176,6 @@ def prefixed(value: float, unit: str) -> str:
 
 def _number_decades(ax: Axes) -> None:
     """Write plain numbers on a logarithmic axis, and some between the decades if there are few."""
-    from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter
-
     low, high = ax.get_ylim()
     plain = low > 1e-4 and high < 1e5
     written = FuncFormatter(lambda value, _: f"{value:g}") if plain else LogFormatterMathtext()
