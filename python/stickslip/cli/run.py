@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
@@ -22,14 +22,6 @@ if TYPE_CHECKING:
     from stickslip.study import Case, Study
 
 __all__ = ["run", "warned"]
-
-
-class Computed(NamedTuple):
-    """A computed result and where it was saved."""
-
-    case: Case
-    result: Result
-    file: Path
 
 
 class Clock(dict[str, float]):
@@ -71,11 +63,10 @@ def run(
         loaded = _stored(Study.load(study), out)
         make_folder(out)
         require_writable(out)
-    computed = _compute(loaded, out, clock, quiet=quiet)
-    results = [one.result for one in computed]
+    results = _compute(loaded, out, clock, quiet=quiet)
     view, output = view_of(results), loaded.tables.output
     if not quiet:
-        levels = ["" if one.case.level is None else f"{one.case.level:.10g}" for one in computed]
+        levels = ["" if one.level is None else f"{one.level:.10g}" for one in loaded.cases]
         label = "" if loaded.tables.analysis.levels is None else "level"
         named = list(zip(levels, results, strict=True))
         with clock("refining peaks, printing"):
@@ -92,8 +83,8 @@ def run(
     if timings:
         console.stages(results, clock)
     if not quiet:
-        _tell_files(loaded, computed, picture)
-    complete = warned([(one.case.name, one.result) for one in computed])
+        _tell_files(loaded, out, picture)
+    complete = warned([*zip((case.name for case in loaded.cases), results, strict=True)])
     if undrawn is not None:
         raise undrawn
     if not complete:
@@ -123,10 +114,10 @@ def _stored(study: Study, folder: Path) -> Study:
     return replace(study, tables=study.tables.model_copy(update={"analysis": kept}))
 
 
-def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Computed]:
+def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Result]:
     from stickslip.cli.console import complain, progress
 
-    computed: list[Computed] = []
+    computed: list[Result] = []
     cases = study.cases
 
     def complete() -> str:
@@ -144,34 +135,32 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Comp
             raise ModelError(f"{error}; {complete()}{rest}") from None
 
     with progress(study.name, wanted=not quiet) as advance, Interruption(advance) as watch:
-        results = study.run(watch)
         try:
-            for case, result in zip(cases, results, strict=True):
-                file = out / f"{case.name}.nc"
+            for case, result in zip(cases, study.run(watch), strict=True):
                 with clock("saving"):
-                    save(result, file)
-                    _remove_partial(_partial(out, case))
-                computed.append(Computed(case, result, file))
+                    save(result, _file(out, case))
+                    _remove_partial(_file(out, case, "-partial"))
+                computed.append(result)
                 watch.heed()
         except Interrupted as stop:
             complain("interrupted", "saving what was computed")
             case, result = cases[len(computed)], cast("Result", stop.result)
             # a part under another name, so that a complete curve of an earlier run is not lost
-            file = _partial(out, case) if result.interrupted else out / f"{case.name}.nc"
+            file = _file(out, case, "-partial" if result.interrupted else "")
             save(result, file)
             if result.interrupted:
                 left = f"the next one as far as it went in {file}{rest}"
                 raise KeyboardInterrupt(f"{complete()}, {left}") from None
-            computed.append(Computed(case, result, file))
+            computed.append(result)
             raise KeyboardInterrupt(complete()) from None
         except KeyboardInterrupt:
             raise KeyboardInterrupt(complete()) from None
     return computed
 
 
-def _partial(out: Path, case: Case) -> Path:
-    """Return where a run that was stopped leaves what it has."""
-    return out / f"{case.name}-partial.nc"
+def _file(out: Path, case: Case, part: str = "") -> Path:
+    """Return where a result is saved, or the part of one that a run has when it is stopped."""
+    return out / f"{case.name}{part}.nc"
 
 
 def _remove_partial(file: Path) -> None:
@@ -184,14 +173,14 @@ def _remove_partial(file: Path) -> None:
             file.unlink()
 
 
-def _tell_files(study: Study, computed: Sequence[Computed], picture: Path | None) -> None:
+def _tell_files(study: Study, out: Path, picture: Path | None) -> None:
     from stickslip.cli.console import tell
 
     tell("")
     if picture is not None:
         tell(f"picture: {picture}")
-    first = computed[0].file
-    several = f"{first.with_name(f'{study.name}-*.nc')} ({len(computed)} files)"
-    tell(f"results: {first if len(computed) == 1 else several}")
+    first, count = _file(out, study.cases[0]), len(study.cases)
+    several = f"{out / f'{study.name}-*.nc'} ({count} files)"
+    tell(f"results: {first if count == 1 else several}")
     tell(f"details: stickslip show {first}")
     tell(f"page:    stickslip report {first}")

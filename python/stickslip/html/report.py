@@ -106,10 +106,11 @@ def _entries(results: object) -> list[Entry]:
     from stickslip.html.sections import Entry
     from stickslip.results.store import load
 
+    neither = "is neither a result nor a file of one"
     if isinstance(results, Result | str | os.PathLike):
         results = [results]
     if not isinstance(results, Iterable):
-        raise ModelError(f"results: {brief(results)} is neither a result nor a file of one")
+        raise ModelError(f"results: {brief(results)} {neither}")
     named: list[tuple[str, object]] = [("", one) for one in results]
     if isinstance(results, Mapping):
         named = [(text(name, "name of a result"), one) for name, one in results.items()]
@@ -117,16 +118,15 @@ def _entries(results: object) -> list[Entry]:
         raise ModelError("results: empty; give at least one result or file")
     entries = []
     for place, (name, one) in enumerate(named):
+        anchor = f"result-{place + 1}"
         if isinstance(one, Result):
             unnamed = "result" if len(named) == 1 else f"result {place + 1}"
-            entries.append(Entry(name or unnamed, one, None))
+            entries.append(Entry(name or unnamed, one, None, anchor))
         elif isinstance(one, str | os.PathLike):
             source = file_path(one, f"results[{place}]")
-            entries.append(Entry(name or source.stem, load(source), source))
+            entries.append(Entry(name or source.stem, load(source), source, anchor))
         else:
-            raise ModelError(
-                f"results[{place}]: {brief(one)} is neither a result nor a file of one"
-            )
+            raise ModelError(f"results[{place}]: {brief(one)} {neither}")
     names = [entry.name for entry in entries]
     return [
         entry._replace(name=f"{entry.source.resolve().parent.name}{os.sep}{entry.name}")

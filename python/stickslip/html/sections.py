@@ -7,7 +7,6 @@ import io
 import platform
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from importlib.resources import files
@@ -18,7 +17,7 @@ import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.html.figures import Drawn, drawn
-from stickslip.html.models import ModelSummary, summaries
+from stickslip.html.models import summaries
 from stickslip.results.result import Result
 from stickslip.results.store import content_of
 from stickslip.study import notable_dofs
@@ -37,34 +36,7 @@ class Entry(NamedTuple):
     result: Result
     source: Path | None
     """The file it was read from."""
-
-
-@dataclass(frozen=True)
-class Section:
-    """A result by itself."""
-
     anchor: str
-    name: str
-    failures: list[str]
-    cautions: list[str]
-    facts: list[Row]
-    assumptions: tuple[str, ...]
-    figures: list[Drawn | str]
-    settings: list[Row]
-    effort: list[Row]
-    provenance: list[Row]
-
-
-@dataclass(frozen=True)
-class Group:
-    """Results that are drawn and tabulated together."""
-
-    anchor: str
-    heading: str
-    figures: list[Drawn | str]
-    tables: list[Table]
-    models: list[ModelSummary]
-    sections: list[Section]
 
 
 def content(
@@ -82,18 +54,13 @@ def content(
     from plotly.offline import get_plotlyjs
 
     page = files("stickslip.html") / "page"
-    anchors = {id(entry): f"result-{number}" for number, entry in enumerate(entries, 1)}
-    groups = [
-        _group(f"group-{number}", members, anchors, dofs, output)
-        for number, members in enumerate(_grouped(entries), 1)
-    ]
     names = [entry.name for entry in entries]
     return {
         "title": title or f"Report: {', '.join(names[:3])}{', ...' if len(names) > 3 else ''}",
         "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "overview": _overview(entries),
-        "links": [anchors[id(entry)] for entry in entries],
-        "groups": groups,
+        "links": [entry.anchor for entry in entries],
+        "groups": [_group(members, dofs, output) for members in _grouped(entries)],
         "versions": _versions(),
         "plotly": get_plotlyjs(),
         "style": (page / "report.css").read_text(encoding="utf-8"),
@@ -113,12 +80,9 @@ def _grouped(entries: Iterable[Entry]) -> list[list[Entry]]:
 
 
 def _group(
-    anchor: str,
-    members: Sequence[Entry],
-    anchors: dict[int, str],
-    dofs: Sequence[str] | None,
-    output: OutputTable,
-) -> Group:
+    members: Sequence[Entry], dofs: Sequence[str] | None, output: OutputTable
+) -> dict[str, object]:
+    """Return results that are drawn and tabulated together, and each of them by itself."""
     results = [entry.result for entry in members]
     view, first = view_of(results), results[0]
     notable = list(notable_dofs(first.model, first.dofs))
@@ -130,27 +94,28 @@ def _group(
     sections = []
     for entry in members:
         result = entry.result
-        section = Section(
-            anchor=anchors[id(entry)],
-            name=entry.name,
-            failures=failures(result),
-            cautions=cautions(result),
-            facts=[row for row in view.facts(result) if row[0] != "assumed" and row not in known],
-            assumptions=result.assumptions,
-            figures=_figures(view.details(result, shown, output)),
-            settings=_settings(result),
-            effort=_effort(result),
-            provenance=_provenance(entry),
-        )
+        section = {
+            "anchor": entry.anchor,
+            "name": entry.name,
+            "failures": failures(result),
+            "cautions": cautions(result),
+            "facts": [
+                row for row in view.facts(result) if row[0] != "assumed" and row not in known
+            ],
+            "assumptions": result.assumptions,
+            "figures": _figures(view.details(result, shown, output)),
+            "settings": _settings(result),
+            "effort": _effort(result),
+            "provenance": _provenance(entry),
+        }
         sections.append(section)
-    return Group(
-        anchor=anchor,
-        heading=" and ".join(dict.fromkeys(map(_kind, results))),
-        figures=_figures(view.panels(results, shown, output)),
-        tables=view.tables(named, label, shown, output.length_unit),
-        models=models,
-        sections=sections,
-    )
+    return {
+        "heading": " and ".join(dict.fromkeys(map(_kind, results))),
+        "figures": _figures(view.panels(results, shown, output)),
+        "tables": view.tables(named, label, shown, output.length_unit),
+        "models": models,
+        "sections": sections,
+    }
 
 
 def _figures(panels: Iterable[Panel]) -> list[Drawn | str]:

@@ -20,7 +20,6 @@ from stickslip.plot.arguments import checked_labels, several
 from stickslip.plot.figure import figure
 from stickslip.plot.limits import force_level, limit_curve
 from stickslip.plot.options import CurveOptions, Swept
-from stickslip.plot.states import LINES, name_states, pieces
 from stickslip.plot.style import Colour, Looks, Scale
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Measure
@@ -127,15 +126,15 @@ class _View:
         states = np.full(omega.size, "stable")
         if isinstance(result, ExactResponse):
             states = np.where(solved, result.stability, "stable")
-        for number, (piece, state) in enumerate(pieces(states)):
+        for number, (piece, state) in enumerate(style.pieces(states)):
             named: Looks = {
-                "ls": LINES[state],
+                "ls": style.LINES[state],
                 "label": "_" if number else label,
                 "gid": style.RESPONSE,
             }
             self.ax.plot(omega[piece], height[piece], **looks, **named)
         if not (states == "stable").all():
-            name_states(self.ax, [states])
+            style.name_states(self.ax, [states])
         if not solved.all():
             self.ax.plot(
                 omega[~solved],

@@ -14,7 +14,6 @@ from stickslip.plot import style
 from stickslip.plot.arguments import checked_labels, label_of, several
 from stickslip.plot.figure import figure, keywords
 from stickslip.plot.options import CycleOptions, Drawing
-from stickslip.plot.states import LINES, marks, name_states, pieces
 from stickslip.plot.style import Colour, Looks
 from stickslip.results.arrays import Float
 from stickslip.results.limit_cycles import LimitCycles
@@ -60,7 +59,7 @@ def limit_cycles(
         ax.set_xscale("log")
     for single in (False, True):
         of = [one.stability for one in branches if (one.settings.values is not None) == single]
-        name_states(ax, of, single=single)
+        style.name_states(ax, of, single=single)
     ax.set(yscale="log", ylabel=f"amplitude of {dof} [{length.label}]")
     if below is not None:
         below.set_ylabel(omega.label)
@@ -84,7 +83,7 @@ def stability_map(ax: Axes, /, result: StabilityMap, **options: Unpack[Drawing])
     ax.fill_between(x, stable, limit, color=style.ORANGE, **area, label="unstable one")
     none = np.isnan(stable)
     if none.any():
-        looks = marks("not decided", style.GREY)
+        looks = style.marks("not decided", style.GREY)
         ax.plot(x[none], 0.5 * limit[none], **looks, label="not decided")
     ax.plot(x, limit, color="0.2", lw=1.5, label="no limit cycle above")
     ax.set(xlabel=label_of(result.settings.variation), ylabel="negative damping ratio r")
@@ -99,11 +98,11 @@ def _line(ax: Axes, one: LimitCycles, height: Float, colour: Colour, name: str) 
         for state in STATES:
             mask = one.stability == state
             if mask.any():
-                ax.plot(one.values[mask], height[mask], **marks(state, colour))
+                ax.plot(one.values[mask], height[mask], **style.marks(state, colour))
         return
     x, drawn, states = _refined(one, height)
-    for piece, state in pieces(states):
-        ax.plot(x[piece], drawn[piece], color=colour, lw=1.5, ls=LINES[state])
+    for piece, state in style.pieces(states):
+        ax.plot(x[piece], drawn[piece], color=colour, lw=1.5, ls=style.LINES[state])
     limit = one.limit
     if limit is not None:
         at = int(np.argmin(np.abs(one.values - limit.value) + np.abs(one.omega - limit.omega)))

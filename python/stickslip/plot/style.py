@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -16,6 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, N
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
+from stickslip.results.stability import STATES, States
 
 __all__ = [
     "BLUE",
@@ -23,6 +25,7 @@ __all__ = [
     "GREY",
     "LENGTH",
     "LIMIT",
+    "LINES",
     "OMEGA",
     "ORANGE",
     "RESPONSE",
@@ -37,7 +40,10 @@ __all__ = [
     "finish",
     "fit",
     "mark",
+    "marks",
+    "name_states",
     "new_axes",
+    "pieces",
     "prefixed",
     "slip_limits",
     "unit_circle",
@@ -55,6 +61,9 @@ RESPONSE, LIMIT = "response", "limit"
 GREY, BLUE, ORANGE = "0.45", "#31688e", "#d8863b"
 STUCK = (0, (6, 2))
 FREE = (0, (1, 1.5))
+
+LINES = {"stable": "-", "unstable": "--", "not decided": ":"}
+"""Style of the line by state."""
 
 _SIZE = (6.4, 4.2)
 _WIDE = (8.2, 4.2)
@@ -100,6 +109,29 @@ def colours(count: int) -> list[tuple[float, float, float, float]]:
 def mark(marker: str, size: float, edge: Colour, fill: Colour = "white") -> Looks:
     """Return the looks of single points without a line."""
     return {"ls": "", "marker": marker, "ms": size, "mfc": fill, "mec": edge}
+
+
+def marks(state: str, colour: Colour) -> Looks:
+    """Return how single motions of a state are marked: full and hollow circles, and crosses."""
+    fill = {"stable": colour, "unstable": "white", "not decided": "none"}[state]
+    return mark("x" if state == "not decided" else "o", 4, colour, fill)
+
+
+def name_states(ax: Axes, states: Iterable[States], *, single: bool = False) -> None:
+    """Name the lines, or the marks of single motions, of the states that occur."""
+    occurring = {str(state) for some in states for state in some}
+    for state in STATES:
+        if state in occurring:
+            looks = marks(state, GREY) if single else {"color": GREY, "ls": LINES[state]}
+            ax.plot([], [], label=state, **looks)
+
+
+def pieces(states: States) -> list[tuple[slice, str]]:
+    """Return the runs of equal states along a line, each joined to the one before it."""
+    if not states.size:
+        return []
+    breaks = [0, *(np.flatnonzero(states[1:] != states[:-1]) + 1).tolist(), states.size]
+    return [(slice(max(start - 1, 0), end), str(states[start])) for start, end in pairwise(breaks)]
 
 
 def slip_limits(ax: Axes, limit: float, *, lw: float = 0.9, ls: Any = STUCK) -> None:
