@@ -1,4 +1,4 @@
-"""Shows in the pages what is derived at run time: keys of settings as parameters of functions."""
+"""Shows in the pages what is derived at run time: parameters of functions, keys of settings."""
 
 from __future__ import annotations
 
@@ -16,19 +16,23 @@ class Derived(griffe.Extension):
 
     def on_function_instance(self, *, func: griffe.Function, **_: Any) -> None:
         """Document a function as `help` does."""
-        if not any("configured" in str(one.value) for one in func.decorators):
+        derived = {"configured", "figure", "keywords"}
+        if derived.isdisjoint(str(one.value).partition("(")[0] for one in func.decorators):
             return
         value = getattr(import_module(func.module.path), func.name)
+        signature = inspect.signature(value)
         func.docstring = _docstring(inspect.cleandoc(value.__doc__), func)
+        if str(func.returns) == "None":  # a function that draws is written without its axes
+            func.returns = _annotation(signature.return_annotation)
         func.parameters = griffe.Parameters(
             *(
                 griffe.Parameter(
                     one.name,
                     kind=getattr(griffe.ParameterKind, one.kind.name.lower()),
-                    annotation=inspect.formatannotation(one.annotation).strip("'"),
+                    annotation=_annotation(one.annotation),
                     default=None if one.default is one.empty else repr(one.default),
                 )
-                for one in inspect.signature(value).parameters.values()
+                for one in signature.parameters.values()
             )
         )
 
@@ -44,6 +48,10 @@ class Derived(griffe.Extension):
         cls.docstring = _docstring(said, cls)
         for name in kind.model_fields:
             cls.members.pop(name, None)
+
+
+def _annotation(kind: Any) -> str:
+    return kind if isinstance(kind, str) else inspect.formatannotation(kind)
 
 
 def _docstring(text: str, parent: Any) -> griffe.Docstring:

@@ -331,7 +331,7 @@ def test_pictures(whole):
     assert solid[0].get_xdata()[-1] == pytest.approx(whole.limit.ratio, rel=1e-6)
     assert dashed[0].get_ydata().min() > solid[0].get_ydata().min()
     assert whole.plot_multipliers().collections
-    with pytest.raises(ss.ModelError, match="no LimitCycles"):
+    with pytest.raises(ss.ModelError, match="not a LimitCycles"):
         ss.plot.limit_cycles(3, "mass")
 
 
@@ -402,7 +402,7 @@ harmonics = 9
 def test_study_files_and_the_command(tmp_path, monkeypatch):
     from typer.testing import CliRunner
 
-    from stickslip.cli.commands import app
+    from stickslip.cli import app
     from stickslip.study import Study
 
     monkeypatch.chdir(tmp_path)

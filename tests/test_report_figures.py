@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from packed import numbers
 from stickslip.html.figures import drawn
-from stickslip.html.labels import label
+from stickslip.html.notation import label
 
 
 @pytest.mark.parametrize(

@@ -248,7 +248,7 @@ def test_pictures(chart):
     listed = ss.basin_map(beam(2.5), starts=[STARTS[0]])
     with pytest.raises(ss.ModelError, match="without axes"):
         plot.basins(listed)
-    with pytest.raises(ss.ModelError, match="is no BasinMap"):
+    with pytest.raises(ss.ModelError, match="is not a BasinMap"):
         plot.basins(motion)
 
 

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 import stickslip as ss
 from stickslip import reference
-from stickslip.cli.commands import app
+from stickslip.cli import app
 from stickslip.settings.variation import Variation
 
 ENDS = ("1.tip", "2.tip")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from stickslip.cli.commands import app
+from stickslip.cli import app
 from stickslip.study import Study
 
 STUDY = """

@@ -1,289 +1,27 @@
-"""The command line: ``stickslip run STUDY.toml``, ``show``, ``plot``, ``certify``, ``schema``.
-
-The command ``report`` is added by `stickslip.cli.reporting`.
-
-Exit codes: 0 all is well, 1 some points did not converge, 2 the input is refused, 70 a defect of
-the program, 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: 128 and the signal's number.
-"""
+"""The commands that take result files: ``show``, ``plot``, ``certify``, ``report``; ``schema``."""
 
 from __future__ import annotations
 
-import io
 import json
-import sys
-import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, cast
+from typing import TYPE_CHECKING, Annotated, Literal, cast
 
 import typer
 
-from stickslip.cli.guard import NOT_CONVERGED, Command, Commands, guarded, integer
+from stickslip.cli.application import Dofs, Files, Hertz, command
+from stickslip.cli.exit_codes import NOT_CONVERGED, integer
+from stickslip.cli.run import warned
 from stickslip.errors import Interrupted, ModelError
-from stickslip.files import make_folder, require_place, require_writable, write
+from stickslip.files import require_place, write
 from stickslip.interruption import Interruption
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
-    from stickslip.results.result import Result
-    from stickslip.study import Case, Study
 
-__all__ = ["app"]
-
-Files = Annotated[
-    list[Path], typer.Argument(help="Result files of 'stickslip run'.", metavar="RESULT.nc")
-]
-
-app = typer.Typer(
-    name="stickslip",
-    cls=Commands,
-    help="Steady vibration of structures damped by dry friction.",
-    rich_markup_mode="rich",
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+__all__ = ["certify", "plot", "report", "schema", "show"]
 
 
-def _epilog(*examples: str) -> str:
-    # paragraphs, because the help would join lines
-    return "\n\n".join(("[bold]Examples[/bold]", *(f"  {example}" for example in examples)))
-
-
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        from stickslip import __version__
-
-        sys.stdout.write(f"stickslip {__version__}\n")
-        raise typer.Exit
-
-
-@app.callback(
-    epilog=_epilog(
-        "stickslip run examples/snecma-beam/study.toml",
-        "stickslip show results/snecma-beam-20.313.nc",
-        "stickslip plot results/snecma-beam-*.nc --dof tip --log",
-    )
-)
-def main(
-    version: Annotated[
-        bool,
-        typer.Option(
-            "--version", help="Print the version.", callback=_print_version, is_eager=True
-        ),
-    ] = False,
-) -> None:
-    """Steady vibration of structures damped by dry friction."""
-    for stream in (sys.stdout, sys.stderr):
-        # a file name that the terminal cannot show is no reason to fail
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
-
-
-# ------------------------------------------------------------------------------------------- run
-
-
-class Curve(NamedTuple):
-    """A computed result and where it was saved."""
-
-    case: Case
-    result: Result
-    file: Path
-
-
-class Clock(dict[str, float]):
-    """Seconds spent, by what was done."""
-
-    @contextmanager
-    def __call__(self, label: str) -> Iterator[None]:
-        """Add the time of a block."""
-        begin = time.perf_counter()
-        try:
-            yield
-        finally:
-            self[label] = self.get(label, 0.0) + time.perf_counter() - begin
-
-
-@app.command(
-    cls=Command,
-    epilog=_epilog(
-        "stickslip run study.toml",
-        "stickslip run study.toml --out results/first --timings",
-        "stickslip run study.toml --quiet --no-plot",
-    )
-    + "\n\nExit code 0: all points converged; 1: some did not; 2: the study is refused.",
-)
-@guarded
-def run(
-    study: Annotated[Path, typer.Argument(help="Study file.", metavar="STUDY.toml")],
-    out: Annotated[Path, typer.Option(help="Folder for the results.", metavar="DIR")] = Path(
-        "results"
-    ),
-    timings: Annotated[bool, typer.Option("--timings", help="Print where the time went.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print problems only.")] = False,
-    no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no picture.")] = False,
-) -> None:
-    """Compute a study: one result per level, saved as NetCDF, with a table and a picture."""
-    from stickslip.cli import console
-    from stickslip.cli.stores import storing
-    from stickslip.study import Study
-    from stickslip.views.kinds import view_of
-
-    clock = Clock()
-    with clock("reading the study"):
-        loaded = storing(Study.load(study), out)
-        make_folder(out)
-        require_writable(out)
-    curves = _compute(loaded, out, clock, quiet=quiet)
-    if not quiet:
-        with clock("refining peaks, printing"):
-            console.show_all(
-                view_of([curve.result for curve in curves]).tables(
-                    [(_level(curve.case), curve.result) for curve in curves],
-                    "" if loaded.tables.analysis.levels is None else "level",
-                    loaded.dofs,
-                    loaded.tables.output.length_unit,
-                )
-            )
-    picture = None if no_plot else out / f"{loaded.name}.png"
-    undrawn = None
-    if picture is not None:
-        try:
-            with clock("drawing"):
-                _draw_study(loaded, curves, picture)
-        except ModelError as error:
-            # The results are saved: what there is to say of them comes first.
-            picture, undrawn = None, error
-    if timings:
-        console.stages([curve.result for curve in curves], clock)
-    if not quiet:
-        _tell_files(loaded, curves, picture)
-    complete = _warned([(curve.case.name, curve.result) for curve in curves])
-    if undrawn is not None:
-        raise undrawn
-    if not complete:
-        raise typer.Exit(NOT_CONVERGED)
-
-
-def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Curve]:
-    from stickslip.cli.console import complain, progress
-
-    curves: list[Curve] = []
-    cases = study.cases
-    with progress(study.name, wanted=not quiet) as advance, Interruption(advance) as watch:
-        results = study.run(watch)
-        try:
-            for case, result in zip(cases, results, strict=True):
-                file = out / f"{case.name}.nc"
-                with clock("saving"), _counted(len(curves), study, out):
-                    result.save(file)
-                    _remove_partial(_partial(out, case))
-                curves.append(Curve(case, result, file))
-                watch.heed()
-        except Interrupted as stop:
-            complain("interrupted", "saving what was computed")
-            case, result = cases[len(curves)], cast("Result", stop.result)
-            # a part under another name, so that a complete curve of an earlier run is not lost
-            file = _partial(out, case) if result.interrupted else out / f"{case.name}.nc"
-            with _counted(len(curves), study, out):
-                result.save(file)
-            if result.interrupted:
-                rest = f"the next one as far as it went in {file}{_rest(study)}"
-                raise KeyboardInterrupt(f"{_complete(curves, study, out)}, {rest}") from None
-            curves.append(Curve(case, result, file))
-            raise KeyboardInterrupt(_complete(curves, study, out)) from None
-        except KeyboardInterrupt:
-            raise KeyboardInterrupt(_complete(curves, study, out)) from None
-    return curves
-
-
-def _complete(curves: Sequence[Curve], study: Study, out: Path) -> str:
-    return f"{len(curves)} of {len(study.cases)} {_nouns(study)} complete in {out}"
-
-
-@contextmanager
-def _counted(complete: int, study: Study, out: Path) -> Iterator[None]:
-    """Say beside an error how much of a study there is."""
-    try:
-        yield
-    except ModelError as error:
-        raise ModelError(
-            f"{error}; {complete} of {len(study.cases)} {_nouns(study)} complete in {out}"
-            f"{_rest(study)}"
-        ) from None
-
-
-def _partial(out: Path, case: Case) -> Path:
-    """Return where a run that was stopped leaves what it has."""
-    return out / f"{case.name}-partial.nc"
-
-
-def _remove_partial(file: Path) -> None:
-    """Remove what an interrupted run left, once the run is complete."""
-    from stickslip import load
-
-    # Another study may have this name; its results say that they are whole.
-    with suppress(ModelError, OSError):
-        if file.is_file() and load(file).interrupted:
-            file.unlink()
-
-
-def _nouns(study: Study) -> str:
-    nouns = {"transient": "runs", "mistuning-study": "studies"}
-    return nouns.get(study.tables.analysis.kind, "curves")
-
-
-def _rest(study: Study) -> str:
-    stored = study.tables.analysis.kind == "mistuning-study"
-    return "; run it again to go on from there" if stored else ""
-
-
-def _level(case: Case) -> str:
-    return "" if case.level is None else f"{case.level:.10g}"
-
-
-def _tell_files(study: Study, curves: Sequence[Curve], picture: Path | None) -> None:
-    from stickslip.cli.console import tell
-
-    tell("")
-    if picture is not None:
-        tell(f"picture: {picture}")
-    first = curves[0].file
-    if len(curves) == 1:
-        tell(f"results: {first}")
-    else:
-        tell(f"results: {first.with_name(f'{study.name}-*.nc')} ({len(curves)} files)")
-    tell(f"details: stickslip show {first}")
-    tell(f"page:    stickslip report {first}")
-
-
-def _warned(results: Sequence[tuple[str, Result]]) -> bool:
-    """Name what did not converge; False if there is anything."""
-    from stickslip.cli.console import complain
-    from stickslip.views.kinds import cautions, failures
-
-    for name, result in results:
-        for text in cautions(result):
-            complain("warning", f"{name}: {text}")
-    failed = [f"{name}: {text}" for name, result in results for text in failures(result)]
-    for line in failed:
-        complain("warning", line)
-    return not failed
-
-
-def _draw_study(study: Study, curves: Sequence[Curve], picture: Path) -> None:
-    from stickslip.views.kinds import view_of
-    from stickslip.views.picture import draw
-
-    results = [curve.result for curve in curves]
-    draw(view_of(results).panels(results, study.dofs, study.tables.output), picture)
-
-
-# ---------------------------------------------------------------------------- show, plot, schema
-
-
-@app.command(cls=Command, epilog=_epilog("stickslip show results/snecma-beam-20.313.nc"))
-@guarded
+@command("stickslip show results/snecma-beam-20.313.nc")
 def show(results: Files) -> None:
     """Print what results hold: the model, the numbers, what was assumed, what did not converge."""
     from stickslip import load
@@ -305,29 +43,22 @@ def show(results: Files) -> None:
             console.complain("warning", f"{file.name}: {text}")
 
 
-@app.command(
-    cls=Command,
-    epilog=_epilog(
-        "stickslip plot results/snecma-beam-*.nc",
-        "stickslip plot results/snecma-beam-*.nc --dof tip --hertz --linear --out tip.pdf",
-        "stickslip plot results/snecma-beam-20.313.nc --dof tip --waveform 170",
-        'stickslip plot results/snecma-beam-20.313.nc --loop "27 Hz"',
-    ),
+@command(
+    "stickslip plot results/snecma-beam-*.nc",
+    "stickslip plot results/snecma-beam-*.nc --dof tip --hertz --linear --out tip.pdf",
+    "stickslip plot results/snecma-beam-20.313.nc --dof tip --waveform 170",
+    'stickslip plot results/snecma-beam-20.313.nc --loop "27 Hz"',
 )
-@guarded
 def plot(
     results: Files,
-    dof: Annotated[
-        list[str] | None,
-        typer.Option(help="DOF to draw, repeatable; default: with a force or a contact."),
-    ] = None,
+    dof: Dofs = None,
     out: Annotated[
         Path | None,
         typer.Option(
             help="Picture (.png, .pdf, .svg); default: beside the result.", metavar="FILE"
         ),
     ] = None,
-    hertz: Annotated[bool, typer.Option("--hertz", help="Frequency axis in Hz.")] = False,
+    hertz: Hertz = False,
     log: Annotated[bool, typer.Option("--log/--linear", help="Amplitude axis.")] = True,
     per_force: Annotated[
         bool, typer.Option("--per-force", help="Amplitude per unit of force.")
@@ -353,39 +84,26 @@ def plot(
 ) -> None:
     """Draw results, or of curves one period of the motion, a loop, events or multipliers."""
     from stickslip import load
-    from stickslip.cli import console
-    from stickslip.cli.drawing import Wanted, picture_of
+    from stickslip.cli import console, drawing
     from stickslip.views.picture import draw
 
-    wanted = Wanted(
-        dofs=dof,
-        hertz=hertz,
-        log=log,
-        per_force=per_force,
-        waveform=waveform,
-        loop=loop,
-        contact=contact,
-        events=events,
-        multipliers=multipliers,
-    )
-    name, panels = picture_of(
-        [load(file) for file in results], [file.stem for file in results], wanted
-    )
+    named = [(file.stem, load(file)) for file in results]
+    pictures = {"waveform": waveform, "loop": loop, "events": events}
+    asked = {name: omega for name, omega in pictures.items() if omega is not None}
+    asked |= {"multipliers": ""} if multipliers else {}
+    wanted = drawing.Wanted(dof, hertz=hertz, log=log, per_force=per_force, contact=contact)
+    name, panels = wanted.picture(asked, named)
     picture = out or results[0].with_name(f"{results[0].stem}-{name}.png")
     draw(panels, picture)
     console.tell(f"picture: {picture}")
 
 
-@app.command(
-    cls=Command,
-    epilog=_epilog(
-        "stickslip certify results/snecma-beam-20.313.nc",
-        "stickslip certify results/snecma-beam-20.313.nc --points 50 --seed 1",
-        "stickslip certify results/snecma-beam-20.313.nc --points all --out certified.nc",
-    )
-    + "\n\nExit code 0: every point was compared; 1: some were not; 2: the input is refused.",
+@command(
+    "stickslip certify results/snecma-beam-20.313.nc",
+    "stickslip certify results/snecma-beam-20.313.nc --points 50 --seed 1",
+    "stickslip certify results/snecma-beam-20.313.nc --points all --out certified.nc",
+    note="Exit code 0: every point was compared; 1: some were not; 2: the input is refused.",
 )
-@guarded
 def certify(
     result: Annotated[
         Path, typer.Argument(help="Result file of a forced response.", metavar="RESULT.nc")
@@ -408,7 +126,10 @@ def certify(
     from stickslip.cli import console
     from stickslip.views.curves import certificates
 
-    wanted = _points(points)
+    try:
+        wanted: int | Literal["all"] = "all" if points == "all" else integer(points)
+    except typer.BadParameter:
+        raise ModelError(f"--points = {points!r}: give a number, or all") from None
     target = out or result
     require_place(target)
     with (
@@ -425,21 +146,11 @@ def certify(
     certified.save(target)
     console.tell("")
     console.tell(f"certified: {target}")
-    if not _warned([(result.stem, certified)]):
+    if not warned([(result.stem, certified)]):
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _points(text: str) -> int | Literal["all"]:
-    if text == "all":
-        return "all"
-    try:
-        return integer(text)
-    except typer.BadParameter:
-        raise ModelError(f"--points = {text!r}: give a number, or all") from None
-
-
-@app.command(cls=Command, epilog=_epilog("stickslip schema --out stickslip.schema.json"))
-@guarded
+@command("stickslip schema --out stickslip.schema.json")
 def schema(
     out: Annotated[
         Path | None, typer.Option(help="File to write; default: the terminal.", metavar="FILE")
@@ -455,3 +166,37 @@ def schema(
     else:
         write(out, f"{text}\n".encode())
         tell(f"schema: {out}")
+
+
+@command(
+    "stickslip report results/snecma-beam-*.nc",
+    "stickslip report results/*.nc --out beam.html --title 'SNECMA beam' --hertz",
+    note="Needs plotly and jinja2: pip install 'stickslip\\[report]'.",
+)
+def report(
+    results: Files,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Page to write; default: report.html beside the result.", metavar="FILE"),
+    ] = None,
+    title: Annotated[str | None, typer.Option(help="Heading of the page.")] = None,
+    dof: Dofs = None,
+    hertz: Hertz = False,
+    length: Annotated[
+        str, typer.Option("--length-unit", help="Of amplitudes: m, mm or um.", metavar="UNIT")
+    ] = "m",
+) -> None:
+    """Write results of any kind as one HTML page that is read without a network."""
+    from stickslip import report
+    from stickslip.cli.console import tell
+
+    page = out or results[0].with_name("report.html")
+    report(
+        results,
+        page,
+        title=title,
+        dofs=dof,
+        omega_unit="Hz" if hertz else "rad/s",
+        length_unit=cast("Literal['m', 'mm', 'um']", length),
+    )
+    tell(f"report: {page}")

@@ -6,11 +6,11 @@ import io
 import os
 import sys
 import time
-from collections import defaultdict
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -48,13 +48,7 @@ _NARROW = 80
 
 
 def tell(text: str) -> None:
-    """Print a line on standard output; nothing once its reader has gone.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be written, for lack of space for instance.
-    """
+    """Print a line on standard output; nothing once its reader has gone."""
     try:
         print(text, flush=True)
     except OSError as error:
@@ -62,13 +56,7 @@ def tell(text: str) -> None:
 
 
 def give_up(error: OSError) -> None:
-    """Write nothing more to standard output, which refused what was written.
-
-    Raises
-    ------
-    ModelError
-        Unless it is because its reader has gone.
-    """
+    """Write nothing more to standard output; an error unless it is because its reader has gone."""
     _silence(sys.stdout)
     if not isinstance(error, BrokenPipeError):
         raise ModelError(
@@ -99,19 +87,8 @@ def complain(kind: str, text: str) -> None:
 def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | None]:
     """Show a bar on standard error while something is computed that takes longer than a moment.
 
-    Where no one watches, one line says how long the rest of long work will take.
-
-    Parameters
-    ----------
-    title : str
-        What is computed.
-    wanted : bool
-        False shows nothing.
-
-    Yields
-    ------
-    callable or None
-        To be called with the fraction done; None where nothing is to be shown.
+    Where no one watches, one line says how long the rest of long work will take. Yields what is to
+    be called with the fraction done, or None where nothing is to be shown.
     """
     if not wanted:
         yield None
@@ -119,20 +96,13 @@ def progress(title: str, *, wanted: bool) -> Iterator[Callable[[float], None] | 
     if not (sys.stdout.isatty() and sys.stderr.isatty()):
         yield _forecast(title)
         return
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
-    from rich.progress import TimeElapsedColumn as Elapsed
-    from rich.progress import TimeRemainingColumn as Left
+    from rich.progress import Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn()
-    times = Elapsed(), TextColumn("left"), Left()
+    shown = *Progress.get_default_columns()[:3], TimeElapsedColumn()
+    left = TextColumn("left"), TimeRemainingColumn()
     # The speed is that of the last minute: curves differ in effort along their way.
-    bar = Progress(
-        *columns,
-        *times,
-        console=Console(stderr=True),
-        transient=True,
-        speed_estimate_period=60.0,
-    )
+    looks: dict[str, Any] = {"transient": True, "speed_estimate_period": 60.0}
+    bar = Progress(*shown, *left, console=Console(stderr=True), **looks)
     task = bar.add_task(title, total=1.0)
     begin = time.perf_counter()
 
@@ -175,23 +145,14 @@ def grid(rows: Iterable[tuple[str, str]]) -> None:
 
 
 def stages(results: Iterable[Result], clock: dict[str, float]) -> None:
-    """Print where the time went.
-
-    Parameters
-    ----------
-    results : iterable of Result
-        The results; their stages and counters are added up.
-    clock : dict of float
-        Seconds by what was done beside computing them.
-    """
-    seconds: defaultdict[str, float] = defaultdict(float)
-    counts: defaultdict[str, int] = defaultdict(int)
+    """Print where the time went: in the solver, for all results, and by the clock beside it."""
+    seconds, counts = Counter[str](), Counter[str]()
     for result in results:
-        for stage, value in result.timings.items():
-            seconds[stage] += value
-        for kind, count in result.counters.items():
-            counts[kind] += count
-    rows = {label: seconds[key] for key, label in _STAGES.items() if key in seconds}
+        seconds.update(result.timings)
+        counts.update(result.counters)
+    rows: dict[str, float] = {
+        label: seconds[key] for key, label in _STAGES.items() if key in seconds
+    }
     rows["other in the solver"] = max(0.0, seconds["total"] - sum(rows.values()))
     rows |= clock
     whole = sum(rows.values()) or 1.0

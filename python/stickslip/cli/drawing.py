@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from stickslip.errors import ModelError
 from stickslip.results import ForcedResponse
 from stickslip.results.exact_response import ExactResponse
+from stickslip.study import notable_dofs
+from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import view_of
 from stickslip.views.picture import titled
 
@@ -18,135 +20,95 @@ if TYPE_CHECKING:
     from stickslip.results.result import Result
     from stickslip.views.picture import Panel
 
-__all__ = ["Wanted", "picture_of"]
+__all__ = ["Wanted"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Wanted:
     """What of results is to be drawn, as the options of the command say."""
 
-    dofs: Sequence[str] | None = None
-    hertz: bool = False
-    log: bool = True
-    per_force: bool = False
-    waveform: str | None = None
-    loop: str | None = None
-    contact: str = "0"
-    events: str | None = None
-    multipliers: bool = False
+    dofs: Sequence[str] | None
+    hertz: bool
+    log: bool
+    per_force: bool
+    contact: str
 
-    @property
-    def omega_unit(self) -> Literal["rad/s", "Hz"]:
-        """Unit of frequency axes."""
-        return "Hz" if self.hertz else "rad/s"
+    def picture(
+        self, asked: Mapping[str, str], results: Sequence[tuple[str, Result]]
+    ) -> tuple[str, list[Panel]]:
+        """Return the name of a picture and its panels, from top to bottom.
 
-    @property
-    def picture(self) -> str | None:
-        """The picture asked for instead of the default one.
+        Parameters
+        ----------
+        asked : mapping of str
+            The pictures asked for instead of the default one, each with its frequency.
+        results : sequence of (str, Result)
+            What to draw, each with its name.
 
         Raises
         ------
         ModelError
-            If several are.
+            If several pictures are asked for, the results have no such picture, or are of kinds
+            that do not go together.
         """
-        asked = {
-            "waveform": self.waveform is not None,
-            "loop": self.loop is not None,
-            "events": self.events is not None,
-            "multipliers": self.multipliers,
-        }
-        names = [name for name, is_asked in asked.items() if is_asked]
-        if len(names) > 1:
-            raise ModelError(f"--{names[0]} and --{names[1]} exclude each other; give one")
-        return names[0] if names else None
+        if len(asked) > 1:
+            first, second, *_ = asked
+            raise ModelError(f"--{first} and --{second} exclude each other; give one")
+        if not asked:
+            return self._default([result for _, result in results])
+        ((picture, omega),) = asked.items()
+        panels: list[Panel] = []
+        for name, result in results:
+            if not isinstance(result, ForcedResponse):
+                raise ModelError(
+                    f"--{picture}: {name} holds a {result.kind.replace('_', ' ')}, which has no "
+                    "such picture; leave the option out"
+                )
+            single = self._single(result, picture, omega)
+            panels += (titled(panel, name) for panel in single) if len(results) > 1 else single
+        return picture, panels
 
+    def _default(self, results: Sequence[Result]) -> tuple[str, list[Panel]]:
+        from stickslip import plot
 
-def picture_of(
-    results: Sequence[Result], names: Sequence[str], wanted: Wanted
-) -> tuple[str, list[Panel]]:
-    """Return the name of a picture and its panels, from top to bottom.
-
-    Parameters
-    ----------
-    results : sequence of Result
-        What to draw.
-    names : sequence of str
-        What the results are called.
-    wanted : Wanted
-        What of them.
-
-    Returns
-    -------
-    name : str
-        For the name of the file.
-    panels : list of Panel
-        What to draw.
-
-    Raises
-    ------
-    ModelError
-        If the results have no such picture, or are of kinds that do not go together.
-    """
-    picture = wanted.picture
-    if picture is None:
-        return _default(results, wanted)
-    panels = []
-    for result, name in zip(results, names, strict=True):
-        if not isinstance(result, ForcedResponse):
-            raise ModelError(
-                f"--{picture}: {name} holds a {result.kind.replace('_', ' ')}, which has no such "
-                "picture; leave the option out"
-            )
-        single = list(_single(result, picture, wanted))
-        panels += [titled(panel, name) for panel in single] if len(results) > 1 else single
-    return picture, panels
-
-
-def _default(results: Sequence[Result], wanted: Wanted) -> tuple[str, list[Panel]]:
-    from stickslip import plot
-    from stickslip.study import notable_dofs
-    from stickslip.study.tables import OutputTable
-
-    view = view_of(results)
-    dofs = wanted.dofs or notable_dofs(results[0].model, results[0].dofs)
-    curves = [result for result in results if isinstance(result, ForcedResponse)]
-    if not curves:
-        output = OutputTable(omega_unit=wanted.omega_unit)
-        return results[0].kind.replace("_", "-"), view.panels(results, dofs, output)
-    return "curve", [
-        partial(
+        view, dofs = view_of(results), self._dofs(results[0])
+        unit = OutputTable(omega_unit="Hz" if self.hertz else "rad/s")
+        curves = [result for result in results if isinstance(result, ForcedResponse)]
+        if not curves:
+            return results[0].kind.replace("_", "-"), view.panels(results, dofs, unit)
+        drawn = partial(
             plot.curves,
             curves,
-            dof,
-            omega_unit=wanted.omega_unit,
-            log=wanted.log,
-            normalise="force" if wanted.per_force else None,
+            omega_unit=unit.omega_unit,
+            log=self.log,
+            normalise="force" if self.per_force else None,
         )
-        for dof in dofs
-    ]
+        return "curve", [partial(drawn, dof=dof) for dof in dofs]
 
+    def _dofs(self, result: Result) -> Sequence[str]:
+        return self.dofs or notable_dofs(result.model, result.dofs)
 
-def _single(result: ForcedResponse, picture: str, wanted: Wanted) -> Iterator[Panel]:
-    """Give the panels of one curve for a picture other than the default one."""
-    from stickslip import plot
-    from stickslip.study import notable_dofs
+    def _single(self, result: ForcedResponse, picture: str, omega: str) -> Iterator[Panel]:
+        """Give the panels of one curve for a picture other than the default one."""
+        from stickslip import plot
 
-    if wanted.waveform is not None:
-        index = _index(result, wanted.waveform, "--waveform")
-        for dof in wanted.dofs or notable_dofs(result.model, result.dofs):
-            yield partial(plot.waveform, result, dof, index)
-    elif wanted.loop is not None:
-        counted = re.fullmatch("[0-9]{1,9}", wanted.contact)
-        place = int(wanted.contact) if counted else wanted.contact
-        yield partial(plot.hysteresis, result, place, _index(result, wanted.loop, "--loop"))
-    elif not isinstance(result, ExactResponse):
-        raise ModelError(
-            f'--{picture}: needs exact orbits; run the study with kind = "exact", or leave it out'
-        )
-    elif wanted.events is not None:
-        yield partial(plot.events, result, _index(result, wanted.events, "--events"))
-    else:
-        yield partial(plot.multipliers, result, omega_unit=wanted.omega_unit)
+        if picture == "waveform":
+            index = _index(result, omega, "--waveform")
+            for dof in self._dofs(result):
+                yield partial(plot.waveform, result, dof, index)
+        elif picture == "loop":
+            counted = re.fullmatch("[0-9]{1,9}", self.contact)
+            place = int(self.contact) if counted else self.contact
+            yield partial(plot.hysteresis, result, place, _index(result, omega, "--loop"))
+        elif not isinstance(result, ExactResponse):
+            raise ModelError(
+                f'--{picture}: needs exact orbits; run the study with kind = "exact", or leave it '
+                "out"
+            )
+        elif picture == "events":
+            yield partial(plot.events, result, _index(result, omega, "--events"))
+        else:
+            yield partial(plot.multipliers, result, omega_unit="Hz" if self.hertz else "rad/s")
 
 
 def _index(result: ForcedResponse, text: str, option: str) -> int:

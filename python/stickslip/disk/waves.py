@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot import DiameterOptions, SafeOptions
-    from stickslip.plot.waves import WaveOptions
+    from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
 
 __all__ = [
     "AerodynamicWaves",
@@ -141,7 +140,7 @@ class AerodynamicWaves:
             structure=structure, forces=(), engine_order=wave.diameter, engine_orders=None
         )
 
-    def plot(self, **options: Unpack[WaveOptions]) -> Axes:
+    def plot(self, **options: Unpack[Drawing]) -> Axes:
         """Draw the damping ratio over the nodal diameter; see `stickslip.plot.aerodynamic`."""
         from stickslip import plot
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from functools import singledispatch
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,13 +11,15 @@ from matplotlib import collections, colors, container, image, lines, patches
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from stickslip.html.colours import colour_of, scaled
-from stickslip.html.labels import label
+from stickslip.html.notation import colour_of, label, scaled
 from stickslip.results.arrays import Float
 
 __all__ = ["Trace", "UndrawableError", "proxy", "traces"]
 
 Trace: TypeAlias = dict[str, Any]
+
+_FRACTION = "y3"
+"""The vertical axis from 0 to 1 over the frame, `yaxis3` of a layout."""
 
 _PIXELS = 4.0 / 3.0
 """Per point: 96 in an inch instead of 72."""
@@ -39,36 +41,17 @@ _MARKERS = {
     "_": "line-ew",
 }
 _THIN = ("x-thin", "cross-thin", "line-ns", "line-ew")
+_NOTHING = ("None", "none", "", " ")
 _HOVER = "%{x:.6g}, %{y:.6g}"
+_GAP = np.full((1, 2), np.nan)
 
 
 class UndrawableError(Exception):
     """An artist has no counterpart; the picture can only be shown as it is."""
 
 
-@dataclass(frozen=True)
-class Place:
-    """The names of the axes of plotly on which something is drawn."""
-
-    x: str
-    y: str
-    fraction: str
-    """The vertical axis from 0 to 1 over the same frame."""
-
-    def on(self, y: str | None = None) -> Trace:
-        """Return the entries of a trace that say where it is drawn."""
-        return {"xaxis": self.x, "yaxis": y or self.y}
-
-
-def traces(ax: Axes, place: Place) -> Iterator[Trace]:
-    """Give everything drawn on axes, from back to front.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        The axes.
-    place : Place
-        Where it goes.
+def traces(ax: Axes, y: str) -> Iterator[Trace]:
+    """Give everything drawn on axes, from back to front, for plotly's vertical axis `y`.
 
     Raises
     ------
@@ -79,183 +62,102 @@ def traces(ax: Axes, place: Place) -> Iterator[Trace]:
     bars = {id(bar): one for one in rows for bar in one.patches}
     drawn = [*ax.lines, *ax.collections, *ax.patches, *ax.images]
     for artist in sorted(drawn, key=lambda one: one.get_zorder()):
-        if not artist.get_visible():
+        whole = bars.get(id(artist))
+        if not artist.get_visible() or (whole and whole.patches[0] is not artist):
             continue
-        if id(artist) in bars:
-            whole = bars[id(artist)]
-            if whole.patches[0] is artist:
-                yield _bar(whole) | place.on()
-            continue
-        yield from _trace(artist, ax, place)
-
-
-def _trace(artist: Artist, ax: Axes, place: Place) -> Iterator[Trace]:
-    match artist:
-        case lines.Line2D():
-            yield from _line(artist, ax, place)
-        case collections.LineCollection():
-            yield _segments(artist) | place.on()
-        case collections.PathCollection():
-            yield _cloud(artist) | place.on()
-        case collections.QuadMesh():
-            yield _mesh(artist) | place.on()
-        case collections.PolyCollection():
-            yield _areas(artist) | place.on()
-        case image.AxesImage():
-            yield _image(artist) | place.on()
-        case patches.Polygon() | patches.Rectangle():
-            yield _polygon(artist) | place.on()
-        case _:
-            raise UndrawableError(type(artist).__name__)
+        trace = _bar(whole) if whole else _trace(artist)
+        if trace:
+            yield {"xaxis": "x", "yaxis": y} | trace
 
 
 def proxy(handle: Artist, name: str) -> Trace:
     """Return the entry of a legend that belongs to no artist on the axes."""
-    entry: Trace = {"type": "scatter", "x": [None], "y": [None], "name": label(name)}
-    entry |= {"showlegend": True, "xaxis": "x", "yaxis": "y"}
     match handle:
-        case lines.Line2D() if handle.get_linestyle() not in ("None", "", " "):
+        case lines.Line2D() if handle.get_linestyle() not in _NOTHING:
             line = {"color": colour_of(handle.get_color()), "dash": _dash(handle)}
-            return entry | {"mode": "lines", "line": line}
+            looks: Trace = {"mode": "lines", "line": line}
         case lines.Line2D():
-            return entry | {"mode": "markers", "marker": _marker(handle, str(handle.get_marker()))}
+            looks = {"mode": "markers", "marker": _marker(handle)}
         case patches.Patch():
             shade = colour_of(handle.get_facecolor())
-            marker = {"symbol": "square", "size": 12, "color": shade, "line": {"color": shade}}
-            return entry | {"mode": "markers", "marker": marker}
+            square = {"symbol": "square", "size": 12, "color": shade, "line": {"color": shade}}
+            looks = {"mode": "markers", "marker": square}
         case _:
             raise UndrawableError(f"{type(handle).__name__} in a legend")
+    place = {"x": [None], "y": [None], "xaxis": "x", "yaxis": "y"}
+    return {"type": "scatter", "name": label(name), "showlegend": True} | place | looks
 
 
-def _numbers(values: Any) -> Float:
-    """Return an array in which what is masked out is not-a-number."""
-    return np.asarray(np.ma.filled(np.ma.asarray(values, float), np.nan), dtype=np.float64)
+@singledispatch
+def _trace(artist: Artist) -> Trace:
+    """Return the trace of an artist; an empty one if nothing of it is seen."""
+    raise UndrawableError(type(artist).__name__)
 
 
-def _name(artist: Artist | container.Container) -> Trace:
-    text = str(artist.get_label())
-    if not text or text.startswith("_"):
-        return {"showlegend": False}
-    return {"name": label(text), "showlegend": True}
-
-
-def _line(line: lines.Line2D, ax: Axes, place: Place) -> Iterator[Trace]:
+@_trace.register
+def _line(line: lines.Line2D) -> Trace:
+    ax = line.axes
     x, y = (_numbers(data) for data in line.get_data(orig=False))
+    styled, marked = line.get_linestyle() not in _NOTHING, str(line.get_marker()) not in _NOTHING
+    if ax is None or not x.size or not (styled or marked):
+        return {}
     in_x, in_y = line.get_transform().contains_branch_seperately(ax.transData)
-    if not x.size:
-        return
     if not (in_x or in_y):
         raise UndrawableError("line in the units of the frame")
+    looks: Trace = {"hovertemplate": _HOVER}
     if not in_x:
         # a level: from side to side of the frame
         low, high = ax.get_xlim()
-        x = low + (high - low) * x
-    x, y = _thinned(x, y)
-    trace: Trace = {"type": "scatter", "x": x, "y": y, "hovertemplate": _HOVER} | _name(line)
-    trace |= place.on(None if in_y else place.fraction)
-    modes = []
-    colour = colour_of(line.get_color(), line.get_alpha())
-    if line.get_linestyle() not in ("None", "", " "):
-        modes.append("lines")
-        trace["line"] = {
-            "color": colour,
-            "width": _PIXELS * line.get_linewidth(),
-            "dash": _dash(line),
-        }
-    marker = line.get_marker()
-    if marker not in (None, "", " ", "None", "none"):
-        modes.append("markers")
-        trace["marker"] = _marker(line, str(marker))
-    if not modes:
-        return
-    if not in_x:
-        trace["hoverinfo"] = "skip"
-        del trace["hovertemplate"]
-    yield trace | {"mode": "+".join(modes)}
+        x, looks = low + (high - low) * x, {"hoverinfo": "skip"}
+    if not in_y:
+        looks["yaxis"] = _FRACTION
+    if styled:
+        colour = colour_of(line.get_color(), line.get_alpha())
+        width = _PIXELS * line.get_linewidth()
+        looks["line"] = {"color": colour, "width": width, "dash": _dash(line)}
+    if marked:
+        looks["marker"] = _marker(line)
+    mode = "+".join(["lines"] * styled + ["markers"] * marked)
+    return _scatter(line, *_thinned(x, y), mode=mode, **looks)
 
 
-def _marker(line: lines.Line2D, marker: str) -> Trace:
-    if marker not in _MARKERS:
-        raise UndrawableError(f"marker {marker}")
-    symbol = _MARKERS[marker]
-    face, edge = line.get_markerfacecolor(), line.get_markeredgecolor()
-    hollow = colors.to_rgba(face)[3] == 0.0
-    size = line.get_markersize() * (0.5 if marker == "." else 1.0)
-    return {
-        "symbol": f"{symbol}-open" if hollow or symbol in _THIN else symbol,
-        "size": _PIXELS * size,
-        "color": colour_of(edge if hollow or symbol in _THIN else face),
-        "line": {"color": colour_of(edge), "width": _PIXELS * line.get_markeredgewidth()},
-    }
-
-
-def _dash(line: lines.Line2D) -> str:
-    # Matplotlib tells "--" for every pattern of its own; the pattern itself has no public name
-    _, pattern = line._unscaled_dash_pattern  # type: ignore[attr-defined]
-    if not pattern:
-        return "solid"
-    if line.get_linestyle() in (":", "-."):
-        return {":": "dot", "-.": "dashdot"}[str(line.get_linestyle())]
-    unit = _PIXELS * line.get_linewidth()
-    return ",".join(f"{max(unit * length, 1.0):.3g}px" for length in pattern)
-
-
+@_trace.register
 def _segments(collection: collections.LineCollection) -> Trace:
-    gap = np.full((1, 2), np.nan)
-    parts = [part for one in collection.get_segments() for part in (np.asarray(one, float), gap)]
-    points: Float = np.concatenate([*parts, gap])
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": points[:, 0],
-        "y": points[:, 1],
-        "line": {
-            "color": colour_of(collection.get_colors()[0]),
-            "width": _PIXELS * float(np.atleast_1d(collection.get_linewidth())[0]),
-        },
-        "hoverinfo": "skip",
-    } | _name(collection)
+    parts = [part for one in collection.get_segments() for part in (np.asarray(one, float), _GAP)]
+    points: Float = np.concatenate([*parts, _GAP])
+    width = _PIXELS * float(np.atleast_1d(collection.get_linewidth())[0])
+    line = {"color": colour_of(collection.get_colors()[0]), "width": width}
+    return _scatter(collection, *points.T, mode="lines", line=line, hoverinfo="skip")
 
 
+@_trace.register
 def _cloud(cloud: collections.PathCollection) -> Trace:
     points = _numbers(cloud.get_offsets())
     sizes = np.sqrt(np.asarray(cloud.get_sizes(), float))
     marker: Trace = {"size": _PIXELS * (float(sizes[0]) if sizes.size == 1 else sizes)}
-    trace: Trace = {
-        "type": "scatter",
-        "mode": "markers",
-        "x": points[:, 0],
-        "y": points[:, 1],
-        "marker": marker,
-        "hovertemplate": _HOVER,
-    } | _name(cloud)
     values = cloud.get_array()
     if values is not None:
         known = _numbers(values)
-        shown, scale = scaled(cloud, known)
-        marker |= {"color": shown} | scale
-        return trace | {"customdata": known, "hovertemplate": _HOVER + ": %{customdata:.6g}"}
+        marker["color"], scale = scaled(cloud, known)
+        hover: Trace = {"customdata": known, "hovertemplate": _HOVER + ": %{customdata:.6g}"}
+        return _scatter(cloud, *points.T, mode="markers", marker=marker | scale, **hover)
     faces, edges = cloud.get_facecolor(), cloud.get_edgecolor()
-    hollow = not len(faces)
-    shades = edges if hollow else faces
-    marker["color"] = (
-        [colour_of(one) for one in shades] if len(shades) > 1 else colour_of(shades[0])
-    )
-    marker["symbol"] = "circle-open" if hollow else "circle"
-    return trace
+    shades = [colour_of(one) for one in (faces if len(faces) else edges)]
+    marker["color"] = shades if len(shades) > 1 else shades[0]
+    marker["symbol"] = "circle" if len(faces) else "circle-open"
+    return _scatter(cloud, *points.T, mode="markers", marker=marker, hovertemplate=_HOVER)
 
 
+@_trace.register
 def _mesh(mesh: collections.QuadMesh) -> Trace:
     corners: Float = np.asarray(mesh.get_coordinates(), float)
-    values = _numbers(mesh.get_array())
     x, y = corners[0, :, 0], corners[:, 0, 1]
     if not (np.allclose(corners[..., 0], x) and np.allclose(corners[..., 1].T, y)):
         raise UndrawableError("a mesh that is not rectangular")
-    if values.ndim != 2:
-        values = values.reshape(y.size - 1, x.size - 1)
-    return _heat(mesh, x, y, values)
+    return _heat(mesh, x, y, _numbers(mesh.get_array()).reshape(y.size - 1, x.size - 1))
 
 
+@_trace.register
 def _image(shown: image.AxesImage) -> Trace:
     values = _numbers(shown.get_array())
     if values.ndim != 2:
@@ -266,6 +168,62 @@ def _image(shown: image.AxesImage) -> Trace:
     rows, columns = values.shape
     x, y = np.linspace(left, right, columns + 1), np.linspace(bottom, top, rows + 1)
     return _heat(shown, x, y, values)
+
+
+@_trace.register
+def _areas(collection: collections.PolyCollection) -> Trace:
+    outlines = [np.asarray(path.vertices, float) for path in collection.get_paths()]
+    points = np.concatenate([part for one in outlines for part in (one, _GAP)])
+    return _area(collection, points, collection.get_facecolor()[0])
+
+
+@_trace.register(patches.Polygon)
+@_trace.register(patches.Rectangle)
+def _polygon(patch: patches.Polygon | patches.Rectangle) -> Trace:
+    outline = patch.get_path().transformed(patch.get_patch_transform())
+    trace = _area(patch, np.asarray(outline.vertices, float), patch.get_facecolor())
+    if not patch.get_fill():
+        trace["fill"] = "none"
+    edge = {"color": colour_of(patch.get_edgecolor()), "width": _PIXELS * patch.get_linewidth()}
+    return trace | {"line": edge}
+
+
+def _bar(bars: container.BarContainer) -> Trace:
+    along, across = ("y", "x") if bars.orientation == "horizontal" else ("x", "y")
+    first = bars.patches[0]
+    edge = colors.to_rgba(first.get_edgecolor())
+    shades = [colour_of(bar.get_facecolor()) for bar in bars.patches]
+    boxes = [(bar.get_xy(), (bar.get_width(), bar.get_height())) for bar in bars.patches]
+    start, size = np.moveaxis(np.array(boxes, float), 0, -1)
+    if along == "y":
+        start, size = start[::-1], size[::-1]
+    return {
+        "type": "bar",
+        "orientation": "h" if along == "y" else "v",
+        along: start[0] + 0.5 * size[0],
+        across: size[1],
+        "width": size[0],
+        "base": start[1],
+        "marker": {
+            "color": shades[0] if len(set(shades)) == 1 else shades,
+            "line": {
+                "color": colour_of(edge),
+                "width": _PIXELS * first.get_linewidth() if edge[3] else 0,
+            },
+        },
+        "hovertemplate": _HOVER,
+    } | _name(first if str(bars.get_label()).startswith("_") else bars)
+
+
+def _scatter(artist: Artist, x: Float, y: Float, **looks: Any) -> Trace:
+    return {"type": "scatter", "x": x, "y": y} | _name(artist) | looks
+
+
+def _area(artist: Artist, points: Float, colour: object) -> Trace:
+    shade = colour_of(colour)
+    line = {"width": 0, "color": shade}
+    fill: Trace = {"fill": "toself", "fillcolor": shade, "line": line, "hoverinfo": "skip"}
+    return _scatter(artist, *points.T, mode="lines", **fill)
 
 
 def _heat(mapped: Any, x: Float, y: Float, values: Float) -> Trace:
@@ -283,67 +241,42 @@ def _heat(mapped: Any, x: Float, y: Float, values: Float) -> Trace:
     } | scale
 
 
-def _areas(collection: collections.PolyCollection) -> Trace:
-    gap = np.full((1, 2), np.nan)
-    parts = [
-        part for path in collection.get_paths() for part in (np.asarray(path.vertices, float), gap)
-    ]
-    return _area(np.concatenate(parts), collection.get_facecolor()[0]) | _name(collection)
+def _name(artist: Artist | container.Container) -> Trace:
+    text = str(artist.get_label())
+    if not text or text.startswith("_"):
+        return {"showlegend": False}
+    return {"name": label(text), "showlegend": True}
 
 
-def _polygon(patch: patches.Polygon | patches.Rectangle) -> Trace:
-    outline = patch.get_path().transformed(patch.get_patch_transform())
-    trace = _area(np.asarray(outline.vertices, float), patch.get_facecolor())
-    if not patch.get_fill():
-        trace |= {"fill": "none"}
-    edge = {"color": colour_of(patch.get_edgecolor()), "width": _PIXELS * patch.get_linewidth()}
-    return trace | {"line": edge} | _name(patch)
-
-
-def _area(points: Float, colour: object) -> Trace:
+def _marker(line: lines.Line2D) -> Trace:
+    marker = str(line.get_marker())
+    if marker not in _MARKERS:
+        raise UndrawableError(f"marker {marker}")
+    symbol, face = _MARKERS[marker], line.get_markerfacecolor()
+    edge = colour_of(line.get_markeredgecolor())
+    hollow = colors.to_rgba(face)[3] == 0.0 or symbol in _THIN
     return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": points[:, 0],
-        "y": points[:, 1],
-        "fill": "toself",
-        "fillcolor": colour_of(colour),
-        "line": {"width": 0, "color": colour_of(colour)},
-        "hoverinfo": "skip",
+        "symbol": f"{symbol}-open" if hollow else symbol,
+        "size": _PIXELS * line.get_markersize() * (0.5 if marker == "." else 1.0),
+        "color": edge if hollow else colour_of(face),
+        "line": {"color": edge, "width": _PIXELS * line.get_markeredgewidth()},
     }
 
 
-def _bar(bars: container.BarContainer) -> Trace:
-    across = bars.orientation == "horizontal"
-    places, heights, widths, bases = [], [], [], []
-    for bar in bars.patches:
-        x, y, width, height = bar.get_x(), bar.get_y(), bar.get_width(), bar.get_height()
-        if across:
-            x, y, width, height = y, x, height, width
-        places.append(x + 0.5 * width)
-        heights.append(height)
-        widths.append(width)
-        bases.append(y)
-    colours = [colour_of(bar.get_facecolor()) for bar in bars.patches]
-    first = bars.patches[0]
-    return {
-        "type": "bar",
-        "orientation": "h" if across else "v",
-        "y" if across else "x": np.array(places, float),
-        "x" if across else "y": np.array(heights, float),
-        "width": np.array(widths, float),
-        "base": np.array(bases, float),
-        "marker": {
-            "color": colours[0] if len(set(colours)) == 1 else colours,
-            "line": {
-                "color": colour_of(first.get_edgecolor()),
-                "width": _PIXELS * first.get_linewidth()
-                if colors.to_rgba(first.get_edgecolor())[3]
-                else 0,
-            },
-        },
-        "hovertemplate": _HOVER,
-    } | _name(first if str(bars.get_label()).startswith("_") else bars)
+def _dash(line: lines.Line2D) -> str:
+    # Matplotlib tells "--" for every pattern of its own; the pattern itself has no public name
+    _, pattern = line._unscaled_dash_pattern  # type: ignore[attr-defined]
+    if not pattern:
+        return "solid"
+    if line.get_linestyle() in (":", "-."):
+        return {":": "dot", "-.": "dashdot"}[str(line.get_linestyle())]
+    unit = _PIXELS * line.get_linewidth()
+    return ",".join(f"{max(unit * length, 1.0):.3g}px" for length in pattern)
+
+
+def _numbers(values: Any) -> Float:
+    """Return an array in which what is masked out is not-a-number."""
+    return np.asarray(np.ma.filled(np.ma.asarray(values, float), np.nan), dtype=np.float64)
 
 
 def _thinned(x: Float, y: Float) -> tuple[Float, Float]:

@@ -8,22 +8,20 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, log10
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter, FixedLocator
 from matplotlib.transforms import Transform
 
-from stickslip.html.artists import Place, Trace, UndrawableError, proxy, traces
-from stickslip.html.labels import label, plain
+from stickslip.html.artists import Trace, UndrawableError, proxy, traces
+from stickslip.html.notation import label, plain
 from stickslip.plot.style import RESPONSE, fit
 from stickslip.results.arrays import Float
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.legend import Legend
     from matplotlib.text import Text
 
     from stickslip.views.picture import Panel
@@ -31,50 +29,72 @@ if TYPE_CHECKING:
 __all__ = ["Drawn", "drawn"]
 
 _SIZE = (7.4, 4.2)
-_INK = "#1f2933"
-_GRID = "#e3e6ea"
 _HEIGHT, _LEGEND_ROW, _LEGEND_WIDTH = 400, 22, 800
 _BUTTONS = 20
 _FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
+_FEW_DECADES = 2.5
+_PAGE: Trace = {
+    "template": {},
+    "font": {"family": _FONT, "size": 13, "color": "#1f2933"},
+    "paper_bgcolor": "#ffffff",
+    "plot_bgcolor": "#ffffff",
+    "hovermode": "closest",
+    "yaxis3": {"overlaying": "y", "range": [0, 1], "visible": False, "fixedrange": True},
+    "legend": {
+        "orientation": "h",
+        "x": 0.0,
+        "xanchor": "left",
+        "yref": "container",
+        "y": 0.0,
+        "yanchor": "bottom",
+        "font": {"size": 12},
+    },
+}
+_AXIS: Trace = {
+    "automargin": True,
+    "gridcolor": "#e3e6ea",
+    "linecolor": "#8a94a0",
+    "showline": True,
+    "ticks": "outside",
+    "tickcolor": "#8a94a0",
+    "zeroline": False,
+    "hoverformat": ".6g",
+    "exponentformat": "power",
+}
+_MENU: Trace = {
+    "type": "buttons",
+    "bgcolor": "#f3f5f7",
+    "bordercolor": "#b8c0c8",
+    "font": {"size": 12},
+    "pad": {"t": 0, "r": 0},
+    "x": 0.0,
+    "xanchor": "left",
+    "y": 1.02,
+    "yanchor": "bottom",
+    "direction": "right",
+}
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A figure of a page.
-
-    Attributes
-    ----------
-    caption : str
-        What it shows, in a line.
-    description : str
-        The same with the names of its curves, to be read aloud.
-    data : str
-        What plotly draws, as JSON; empty if the picture is a still one.
-    still : str
-        A picture as data URI, where there is no interactive one.
-    height : int
-        Of the figure, in pixels.
-    """
+    """A figure of a page."""
 
     caption: str
+    """What it shows, in a line."""
     description: str
+    """The same with the names of its curves, to be read aloud."""
     data: str
+    """What plotly draws, as JSON; empty if the picture is a still one."""
     still: str
+    """A picture as data URI, where there is no interactive one."""
     height: int
+    """In pixels."""
 
 
 def drawn(panel: Panel) -> Drawn:
-    """Return a figure of what a panel draws.
+    """Return a figure of what a panel draws on Matplotlib axes.
 
-    Parameters
-    ----------
-    panel : Panel
-        Draws on Matplotlib axes.
-
-    Returns
-    -------
-    Drawn
-        Interactive; a still picture where the panel draws what plotly has no counterpart of.
+    It is interactive, or a still picture where the panel draws what plotly has no counterpart of.
 
     Raises
     ------
@@ -93,28 +113,26 @@ def drawn(panel: Panel) -> Drawn:
 
 
 def _plotly(figure: Figure, ax: Axes) -> tuple[list[Trace], Trace]:
-    bars = {
-        id(mapped.colorbar.ax)
-        for one in figure.axes
-        for mapped in (*one.collections, *one.images)
-        if mapped.colorbar is not None
-    }
-    beside = [one for one in figure.axes if one is not ax and id(one) not in bars]
+    mapped = (one for own in figure.axes for one in (*own.collections, *own.images))
+    bars = [one.colorbar.ax for one in mapped if one.colorbar is not None]
+    beside = [one for one in figure.axes if one is not ax and one not in bars]
     if len(beside) > 1 or not all(one.bbox.bounds == ax.bbox.bounds for one in beside):
         raise UndrawableError("several frames")
-    data = list(traces(ax, Place("x", "y", "y3")))
+    data = list(traces(ax, "y"))
     layout = _layout(ax)
     for one in beside:
-        data += traces(one, Place("x", "y2", "y3"))
+        data += traces(one, "y2")
         side = {"overlaying": "y", "side": "right", "showgrid": False, "tickmode": "auto"}
         layout["yaxis2"] = _axis(one, "y") | side
     layout["annotations"] = [_annotation(text, ax) for text in ax.texts if text.get_text()]
     names = [trace["name"] for trace in data if trace["showlegend"]]
     legend = ax.get_legend()
-    for handle, text in zip(*_legend(legend), strict=True) if legend else ():
-        if label(text) not in names:
-            data.append(proxy(handle, text))
-            names.append(label(text))
+    if legend is not None:
+        for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
+            name = text.get_text()
+            if handle is not None and label(name) not in names:
+                data.append(proxy(handle, name))
+                names.append(label(name))
     _group(data)
     layout["showlegend"] = legend is not None or len(names) > 1
     if layout["showlegend"]:
@@ -130,33 +148,13 @@ def _plotly(figure: Figure, ax: Axes) -> tuple[list[Trace], Trace]:
 
 
 def _layout(ax: Axes) -> Trace:
-    layout: Trace = {
-        "template": {},
+    title = {"text": label(ax.get_title()), "x": 0.0, "xref": "paper", "y": 0.97}
+    layout = _PAGE | {
         "height": _HEIGHT,
         "margin": {"l": 74, "r": 24, "t": 48, "b": 56},
-        "font": {"family": _FONT, "size": 13, "color": _INK},
-        "paper_bgcolor": "#ffffff",
-        "plot_bgcolor": "#ffffff",
-        "hovermode": "closest",
-        "title": {
-            "text": label(ax.get_title()),
-            "x": 0.0,
-            "xref": "paper",
-            "y": 0.97,
-            "font": {"size": 14},
-        },
+        "title": title | {"font": {"size": 14}},
         "xaxis": _axis(ax, "x"),
         "yaxis": _axis(ax, "y"),
-        "yaxis3": {"overlaying": "y", "range": [0, 1], "visible": False, "fixedrange": True},
-        "legend": {
-            "orientation": "h",
-            "x": 0.0,
-            "xanchor": "left",
-            "yref": "container",
-            "y": 0.0,
-            "yanchor": "bottom",
-            "font": {"size": 12},
-        },
     }
     if ax.get_aspect() == 1.0:
         layout["yaxis"] |= {"scaleanchor": "x", "scaleratio": 1.0}
@@ -164,42 +162,29 @@ def _layout(ax: Axes) -> Trace:
     return layout
 
 
-def _axis(ax: Axes, letter: Literal["x", "y"]) -> Trace:
-    axis = ax.xaxis if letter == "x" else ax.yaxis
+def _axis(ax: Axes, letter: str) -> Trace:
+    axis = getattr(ax, f"{letter}axis")
     scale = axis.get_scale()
     if scale not in ("linear", "log"):
         raise UndrawableError(f"{scale} axis")
     low, high = ax.get_xlim() if letter == "x" else ax.get_ylim()
-    entry: Trace = {
-        "title": {"text": label(axis.get_label_text())},
-        "type": scale,
-        "range": _range(low, high, scale),
-        "automargin": True,
-        "gridcolor": _GRID,
-        "linecolor": "#8a94a0",
-        "showline": True,
-        "ticks": "outside",
-        "tickcolor": "#8a94a0",
-        "zeroline": False,
-        "hoverformat": ".6g",
-    }
-    if scale == "log":
-        few = abs(log10(high / low)) < 2.5
-        # exponents as on paper, and numbers between the decades where there are few of them
-        entry |= {"exponentformat": "power", "dtick": "D2" if few else 1}
-    else:
-        entry |= {"exponentformat": "power", "minexponent": 3}
+    entry = _AXIS | {"title": {"text": label(axis.get_label_text())}} | _span(low, high, scale)
+    if scale == "linear":
+        entry["minexponent"] = 3
     locator, formatter = axis.get_major_locator(), axis.get_major_formatter()
     if isinstance(locator, FixedLocator) and isinstance(formatter, FixedFormatter):
-        entry |= {
-            "tickvals": [float(one) for one in locator()],
-            "ticktext": [label(str(one)) for one in formatter.seq],
-        }
+        entry["tickvals"] = [float(one) for one in locator()]
+        entry["ticktext"] = [label(str(one)) for one in formatter.seq]
     return entry
 
 
-def _range(low: float, high: float, scale: str) -> list[float]:
-    return [log10(low), log10(high)] if scale == "log" else [float(low), float(high)]
+def _span(low: float, high: float, scale: str) -> Trace:
+    """Return what of an axis is seen, with numbers between decades if there are few of these."""
+    if scale == "linear":
+        return {"type": scale, "range": [float(low), float(high)]}
+    ends = log10(low), log10(high)
+    few = abs(ends[1] - ends[0]) < _FEW_DECADES
+    return {"type": scale, "range": [*ends], "dtick": "D2" if few else 1}
 
 
 def _scales(ax: Axes, data: Sequence[Trace]) -> list[Trace]:
@@ -220,39 +205,12 @@ def _scales(ax: Axes, data: Sequence[Trace]) -> list[Trace]:
     else:
         low, high = float(heights.min()), float(heights.max())
         spans[other] = (0.6 * low, 1.6 * high) if other == "log" else (0.0, 1.05 * high)
-    few = log10(spans["log"][1] / spans["log"][0]) < 2.5
-    buttons = [
-        {
-            "label": f"{name} scale",
-            "method": "relayout",
-            "args": [
-                {
-                    "yaxis.type": name,
-                    "yaxis.range": _range(*spans[name], name),
-                    "yaxis.dtick": ("D2" if few else 1) if name == "log" else None,
-                }
-            ],
-        }
-        for name in ("log", "linear")
-    ]
-    look = {"x": 0.0, "xanchor": "left", "y": 1.02, "yanchor": "bottom", "direction": "right"}
-    return [
-        {
-            "type": "buttons",
-            "buttons": buttons,
-            "active": int(now == "linear"),
-            "bgcolor": "#f3f5f7",
-            "bordercolor": "#b8c0c8",
-            "font": {"size": 12},
-            "pad": {"t": 0, "r": 0},
-        }
-        | look
-    ]
-
-
-def _legend(legend: Legend) -> tuple[list[Artist], list[str]]:
-    handles = [handle for handle in legend.legend_handles if handle is not None]
-    return handles, [text.get_text() for text in legend.get_texts()]
+    buttons = []
+    for name in ("log", "linear"):
+        shown = {"dtick": None} | _span(*spans[name], name)
+        given = {f"yaxis.{key}": value for key, value in shown.items()}
+        buttons.append({"label": f"{name} scale", "method": "relayout", "args": [given]})
+    return [_MENU | {"buttons": buttons, "active": int(now == "linear")}]
 
 
 def _group(data: Sequence[Trace]) -> None:
@@ -288,13 +246,12 @@ def _annotation(text: Text, ax: Axes) -> Trace:
     if not isinstance(transform, Transform):
         raise UndrawableError(f"text in {transform}")
     in_data = transform.contains_branch_seperately(ax.transData)
+    height = text.get_verticalalignment()
     entry: Trace = {
         "text": label(text.get_text()),
         "showarrow": False,
         "xanchor": text.get_horizontalalignment(),
-        "yanchor": {"baseline": "bottom", "center": "middle"}.get(
-            text.get_verticalalignment(), text.get_verticalalignment()
-        ),
+        "yanchor": {"baseline": "bottom", "center": "middle"}.get(height, height),
         "font": {"size": 12, "color": "#5a6570"},
     }
     for letter, value, known in zip("xy", place, in_data, strict=True):

@@ -32,18 +32,17 @@ class ModelSummary:
 
 def summaries(results: Sequence[tuple[str, Result]]) -> list[ModelSummary]:
     """Return the models of results; those that differ in their forces only stand together."""
-    members: list[tuple[Model, list[tuple[str, Model]]]] = []
+    groups: list[list[tuple[str, Model]]] = []
     for name, result in results:
-        for model, named in members:
-            if _same(model, result.model):
-                named.append((name, result.model))
-                break
-        else:
-            members.append((result.model, [(name, result.model)]))
-    return [_summary(model, named) for model, named in members]
+        group = next((one for one in groups if _same(one[0][1], result.model)), None)
+        if group is None:
+            groups.append(group := [])
+        group.append((name, result.model))
+    return [_summary(group) for group in groups]
 
 
-def _summary(model: Model, named: Sequence[tuple[str, Model]]) -> ModelSummary:
+def _summary(named: Sequence[tuple[str, Model]]) -> ModelSummary:
+    model = named[0][1]
     rows = model_rows(model)
     rows.insert(1, ("damping", _damping(model.structure)))
     if any(other.forces != model.forces for _, other in named):
@@ -57,16 +56,13 @@ def _summary(model: Model, named: Sequence[tuple[str, Model]]) -> ModelSummary:
 
 
 def _same(one: Model, other: Model) -> bool:
+    first, second = one.structure, other.structure
     matrices = ("mass", "damping", "stiffness")
-    return (
-        type(one) is type(other)
-        and one.contacts == other.contacts
-        and one.structure.dofs == other.structure.dofs
-        and all(
-            np.array_equal(getattr(one.structure, name), getattr(other.structure, name))
-            for name in matrices
-        )
-    )
+    return (type(one), one.contacts, first.dofs) == (
+        type(other),
+        other.contacts,
+        second.dofs,
+    ) and all(np.array_equal(getattr(first, name), getattr(second, name)) for name in matrices)
 
 
 def _damping(structure: Structure) -> str:

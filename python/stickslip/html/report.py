@@ -102,45 +102,38 @@ def _templates() -> Environment:
 
 
 def _entries(results: object) -> list[Entry]:
+    """Return the results, read from their files; files of one name get that of their folder too."""
     from stickslip.html.sections import Entry
     from stickslip.results.store import load
 
-    named: list[tuple[str, object]]
+    neither = "is neither a result nor a file of one"
+    if isinstance(results, Result | str | os.PathLike):
+        results = [results]
+    if not isinstance(results, Iterable):
+        raise ModelError(f"results: {brief(results)} {neither}")
+    named: list[tuple[str, object]] = [("", one) for one in results]
     if isinstance(results, Mapping):
         named = [(text(name, "name of a result"), one) for name, one in results.items()]
-    elif isinstance(results, Result | str | os.PathLike):
-        named = [("", results)]
-    elif isinstance(results, Iterable):
-        named = [("", one) for one in results]
-    else:
-        raise ModelError(f"results: {brief(results)} is neither a result nor a file of one")
     if not named:
         raise ModelError("results: empty; give at least one result or file")
     entries = []
     for place, (name, one) in enumerate(named):
+        anchor = f"result-{place + 1}"
         if isinstance(one, Result):
             unnamed = "result" if len(named) == 1 else f"result {place + 1}"
-            entries.append(Entry(name or unnamed, one, None))
+            entries.append(Entry(name or unnamed, one, None, anchor))
         elif isinstance(one, str | os.PathLike):
             source = file_path(one, f"results[{place}]")
-            entries.append(Entry(name or source.stem, load(source), source))
+            entries.append(Entry(name or source.stem, load(source), source, anchor))
         else:
-            raise ModelError(
-                f"results[{place}]: {brief(one)} is neither a result nor a file of one"
-            )
-    return _told_apart(entries)
-
-
-def _told_apart(entries: list[Entry]) -> list[Entry]:
-    """Give files of the same name the names of their folders too."""
+            raise ModelError(f"results[{place}]: {brief(one)} {neither}")
     names = [entry.name for entry in entries]
-    apart = []
-    for entry in entries:
-        if names.count(entry.name) > 1 and entry.source is not None:
-            folder = entry.source.resolve().parent.name
-            entry = entry._replace(name=f"{folder}{os.sep}{entry.name}")
-        apart.append(entry)
-    return apart
+    return [
+        entry._replace(name=f"{entry.source.resolve().parent.name}{os.sep}{entry.name}")
+        if entry.source is not None and names.count(entry.name) > 1
+        else entry
+        for entry in entries
+    ]
 
 
 def _dofs(dofs: Iterable[str] | str | None, entries: list[Entry]) -> tuple[str, ...] | None:

@@ -7,7 +7,6 @@ import io
 import platform
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from importlib.resources import files
@@ -18,7 +17,7 @@ import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.html.figures import Drawn, drawn
-from stickslip.html.models import ModelSummary, summaries
+from stickslip.html.models import summaries
 from stickslip.results.result import Result
 from stickslip.results.store import content_of
 from stickslip.study import notable_dofs
@@ -26,7 +25,6 @@ from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import VIEWS, cautions, failures, view_of
 from stickslip.views.picture import Panel
 from stickslip.views.tables import Row, Table, new_table
-from stickslip.views.view import View
 
 __all__ = ["Entry", "content"]
 
@@ -38,56 +36,15 @@ class Entry(NamedTuple):
     result: Result
     source: Path | None
     """The file it was read from."""
-
-
-@dataclass(frozen=True)
-class Section:
-    """A result by itself."""
-
     anchor: str
-    name: str
-    failures: list[str]
-    cautions: list[str]
-    facts: list[Row]
-    assumptions: tuple[str, ...]
-    figures: list[Drawn | str]
-    settings: list[Row]
-    effort: list[Row]
-    provenance: list[Row]
-
-
-@dataclass(frozen=True)
-class Group:
-    """Results that are drawn and tabulated together."""
-
-    anchor: str
-    heading: str
-    figures: list[Drawn | str]
-    tables: list[Table]
-    models: list[ModelSummary]
-    sections: list[Section]
 
 
 def content(
     entries: Sequence[Entry], dofs: Sequence[str] | None, output: OutputTable, title: str | None
 ) -> dict[str, object]:
-    """Return what the template shows.
+    """Return what the template shows, by its names.
 
-    Parameters
-    ----------
-    entries : sequence of Entry
-        The results.
-    dofs : sequence of str or None
-        Degrees of freedom to show; None chooses.
-    output : OutputTable
-        Units.
-    title : str or None
-        Heading of the page; None makes one.
-
-    Returns
-    -------
-    dict
-        By the names of the template.
+    Without `dofs` those of notice are shown, without `title` the page gets one of its own.
 
     Raises
     ------
@@ -97,18 +54,13 @@ def content(
     from plotly.offline import get_plotlyjs
 
     page = files("stickslip.html") / "page"
-    anchors = {id(entry): f"result-{number}" for number, entry in enumerate(entries, 1)}
-    groups = [
-        _group(f"group-{number}", members, anchors, dofs, output)
-        for number, members in enumerate(_grouped(entries), 1)
-    ]
     names = [entry.name for entry in entries]
     return {
         "title": title or f"Report: {', '.join(names[:3])}{', ...' if len(names) > 3 else ''}",
         "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "overview": _overview(entries),
-        "links": [anchors[id(entry)] for entry in entries],
-        "groups": groups,
+        "links": [entry.anchor for entry in entries],
+        "groups": [_group(members, dofs, output) for members in _grouped(entries)],
         "versions": _versions(),
         "plotly": get_plotlyjs(),
         "style": (page / "report.css").read_text(encoding="utf-8"),
@@ -128,62 +80,53 @@ def _grouped(entries: Iterable[Entry]) -> list[list[Entry]]:
 
 
 def _group(
-    anchor: str,
-    members: Sequence[Entry],
-    anchors: dict[int, str],
-    dofs: Sequence[str] | None,
-    output: OutputTable,
-) -> Group:
+    members: Sequence[Entry], dofs: Sequence[str] | None, output: OutputTable
+) -> dict[str, object]:
+    """Return results that are drawn and tabulated together, and each of them by itself."""
     results = [entry.result for entry in members]
     view, first = view_of(results), results[0]
-    shown = [dof for dof in dofs or notable_dofs(first.model, first.dofs) if dof in first.dofs]
-    if not shown:
-        shown = list(notable_dofs(first.model, first.dofs))
+    notable = list(notable_dofs(first.model, first.dofs))
+    shown = [dof for dof in dofs or notable if dof in first.dofs] or notable
     named = [(entry.name, entry.result) for entry in members]
     label = "result" if len(members) > 1 else ""
-    kinds = dict.fromkeys(_kind(result) for result in results)
     models = summaries(named)
     known = {row for model in models for row in model.rows}
-    return Group(
-        anchor,
-        " and ".join(kinds),
-        [_figure(panel) for panel in view.panels(results, shown, output)],
-        view.tables(named, label, shown, output.length_unit),
-        models,
-        [_section(anchors[id(entry)], entry, view, shown, output, known) for entry in members],
-    )
+    sections = []
+    for entry in members:
+        result = entry.result
+        section = {
+            "anchor": entry.anchor,
+            "name": entry.name,
+            "failures": failures(result),
+            "cautions": cautions(result),
+            "facts": [
+                row for row in view.facts(result) if row[0] != "assumed" and row not in known
+            ],
+            "assumptions": result.assumptions,
+            "figures": _figures(view.details(result, shown, output)),
+            "settings": _settings(result),
+            "effort": _effort(result),
+            "provenance": _provenance(entry),
+        }
+        sections.append(section)
+    return {
+        "heading": " and ".join(dict.fromkeys(map(_kind, results))),
+        "figures": _figures(view.panels(results, shown, output)),
+        "tables": view.tables(named, label, shown, output.length_unit),
+        "models": models,
+        "sections": sections,
+    }
 
 
-def _section(
-    anchor: str,
-    entry: Entry,
-    view: View[Any],
-    dofs: Sequence[str],
-    output: OutputTable,
-    known: set[Row],
-) -> Section:
-    result = entry.result
-    facts = [row for row in view.facts(result) if row[0] != "assumed" and row not in known]
-    return Section(
-        anchor,
-        entry.name,
-        failures(result),
-        cautions(result),
-        facts,
-        result.assumptions,
-        [_figure(panel) for panel in view.details(result, dofs, output)],
-        _settings(result),
-        _effort(result),
-        _provenance(entry),
-    )
-
-
-def _figure(panel: Panel) -> Drawn | str:
-    """Return a figure, or why there is none."""
-    try:
-        return drawn(panel)
-    except ModelError as error:
-        return str(error)
+def _figures(panels: Iterable[Panel]) -> list[Drawn | str]:
+    """Return figures, or why there is none."""
+    figures: list[Drawn | str] = []
+    for panel in panels:
+        try:
+            figures.append(drawn(panel))
+        except ModelError as error:
+            figures.append(str(error))
+    return figures
 
 
 def _overview(entries: Sequence[Entry]) -> Table:
@@ -194,13 +137,9 @@ def _overview(entries: Sequence[Entry]) -> Table:
         table.add_column(heading, justify="right")
     for entry in entries:
         result = entry.result
-        table.add_row(
-            entry.name,
-            _kind(result),
-            _status(result) + (", interrupted" if result.interrupted else ""),
-            f"{len(result.assumptions)}",
-            f"{result.timings['total']:.3g}" if "total" in result.timings else "",
-        )
+        status = _status(result) + ", interrupted" * result.interrupted
+        time = f"{result.timings['total']:.3g}" if "total" in result.timings else ""
+        table.add_row(entry.name, _kind(result), status, f"{len(result.assumptions)}", time)
     return table
 
 
@@ -218,9 +157,8 @@ def _status(result: Any) -> str:
 
 def _settings(result: Any) -> list[Row]:
     settings = getattr(result, "settings", None)
-    if settings is None:
-        return []
-    return [(name.replace("_", " "), _text(value)) for name, value in settings.model_dump().items()]
+    keys = {} if settings is None else settings.model_dump()
+    return [(name.replace("_", " "), _text(value)) for name, value in keys.items()]
 
 
 def _text(value: object) -> str:
@@ -263,9 +201,5 @@ def _provenance(entry: Entry) -> list[Row]:
 def _versions() -> list[Row]:
     from stickslip._core import __version__
 
-    names = ("numpy", "scipy", "matplotlib", "plotly")
-    return [
-        ("stickslip", __version__),
-        ("Python", platform.python_version()),
-        *((name, version(name)) for name in names),
-    ]
+    libraries = [(name, version(name)) for name in ("numpy", "scipy", "matplotlib", "plotly")]
+    return [("stickslip", __version__), ("Python", platform.python_version()), *libraries]

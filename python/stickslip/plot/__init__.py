@@ -1,60 +1,18 @@
 """Plots of results on Matplotlib axes."""
 
 from stickslip.calls import checked_names
-from stickslip.plot.basins import BasinOptions, LineOptions, basins, lines
-from stickslip.plot.blades import BladeBarOptions, BladeCurveOptions, blade_bars, blade_curves
-from stickslip.plot.charts import (
-    CurveOptions,
-    Frame,
-    LoopOptions,
-    curves,
-    hysteresis,
-    slip,
-    waveform,
-)
-from stickslip.plot.contacts import contact_forces
-from stickslip.plot.cycles import CycleOptions, cycle_multipliers, limit_cycles
-from stickslip.plot.damper import DamperOptions, damper
-from stickslip.plot.diameters import DiameterOptions, SafeOptions, nodal_diameters, safe
-from stickslip.plot.mistuning import (
-    DistributionOptions,
-    TrendOptions,
-    amplification,
-    distribution,
-)
-from stickslip.plot.orbits import MultiplierOptions, events, multipliers
-from stickslip.plot.stability_map import stability_map
-from stickslip.plot.transients import (
-    HistoryOptions,
-    PoincareOptions,
-    SpectrumOptions,
-    contact_history,
-    history,
-    phase,
-    poincare,
-    spectrum,
-)
-from stickslip.plot.waves import WaveOptions, aerodynamic
+from stickslip.plot.basins import basins, lines
+from stickslip.plot.blades import blade_bars, blade_curves
+from stickslip.plot.contacts import contact_forces, events, hysteresis, waveform
+from stickslip.plot.curves import curves, slip
+from stickslip.plot.cycles import limit_cycles, stability_map
+from stickslip.plot.damper import damper
+from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
+from stickslip.plot.mistuning import amplification, distribution
+from stickslip.plot.multipliers import cycle_multipliers, multipliers
+from stickslip.plot.transients import contact_history, history, phase, poincare, spectrum
 
 __all__ = [
-    "BasinOptions",
-    "BladeBarOptions",
-    "BladeCurveOptions",
-    "CurveOptions",
-    "CycleOptions",
-    "DamperOptions",
-    "DiameterOptions",
-    "DistributionOptions",
-    "Frame",
-    "HistoryOptions",
-    "LineOptions",
-    "LoopOptions",
-    "MultiplierOptions",
-    "PoincareOptions",
-    "SafeOptions",
-    "SpectrumOptions",
-    "TrendOptions",
-    "WaveOptions",
     "aerodynamic",
     "amplification",
     "basins",

@@ -2,31 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import TypeVar
 
 from stickslip.checks import brief, text
 from stickslip.errors import ModelError
 from stickslip.results import ForcedResponse
+from stickslip.settings.variation import Variation
 
-__all__ = ["at", "dofs_of", "labels_of", "require_solved", "result_of", "results_of"]
+__all__ = ["at", "checked_labels", "dofs_of", "label_of", "of_kind", "require_solved", "several"]
+
+_Kind = TypeVar("_Kind")
+_SYMBOLS = {"slip_force": "slip force $F_d$", "stiffness": "contact stiffness $k_d$"}
+_SOURCES = {"motion_class": "classify"}
+"""What returns the results that are not called as their function is."""
 
 
-def result_of(result: object, entry: str = "result") -> ForcedResponse:
+def of_kind(kind: type[_Kind], result: object, entry: str = "result") -> _Kind:
     """Return a result, or refuse anything else."""
-    if not isinstance(result, ForcedResponse):
+    if not isinstance(result, kind):
+        name = kind.__name__
+        source = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+        article = "an" if name[0] in "AE" else "a"
         raise ModelError(
-            f"{entry}: {brief(result)} is not a ForcedResponse; give what forced_response returned"
+            f"{entry}: {brief(result)} is not {article} {name}; "
+            f"give what {_SOURCES.get(source, source)} returned"
         )
     return result
 
 
-def results_of(results: object) -> list[ForcedResponse]:
-    """Return one or several results as a list that is not empty."""
+def several(
+    kind: type[_Kind], results: object, over: Callable[[_Kind], str] = lambda _: ""
+) -> list[_Kind]:
+    """Return one or several results of a kind, all of one parameter, as a list."""
     if isinstance(results, str) or not isinstance(results, Iterable):
-        return [result_of(results, "results")]
-    given = [result_of(result, f"results[{place}]") for place, result in enumerate(results)]
+        return [of_kind(kind, results, "results")]
+    given = [of_kind(kind, one, f"results[{place}]") for place, one in enumerate(results)]
     if not given:
-        raise ModelError("results: empty; give at least one ForcedResponse")
+        raise ModelError(f"results: empty; give at least one {kind.__name__}")
+    parameters = sorted({over(one) for one in given})
+    if len(parameters) > 1:
+        raise ModelError(f"results: over {' and '.join(parameters)}; draw one parameter at a time")
     return given
 
 
@@ -40,13 +57,15 @@ def dofs_of(dof: object) -> list[str]:
     return names
 
 
-def labels_of(labels: object, count: int) -> list[str]:
-    """Return the labels of `count` results."""
+def checked_labels(labels: object, default: Sequence[str]) -> Sequence[str]:
+    """Return the labels of results, one each, or the default ones."""
+    if labels is None:
+        return default
     if isinstance(labels, str) or not isinstance(labels, Iterable):
         raise ModelError(f"labels: {brief(labels)} is not a list; give one text per result")
     given = [text(label, f"labels[{place}]") for place, label in enumerate(labels)]
-    if len(given) != count:
-        raise ModelError(f"labels: {len(given)} for {count} results; give one each")
+    if len(given) != len(default):
+        raise ModelError(f"labels: {len(given)} for {len(default)} results; give one each")
     return given
 
 
@@ -63,3 +82,10 @@ def require_solved(result: ForcedResponse, indices: Sequence[int]) -> None:
 def at(result: ForcedResponse, index: int) -> str:
     """Return the frequency of a point as it is written in figures."""
     return f"ω = {result.omega[index]:.5g} rad/s"
+
+
+def label_of(variation: Variation) -> str:
+    """Return what the axis of a varied parameter of contacts is called."""
+    if variation.common == "factor":
+        return f"factor on the {variation.parameter.replace('_', ' ')}"
+    return f"{_SYMBOLS[variation.parameter]} [{variation.unit}]"

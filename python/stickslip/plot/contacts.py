@@ -1,144 +1,235 @@
-"""Figures of the forces at the contacts over a period."""
+"""One period of a response: its motion, and forces, loops and states at the contacts."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import Unpack
 
 import numpy as np
+from matplotlib import pyplot
+from matplotlib.axes import Axes
 
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
-from stickslip.model import ContactRef
-from stickslip.plot.arguments import at, require_solved, result_of
-from stickslip.plot.style import GREY, STUCK, new_axes
+from stickslip.model import ContactRef, PointRef
+from stickslip.plot import style
+from stickslip.plot.arguments import at, dofs_of, require_solved
+from stickslip.plot.figure import figure, keywords
+from stickslip.plot.limits import limit_model
+from stickslip.plot.options import Drawing, ForceOptions, LoopOptions
+from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
+from stickslip.results.dataset import point_names
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+__all__ = ["contact_forces", "events", "hysteresis", "waveform"]
 
-__all__ = ["contact_forces"]
-
-_SHADE = "#d8863b"
-_SIZE = (8.2, 1.6)
+_FORWARD, _BACKWARD = ("slips forward", style.BLUE), ("slips backward", style.ORANGE)
+_STATES = {0: ("stuck", "0.85"), 1: _FORWARD, -1: _BACKWARD}
+"""Name and colour by the direction of slip."""
 
 
-def contact_forces(
+@figure
+def waveform(
+    ax: Axes,
+    /,
     result: ForcedResponse,
-    contact: ContactRef,
+    dof: str | Sequence[str],
     index: int,
-    *,
-    stuck: bool = True,
-    samples: int = 1024,
-) -> list[Axes]:
-    """Draw the forces of a contact over a period, one panel per point, and their sum.
+    **options: Unpack[LoopOptions],
+) -> None:
+    """Draw one period of the motion of one or several degrees of freedom."""
+    dofs, length = dofs_of(dof), style.LENGTH[options["length_unit"]]
+    require_solved(result, [index])
+    waves = [result.waveform(one, index, options["samples"]) for one in dofs]
+    time = np.linspace(0.0, 1.0, options["samples"] + 1)
+    for one, wave, colour in zip(dofs, waves, style.colours(len(dofs)), strict=True):
+        ax.plot(time, length.factor * _closed(wave), color=colour, lw=1.6, label=one)
+    of = f" of {dofs[0]}" if len(dofs) == 1 else ""
+    ax.set(xlim=(0.0, 1.0), xlabel="time over period t/T")
+    ax.set_ylabel(f"displacement{of} [{length.label}]")
+    ax.set_title(at(result, index), fontsize="medium")
+
+
+@figure
+def hysteresis(
+    ax: Axes,
+    /,
+    result: ForcedResponse,
+    contact: PointRef,
+    index: int | Sequence[int],
+    **options: Unpack[LoopOptions],
+) -> None:
+    """Draw the contact force against the relative displacement, over one period.
 
     Parameters
     ----------
-    result : ForcedResponse
-        Harmonic balance or exact orbits.
-    contact : int or str
-        The contact.
-    index : int
-        Position of a solved point of the sweep; see `ForcedResponse.index`.
-    stuck : bool, optional
-        Whether to draw, dashed, the forces if no contact of the model ever slipped.
-    samples : int, optional
-        Number of instants.
+    index : int or sequence of int
+        Positions of points of the sweep, one loop each; see `ForcedResponse.index`.
+    """
+    indices = list(index) if isinstance(index, Sequence | np.ndarray) else [index]
+    if not indices:
+        raise ModelError("index: empty; give the position of at least one point")
+    length = style.LENGTH[options["length_unit"]]
+    require_solved(result, indices)
+    loops = [loop for one in indices for loop in _loops(result, contact, one, options["samples"])]
+    labels = [label for _, _, label in loops]
+    if len(indices) > 1:
+        where = np.repeat(indices, len(loops) // len(indices))
+        labels = [f"{at(result, i)}: {label}" for i, label in zip(where, labels, strict=True)]
+    for (u, f, _), label, colour in zip(loops, labels, style.colours(len(loops)), strict=True):
+        looks: Looks = {"color": colour, "lw": 1.6, "solid_joinstyle": "round", "label": label}
+        ax.plot(length.factor * u, f, **looks)
+    number, point = result.locate(contact)
+    _draw_slip_limits(ax, result.model.contacts[number].limits, point)
+    ax.set(xlabel=f"relative displacement u [{length.label}]", ylabel="contact force f [N]")
+    title = result.model.contact_names[number] + ("" if point is None else f"[{point}]")
+    if len(indices) == 1:
+        title += f" at {at(result, indices[0])}"
+    if len(loops) == 1:
+        title += f": {labels[0]}"
+    ax.set_title(title, fontsize="medium")
+
+
+@figure
+def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Drawing]) -> None:
+    """Draw when contact points stick and slip, one strip each over the period.
+
+    Of exact orbits the events themselves are drawn.
+    """
+    require_solved(result, [index])
+    names = point_names(result.model)
+    if not names:
+        raise ModelError("result: the model has no contact, so that nothing sticks or slips")
+    shown: set[int] = set()
+    count = 0
+    for row, strips in enumerate(_strips(result, index)):
+        # A phase may go on over the end of the period.
+        count += len(strips) - (strips[0][2] == strips[-1][2])
+        for begin, length, direction in strips:
+            label, colour = _STATES[direction]
+            named = None if direction in shown else label
+            shown.add(direction)
+            strip = [(begin, length)], (row - 0.35, 0.7)
+            ax.broken_barh(*strip, color=colour, lw=0.0, label=named)
+    ax.set(xlim=(0.0, 1.0), ylim=(len(names) - 0.4, -0.6), xlabel="time over period t/T")
+    ax.set_yticks(range(len(names)), names)
+    ax.set_title(f"{at(result, index)}: {count} events per period", fontsize="medium")
+
+
+@keywords
+def contact_forces(
+    result: ForcedResponse, contact: ContactRef, index: int, **options: Unpack[ForceOptions]
+) -> list[Axes]:
+    """Draw the forces of a contact over a period, one panel per point, and their sum.
 
     Returns
     -------
     list of matplotlib.axes.Axes
         One per point and, for several points, one for the sum. Shaded where the point slips; its
         slip limits are dotted.
-
-    Raises
-    ------
-    ModelError
-        If there is no such contact or no solved point of that position.
     """
-    from matplotlib import pyplot
-
-    result = result_of(result)
     require_solved(result, [index])
     number = result.model.contact_index(contact)
-    count = whole_number(samples, "samples", smallest=8)
+    count = whole_number(options["samples"], "samples", smallest=8)
     one = result.model.contacts[number]
     time = np.linspace(0.0, 1.0, count + 1)
     forces = _closed(result.contact_force(number, index, count).reshape(count, -1))
-    linear = _stuck_forces(result, number, index, time) if stuck else None
+    linear = _stuck_forces(result, number, index, count) if options["stuck"] else None
     states = result.contact_states(number, index)
-    panels = one.points + (one.points > 1)
-    _figure, grid = pyplot.subplots(
-        panels,
-        figsize=(_SIZE[0], 0.6 + _SIZE[1] * panels),
-        sharex=True,
-        layout="constrained",
-        squeeze=False,
-    )
-    axes = [new_axes(ax) for ax in grid[:, 0]]
+    rows = one.points + (one.points > 1)
+    size = (8.2, 0.6 + 1.6 * rows)
+    _, grid = pyplot.subplots(rows, figsize=size, sharex=True, layout="constrained", squeeze=False)
+    axes = [style.new_axes(ax) for ax in grid[:, 0]]
     for point, ax in enumerate(axes[: one.points]):
         if linear is not None:
-            ax.plot(time, linear[:, point], color=GREY, ls=STUCK, lw=1.1, label="stuck, linear")
-        ax.plot(time, forces[:, point], color="#31688e", lw=1.6, label="force")
+            looks: Looks = {"color": style.GREY, "ls": style.STUCK, "lw": 1.1}
+            ax.plot(time, linear[:, point], label="stuck, linear", **looks)
+        ax.plot(time, forces[:, point], color=style.BLUE, lw=1.6, label="force")
         limit = one.limits[point]
         if np.isfinite(limit) and np.abs(forces[:, point]).max() > 0.3 * limit:
-            for side in (-limit, limit):
-                ax.axhline(side, color=GREY, lw=0.8, ls=":")
+            style.slip_limits(ax, limit, lw=0.8, ls=":")
         slips = states.direction[:, point] != 0
         for start, length in zip(states.start[slips], states.length[slips], strict=True):
-            ax.axvspan(start, start + length, color=_SHADE, alpha=0.25, lw=0.0)
+            ax.axvspan(start, start + length, color=style.ORANGE, alpha=0.25, lw=0.0)
         dof = one.dofs[point] if len(one.dofs) == one.points else " - ".join(map(str, one.dofs))
         ax.set_ylabel(f"{point}: {dof or 'ground'}\nforce [N]")
     if one.points > 1:
-        axes[-1].plot(time, forces.sum(axis=1), color="#31688e", lw=1.6)
-        largest = float(np.abs(forces).max())
-        axes[-1].set_ylim(-0.05 * largest, 0.05 * largest)
-        axes[-1].set_ylabel("sum\nforce [N]")
+        axes[-1].plot(time, forces.sum(axis=1), color=style.BLUE, lw=1.6)
+        edge = 0.05 * float(np.abs(forces).max())
+        axes[-1].set(ylim=(-edge, edge), ylabel="sum\nforce [N]")
     for ax in axes:
-        ax.grid(visible=True, color="0.9", lw=0.7)
-        ax.set_axisbelow(True)
-        ax.spines[["top", "right"]].set_visible(False)
-    axes[0].legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.01), ncols=2, frameon=False, fontsize="small"
-    )
-    axes[-1].set_xlim(0.0, 1.0)
-    axes[-1].set_xlabel("time over period t/T")
+        style.bare(ax)
+    place: Looks = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.01)}
+    axes[0].legend(**place, ncols=2, frameon=False, fontsize="small")
     name = result.model.contact_names[number]
     axes[0].set_title(f"{name}, {at(result, index)}", fontsize="medium", loc="left")
+    axes[-1].set(xlim=(0.0, 1.0), xlabel="time over period t/T")
     return axes
 
 
 def _closed(period: Float) -> Float:
+    """Append the first instant, which the period ends with."""
     return np.concatenate([period, period[:1]])
 
 
-def _stuck_forces(result: ForcedResponse, number: int, index: int, time: Float) -> Float:
+def _loops(
+    result: ForcedResponse, contact: PointRef, index: int, samples: int
+) -> Iterator[tuple[Float, Float, str]]:
+    """Give displacement, force and label of the loops of all points of a contact."""
+    u = _closed(result.contact_waveform(contact, index, samples).reshape(samples, -1))
+    f = _closed(result.contact_force(contact, index, samples).reshape(samples, -1))
+    lost = np.atleast_1d(result.dissipation(contact)[index])
+    for point, work in enumerate(lost):
+        label = f"{style.prefixed(float(work), 'J')} per cycle" if work else "sticks"
+        yield u[:, point], f[:, point], f"point {point}: {label}" if len(lost) > 1 else label
+
+
+def _draw_slip_limits(ax: Axes, limits: Sequence[float], point: int | None) -> None:
+    """Draw the forces that the contact cannot exceed, where the law has one such force."""
+    limit = limits[point or 0] if point is not None or len(limits) == 1 else np.inf
+    if not np.isfinite(limit):
+        return
+    style.slip_limits(ax, limit)
+    looks: Looks = {"ha": "right", "va": "bottom", "color": style.GREY, "fontsize": "small"}
+    frame = ax.get_yaxis_transform()
+    place: Looks = {"xytext": (0.0, 2.0), "xycoords": frame, "textcoords": "offset points"}
+    ax.annotate(f"$F_d$ = {limit:.4g} N", (1.0, limit), **place, **looks)
+    ax.margins(y=0.08)
+
+
+def _strips(result: ForcedResponse, index: int) -> Iterator[list[tuple[float, float, int]]]:
+    """Give begin and length, in periods, and direction of the phases of every contact point."""
+    for contact in range(len(result.model.contacts)):
+        states = result.contact_states(contact, index)
+        for directions in states.direction.T:
+            changed = np.flatnonzero(np.diff(directions, prepend=directions[0] - 1))
+            starts = states.start[changed]
+            lengths = np.diff(starts, append=1.0)
+            kinds = directions[changed].astype(int)
+            yield list(zip(starts.tolist(), lengths.tolist(), kinds.tolist(), strict=True))
+
+
+def _stuck_forces(result: ForcedResponse, number: int, index: int, count: int) -> Float:
     """Return the forces of a contact at the same frequency if nothing ever slipped."""
     from stickslip.analyses.forced_response import forced_response
-    from stickslip.plot.limits import limit_model
 
     model = result.model
-    omega = float(result.omega[index])
-    linear = limit_model(model, stuck=True)
     own = model.contacts[number].linear_limit(stuck=True)
     if own is None:
         raise ModelError(
             f"contact {model.contact_names[number]!r}: without friction it never sticks; draw with "
             "stuck=False"
         )
+    linear = limit_model(model, stuck=True)
+    orders = max((force.harmonic for force in model.forces), default=1) or 1
+    omega = [float(result.omega[index])]
     if model.travels:
-        held = forced_response(linear, [omega], _orders(result))
-        forces = held.contact_force(str(own.name), 0, len(time) - 1)
-        return _closed(forces.reshape(len(time) - 1, -1))
+        held = forced_response(linear, omega, orders)
+        return _closed(held.contact_force(str(own.name), 0, count).reshape(count, -1))
     dofs = [dof for dof in dict.fromkeys(own.dofs) if dof is not None]
-    moved = forced_response(linear, [omega], _orders(result), observe=dofs)
-    motion = np.zeros((len(time), len(linear.structure)))
+    moved = forced_response(linear, omega, orders, observe=dofs)
+    motion = np.zeros((count + 1, len(linear.structure)))
     for dof in dofs:
-        period = moved.waveform(dof, 0, len(time) - 1)
-        motion[:, linear.structure.index(dof)] = np.append(period, period[0])
+        motion[:, linear.structure.index(dof)] = _closed(moved.waveform(dof, 0, count))
     return motion @ own.rows(linear.structure).T @ own.stuck_stiffness
-
-
-def _orders(result: ForcedResponse) -> int:
-    return max((force.harmonic for force in result.model.forces), default=1) or 1

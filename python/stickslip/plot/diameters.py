@@ -1,86 +1,40 @@
-"""Figures of the natural frequencies of bladed disks, and of their excitation by the rotor."""
+"""Bladed disks over their nodal diameters: natural frequencies, excitation, aerodynamic damping."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Unpack
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from stickslip.checks import brief, members, real_number, whole_number
 from stickslip.disk import BladedDisk, NodalDiameters
+from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
-from stickslip.plot.style import FREE, STUCK, OmegaUnit, finish, new_axes, omega_scale
+from stickslip.plot import style
+from stickslip.plot.figure import figure
+from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
+from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-__all__ = ["DiameterOptions", "SafeOptions", "nodal_diameters", "safe"]
-
-_STUCK_COLOUR = "#31688e"
-_SLIPPING_COLOUR = "#d8863b"
+__all__ = ["aerodynamic", "nodal_diameters", "safe"]
 
 
-class DiameterOptions(TypedDict, total=False):
-    """Keywords of `nodal_diameters`."""
-
-    ax: Axes | None
-    omega_unit: OmegaUnit
-    slipping: bool
-
-
-class SafeOptions(DiameterOptions, total=False):
-    """Keywords of `safe`."""
-
-    orders: int | Sequence[int] | None
-
-
+@figure
 def nodal_diameters(
-    table: NodalDiameters | BladedDisk,
-    *,
-    ax: Axes | None = None,
-    omega_unit: OmegaUnit = "Hz",
-    slipping: bool = True,
-) -> Axes:
-    """Draw the natural frequencies of a disk over its nodal diameters.
-
-    Parameters
-    ----------
-    table : NodalDiameters or BladedDisk
-        What `BladedDisk.nodal_diameters` returned, or the disk.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw. Default: a new figure.
-    omega_unit : {"rad/s", "Hz"}, optional
-        Unit of the frequency axis.
-    slipping : bool, optional
-        Draw those with slipping contacts too.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes.
-
-    Raises
-    ------
-    ModelError
-        If `table` is neither, or there is no such unit.
-    """
-    made = ax is None
-    drawn, _ = _draw_diameters(table, ax, omega_unit, slipping=slipping)
-    finish(drawn, made=made)
-    return drawn
+    ax: Axes, /, table: NodalDiameters | BladedDisk, **options: Unpack[DiameterOptions]
+) -> None:
+    """Draw the natural frequencies of a disk over its nodal diameters."""
+    omega = style.OMEGA[options["omega_unit"]]
+    _draw_diameters(ax, _table_of(table), omega, slipping=options["slipping"])
 
 
+@figure
 def safe(
-    table: NodalDiameters | BladedDisk,
-    speed: float,
-    *,
-    orders: int | Sequence[int] | None = None,
-    ax: Axes | None = None,
-    omega_unit: OmegaUnit = "Hz",
-    slipping: bool = True,
-) -> Axes:
+    ax: Axes, /, table: NodalDiameters | BladedDisk, speed: float, **options: Unpack[SafeOptions]
+) -> None:
     """Draw the SAFE diagram of a disk, folded at half the sectors (ZZENF).
 
     Engine order E excites nodal diameter d = E modulo n, folded to n - d above n/2, with the
@@ -89,106 +43,88 @@ def safe(
 
     Parameters
     ----------
-    table : NodalDiameters or BladedDisk
-        What `BladedDisk.nodal_diameters` returned, or the disk.
     speed : float
         Angular speed of the rotor [rad/s].
-    orders : int or sequence of int, optional
-        Engine orders to mark, or up to which. Default: the engine order of the disk and the
-        harmonics of it that its forces have; the line reaches up to the highest frequency drawn.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw. Default: a new figure.
-    omega_unit : {"rad/s", "Hz"}, optional
-        Unit of the frequency axis.
-    slipping : bool, optional
-        Draw the frequencies with slipping contacts too.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes.
-
-    Raises
-    ------
-    ModelError
-        If `table` is neither, the speed is not positive, or there is no such unit.
     """
     rate = real_number(speed, "speed")
     if rate <= 0.0:
         raise ModelError(f"speed: {rate:g} is not above zero; give the speed of the rotor in rad/s")
-    made = ax is None
-    drawn, data = _draw_diameters(table, ax, omega_unit, slipping=slipping)
-    disk, omega = data.disk, omega_scale(omega_unit)
-    top = 1.05 * max(data.stuck.max(), data.slipping.max() if slipping else 0.0)
-    marked = _orders(orders, disk)
+    table, omega = _table_of(table), style.OMEGA[options["omega_unit"]]
+    _draw_diameters(ax, table, omega, slipping=options["slipping"])
+    n, factor = table.disk.sectors, omega.factor
+    top = 1.05 * max(table.stuck.max(), table.slipping.max() if options["slipping"] else 0.0)
+    marked = _orders(options["orders"], table.disk)
     reach = max(int(np.ceil(top / rate)), *marked, 1)
     # The corners of the line lie at whole orders only where n is even.
-    line = np.unique(np.append(np.arange(reach + 1.0), np.arange(0.0, reach, disk.sectors / 2)))
-    drawn.plot(
-        _folded(line, disk.sectors),
-        omega.factor * rate * line,
-        color="crimson",
-        lw=0.9,
-        label=f"excitation at {rate:.5g} rad/s",
-    )
+    line = np.unique(np.append(np.arange(reach + 1.0), np.arange(0.0, reach, n / 2)))
+    label = f"excitation at {rate:.5g} rad/s"
+    ax.plot(_folded(line, n), factor * rate * line, color="crimson", lw=0.9, label=label)
     chosen = np.array(marked, dtype=np.float64)
-    drawn.plot(
-        _folded(chosen, disk.sectors),
-        omega.factor * rate * chosen,
-        ls="",
-        marker="D",
-        ms=5,
-        mfc="white",
-        mec="crimson",
-        label="engine orders",
-    )
-    for order, where in zip(marked, _folded(chosen, disk.sectors), strict=True):
-        drawn.annotate(
-            f"{order}",
-            (float(where), omega.factor * rate * order),
-            (4.0, 4.0),
-            textcoords="offset points",
-            color="crimson",
-            fontsize="small",
-        )
-    drawn.set_ylim(0.0, omega.factor * top)
-    finish(drawn, made=made)
-    return drawn
+    x, y = _folded(chosen, n), factor * rate * chosen
+    ax.plot(x, y, **style.mark("D", 5, "crimson"), label="engine orders")
+    looks: Looks = {"textcoords": "offset points", "color": "crimson", "fontsize": "small"}
+    for order, place in zip(marked, zip(x.tolist(), y.tolist(), strict=True), strict=True):
+        ax.annotate(f"{order}", place, (4.0, 4.0), **looks)
+    ax.set_ylim(0.0, factor * top)
 
 
-def _draw_diameters(
-    table: NodalDiameters | BladedDisk, ax: Axes | None, omega_unit: OmegaUnit, *, slipping: bool
-) -> tuple[Axes, NodalDiameters]:
-    from matplotlib.ticker import MaxNLocator
+@figure
+def aerodynamic(ax: Axes, /, waves: AerodynamicWaves, **options: Unpack[Drawing]) -> None:
+    """Draw the damping ratio of the travelling waves over their nodal diameter: the S-curve.
 
+    Parameters
+    ----------
+    waves : AerodynamicWaves
+        What `aerodynamic_waves` returned.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes. Waves above n/2 are drawn at d - n: they run backwards.
+    """
+    n = waves.disk.sectors
+    signed = np.where(waves.diameters > n / 2, waves.diameters - n, waves.diameters)
+    order = np.argsort(signed)
+    x = signed[order]
+    looks: Looks = {"ms": 3.5, "lw": 1.0}
+    ax.axhline(0.0, color=style.GREY, lw=0.8)
+    ax.plot(x, 100.0 * waves.aerodynamic_ratio[order], marker="o", label="flow", **looks)
+    if not np.array_equal(waves.ratio, waves.aerodynamic_ratio):
+        ax.plot(x, 100.0 * waves.ratio[order], marker="s", label="flow and disk", **looks)
+    least = int(waves.ratio.argmin())
+    looks = style.mark("o", 8, "crimson", "none") | {"label": f"least stable: {signed[least]}"}
+    ax.plot(signed[least], 100.0 * waves.ratio[least], **looks)
+    _over_diameters(ax, "damping ratio [%]")
+
+
+def _table_of(table: object) -> NodalDiameters:
     if isinstance(table, BladedDisk):
-        table = table.nodal_diameters()
+        return table.nodal_diameters()
     if not isinstance(table, NodalDiameters):
         raise ModelError(
             f"table: {brief(table)} is no BladedDisk; give one, or its nodal_diameters()"
         )
-    omega, drawn = omega_scale(omega_unit), new_axes(ax)
-    looks: dict[str, Any] = {"lw": 0.9, "marker": "o", "ms": 3.5}
-    stuck = drawn.plot(
-        table.diameters, omega.factor * table.stuck, color=_STUCK_COLOUR, ls=STUCK, **looks
+    return table
+
+
+def _draw_diameters(ax: Axes, table: NodalDiameters, omega: Scale, *, slipping: bool) -> None:
+    x = table.diameters
+    looks: Looks = {"lw": 0.9, "marker": "o", "ms": 3.5}
+    label = "stuck" if table.disk.contacts else "natural frequencies"
+    ax.plot(x, omega.factor * table.stuck, color=style.BLUE, ls=style.STUCK, **looks)[0].set_label(
+        label
     )
-    stuck[0].set_label("stuck" if table.disk.contacts else "natural frequencies")
     if slipping and table.disk.contacts:
-        free = drawn.plot(
-            table.diameters,
-            omega.factor * table.slipping,
-            color=_SLIPPING_COLOUR,
-            ls=FREE,
-            mfc="white",
-            **looks,
-        )
-        free[0].set_label("slipping")
-    drawn.xaxis.set_major_locator(MaxNLocator(integer=True))
-    drawn.set_xlabel("nodal diameter")
-    drawn.set_ylabel(omega.label.replace("angular frequency ω", "natural frequency"))
-    drawn.set_xlim(-0.3, float(table.diameters[-1]) + 0.3)
-    drawn.set_ylim(bottom=0.0)
-    return drawn, table
+        looks |= {"color": style.ORANGE, "ls": style.FREE, "mfc": "white"}
+        ax.plot(x, omega.factor * table.slipping, **looks)[0].set_label("slipping")
+    _over_diameters(ax, omega.label.replace("angular frequency ω", "natural frequency"))
+    ax.set_xlim(-0.3, float(x[-1]) + 0.3)
+    ax.set_ylim(bottom=0.0)
+
+
+def _over_diameters(ax: Axes, label: str) -> None:
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    ax.set(xlabel="nodal diameter", ylabel=label)
 
 
 def _folded(orders: Float, sectors: int) -> Float:
@@ -203,5 +139,4 @@ def _orders(orders: int | Sequence[int] | None, disk: BladedDisk) -> list[int]:
         return [disk.order_of(harmonic) for harmonic in harmonics]
     if isinstance(orders, int):
         return list(range(1, whole_number(orders, "orders", smallest=1) + 1))
-    given = members(orders, "orders", "orders=[1, 2]")
-    return [whole_number(order, "orders") for order in given]
+    return [whole_number(order, "orders") for order in members(orders, "orders", "orders=[1, 2]")]

@@ -26,29 +26,15 @@ def force_level(model: Model) -> float:
 
 
 def limit_model(model: Model, *, stuck: bool) -> Model:
-    """Return the linear model that friction approaches at small or at large amplitude.
+    """Return the linear model with all contacts stuck, or none, as at small or large amplitude.
 
-    Parameters
-    ----------
-    model : Model
-        The model with friction.
-    stuck : bool
-        Whether all contacts stick, as at small amplitude, or none, as at large amplitude.
-        Contacts of infinite slip force stick in both limits, those of zero slip force in none.
-
-    Returns
-    -------
-    Model
-        Without contacts, the stiffness of stuck ones being in its structure; of a `BladedDisk`, one
-        with contacts that never slip.
+    Contacts of infinite slip force stick in both limits, those of zero slip force in none. They
+    are part of its structure; of a `BladedDisk` they stay contacts, which never slip.
     """
     structure = model.structure
     stiffness = structure.stiffness.copy()
-    sticking = []
-    for contact in model.contacts:
-        held = contact.linear_limit(stuck=stuck)
-        if held is not None:
-            sticking.append(held)
+    held = (contact.linear_limit(stuck=stuck) for contact in model.contacts)
+    sticking = [one for one in held if one is not None]
     if model.travels:
         # A contact between sectors has no place in the matrices of one: it never slips instead.
         return model.replaced(contacts=sticking)
@@ -62,27 +48,7 @@ def limit_model(model: Model, *, stuck: bool) -> Model:
 def limit_curve(
     model: Model, dof: str, span: tuple[float, float], measure: Measure, *, stuck: bool
 ) -> tuple[Float, Float]:
-    """Return the response curve of a linear limit.
-
-    Parameters
-    ----------
-    model : Model
-        The model with friction.
-    dof : str
-        Degree of freedom.
-    span : (float, float)
-        Lowest and highest angular frequency [rad/s].
-    measure : {"half_range", "max", "fundamental"}
-        Measure of the amplitude. Static loads count in "max" only.
-    stuck : bool
-        See `limit_model`.
-
-    Returns
-    -------
-    omega : ndarray of float64, shape (n,)
-        Angular frequencies, dense near resonances [rad/s].
-    amplitude : ndarray of float64, shape (n,)
-        Amplitudes [m].
+    """Return the response curve of a linear limit: frequencies [rad/s] and amplitudes [m].
 
     Raises
     ------
@@ -90,14 +56,9 @@ def limit_curve(
         If the measure is "max" and a static load pushes the limit structure away.
     """
     linear, natural = _linear(model, stuck=stuck, static=measure == "max")
-    harmonics = max((force.harmonic for force in linear.forces), default=1)
-    result = forced_response(
-        linear,
-        _frequencies(linear, natural, span),
-        max(harmonics, 1),
-        observe=[dof],
-        max_harmonics=max(harmonics, 1),
-    )
+    harmonics = max((force.harmonic for force in linear.forces), default=1) or 1
+    omega = _frequencies(linear, natural, span)
+    result = forced_response(linear, omega, harmonics, observe=[dof], max_harmonics=harmonics)
     return result.omega, result.amplitude(dof, measure)
 
 

@@ -1,56 +1,33 @@
-"""Figures of mistuning studies: the distribution of amplification factors, and what moves it."""
+"""Mistuning studies: the distribution of amplification factors, and what moves it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypedDict
+from typing import Literal, Unpack
 
 import numpy as np
+from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from stickslip.checks import brief, choice, real_number
+from stickslip.checks import choice, real_number
 from stickslip.errors import ModelError
-from stickslip.plot.style import GREY, STUCK, colours, finish, new_axes
+from stickslip.plot import style
+from stickslip.plot.figure import figure
+from stickslip.plot.options import DistributionOptions, TrendOptions
+from stickslip.plot.style import Colour, Looks
 from stickslip.results.arrays import Float
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import FEWEST, empirical_percentile
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-__all__ = ["DistributionOptions", "TrendOptions", "amplification", "distribution"]
+__all__ = ["amplification", "distribution"]
 
 _TICKS = (0.1, 1, 10, 25, 50, 75, 90, 95, 99, 99.5, 99.9, 99.99)
 """Percentages that the axis of probabilities names."""
 
 
-class DistributionOptions(TypedDict, total=False):
-    """Keywords of `distribution`."""
-
-    deviation: float | None
-    coupling: float | None
-    ax: Axes | None
-    percentile: float | None
-    confidence: float
-
-
-class TrendOptions(TypedDict, total=False):
-    """Keywords of `amplification`."""
-
-    ax: Axes | None
-    percentile: float
-    confidence: float
-
-
+@figure
 def distribution(
-    result: MistuningStudy,
-    dof: str,
-    *,
-    deviation: float | None = None,
-    coupling: float | None = None,
-    ax: Axes | None = None,
-    percentile: float | None = 99.9,
-    confidence: float = 0.95,
-) -> Axes:
+    ax: Axes, /, result: MistuningStudy, dof: str, **options: Unpack[DistributionOptions]
+) -> None:
     """Draw the distribution of amplification factors and its Weibull fit.
 
     The axis of probabilities is that of extreme values, -ln(-ln F): a straight line has no upper
@@ -58,36 +35,22 @@ def distribution(
 
     Parameters
     ----------
-    result : MistuningStudy
-        The study.
     dof, deviation, coupling
         See `MistuningStudy.factors`.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw. Default: a new figure.
-    percentile : float, optional
-        Percentile of the fit that is marked with its interval; None marks none.
-    confidence : float, optional
-        Probability with which the interval is to hold the true percentile.
 
     Returns
     -------
     matplotlib.axes.Axes
         The axes. With too few or equal factors the fit is left out, and the title says so.
-
-    Raises
-    ------
-    ModelError
-        As `MistuningStudy.factors`; if no factor was found.
     """
-    result = _study(result)
-    factors = np.sort(result.factors(dof, deviation=deviation, coupling=coupling))
+    percentile, confidence = options["percentile"], options["confidence"]
+    chosen = {"deviation": options["deviation"], "coupling": options["coupling"]}
+    factors = np.sort(result.factors(dof, **chosen))
     if not factors.size:
         raise ModelError(f"result: no amplification factor of {dof!r} was found; see status")
-    made, ax = ax is None, new_axes(ax)
-    chosen = {"deviation": deviation, "coupling": coupling}
     ranks = (np.arange(1, factors.size + 1) - 0.44) / (factors.size + 0.12)
     title = f"{factors.size} disks"
-    ax.plot(factors, _height(ranks), ls="", marker=".", ms=4, color="#31688e", label="disks")
+    ax.plot(factors, _height(ranks), ls="", marker=".", ms=4, color=style.BLUE, label="disks")
     try:
         fit = result.weibull(dof, **chosen, confidence=confidence)
     except ModelError as error:
@@ -100,26 +63,23 @@ def distribution(
         if percentile is not None:
             _mark(ax, fit.percentile(percentile), percentile, confidence)
     ax.set_yticks(_height(np.array(_TICKS) / 100.0), [f"{tick:g} %" for tick in _TICKS])
-    low, high = _height(np.array([0.7 * ranks[0], 1.0 - 0.5 * (1.0 - ranks[-1])]))
+    low, high = _height([0.7 * ranks[0], 1.0 - 0.5 * (1.0 - ranks[-1])])
     if percentile is not None:
-        high = max(high, float(_height(np.array([0.5 + percentile / 200.0]))[0]))
-    ax.set_ylim(low, high)
-    ax.set_xlabel(f"amplification factor of {dof}")
+        high = max(high, float(_height(0.5 + percentile / 200.0)))
+    ax.set(ylim=(low, high), xlabel=f"amplification factor of {dof}")
     ax.set_ylabel("share of disks that do not exceed it")
     ax.set_title(title, fontsize="medium")
-    finish(ax, made=made)
-    return ax
 
 
+@figure
 def amplification(
+    ax: Axes,
+    /,
     result: MistuningStudy,
     dof: str,
     against: Literal["deviation", "coupling"] = "deviation",
-    *,
-    ax: Axes | None = None,
-    percentile: float = 99.0,
-    confidence: float = 0.95,
-) -> Axes:
+    **options: Unpack[TrendOptions],
+) -> None:
     """Draw amplification factors against the deviation or the stiffness of the couplings.
 
     Their mean, and a percentile of the factors themselves with its interval as far as there are
@@ -127,64 +87,34 @@ def amplification(
 
     Parameters
     ----------
-    result : MistuningStudy
-        The study.
     dof : str
         Degree of freedom of a sector.
     against : {"deviation", "coupling"}, optional
         What stands below; every value of the other one has a line of its own.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw. Default: a new figure.
-    percentile : float, optional
-        The percentile.
-    confidence : float, optional
-        Probability with which the interval is to hold the true percentile.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes.
-
-    Raises
-    ------
-    ModelError
-        If the degree of freedom was not studied, or the couplings have no stiffness to draw over.
     """
-    result = _study(result)
     choice(against, "against", ("deviation", "coupling"))
     factors = result.amplification(dof)
     below, others = result.deviation, result.coupling_stiffness
+    label, named = "standard deviation of the sectors' stiffness", ", {:g} N/m"
     if against == "coupling":
         factors, below, others = factors.swapaxes(0, 1), others, below
+        label, named = "stiffness of the couplings [N/m]", ", S = {:g}"
         if np.isnan(below).any():
             raise ModelError("against: the couplings have no common stiffness; give one to vary")
     order = np.argsort(below)
-    q = real_number(percentile, "percentile")
-    made, ax = ax is None, new_axes(ax)
-    for number, (other, colour) in enumerate(zip(others, colours(others.size), strict=True)):
+    q = real_number(options["percentile"], "percentile")
+    for number, (other, colour) in enumerate(zip(others, style.colours(others.size), strict=True)):
         rows = [one[np.isfinite(one)] for one in factors[order, number]]
-        _trend(ax, below[order], rows, _named(other, against, others.size), colour, q, confidence)
+        name = "" if others.size < 2 else named.format(other)
+        _trend(ax, below[order], rows, name, colour, q, options["confidence"])
     if against == "coupling" and (below > 0.0).all() and below.size > 1:
         ax.set_xscale("log")
-    ax.axhline(1.0, color=GREY, lw=1.0, ls=STUCK, label="tuned")
-    ax.set_xlabel(
-        "stiffness of the couplings [N/m]"
-        if against == "coupling"
-        else "standard deviation of the sectors' stiffness"
-    )
-    ax.set_ylabel(f"amplification factor of {dof}")
-    finish(ax, made=made)
-    return ax
+    ax.axhline(1.0, color=style.GREY, lw=1.0, ls=style.STUCK, label="tuned")
+    ax.set(xlabel=label, ylabel=f"amplification factor of {dof}")
 
 
 def _trend(
-    ax: Axes,
-    below: Float,
-    rows: list[Float],
-    name: str,
-    colour: tuple[float, float, float, float],
-    q: float,
-    confidence: float,
+    ax: Axes, below: Float, rows: list[Float], name: str, colour: Colour, q: float, trust: float
 ) -> None:
     several = max(row.size for row in rows) > 1
     mean = [row.mean() if row.size else np.nan for row in rows]
@@ -193,42 +123,29 @@ def _trend(
     if not several:
         return
     ends = [
-        empirical_percentile(row, q, confidence) if row.size >= FEWEST else (np.nan,) * 3
-        for row in rows
+        empirical_percentile(row, q, trust) if row.size >= FEWEST else (np.nan,) * 3 for row in rows
     ]
     value, low, high = np.array(ends, dtype=np.float64).T
     if np.isfinite(value).any():
-        ax.plot(
-            below, value, marker="^", ms=4, lw=1.2, ls="--", color=colour, label=f"{q:g} %{name}"
-        )
-        # An open end is drawn to the point itself.
-        bars = [value - np.where(np.isfinite(low), low, value)]
-        bars.append(np.where(np.isfinite(high), high, value) - value)
+        looks: Looks = {"marker": "^", "ms": 4, "lw": 1.2, "ls": "--"}
+        ax.plot(below, value, **looks, color=colour, label=f"{q:g} %{name}")
+        bars = _bars(value, low, high)
         ax.errorbar(below, value, yerr=bars, ls="", color=colour, lw=1.0, capsize=2.5)
-
-
-def _named(other: float, against: str, count: int) -> str:
-    if count < 2:
-        return ""
-    return f", {other:g} N/m" if against == "deviation" else f", S = {other:g}"
 
 
 def _mark(ax: Axes, found: tuple[float, float, float], q: float, confidence: float) -> None:
     value, low, high = found
-    height = _height(np.array([q / 100.0]))
-    bars = np.array([[value - low], [high - value]])
-    shown = np.where(np.isfinite(bars), bars, 0.0)
     label = f"{q:g} %: {value:.4g} ({low:.4g} to {high:.4g}, {confidence:.0%})"
-    ax.errorbar(
-        [value], height, xerr=shown, fmt="D", ms=5, mfc="white", color="0.2", capsize=3, label=label
-    )
+    looks: Looks = {"fmt": "D", "ms": 5, "mfc": "white", "color": "0.2", "capsize": 3}
+    bars = _bars(*(np.array([one]) for one in found))
+    ax.errorbar([value], _height([q / 100.0]), xerr=bars, **looks, label=label)
+
+
+def _bars(value: Float, low: Float, high: Float) -> Float:
+    """Return the lengths of bars to either side; an open end is drawn to the point itself."""
+    bars = np.array([value - low, high - value])
+    return np.where(np.isfinite(bars), bars, np.where(np.isfinite(value), 0.0, np.nan))
 
 
 def _height(probability: ArrayLike) -> Float:
     return np.asarray(-np.log(-np.log(np.asarray(probability))), dtype=np.float64)
-
-
-def _study(result: object) -> MistuningStudy:
-    if not isinstance(result, MistuningStudy):
-        raise ModelError(f"result: {brief(result)} is not a MistuningStudy; give one")
-    return result

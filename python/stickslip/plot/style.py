@@ -1,47 +1,69 @@
-"""The looks of every figure: axes, colours, units and number formats."""
+"""The looks of every figure: axes, colours, marks, units and number formats."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
+from matplotlib import colormaps, pyplot
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter
 
-from stickslip.checks import brief, choice
+from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
+from stickslip.results.stability import STATES, States
 
 __all__ = [
+    "BLUE",
     "FREE",
     "GREY",
+    "LENGTH",
     "LIMIT",
+    "LINES",
+    "OMEGA",
+    "ORANGE",
     "RESPONSE",
     "STUCK",
+    "Colour",
     "LengthUnit",
+    "Looks",
     "OmegaUnit",
     "Scale",
+    "bare",
     "colours",
     "finish",
     "fit",
-    "length_scale",
+    "mark",
+    "marks",
+    "name_states",
     "new_axes",
-    "omega_scale",
+    "pieces",
     "prefixed",
+    "slip_limits",
+    "unit_circle",
 ]
 
 OmegaUnit: TypeAlias = Literal["rad/s", "Hz"]
 LengthUnit: TypeAlias = Literal["m", "mm", "um", "µm"]
+Colour: TypeAlias = tuple[float, float, float, float] | str
+Looks: TypeAlias = dict[str, Any]
+"""Keywords of Matplotlib."""
 
 RESPONSE, LIMIT = "response", "limit"
 """Group names (gid) by which a figure finds its own lines again."""
 
-GREY = "0.45"
+GREY, BLUE, ORANGE = "0.45", "#31688e", "#d8863b"
 STUCK = (0, (6, 2))
 FREE = (0, (1, 1.5))
+
+LINES = {"stable": "-", "unstable": "--", "not decided": ":"}
+"""Style of the line by state."""
 
 _SIZE = (6.4, 4.2)
 _WIDE = (8.2, 4.2)
@@ -56,11 +78,11 @@ class Scale(NamedTuple):
     label: str
 
 
-_OMEGA: dict[str, Scale] = {
+OMEGA: dict[str, Scale] = {
     "rad/s": Scale(1.0, "angular frequency ω [rad/s]"),
     "Hz": Scale(0.5 / np.pi, "frequency [Hz]"),
 }
-_LENGTH: dict[str, Scale] = {
+LENGTH: dict[str, Scale] = {
     "m": Scale(1.0, "m"),
     "mm": Scale(1e3, "mm"),
     "um": Scale(1e6, "µm"),
@@ -68,76 +90,95 @@ _LENGTH: dict[str, Scale] = {
 }
 
 
-def omega_scale(unit: str) -> Scale:
-    """Return the factor on angular frequencies, and the label of their axis."""
-    return _OMEGA[choice(unit, "omega_unit", _OMEGA)]
-
-
-def length_scale(unit: str) -> Scale:
-    """Return the factor on lengths, and the symbol of the unit."""
-    return _LENGTH[choice(unit, "length_unit", _LENGTH)]
-
-
 def new_axes(ax: Axes | None) -> Axes:
     """Return the given axes, or those of a new figure that `plt.show()` will show."""
-    from matplotlib import axes, pyplot
-
-    if isinstance(ax, axes.Axes):
+    if isinstance(ax, Axes):
         return ax
     if ax is not None:
         raise ModelError(f"ax: {brief(ax)} is not a matplotlib Axes; leave it out for a new figure")
-
     _, made = pyplot.subplots(figsize=_SIZE, layout="constrained")
     return made
 
 
 def colours(count: int) -> list[tuple[float, float, float, float]]:
     """Return colours in a perceptual sequence, from dark to light, the palest left out."""
-    from matplotlib import colormaps
-
     positions = np.linspace(0.05, 0.85, count) if count > 1 else np.array([0.25])
     return [colormaps["viridis"](float(position)) for position in positions]
+
+
+def mark(marker: str, size: float, edge: Colour, fill: Colour = "white") -> Looks:
+    """Return the looks of single points without a line."""
+    return {"ls": "", "marker": marker, "ms": size, "mfc": fill, "mec": edge}
+
+
+def marks(state: str, colour: Colour) -> Looks:
+    """Return how single motions of a state are marked: full and hollow circles, and crosses."""
+    fill = {"stable": colour, "unstable": "white", "not decided": "none"}[state]
+    return mark("x" if state == "not decided" else "o", 4, colour, fill)
+
+
+def name_states(ax: Axes, states: Iterable[States], *, single: bool = False) -> None:
+    """Name the lines, or the marks of single motions, of the states that occur."""
+    occurring = {str(state) for some in states for state in some}
+    for state in STATES:
+        if state in occurring:
+            looks = marks(state, GREY) if single else {"color": GREY, "ls": LINES[state]}
+            ax.plot([], [], label=state, **looks)
+
+
+def pieces(states: States) -> list[tuple[slice, str]]:
+    """Return the runs of equal states along a line, each joined to the one before it."""
+    if not states.size:
+        return []
+    breaks = [0, *(np.flatnonzero(states[1:] != states[:-1]) + 1).tolist(), states.size]
+    return [(slice(max(start - 1, 0), end), str(states[start])) for start, end in pairwise(breaks)]
+
+
+def slip_limits(ax: Axes, limit: float, *, lw: float = 0.9, ls: Any = STUCK) -> None:
+    """Draw the forces at which a contact slips, in either direction."""
+    for side in (-limit, limit):
+        ax.axhline(side, color=GREY, lw=lw, ls=ls, zorder=1.5)
+
+
+def unit_circle(ax: Axes) -> None:
+    """Draw the circle inside which Floquet multipliers are stable, and name the axes."""
+    turn = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 361))
+    ax.plot(turn.real, turn.imag, color=GREY, lw=0.9, zorder=1.5)
+    ax.set_aspect("equal")
+    ax.set(xlabel="real part of the multiplier", ylabel="imaginary part")
+
+
+def bare(ax: Axes) -> None:
+    """Put a grid behind everything, and leave the frame open."""
+    ax.grid(visible=True, which="major", color="0.9", lw=0.7)
+    ax.set_axisbelow(True)
+    ax.spines[["top", "right"]].set_visible(False)
 
 
 def finish(ax: Axes, *, made: bool) -> None:
     """Put grid, frame and, where there is something to tell apart, a legend on the axes.
 
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        The axes.
-    made : bool
-        Whether the figure is ours: then the legend stands outside and hides no curve. On axes of
-        others it does so if it is long and their layout makes room for it.
+    On a figure of ours (`made`) the legend stands outside and hides no curve. On axes of others it
+    does so if it is long and their layout makes room for it.
     """
-    from matplotlib.figure import Figure
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-    ax.grid(visible=True, which="major", color="0.9", lw=0.7)
-    ax.set_axisbelow(True)
-    ax.spines[["top", "right"]].set_visible(False)
+    bare(ax)
     handles, _ = ax.get_legend_handles_labels()
     if len(handles) < 2:
         return
-    looks = {"frameon": False, "fontsize": "small", "handlelength": 2.4}
+    looks: Looks = {"frameon": False, "fontsize": "small", "handlelength": 2.4}
+    outside = looks | {"borderaxespad": 0.0}
     figure = ax.figure
     roomy = made or isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine)
     long = len(handles) > _FEW
     if not made and not (roomy and long):
         ax.legend(**looks | {"frameon": True, "framealpha": 0.85, "edgecolor": "none"})
     elif long or ax.get_title():
-        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, **looks)
+        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), **outside)
         if made and isinstance(figure, Figure):
             figure.set_size_inches(_WIDE)
     else:
-        ax.legend(
-            loc="lower left",
-            bbox_to_anchor=(0.0, 1.01),
-            borderaxespad=0.0,
-            ncols=3,
-            columnspacing=1.4,
-            **looks,
-        )
+        place: Looks = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.01)}
+        ax.legend(**place, ncols=3, columnspacing=1.4, **outside)
 
 
 def fit(ax: Axes, *, log: bool) -> None:
@@ -167,18 +208,14 @@ def prefixed(value: float, unit: str) -> str:
 
 def _number_decades(ax: Axes) -> None:
     """Write plain numbers on a logarithmic axis, and some between the decades if there are few."""
-    from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter
-
     low, high = ax.get_ylim()
     plain = low > 1e-4 and high < 1e5
     written = FuncFormatter(lambda value, _: f"{value:g}") if plain else LogFormatterMathtext()
+    between = plain and np.log10(high / low) < 2.5
     ax.yaxis.set_major_formatter(written)
-    between = np.log10(high / low) < 2.5
-    if between and plain:
+    ax.yaxis.set_minor_formatter(written if between else NullFormatter())
+    if between:
         ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
-        ax.yaxis.set_minor_formatter(written)
-    else:
-        ax.yaxis.set_minor_formatter(NullFormatter())
 
 
 def _drawn(ax: Axes, groups: Sequence[str]) -> list[Line2D]:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.plot.basins import BasinOptions
+    from stickslip.plot.options import Frame
 
 
 __all__ = ["BasinMap", "Outcome"]
@@ -154,6 +154,6 @@ class BasinMap(ColumnResult):
         motion = labels("start_number", list(self.motion), "class of the motion")
         return {"motion": motion} if derived else {}
 
-    def plot(self, **options: Unpack[BasinOptions]) -> Axes:
+    def plot(self, **options: Unpack[Frame]) -> Axes:
         """Draw the basins over the two axes; see `stickslip.plot.basins`."""
         return plots.basins(self, **options)

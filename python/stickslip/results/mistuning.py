@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from stickslip.plot.mistuning import TrendOptions
+    from stickslip.plot.options import TrendOptions
 
 __all__ = ["MistuningArrays", "MistuningStudy"]
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from stickslip.plot.damper import DamperOptions
+    from stickslip.plot.options import DamperOptions
 
 __all__ = ["OptimalDamper"]
 

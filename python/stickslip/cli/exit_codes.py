@@ -28,9 +28,8 @@ STOPPED = 128
 """Exit code of a run that a signal has ended, beside the signal's number."""
 
 P = ParamSpec("P")
-# These classes are typer's or click's, as the version of typer has it.
+# The class is typer's or click's, as the version of typer has it.
 Parameter: TypeAlias = Any
-Context: TypeAlias = Any
 # Its own base class has moved from click into typer.
 _Refusal = cast("type[Exception]", typer.BadParameter.__mro__[2])
 
@@ -46,7 +45,7 @@ def _untyped(parameters: list[Parameter]) -> list[Parameter]:
 class Command(TyperCommand):
     """A command with flags that are shown without a type."""
 
-    def get_params(self, ctx: Context) -> list[Parameter]:
+    def get_params(self, ctx: Any) -> list[Parameter]:
         """Return arguments and options."""
         return _untyped(super().get_params(ctx))
 
@@ -54,19 +53,11 @@ class Command(TyperCommand):
 class Commands(TyperGroup):
     """The commands; what cannot be understood of a command line is refused in one line."""
 
-    def get_params(self, ctx: Context) -> list[Parameter]:
+    def get_params(self, ctx: Any) -> list[Parameter]:
         """Return the options."""
         return _untyped(super().get_params(ctx))
 
-    def main(
-        self,
-        args: Sequence[str] | None = None,
-        prog_name: str | None = None,
-        complete_var: str | None = None,
-        standalone_mode: bool = True,
-        windows_expand_args: bool = True,
-        **extra: Any,
-    ) -> object:
+    def main(self, args: Sequence[str] | None = None, *others: Any, **options: Any) -> object:
         """Run the command that the arguments name."""
         from stickslip.cli.console import complain, give_up
 
@@ -77,7 +68,7 @@ class Commands(TyperGroup):
         if not (sys.argv[1:] if args is None else args):
             args = ["--help"]
         try:
-            code = super().main(args, prog_name, complete_var, False, windows_expand_args, **extra)
+            code = super().main(args, *others, **options | {"standalone_mode": False})
             sys.stdout.flush()
         except typer.Abort:
             code = STOPPED + signal.SIGINT
@@ -87,9 +78,9 @@ class Commands(TyperGroup):
             code = REFUSED
         except OSError as error:
             # The help; all else is guarded.
+            code = 0
             try:
                 give_up(error)
-                code = 0
             except ModelError as said:
                 complain("error", str(said))
                 code = REFUSED

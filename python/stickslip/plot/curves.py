@@ -1,29 +1,31 @@
-"""How one response curve is drawn: its scale, line, limits, peak, error and gaps."""
+"""Response curves over frequency, drawn on Matplotlib axes.
+
+Every function takes the axes to draw on, or makes a figure where none are given, and returns the
+axes: ``frf.plot("tip").figure.savefig("tip.pdf")``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import Unpack
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from stickslip.errors import ModelError
-from stickslip.model import Model
-from stickslip.plot.arguments import labels_of
+from stickslip.model import Model, PointRef
+from stickslip.plot import style
+from stickslip.plot.arguments import checked_labels, several
+from stickslip.plot.figure import figure
 from stickslip.plot.limits import force_level, limit_curve
-from stickslip.plot.states import LINES, name_states, pieces
-from stickslip.plot.style import FREE, GREY, LIMIT, RESPONSE, STUCK, Scale
+from stickslip.plot.options import CurveOptions, Swept
+from stickslip.plot.style import Colour, Looks, Scale
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Measure
 from stickslip.results.exact_response import ExactResponse
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-__all__ = ["CurveView", "names_of", "span_of"]
-
-Colour: TypeAlias = tuple[float, float, float, float]
+__all__ = ["curves", "slip"]
 
 _MEASURE = {
     "half_range": "half peak-to-peak",
@@ -34,23 +36,64 @@ _MEASURE = {
 _VISIBLE_ERROR = 5e-3
 
 
-@dataclass(frozen=True)
-class CurveView:
-    """What of a response is drawn, and in which units.
+@figure
+def curves(
+    ax: Axes,
+    /,
+    results: ForcedResponse | Sequence[ForcedResponse],
+    dof: str,
+    **options: Unpack[CurveOptions],
+) -> None:
+    """Draw response curves over frequency, between their two linear limits."""
+    listed, measure = several(ForcedResponse, results), options["measure"]
+    names = checked_labels(options["labels"], _names_of(listed))
+    omega = style.OMEGA[options["omega_unit"]]
+    length = style.LENGTH[options["length_unit"]]
+    for result in listed:
+        result.amplitude(dof, measure)  # what is unknown is refused before anything is drawn
+    view = _View(ax, dof, measure, omega, length, per_force=options["normalise"] == "force")
+    _draw_limits(view, listed, stuck=options["stuck"], free=options["free"])
+    single = len(listed) == 1
+    for result, name, colour in zip(listed, names, style.colours(len(listed)), strict=True):
+        view.draw(result, colour, name)
+        if options["error_band"] or (options["error_band"] is None and single):
+            view.shade_error(result, colour)
+        view.mark_certificate(result)
+        if options["peaks"]:
+            view.mark_peak(result, colour, named=single)
+    view.label_axes()
+    style.fit(ax, log=options["log"])
+
+
+@figure
+def slip(
+    ax: Axes, /, result: ForcedResponse, contact: PointRef | None = None, **options: Unpack[Swept]
+) -> None:
+    """Draw the share of the period that contact points slip, over frequency.
 
     Parameters
     ----------
-    ax : matplotlib.axes.Axes
-        Where.
-    dof : str
-        Degree of freedom.
-    measure : {"half_range", "max", "fundamental"}
-        Measure of the amplitude.
-    omega, length : Scale
-        Units of the two axes.
-    per_force : bool
-        Whether amplitudes are divided by the largest force amplitude.
+    contact : int, str or (int or str, int), optional
+        The contact, or one of its points. Default: all.
     """
+    omega = style.OMEGA[options["omega_unit"]]
+    contacts = range(len(result.model.contacts)) if contact is None else [contact]
+    lines = [line for one in contacts for line in _shares(result, one)]
+    if not lines:
+        raise ModelError("contact: the model has none, so that nothing slips")
+    x = omega.factor * result.omega
+    for (label, share), colour in zip(lines, style.colours(len(lines)), strict=True):
+        ax.plot(x, share, color=colour, lw=1.6, label=label)
+    if x.min() < x.max():
+        ax.set_xlim(x.min(), x.max())
+    ax.set(ylim=(-0.03, 1.03), xlabel=omega.label, ylabel="slipping share of the period")
+    if len(lines) == 1:
+        ax.set_title(lines[0][0], fontsize="medium")
+
+
+@dataclass(frozen=True)
+class _View:
+    """What of responses is drawn, where, and in which units."""
 
     ax: Axes
     dof: str
@@ -58,6 +101,7 @@ class CurveView:
     omega: Scale
     length: Scale
     per_force: bool
+    """Whether amplitudes are divided by the largest force amplitude."""
 
     @property
     def unit(self) -> str:
@@ -77,48 +121,45 @@ class CurveView:
         """
         omega = self.omega.factor * result.omega
         height = self._factor(result.model) * result.amplitude(self.dof, self.measure)
+        looks: Looks = {"color": colour, "lw": 1.6, "marker": "." if omega.size == 1 else ""}
+        solved = result.arrays.solved
         states = np.full(omega.size, "stable")
         if isinstance(result, ExactResponse):
-            states = np.where(result.arrays.solved, result.stability, "stable")
-        for number, (piece, state) in enumerate(pieces(states)):
-            (line,) = self.ax.plot(
-                omega[piece],
-                height[piece],
-                color=colour,
-                lw=1.6,
-                ls=LINES[state],
-                label="_" if number else label,
-                marker="." if result.omega.size == 1 else "",
-            )
-            line.set_gid(RESPONSE)
+            states = np.where(solved, result.stability, "stable")
+        for number, (piece, state) in enumerate(style.pieces(states)):
+            named: Looks = {
+                "ls": style.LINES[state],
+                "label": "_" if number else label,
+                "gid": style.RESPONSE,
+            }
+            self.ax.plot(omega[piece], height[piece], **looks, **named)
         if not (states == "stable").all():
-            name_states(self.ax, [states])
-        failed = result.omega[~result.arrays.solved]
-        if failed.size:
+            style.name_states(self.ax, [states])
+        if not solved.all():
             self.ax.plot(
-                self.omega.factor * failed,
-                np.full(failed.size, 0.02),
+                omega[~solved],
+                np.full((~solved).sum(), 0.02),
                 transform=self.ax.get_xaxis_transform(),
+                color=colour,
+                label=f"{(~solved).sum()} not solved",
                 ls="",
                 marker="x",
                 ms=5,
-                color=colour,
-                label=f"{failed.size} not solved",
             )
 
     def draw_limit(self, model: Model, span: tuple[float, float], at: str, *, stuck: bool) -> None:
         """Draw the linear response with all contacts stuck, or with none."""
         omega, amplitude = limit_curve(model, self.dof, span, self.measure, stuck=stuck)
-        (line,) = self.ax.plot(
+        self.ax.plot(
             self.omega.factor * omega,
             self._factor(model) * amplitude,
-            color=GREY,
+            color=style.GREY,
             lw=1.1,
-            ls=STUCK if stuck else FREE,
+            ls=style.STUCK if stuck else style.FREE,
             label=f"{'stuck' if stuck else 'free'} (linear{at})",
             zorder=1.5,
+            gid=style.LIMIT,
         )
-        line.set_gid(LIMIT)
 
     def shade_error(self, result: ForcedResponse, colour: Colour) -> None:
         """Shade what the discarded harmonics could still change."""
@@ -138,7 +179,7 @@ class CurveView:
             label="estimated truncation error",
         )
 
-    def mark_certificate(self, result: ForcedResponse, colour: Colour) -> None:
+    def mark_certificate(self, result: ForcedResponse) -> None:
         """Mark the amplitudes of exact orbits, each with a bar to the curve: the true error."""
         certificate = result.certificate
         if certificate is None or self.dof not in certificate.dofs or self.measure != "half_range":
@@ -150,17 +191,7 @@ class CurveView:
         self.ax.vlines(x, exact, curve, color="crimson", lw=1.4, zorder=2.6)
         largest = np.abs(certificate.relative[:, column])
         worst = f" (error ≤ {np.nanmax(largest):.2g})" if np.isfinite(largest).any() else ""
-        self.ax.plot(
-            x,
-            exact,
-            ls="",
-            marker="D",
-            ms=4,
-            mfc="white",
-            mec="crimson",
-            zorder=2.7,
-            label=f"exact{worst}",
-        )
+        self.ax.plot(x, exact, **style.mark("D", 4, "crimson"), zorder=2.7, label=f"exact{worst}")
 
     def mark_peak(self, result: ForcedResponse, colour: Colour, *, named: bool) -> None:
         """Mark the refined peak, unless there is none or it may lie outside or in a gap."""
@@ -170,21 +201,9 @@ class CurveView:
         if peak.at_edge or peak.beside_gap or not np.isfinite(peak.amplitude):
             return
         x, y = self.omega.factor * peak.omega, self._factor(result.model) * peak.amplitude
-        self.ax.plot(
-            x,
-            y,
-            ls="",
-            marker="o",
-            ms=5,
-            mfc="white",
-            mec=colour,
-            mew=1.3,
-            label=f"peak {y:.4g} {self.unit} at {x:.5g} {self._omega_unit}" if named else None,
-        )
-
-    @property
-    def _omega_unit(self) -> str:
-        return self.omega.label.rpartition("[")[2].rstrip("]")
+        unit = self.omega.label.rpartition("[")[2].rstrip("]")
+        label = f"peak {y:.4g} {self.unit} at {x:.5g} {unit}" if named else None
+        self.ax.plot(x, y, **style.mark("o", 5, colour), mew=1.3, label=label)
 
     def _factor(self, model: Model) -> float:
         if not self.per_force:
@@ -197,28 +216,34 @@ class CurveView:
         return self.length.factor / level
 
 
-def names_of(results: Sequence[ForcedResponse], labels: Sequence[str] | None) -> list[str]:
-    """Return one label per result: the given ones, or what distinguishes the results.
+def _draw_limits(
+    view: _View, results: Sequence[ForcedResponse], *, stuck: bool, free: bool
+) -> None:
+    """Draw the linear limits of the most strongly forced result."""
+    levels = [force_level(result.model) for result in results]
+    model = results[int(np.argmax(levels))].model
+    omega: Float = np.concatenate([result.omega for result in results])
+    low, high = float(omega.min()), float(omega.max())
+    if not model.contacts or low == high or not max(levels):
+        return
+    at = "" if view.per_force or len(set(levels)) == 1 else f", {max(levels):.5g} N"
+    for is_stuck, wanted in ((True, stuck), (False, free)):
+        if wanted:
+            view.draw_limit(model, (low, high), at, stuck=is_stuck)
 
-    Parameters
-    ----------
-    results : sequence of ForcedResponse
-        The results.
-    labels : sequence of str or None
-        The labels, if given.
 
-    Returns
-    -------
-    list of str
-        One per result.
+def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float]]:
+    """Return label and slip fraction of every point meant by an address."""
+    number, only = result.locate(contact)
+    shares = result.slip_fraction(contact).reshape(result.omega.size, -1)
+    name = result.model.contact_names[number]
+    if only is None and shares.shape[1] == 1:
+        return [(name, shares[:, 0])]
+    return [(f"{name}[{point}]", share) for point, share in enumerate(shares.T, only or 0)]
 
-    Raises
-    ------
-    ModelError
-        If the labels are not texts, or not as many as the results.
-    """
-    if labels is not None:
-        return labels_of(labels, len(results))
+
+def _names_of(results: Sequence[ForcedResponse]) -> list[str]:
+    """Return what distinguishes the results, one label each."""
     traits = [_traits(result) for result in results]
     telling = [key for key in traits[0] if len({trait.get(key) for trait in traits}) > 1]
     if len(results) == 1:
@@ -241,9 +266,3 @@ def _traits(result: ForcedResponse) -> dict[str, str]:
     exact = isinstance(result, ExactResponse)
     traits["H"] = "exact" if exact else f"H = {result.settings.harmonics}"
     return traits
-
-
-def span_of(results: Sequence[ForcedResponse]) -> tuple[float, float]:
-    """Return the lowest and the highest angular frequency of all results [rad/s]."""
-    omega: Float = np.concatenate([result.omega for result in results])
-    return float(omega.min()), float(omega.max())

@@ -1,0 +1,150 @@
+"""Functions that draw: their signatures, documentation and axes, from what is written once."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from functools import wraps
+from types import NoneType, UnionType
+from typing import (
+    Any,
+    Concatenate,
+    Literal,
+    ParamSpec,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+from matplotlib import pyplot
+from matplotlib.axes import Axes
+
+from stickslip.calls import misfit
+from stickslip.checks import choice
+from stickslip.errors import CallError, ModelError
+from stickslip.plot.arguments import of_kind
+from stickslip.plot.style import finish, new_axes
+from stickslip.settings.settings import type_in_words
+
+__all__ = ["figure", "keywords"]
+
+P = ParamSpec("P")
+Result = TypeVar("Result")
+_SECTION = re.compile(r"^(Parameters|Returns|Raises)\n-+\n", re.M)
+_MEANINGS = {
+    "result": "What is drawn.",
+    "results": "One or several of the same parameter, a line each.",
+    "dof": "An observed degree of freedom.",
+    "contact": "The contact, or one of its points.",
+    "index": "Position of a solved point of the sweep; see `ForcedResponse.index`.",
+    "table": "What `BladedDisk.nodal_diameters` returned, or the disk.",
+}
+"""What those parameters mean that several functions have beside their keywords."""
+_RETURNS = "matplotlib.axes.Axes\n    The axes."
+_RAISES = "ModelError\n    If an argument is of the wrong type, unknown, or has nothing to draw."
+
+
+def figure(draw: Callable[Concatenate[Axes, P], None]) -> Callable[P, Axes]:
+    """Let a function draw on the axes `ax`, those of a new figure by default, and return them."""
+
+    def framed(ax: Axes | None, **arguments: Any) -> Axes:
+        drawn = new_axes(ax)
+        try:
+            draw(drawn, **arguments)  # type: ignore[call-arg]
+        except ModelError:
+            if ax is None:
+                pyplot.close()
+            raise
+        finish(drawn, made=ax is None)
+        return drawn
+
+    return _derived(framed, draw)
+
+
+def keywords(function: Callable[P, Result]) -> Callable[P, Result]:
+    """Let a function take its keywords with their defaults."""
+    return _derived(function, function)
+
+
+def _derived(call: Callable[..., Result], written: Callable[..., object]) -> Callable[..., Result]:
+    """Return a call with the keywords of the options that a function is written with."""
+    source = inspect.signature(written)
+    parameters = [*source.parameters.values()]
+    own = [one for one in parameters if one.kind is one.POSITIONAL_OR_KEYWORD]
+    hints = get_type_hints(written)
+    (options,) = get_args(hints[parameters[-1].name])
+    keys = get_type_hints(options, include_extras=True)
+    kind = inspect.Parameter.KEYWORD_ONLY
+    added = [
+        inspect.Parameter(name, kind, default=key.__metadata__[0], annotation=key.__origin__)
+        for name, key in keys.items()
+    ]
+    returned = source.return_annotation if call is written else "Axes"
+    signature = inspect.Signature([*own, *added], return_annotation=returned)
+    choices = {name: texts for name, key in keys.items() if (texts := _texts(key.__origin__))}
+
+    @wraps(written)
+    def drawing(*args: Any, **given: Any) -> Result:
+        try:
+            bound = signature.bind(*args, **given)
+        except TypeError:
+            raise CallError(str(misfit(drawing, args, given))) from None
+        for name, known in choices.items():
+            if bound.arguments.get(name) is not None:
+                choice(bound.arguments[name], name, known)
+        if own and isinstance(kind := hints[own[0].name], type):
+            of_kind(kind, bound.arguments[own[0].name], own[0].name)
+        bound.apply_defaults()
+        return call(**bound.arguments)
+
+    meanings = _MEANINGS | {name: key.__metadata__[1] for name, key in keys.items()}
+    drawing.__signature__ = signature  # type: ignore[attr-defined]
+    drawing.__doc__ = _documented(written.__doc__, signature, hints, meanings)
+    return drawing
+
+
+def _texts(kind: Any) -> list[str]:
+    """Return the texts among which a keyword chooses."""
+    if get_origin(kind) in (Union, UnionType):
+        return [text for part in get_args(kind) for text in _texts(part)]
+    return list(get_args(kind)) if get_origin(kind) is Literal else []
+
+
+def _documented(
+    text: str | None,
+    signature: inspect.Signature,
+    hints: Mapping[str, object],
+    meanings: Mapping[str, str],
+) -> str | None:
+    """Complete the sections of a text; its own are for what means more than elsewhere."""
+    if text is None:  # python -OO
+        return None
+    head, *parts = _SECTION.split(inspect.cleandoc(text))
+    sections = dict(zip(parts[::2], map(str.strip, parts[1::2]), strict=True))
+    own = {
+        block.partition(" : ")[0]: block
+        for block in re.split(r"\n(?=\S)", sections.pop("Parameters", ""))
+    }
+    blocks = []
+    for name, one in signature.parameters.items():
+        optional = "" if one.default is one.empty else ", optional"
+        kind = _in_words(hints.get(name, one.annotation))
+        said = textwrap.fill(meanings.get(name, ""), 96)
+        block = f"{name} : {kind}{optional}\n{textwrap.indent(said, '    ')}"
+        blocks.append(own.get(name, block))
+    sections = {"Parameters": "\n".join(blocks), "Returns": _RETURNS, "Raises": _RAISES} | sections
+    written = (f"{name}\n{'-' * len(name)}\n{said}" for name, said in sections.items())
+    return "\n\n".join((head.strip(), *written))
+
+
+def _in_words(kind: Any) -> str:
+    parts = [part for part in get_args(kind) if part is not NoneType]
+    if get_origin(kind) in (Union, UnionType):
+        return " or ".join(map(_in_words, parts))
+    if get_origin(kind) is Sequence:
+        return f"sequence of {_in_words(*parts)}"
+    return "matplotlib.axes.Axes" if kind is Axes else type_in_words(kind)

@@ -1,0 +1,231 @@
+"""Keywords of the functions that draw, each once: type, default and meaning.
+
+`figure` of `figure.py` makes signatures and documentation of them; results pass them on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Literal, TypedDict
+
+from matplotlib.axes import Axes
+
+from stickslip.plot.style import LengthUnit, OmegaUnit
+from stickslip.results import ForcedResponse
+from stickslip.results.arrays import Measure
+
+_OF_AXIS = "Unit of frequencies."
+
+
+class Drawing(TypedDict, total=False):
+    """Keywords of all figures."""
+
+    ax: Annotated[Axes | None, None, "Where to draw. Default: a new figure."]
+
+
+class Frame(Drawing, total=False):
+    """Keywords of figures of displacements."""
+
+    length_unit: Annotated[LengthUnit, "m", "Unit of displacements."]
+
+
+class Swept(Drawing, total=False):
+    """Keywords of figures over frequency."""
+
+    omega_unit: Annotated[OmegaUnit, "rad/s", _OF_AXIS]
+
+
+class Spectral(Drawing, total=False):
+    """Keywords of figures over frequency in Hz."""
+
+    omega_unit: Annotated[OmegaUnit, "Hz", _OF_AXIS]
+
+
+class Amplitude(Frame, total=False):
+    """Keywords of figures of amplitudes."""
+
+    measure: Annotated[Measure, "half_range", "Measure of the amplitude."]
+
+
+class Several(Frame, Swept, total=False):
+    """Keywords of figures of several results."""
+
+    labels: Annotated[
+        Sequence[str] | None,
+        None,
+        "One per result. Default: what distinguishes them, as forces, modes or degrees of freedom.",
+    ]
+
+
+class LoopOptions(Frame, total=False):
+    """Keywords of `waveform` and `hysteresis`."""
+
+    samples: Annotated[int, 512, "Instants per period."]
+
+
+class ForceOptions(TypedDict, total=False):
+    """Keywords of `contact_forces`."""
+
+    stuck: Annotated[bool, True, "Draw, dashed, the forces if no contact of the model slipped."]
+    samples: Annotated[int, 1024, "Instants per period."]
+
+
+class CurveOptions(Several, Amplitude, total=False):
+    """Keywords of `curves`."""
+
+    normalise: Annotated[
+        Literal["force"] | None, None, "Divide every curve by its largest force amplitude."
+    ]
+    log: Annotated[
+        bool,
+        True,
+        "Logarithmic amplitude axis. A linear one ends above the curves and cuts the limits.",
+    ]
+    stuck: Annotated[
+        bool,
+        True,
+        "Draw the linear response with every contact stuck. Unless normalised, it is that to the "
+        "largest force among the results.",
+    ]
+    free: Annotated[bool, True, "Draw the same without any contact."]
+    peaks: Annotated[bool, True, "Mark the refined peaks."]
+    error_band: Annotated[
+        bool | None,
+        None,
+        "Shade what the discarded harmonics could still change. Default: for a single curve.",
+    ]
+
+
+class DamperOptions(Several, total=False):
+    """Keywords of `damper`."""
+
+    normalise: Annotated[
+        Literal["force"] | None,
+        None,
+        "Divide amplitudes by the largest force, and show curves over the level against the force "
+        "over the slip force, P/F_d. Without it curves over the level rise with the force.",
+    ]
+    frequency: Annotated[
+        bool, True, "Draw the frequency of the peak too, dashed, on an axis at the right."
+    ]
+    limits: Annotated[
+        bool,
+        True,
+        "Draw the peaks of the two linear limits: all contacts free, and all stuck unless the "
+        "stiffness was varied.",
+    ]
+    optimum: Annotated[bool, True, "Mark the lowest computed peak."]
+
+
+class CycleOptions(Several, Amplitude, total=False):
+    """Keywords of `limit_cycles`."""
+
+    frequency: Annotated[bool, True, "Draw the frequency too, on axes below those of a new figure."]
+
+
+class MultiplierOptions(Swept, total=False):
+    """Keywords of `multipliers`."""
+
+    index: Annotated[
+        int | Sequence[int] | None, None, "Positions of points of the sweep. Default: all."
+    ]
+
+
+class BladeBarOptions(Amplitude, total=False):
+    """Keywords of `blade_bars`."""
+
+    index: Annotated[
+        int | None,
+        None,
+        "Position of a point of the sweep. Default: the largest amplitude of each blade among the "
+        "computed points.",
+    ]
+    tuned: Annotated[
+        ForcedResponse | None,
+        None,
+        "The response of the tuned disk, drawn as a line: its peak, or its amplitude at the "
+        "computed frequency nearest to that of `index`.",
+    ]
+
+
+class BladeCurveOptions(Amplitude, Swept, total=False):
+    """Keywords of `blade_curves`."""
+
+    tuned: Annotated[
+        ForcedResponse | None, None, "The response of the tuned disk, drawn beside them."
+    ]
+    log: Annotated[bool, True, "Logarithmic amplitude axis."]
+
+
+class DiameterOptions(Spectral, total=False):
+    """Keywords of `nodal_diameters`."""
+
+    slipping: Annotated[bool, True, "Draw the frequencies with slipping contacts too."]
+
+
+class SafeOptions(DiameterOptions, total=False):
+    """Keywords of `safe`."""
+
+    orders: Annotated[
+        int | Sequence[int] | None,
+        None,
+        "Engine orders to mark, or up to which. Default: the engine order of the disk and the "
+        "harmonics of it that its forces have; the line reaches up to the highest frequency drawn.",
+    ]
+
+
+class LastOptions(Drawing, total=False):
+    """Keywords of `contact_history`."""
+
+    last: Annotated[
+        int | None, None, "How many of the last periods to draw. Default: all that are kept."
+    ]
+
+
+class HistoryOptions(Frame, LastOptions, total=False):
+    """Keywords of `history` and `phase`."""
+
+
+class PoincareOptions(Frame, total=False):
+    """Keywords of `poincare`."""
+
+    skip: Annotated[int, 0, "How many of the first periods to leave out."]
+
+
+class SpectrumOptions(Spectral, LastOptions, total=False):
+    """Keywords of `spectrum`."""
+
+    segment: Annotated[int | None, None, "As of `Transient.spectrum`."]
+    window: Annotated[str, "boxcar", "As of `Transient.spectrum`."]
+
+
+class LineOptions(Spectral, total=False):
+    """Keywords of `lines`."""
+
+    most: Annotated[int, 8, "How many lines to mark at most."]
+
+
+class Confidence(Drawing, total=False):
+    """Keywords of figures of statistics."""
+
+    confidence: Annotated[
+        float, 0.95, "Probability with which the interval is to hold the true percentile."
+    ]
+
+
+class TrendOptions(Confidence, total=False):
+    """Keywords of `amplification`."""
+
+    percentile: Annotated[float, 99.0, "The percentile."]
+
+
+class DistributionOptions(Confidence, total=False):
+    """Keywords of `distribution`."""
+
+    deviation: Annotated[float | None, None, "See `MistuningStudy.factors`."]
+    coupling: Annotated[float | None, None, "See `MistuningStudy.factors`."]
+    percentile: Annotated[
+        float | None,
+        99.9,
+        "Percentile of the fit that is marked with its interval; None marks none.",
+    ]
