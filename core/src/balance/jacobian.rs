@@ -129,13 +129,7 @@ impl Condensed<'_> {
 
 /// Size of a step contact by contact: a stiff contact moves little, and its force is its stiffness
 /// times that little. A contact that carries next to nothing is measured against the largest force.
-pub(super) fn contactwise(
-    model: &Model,
-    slots: usize,
-    slip_load: &[f64],
-    step: &[f64],
-    x: &[f64],
-) -> f64 {
+fn contactwise(model: &Model, slots: usize, slip_load: &[f64], step: &[f64], x: &[f64]) -> f64 {
     let stiffness = |i: usize| model.contact_stiffness()[(i, i)];
     let force = |i: usize, u: &[f64], q: &[f64]| {
         u.iter().zip(q).map(|(u, q)| (stiffness(i) * u - q).powi(2)).sum::<f64>().sqrt()

@@ -167,14 +167,15 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
     }
 }
 
-/// Methods that a sampled law has from the law itself.
+/// Methods that a law which evaluates another one has from that.
 macro_rules! of_the_law {
-    ($($method:ident($($argument:ident: $type:ty),*) -> $returned:ty;)*) => {
-        $(fn $method(&self, $($argument: $type),*) -> $returned {
+    ($($method:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => {
+        $(fn $method(&self, $($argument: $type),*) $(-> $returned)? {
             self.law.$method($($argument),*)
         })*
     };
 }
+pub(super) use of_the_law;
 
 impl ContactLaw for Aft<Box<dyn ContactLaw>> {
     of_the_law! {
@@ -187,21 +188,12 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         is_monotone() -> bool;
         limits() -> Vec<f64>;
         onsets() -> Vec<f64>;
+        return_map(before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64],
+            jacobian: Option<&mut ReturnMapJacobian>);
         stuck_load(residual: Residual, low: f64, high: f64) -> Option<[f64; 3]>;
         parameters() -> Vec<Parameter>;
         elements() -> Option<Vec<Element>>;
         describing(amplitude: f64) -> Option<Describing>;
-    }
-
-    fn return_map(
-        &self,
-        before: &[f64],
-        after: &[f64],
-        state: &mut [f64],
-        force: &mut [f64],
-        jacobian: Option<&mut ReturnMapJacobian>,
-    ) {
-        self.law.return_map(before, after, state, force, jacobian);
     }
 
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {

@@ -4,6 +4,7 @@ mod active_set;
 mod aft;
 mod aft_march;
 mod derivative;
+mod described;
 mod describing;
 mod elastic;
 mod increment;
@@ -26,6 +27,7 @@ mod structural_parameters;
 mod transitions;
 
 pub use aft::Aft;
+pub(crate) use described::Described;
 pub use describing::Describing;
 pub use elastic::Elastic;
 pub use jenkins::Jenkins;

@@ -4,8 +4,8 @@ use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
 use super::orbit_postprocess::{odd_table, postprocess};
 use super::quadrature::Quadrature;
+use super::sides::{extreme, joined, value, Sides};
 use super::stability::{judge, Judge, TRACING};
-use super::traced::{extreme, joined, value, Traced};
 use crate::balance::{CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress};
 use crate::fourier::SampleTable;
 use crate::model::{FlutterModel, Model, NegativeDamping, Variation};
@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 const START_HARMONICS: usize = 15;
 /// First ratio beyond the onset, relative to it, where the range does not say.
 const BEYOND_ONSET: f64 = 0.01;
-/// Time that an ended analysis may take to read off what it has traced.
+/// Time that an ended analysis may take to read off what it has found.
 const PATIENCE: Duration = Duration::from_millis(200);
 /// Motion, relative to the onset of slip, at which a branch counts as going to infinity.
 const ENDLESS: f64 = 1e5;
@@ -65,7 +65,7 @@ pub fn limit_cycles(
     };
     let mut out = match found {
         // The caller has ended the search: there is nothing to report.
-        Err(_) if stopped.get() => finder.result(&Traced::default(), Vec::new(), 0),
+        Err(_) if stopped.get() => finder.result(&Sides::default(), Vec::new(), 0),
         other => other?,
     };
     out.interrupted = stopped.get();
@@ -96,13 +96,13 @@ impl Finder<'_> {
         let last = rungs.len() - 1;
         for (rung, &highest) in rungs.iter().enumerate() {
             let table = odd_table(highest);
-            let traced = match self.trace_balance(&table, interrupted) {
+            let sides = match self.follow_balance(&table, interrupted) {
                 Err(_) if rung < last => continue,
                 other => other?,
             };
-            let start = traced.branch.points.first().cloned().unwrap_or_default();
+            let start = sides.branch.points.first().cloned().unwrap_or_default();
             let mut curve = CycleBalance::new(self.family, &table, &start, interrupted);
-            let selected = self.select(&mut curve, &traced);
+            let selected = self.select(&mut curve, &sides);
             let beyond = odd_table(highest + (highest / 2).max(4));
             let mut cycles = Vec::with_capacity(selected.len());
             let mut beyond_tolerance = 0;
@@ -113,7 +113,7 @@ impl Finder<'_> {
                     break;
                 }
                 let mut point = curve.point(z, self.onset.dof);
-                // What is traced is kept; its errors are what takes the time.
+                // What is found is kept; its errors are what takes the time.
                 if stop {
                     cycles.push(self.cycle(z, *slipping, point));
                     continue;
@@ -139,7 +139,7 @@ impl Finder<'_> {
                 }
             }
             share.set(TRACING);
-            let mut out = self.result(&traced, cycles, highest);
+            let mut out = self.result(&sides, cycles, highest);
             out.profile.evaluations = curve.evaluations;
             if let (Some(orbits), true) = (orbits, settings.stability) {
                 let start = |cycle: &Cycle| {
@@ -174,8 +174,8 @@ impl Finder<'_> {
         };
         let mut of_ratio = OrbitCurve::new(&of_ratio, scale, &begin, interrupted);
         let mut curve = OrbitCurve::new(orbits, scale, &begin, interrupted);
-        let traced = self.trace(&mut of_ratio, &mut curve, begin)?;
-        let selected = self.select(&mut curve, &traced);
+        let sides = self.follow(&mut of_ratio, &mut curve, begin)?;
+        let selected = self.select(&mut curve, &sides);
         let reported = odd_table(self.settings.reported);
         let mut quadrature = Quadrature::default();
         let mut cycles = Vec::with_capacity(selected.len());
@@ -198,7 +198,7 @@ impl Finder<'_> {
             cycles.push(cycle);
             points.push(Some(z));
         }
-        let mut out = self.result(&traced, cycles, self.settings.reported);
+        let mut out = self.result(&sides, cycles, self.settings.reported);
         out.profile.evaluations = curve.flows;
         out.profile.factorisations = curve.matrices;
         if self.settings.stability {
@@ -244,25 +244,25 @@ impl Finder<'_> {
         }
     }
 
-    fn trace_balance(
+    fn follow_balance(
         &self,
         table: &SampleTable,
         interrupted: &dyn Fn() -> bool,
-    ) -> Result<Traced, Error> {
+    ) -> Result<Sides, Error> {
         let start = self.first(table, interrupted)?;
         let mut of_ratio = CycleBalance::new(&self.given, table, &start, interrupted);
         let mut curve = CycleBalance::new(self.family, table, &start, interrupted);
-        self.trace(&mut of_ratio, &mut curve, start)
+        self.follow(&mut of_ratio, &mut curve, start)
     }
 
     /// Follows the branch: in r at once, or in r to the ratio asked for and from there to both
     /// sides in the other scalar.
-    fn trace(
+    fn follow(
         &self,
         of_ratio: &mut dyn Curve,
         curve: &mut dyn Curve,
         start: Vec<f64>,
-    ) -> Result<Traced, Error> {
+    ) -> Result<Sides, Error> {
         let settings = self.settings;
         let steps = Steps::default();
         // The mean over the states, however many there are.
@@ -289,7 +289,7 @@ impl Finder<'_> {
             }
             // Where the branch has come back, a farther turn may have been missed.
             let limit = extreme(&branch, 1.0).filter(|_| branch.end != End::Returned);
-            return Ok(Traced { branch, limit, ends });
+            return Ok(Sides { branch, limit, ends });
         }
         let own = self.family.own_value().ok_or_else(|| {
             let got = "different ones; follow a factor on them";
@@ -321,15 +321,15 @@ impl Finder<'_> {
     }
 
     /// The points wanted, each with whether it lies on the slipping side.
-    fn select(&self, curve: &mut dyn Curve, traced: &Traced) -> Vec<(bool, Vec<f64>)> {
-        let slipping = |position: usize| traced.limit.is_some_and(|limit| position >= limit);
-        let points = &traced.branch.points;
+    fn select(&self, curve: &mut dyn Curve, sides: &Sides) -> Vec<(bool, Vec<f64>)> {
+        let slipping = |position: usize| sides.limit.is_some_and(|limit| position >= limit);
+        let points = &sides.branch.points;
         let Some(values) = &self.settings.values else {
-            let beyond = |at: usize| traced.limit.is_some_and(|limit| at > limit);
+            let beyond = |at: usize| sides.limit.is_some_and(|limit| at > limit);
             return points.iter().enumerate().map(|(at, z)| (beyond(at), z.clone())).collect();
         };
         let mut found: Vec<(usize, Vec<f64>)> =
-            values.iter().flat_map(|value| traced.branch.at(curve, *value)).collect();
+            values.iter().flat_map(|value| sides.branch.at(curve, *value)).collect();
         let progress = |(position, z): &(usize, Vec<f64>)| -> f64 {
             let from = value(&points[*position]);
             let to = points.get(position + 1).map_or(from, |z| value(z));
@@ -359,8 +359,8 @@ impl Finder<'_> {
         }
     }
 
-    fn result(&self, traced: &Traced, cycles: Vec<Cycle>, harmonics: usize) -> LimitCycles {
-        let points = &traced.branch.points;
+    fn result(&self, sides: &Sides, cycles: Vec<Cycle>, harmonics: usize) -> LimitCycles {
+        let points = &sides.branch.points;
         let turn = |at: usize| {
             let z = points.get(at)?;
             Some(Turn { value: value(z), omega: z[z.len() - 2] })
@@ -368,16 +368,16 @@ impl Finder<'_> {
         let ends = [points.first(), points.last()].map(|z| z.map_or(f64::NAN, |z| value(z)));
         LimitCycles {
             cycles,
-            limit: traced.limit.and_then(turn),
-            folds: traced.branch.folds.iter().filter_map(|at| turn(*at)).collect(),
+            limit: sides.limit.and_then(turn),
+            folds: sides.branch.folds.iter().filter_map(|at| turn(*at)).collect(),
             changes: Vec::new(),
-            ends: traced.ends,
+            ends: sides.ends,
             end_values: ends,
             onset: self.onset.ratio,
             stuck_omega: self.onset.mode.omega,
             phase_dof: self.onset.dof,
             harmonics,
-            jumps: traced.branch.jumps,
+            jumps: sides.branch.jumps,
             interrupted: false,
             profile: Profile::default(),
         }

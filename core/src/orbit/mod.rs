@@ -14,11 +14,11 @@ mod rotation;
 mod segments;
 mod settings;
 mod shooting;
+mod sides;
 mod stability;
 mod start;
 mod survey;
 mod sweep;
-mod traced;
 
 pub use cycle_branch::limit_cycles;
 pub use cycles::{Change, ChangeKind, Cycle, CycleSettings, LimitCycles, Turn};

@@ -9,8 +9,8 @@ use super::modes::modes;
 use super::ports::{forced_harmonics, Ports};
 use super::proportional::follows_mass;
 use super::{
-    compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Receptance, Request,
-    Structure,
+    compliance, Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Outline, Receptance,
+    Request, Structure,
 };
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -158,10 +158,7 @@ pub struct CyclicCompliance {
     ports: CyclicPorts,
     /// One compliance per nodal diameter, decomposed when it is first needed.
     waves: Vec<OnceLock<Result<Box<dyn Compliance>, Error>>>,
-    stuck_frequencies: Vec<f64>,
-    free_frequencies: Vec<f64>,
-    bandwidth: f64,
-    forced: Vec<usize>,
+    outline: Outline,
 }
 
 impl CyclicCompliance {
@@ -191,30 +188,20 @@ impl CyclicCompliance {
         }
         let forced = forced_harmonics(&ports.loads);
         let waves = (0..structure.sectors).map(|_| OnceLock::new()).collect();
-        let mut cyclic = Self {
-            structure,
-            ports,
-            waves,
-            stuck_frequencies: Vec::new(),
-            free_frequencies: Vec::new(),
-            bandwidth: f64::MAX,
-            forced,
-        };
-        let (mut stuck, mut free) = (Vec::new(), Vec::new());
-        let mut bandwidth = f64::MAX;
-        let first = if cyclic.forced.is_empty() { vec![1] } else { cyclic.forced.clone() };
+        let mut outline = Outline { bandwidth: f64::MAX, forced, ..Outline::default() };
+        let mut cyclic = Self { structure, ports, waves, outline: Outline::default() };
+        let first = if outline.forced.is_empty() { vec![1] } else { outline.forced.clone() };
         for harmonic in first {
-            let wave = cyclic.wave(harmonic)?;
-            stuck.extend_from_slice(wave.stuck_frequencies());
-            free.extend_from_slice(wave.free_frequencies());
-            bandwidth = bandwidth.min(wave.narrowest_bandwidth());
+            let wave = cyclic.wave(harmonic)?.outline();
+            outline.stuck.extend_from_slice(&wave.stuck);
+            outline.free.extend_from_slice(&wave.free);
+            outline.bandwidth = outline.bandwidth.min(wave.bandwidth);
         }
-        for frequencies in [&mut stuck, &mut free] {
+        for frequencies in [&mut outline.stuck, &mut outline.free] {
             frequencies.sort_by(f64::total_cmp);
             frequencies.dedup();
         }
-        (cyclic.stuck_frequencies, cyclic.free_frequencies) = (stuck, free);
-        cyclic.bandwidth = bandwidth;
+        cyclic.outline = outline;
         Ok(cyclic)
     }
 
@@ -295,13 +282,13 @@ impl Compliance for CyclicCompliance {
         self.structure.dofs()
     }
 
-    fn forced_harmonics(&self) -> Vec<usize> {
-        self.forced.clone()
+    fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     fn effort(&self, observed: usize) -> [f64; 2] {
         // All nodal diameters are much alike; this one has been decomposed.
-        let harmonic = self.forced.first().copied().unwrap_or(1);
+        let harmonic = self.outline.forced.first().copied().unwrap_or(1);
         self.wave(harmonic).map_or([0.0; 2], |wave| wave.effort(observed))
     }
 
@@ -316,17 +303,5 @@ impl Compliance for CyclicCompliance {
 
     fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
         self.wave(request.harmonic)?.displacement(request, out)
-    }
-
-    fn stuck_frequencies(&self) -> &[f64] {
-        &self.stuck_frequencies
-    }
-
-    fn free_frequencies(&self) -> &[f64] {
-        &self.free_frequencies
-    }
-
-    fn narrowest_bandwidth(&self) -> f64 {
-        self.bandwidth
     }
 }

@@ -4,7 +4,7 @@
 use super::modes::{complex, modes};
 use super::ports::{forced_harmonics, HarmonicLoad};
 use super::restraint::store;
-use super::{Compliance, Ports, Quantity, Receptance, Request, Structure};
+use super::{Compliance, Outline, Ports, Quantity, Receptance, Request, Structure};
 use crate::Error;
 use faer::linalg::solvers::{PartialPivLu, Solve as _};
 use faer::{c64, Mat, MatRef};
@@ -19,8 +19,7 @@ pub struct DirectCompliance {
     loads: Vec<HarmonicLoad>,
     /// C_neg of a damping `C + r C_neg`, if there is one.
     negative: Option<Mat<c64>>,
-    stuck_frequencies: Vec<f64>,
-    free_frequencies: Vec<f64>,
+    outline: Outline,
 }
 
 impl DirectCompliance {
@@ -50,18 +49,8 @@ impl DirectCompliance {
         rows: Mat<c64>,
         loads: Vec<HarmonicLoad>,
     ) -> Self {
-        let (stuck_frequencies, free_frequencies) = (Vec::new(), Vec::new());
-        let negative = None;
-        Self {
-            mass,
-            damping,
-            restrained,
-            rows,
-            loads,
-            negative,
-            stuck_frequencies,
-            free_frequencies,
-        }
+        let outline = Outline { forced: forced_harmonics(&loads), ..Outline::default() };
+        Self { mass, damping, restrained, rows, loads, negative: None, outline }
     }
 
     /// With a part of the damping whose size is free.
@@ -71,7 +60,9 @@ impl DirectCompliance {
 
     /// With the natural frequencies of the stuck and of the free structure.
     pub(super) fn with_frequencies(self, stuck: Vec<f64>, free: Vec<f64>) -> Self {
-        Self { stuck_frequencies: stuck, free_frequencies: free, ..self }
+        // No mode is known; a hundredth of the lowest frequency resolves ordinary damping.
+        let bandwidth = stuck.iter().copied().find(|w| *w > 0.0).unwrap_or(1.0) * 0.01;
+        Self { outline: Outline { stuck, free, bandwidth, ..self.outline }, ..self }
     }
 
     /// Factors `K_s + ikωC − (kω)²M`.
@@ -89,7 +80,7 @@ impl DirectCompliance {
         if least <= 1e-14 * largest {
             return Err(if harmonic == 0 {
                 Error::SingularStiffness {
-                    lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0),
+                    lowest: self.outline.stuck.first().copied().unwrap_or(0.0),
                 }
             } else {
                 Error::UndampedResonance { omega: excitation, harmonic, natural: omega }
@@ -136,8 +127,8 @@ impl Compliance for DirectCompliance {
         self.mass.nrows()
     }
 
-    fn forced_harmonics(&self) -> Vec<usize> {
-        forced_harmonics(&self.loads)
+    fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     fn is_direct(&self) -> bool {
@@ -190,18 +181,5 @@ impl Compliance for DirectCompliance {
     fn effort(&self, _observed: usize) -> [f64; 2] {
         // A factorisation each.
         [1.2 * (self.mass.nrows() as f64).powi(3); 2]
-    }
-
-    fn stuck_frequencies(&self) -> &[f64] {
-        &self.stuck_frequencies
-    }
-
-    fn free_frequencies(&self) -> &[f64] {
-        &self.free_frequencies
-    }
-
-    fn narrowest_bandwidth(&self) -> f64 {
-        // No mode is known; a hundredth of the lowest frequency resolves ordinary damping.
-        self.stuck_frequencies.iter().copied().find(|w| *w > 0.0).unwrap_or(1.0) * 0.01
     }
 }

@@ -8,7 +8,9 @@
 
 use super::cyclic::CyclicStructure;
 use super::modes::{complex, modes, RealModes};
-use super::{Compliance, DirectCompliance, ModalCompliance, Receptance, Request, Structure};
+use super::{
+    Compliance, DirectCompliance, ModalCompliance, Outline, Receptance, Request, Structure,
+};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 use std::sync::{Arc, OnceLock};
@@ -150,6 +152,7 @@ impl FlutterCompliance {
                 fundamental: *fundamental,
                 ratio,
                 stiffness: complex(stiffness.as_ref()),
+                outline: Outline::default(),
             }),
         }
     }
@@ -217,6 +220,7 @@ struct FlutterWaves {
     fundamental: usize,
     ratio: f64,
     stiffness: Mat<c64>,
+    outline: Outline,
 }
 
 impl FlutterWaves {
@@ -233,6 +237,10 @@ impl Compliance for FlutterWaves {
 
     fn dofs(&self) -> usize {
         self.waves[0].0.mass.nrows()
+    }
+
+    fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {

@@ -90,6 +90,19 @@ pub enum Quantity {
     Slope,
 }
 
+/// What is known of a linear structure before any motion.
+#[derive(Debug, Clone, Default)]
+pub struct Outline {
+    /// Natural frequencies of the stuck structure, ascending, where they are known [rad/s].
+    pub stuck: Vec<f64>,
+    /// Natural frequencies without contacts, ascending, where they are known [rad/s].
+    pub free: Vec<f64>,
+    /// Half-power bandwidth `2ζω` of the least damped mode, where it is known [rad/s].
+    pub bandwidth: f64,
+    /// Harmonics with an external load, ascending.
+    pub forced: Vec<usize>,
+}
+
 /// The linear structure with all contacts stuck, seen from its contacts and observed DOFs.
 pub trait Compliance: Send + Sync {
     /// Number of relative contact displacements.
@@ -98,9 +111,12 @@ pub trait Compliance: Send + Sync {
     /// Number of DOFs that can be observed.
     fn dofs(&self) -> usize;
 
+    /// What is known before any motion.
+    fn outline(&self) -> &Outline;
+
     /// Harmonics with an external load, ascending.
     fn forced_harmonics(&self) -> Vec<usize> {
-        Vec::new()
+        self.outline().forced.clone()
     }
 
     /// Receptance of the contacts for harmonic `harmonic` of a motion at `omega` [rad/s].
@@ -133,7 +149,7 @@ pub trait Compliance: Send + Sync {
 
     /// Natural frequencies of the stuck structure, ascending, where they are known [rad/s].
     fn stuck_frequencies(&self) -> &[f64] {
-        &[]
+        &self.outline().stuck
     }
 
     /// Highest natural frequency of the stuck structure, or about it [rad/s].
@@ -143,11 +159,11 @@ pub trait Compliance: Send + Sync {
 
     /// Natural frequencies with all contacts removed, ascending, where they are known [rad/s].
     fn free_frequencies(&self) -> &[f64] {
-        &[]
+        &self.outline().free
     }
 
     /// Half-power bandwidth `2ζω` of the least damped mode, where it is known [rad/s].
     fn narrowest_bandwidth(&self) -> f64 {
-        f64::NAN
+        self.outline().bandwidth
     }
 }

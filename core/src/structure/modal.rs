@@ -8,11 +8,11 @@
 
 use super::flexibility::Flexibility;
 use super::modes::{complex, modes, HermitianModes, RealModes};
-use super::ports::{HarmonicLoad, Ports};
+use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
 use super::restraint::restrain;
 use super::spectrum::{complex_modes, Spectrum};
-use super::{Compliance, DirectCompliance, Quantity, Receptance, Request, Structure};
+use super::{Compliance, DirectCompliance, Outline, Quantity, Receptance, Request, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 use std::sync::Arc;
@@ -55,10 +55,7 @@ pub struct ModalCompliance {
     /// Contact stiffness, if the modes are those of the free structure.
     restraint: Option<Mat<f64>>,
     flexibility: Option<Flexibility>,
-    stuck_frequencies: Vec<f64>,
-    free_frequencies: Vec<f64>,
-    bandwidth: f64,
-    forced: Vec<usize>,
+    outline: Outline,
 }
 
 /// What a modal compliance is made of: modes of the stuck and of the free structure, rows of B (complex in a travelling wave), contact stiffness and loads.
@@ -132,7 +129,7 @@ impl ModalCompliance {
         project: impl Fn(bool) -> ModalDamping,
     ) -> Result<Option<Self>, Error> {
         let Wave { stuck, free, law, rows, stiffness, loads } = wave;
-        let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
+        let frequencies = [&stuck, &free].map(HermitianModes::frequencies);
         let of_real = |(modes, damping): (HermitianModes, Vec<f64>), floor| {
             let left = modes.shapes.adjoint().to_owned();
             let spectrum = Spectrum::Real { omega_squared: modes.omega_squared, damping, floor };
@@ -153,13 +150,18 @@ impl ModalCompliance {
                 let Some(modes) = modes else { return Ok(None) };
                 (ModalBase::Complex, modes, None)
             };
+        let [stuck_frequencies, free_frequencies] = frequencies;
         Ok(Some(Self {
             base,
-            bandwidth: spectrum.narrowest_bandwidth(),
+            outline: Outline {
+                stuck: stuck_frequencies,
+                free: free_frequencies,
+                bandwidth: spectrum.narrowest_bandwidth(),
+                forced: forced_harmonics(&loads),
+            },
             contact_right: Arc::new(&rows * &right),
             contact_left: Arc::new((&left * rows.adjoint()).transpose().to_owned()),
             negative: Vec::new(),
-            forced: super::ports::forced_harmonics(&loads),
             loads: loads
                 .iter()
                 .map(|load| (load.harmonic, multiply(left.as_ref(), &load.amplitude)))
@@ -168,8 +170,6 @@ impl ModalCompliance {
             spectrum,
             restraint,
             flexibility: None,
-            stuck_frequencies,
-            free_frequencies,
         }))
     }
 
@@ -193,10 +193,7 @@ impl ModalCompliance {
             loads: Vec::new(),
             restraint: None,
             flexibility: None,
-            stuck_frequencies: Vec::new(),
-            free_frequencies: Vec::new(),
-            bandwidth: f64::NAN,
-            forced: Vec::new(),
+            outline: Outline::default(),
         }
     }
 
@@ -217,7 +214,7 @@ impl ModalCompliance {
             return true;
         }
         let direct = direct();
-        let natural = &self.stuck_frequencies;
+        let natural = &self.outline.stuck;
         let highest = natural.last().copied().unwrap_or(1.0).max(1.0);
         let slow = natural.iter().copied().filter(|w| *w > SLOWEST * highest);
         let (first, middle) = (slow.clone().next(), slow.clone().nth(slow.count() / 2));
@@ -235,7 +232,7 @@ impl ModalCompliance {
     }
 
     fn singular(&self) -> Error {
-        Error::SingularStiffness { lowest: self.stuck_frequencies.first().copied().unwrap_or(0.0) }
+        Error::SingularStiffness { lowest: self.outline.stuck.first().copied().unwrap_or(0.0) }
     }
 
     fn load(&self, harmonic: usize) -> Option<&[c64]> {
@@ -318,8 +315,8 @@ impl Compliance for ModalCompliance {
         self.right.nrows()
     }
 
-    fn forced_harmonics(&self) -> Vec<usize> {
-        self.forced.clone()
+    fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
@@ -377,18 +374,6 @@ impl Compliance for ModalCompliance {
         let restraint = if self.restraint.is_some() { contacts.powi(3) } else { 0.0 };
         let displacement = modes * (20.0 + 1.5 * (contacts + observed as f64));
         [modes * (20.0 + 1.5 * contacts * contacts) + restraint, displacement]
-    }
-
-    fn stuck_frequencies(&self) -> &[f64] {
-        &self.stuck_frequencies
-    }
-
-    fn free_frequencies(&self) -> &[f64] {
-        &self.free_frequencies
-    }
-
-    fn narrowest_bandwidth(&self) -> f64 {
-        self.bandwidth
     }
 }
 

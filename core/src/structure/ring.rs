@@ -8,7 +8,7 @@
 use super::modes::modes;
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::ring_order::{RingLayout, RingOrder};
-use super::{compliance, Compliance, Receptance, Structure};
+use super::{compliance, Compliance, Outline, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 use std::sync::OnceLock;
@@ -51,8 +51,8 @@ pub struct Ring {
     pub(super) layout: RingLayout,
     frequencies: OnceLock<[Vec<f64>; 2]>,
     pub(super) highest: f64,
-    pub(super) bandwidth: f64,
-    pub(super) forced: Vec<usize>,
+    /// Without the natural frequencies, which take a decomposition of the whole disk.
+    pub(super) outline: Outline,
 }
 
 impl Ring {
@@ -110,16 +110,17 @@ impl Ring {
         let mut forced = forced_harmonics(&all);
         forced.dedup();
         let mut sectors = Vec::with_capacity(parts.len());
-        let (mut bandwidth, mut highest) = (f64::MAX, 0.0_f64);
+        let mut outline = Outline { bandwidth: f64::MAX, forced, ..Outline::default() };
+        let mut highest = 0.0_f64;
         for index in 0..parts.len() {
             let before = &parts[(index + parts.len() - 1) % parts.len()];
             let sector = isolated(&parts[index], before, &layout)?;
-            bandwidth = bandwidth.min(sector.narrowest_bandwidth());
+            outline.bandwidth = outline.bandwidth.min(sector.narrowest_bandwidth());
             highest = sector.stuck_frequencies().iter().copied().fold(highest, f64::max);
             sectors.push(sector);
         }
         let frequencies = OnceLock::new();
-        Ok(Self { parts, sectors, coupling, layout, frequencies, highest, bandwidth, forced })
+        Ok(Self { parts, sectors, coupling, layout, frequencies, highest, outline })
     }
 
     /// Number of sectors.

@@ -2,7 +2,7 @@
 
 use super::ring::Ring;
 use super::ring_order::{RingMotion, RingOrder};
-use super::{Compliance, Quantity, Receptance, Request};
+use super::{Compliance, Outline, Quantity, Receptance, Request};
 use crate::Error;
 use faer::c64;
 
@@ -77,8 +77,8 @@ impl Compliance for Ring {
         self.sectors.iter().any(|sector| sector.is_direct())
     }
 
-    fn forced_harmonics(&self) -> Vec<usize> {
-        self.forced.clone()
+    fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     fn ring(&self) -> Option<&Ring> {
@@ -130,9 +130,5 @@ impl Compliance for Ring {
     /// disk; soft couplings raise it little.
     fn highest_frequency(&self) -> f64 {
         self.highest
-    }
-
-    fn narrowest_bandwidth(&self) -> f64 {
-        self.bandwidth
     }
 }

@@ -3,14 +3,14 @@
 use crate::solve::{Branch, End};
 
 /// A branch with what tells its sides apart.
-pub(super) struct Traced {
+pub(super) struct Sides {
     pub(super) branch: Branch,
     /// Position of the fold at which the sticking side ends.
     pub(super) limit: Option<usize>,
     pub(super) ends: [End; 2],
 }
 
-impl Default for Traced {
+impl Default for Sides {
     fn default() -> Self {
         let branch = Branch {
             points: Vec::new(),
@@ -34,8 +34,8 @@ pub(super) fn extreme(branch: &Branch, sign: f64) -> Option<usize> {
     branch.folds.iter().copied().max_by(|a, b| height(a).total_cmp(&height(b)))
 }
 
-/// One branch of the walks to both sides: the one without a fold first and backwards.
-pub(super) fn joined(up: Branch, down: Branch) -> Traced {
+/// One branch of those to both sides: the one without a fold first and backwards.
+pub(super) fn joined(up: Branch, down: Branch) -> Sides {
     let (first, second, sign) = if down.folds.is_empty() && !up.folds.is_empty() {
         (down, up, 1.0)
     } else {
@@ -55,5 +55,5 @@ pub(super) fn joined(up: Branch, down: Branch) -> Traced {
         iterations: first.iterations + second.iterations,
         jumps: first.jumps + second.jumps,
     };
-    Traced { branch, limit: limit.map(|at| shift + at), ends }
+    Sides { branch, limit: limit.map(|at| shift + at), ends }
 }
