@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import brief, text, unknown
-from stickslip.disk.arguments import ALL_SECTORS
+from stickslip.disk.bladed_disk import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.settings.balance import HarmonicSettings

@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.analyses.memory import require_numbers
 from stickslip.checks import brief, text, unknown, whole_number
-from stickslip.disk.arguments import NEXT
-from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.bladed_disk import NEXT, BladedDisk
 from stickslip.disk.pattern import Distribution, drawn_patterns
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
