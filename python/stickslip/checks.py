@@ -70,11 +70,9 @@ class SparseMatrix(Protocol):
     @property
     def shape(self) -> tuple[int, ...]:
         """Rows and columns."""
-        ...
 
     def toarray(self) -> NDArray[np.generic]:
         """Return the dense array."""
-        ...
 
 
 MatrixLike: TypeAlias = ArrayLike | SparseMatrix

@@ -281,9 +281,8 @@ class BladedDisk(Model):
         self, points: list[tuple[int, int]], nodal_diameter: int | None
     ) -> NDArray[np.float64]:
         """Return natural frequencies at a nodal diameter; see `natural_frequencies`."""
-        if nodal_diameter is None:
-            diameter = self.diameter(1)
-        else:
+        diameter = self.diameter(1)
+        if nodal_diameter is not None:
             diameter = whole_number(nodal_diameter, "nodal_diameter")
         if diameter >= self.sectors:
             raise ModelError(
