@@ -72,19 +72,10 @@ def turbine_blade(slip_force: float = BLADE_SLIP_FORCE, load: float = 1.0) -> Mo
     modes. It takes the place of the proprietary blade of the dissertation. A pressure that grows
     along the airfoil, 100 Pa at the tip, excites all degrees of freedom.
 
-    Parameters
-    ----------
-    slip_force : float, optional
-        Of the damper under the platform [N].
-    load : float, optional
-        Factor on the pressure.
-
-    Returns
-    -------
-    Model
-        Degrees of freedom "damper" (under the platform, across the row of blades), "tip" (trailing
-        edge of the tip, same direction) and "mode-1", ..., "mode-16". The damping ratio is 5e-4 at
-        1600 and 47,000 rad/s and lower between them.
+    `slip_force` is that of the damper under the platform [N], `load` a factor on the pressure. The
+    degrees of freedom are "damper" (under the platform, across the row of blades), "tip" (trailing
+    edge of the tip, same direction) and "mode-1", ..., "mode-16". The damping ratio is 5e-4 at 1600
+    and 47,000 rad/s and lower between them.
 
     References
     ----------
