@@ -9,7 +9,7 @@ from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip import plot, reference
-from stickslip.model import contact_from_spec
+from stickslip.model.laws import contact_from_spec
 from stickslip.study import Study
 
 D = [[2.0, -2.0], [-2.0, 2.0]]

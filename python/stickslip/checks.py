@@ -70,11 +70,9 @@ class SparseMatrix(Protocol):
     @property
     def shape(self) -> tuple[int, ...]:
         """Rows and columns."""
-        ...
 
     def toarray(self) -> NDArray[np.generic]:
         """Return the dense array."""
-        ...
 
 
 MatrixLike: TypeAlias = ArrayLike | SparseMatrix
@@ -122,13 +120,10 @@ def _near(name: str, names: Sequence[str]) -> list[str]:
 def _same_body(given: Sequence[str], known: Sequence[str]) -> bool:
     """Return whether parts are the same but for a slip of the pen, which changes no number."""
     return len(given) == len(known) and all(
-        _digits(one) == _digits(other) and difflib.get_close_matches(one, [other])
+        re.sub(r"\D", "", one) == re.sub(r"\D", "", other)
+        and difflib.get_close_matches(one, [other])
         for one, other in zip(given, known, strict=True)
     )
-
-
-def _digits(text: str) -> str:
-    return "".join(filter(str.isdigit, text))
 
 
 def listed(names: Sequence[str]) -> str:

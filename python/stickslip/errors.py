@@ -38,18 +38,8 @@ class CallError(ModelError, TypeError):
 class Interrupted(KeyboardInterrupt):
     """An analysis was stopped by Ctrl-C; what had been computed is kept.
 
-    Parameters
-    ----------
-    message : str
-        What was stopped, and how far it had come.
-    result : object
-        The partial result, of the type the analysis would have returned. Points that were not
-        reached say so in their status.
-
-    Attributes
-    ----------
-    result : object
-        The partial result.
+    Its attribute `result` is the partial result, of the type that the analysis would have returned.
+    Points that were not reached say so in their status.
     """
 
     def __init__(self, message: str, result: object) -> None:

@@ -32,18 +32,14 @@ class Interruption:
     both. So signals are noted, and their handlers called when the core asks how to go on, while the
     caller's own callback runs, and at the end. A second signal, half a second later or more, is
     heeded at once. Signals that are ignored or have no handler in Python are left alone, and all of
-    them outside the main thread, which alone receives them.
-
-    Parameters
-    ----------
-    progress : callable, optional
-        Called with the share of the work done.
+    them outside the main thread, which alone receives them. `progress` is called with the share of
+    the work done.
     """
 
     def __init__(self, progress: Callable[[float], None] | None = None) -> None:
         self._progress = progress
         self._handlers: dict[int, Callable[[int, FrameType | None], Any]] = {}
-        self._installed = dict(self._handlers)
+        self._installed = self._handlers.copy()
         self._noted: tuple[int, float] | None = None
         self._at_once = False
 

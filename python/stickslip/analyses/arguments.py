@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import brief, unknown
-from stickslip.disk.arguments import ALL_SECTORS
+from stickslip.disk.bladed_disk import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State

@@ -16,8 +16,7 @@ from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.pattern_store import Identity, Row, digest
 from stickslip.analyses.run import refusals
 from stickslip.checks import brief, whole_number
-from stickslip.disk.arguments import NEXT
-from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.bladed_disk import NEXT, BladedDisk
 from stickslip.disk.coupling import Coupling
 from stickslip.disk.pattern import drawn_patterns
 from stickslip.errors import ModelError

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -12,15 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import Matrix, brief, set_fields, whole_number
-from stickslip.disk.arguments import (
-    ALL_SECTORS,
-    NEXT,
-    orders_of,
-    require_couplings,
-    require_interface,
-    stranger,
-)
+from stickslip.checks import Matrix, brief, set_fields, unknown, whole_number
 from stickslip.disk.coupling import Coupling, CyclicMatrices, Interface
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
@@ -33,7 +25,16 @@ if TYPE_CHECKING:
     from stickslip.disk.mistuned import MistunedDisk
     from stickslip.disk.waves import NodalDiameters
 
-__all__ = ["BladedDisk"]
+__all__ = ["ALL_SECTORS", "NEXT", "BladedDisk", "stranger"]
+
+ALL_SECTORS = "mistuning = {deviation = 0.0} in [disk]"
+"""How study files ask for all sectors of a tuned disk."""
+
+NEXT = "next."
+"""Prefix of the degrees of freedom of the next sector, in contacts between two sectors."""
+
+_PREVIOUS = "prev."
+"""What may be written by mistake for those of the sector before, which no name reaches."""
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -109,13 +110,13 @@ class BladedDisk(Model):
     ) -> None:
         super().__init__(structure, contacts, forces)
         springs = listed_items(couplings, "coupling", Coupling)
-        require_couplings(springs, structure)
-        require_interface(interface, structure)
+        _require_couplings(springs, structure)
+        _require_interface(interface, structure)
         set_fields(
             self,
             sectors=whole_number(sectors, "sectors", smallest=2),
             engine_order=whole_number(engine_order, "engine_order"),
-            engine_orders=MappingProxyType(orders_of(engine_orders)),
+            engine_orders=MappingProxyType(_orders(engine_orders)),
             couplings=springs,
             interface=interface,
             matrices=CyclicMatrices.of(structure, springs, interface),
@@ -280,9 +281,8 @@ class BladedDisk(Model):
         self, points: list[tuple[int, int]], nodal_diameter: int | None
     ) -> NDArray[np.float64]:
         """Return natural frequencies at a nodal diameter; see `natural_frequencies`."""
-        if nodal_diameter is None:
-            diameter = self.diameter(1)
-        else:
+        diameter = self.diameter(1)
+        if nodal_diameter is not None:
             diameter = whole_number(nodal_diameter, "nodal_diameter")
         if diameter >= self.sectors:
             raise ModelError(
@@ -307,4 +307,70 @@ class BladedDisk(Model):
             self._core_contacts(),
             loads,
             self.matrices.proportional,
+        )
+
+
+def _orders(orders: Mapping[int, int] | None) -> dict[int, int]:
+    """Return engine orders by harmonic, checked."""
+    if orders is None:
+        return {}
+    if not isinstance(orders, Mapping):
+        raise ModelError(
+            f"engine_orders: {brief(orders)} is no mapping; write {{harmonic: engine order}}"
+        )
+    return {
+        whole_number(harmonic, "engine_orders: harmonic", smallest=1): whole_number(
+            order, f"engine_orders[{brief(harmonic)}]"
+        )
+        for harmonic, order in orders.items()
+    }
+
+
+def _require_couplings(couplings: tuple[Coupling, ...], structure: Structure) -> None:
+    """Refuse couplings at degrees of freedom that the sector lacks."""
+    for number, coupling in enumerate(couplings, 1):
+        for dof in coupling.ends:
+            if dof in structure.dofs:
+                continue
+            bare = dof.removeprefix(NEXT).removeprefix(_PREVIOUS)
+            if bare in structure.dofs:
+                raise ModelError(
+                    f"coupling {number}: {brief(dof)}: its second end is in the next sector anyway;"
+                    f" write {brief(bare)}"
+                )
+            raise ModelError(f"coupling {number}: {unknown('dof', dof, structure.dofs)}")
+
+
+def stranger(dof: str, dofs: Iterable[str | None], own: Sequence[str]) -> str:
+    """Word a degree of freedom of a contact that neither the sector nor the next one has.
+
+    `dofs` are all of the contact, `own` those of the sector. For the sector before: the contact as
+    that sector sees it.
+    """
+    bare = dof.removeprefix(_PREVIOUS)
+    if bare == dof or bare not in own:
+        return unknown("dof", dof, [*own, *(NEXT + one for one in own)])
+    seen = [
+        one.removeprefix(_PREVIOUS) if one.startswith(_PREVIOUS) else NEXT + one
+        for one in dofs
+        if one is not None
+    ]
+    return (
+        f"unknown dof {brief(dof)}: contacts lead from a sector to the next one; write this one as "
+        f"it stands in the sector before, with the dofs {', '.join(map(brief, seen))}"
+    )
+
+
+def _require_interface(interface: Interface | None, structure: Structure) -> None:
+    """Refuse an interface that does not fit the sector."""
+    if interface is None:
+        return
+    if not isinstance(interface, Interface):
+        raise ModelError(
+            f"interface: {brief(interface)} is no Interface; write ss.Interface(stiffness=K1)"
+        )
+    if len(interface) != len(structure):
+        raise ModelError(
+            f"interface: {len(interface)} x {len(interface)} for a sector of {len(structure)} "
+            "dofs; give blocks of the size of its matrices"
         )

@@ -268,20 +268,18 @@ def cyclic_sector(structure: Structure, boundary: Mapping[str, str]) -> tuple[St
     own = np.array([[float(dof == name) for name in kept] for dof in structure.dofs])
     ahead = [left.get(dof) for dof in structure.dofs]
     following = np.array([[float(dof == name) for name in kept] for dof in ahead])
-    blocks = {}
-    for name in ("mass", "stiffness", "damping"):
-        matrix = getattr(structure, name)
-        blocks[name] = own.T @ matrix @ own + following.T @ matrix @ following
+    matrices = {name: getattr(structure, name) for name in MATRICES}
+    blocks = {
+        name: own.T @ matrix @ own + following.T @ matrix @ following
+        for name, matrix in matrices.items()
+    }
     # The blocks of a skew part change sign across the cut, which one block per cut cannot say.
     if np.abs(structure.damping - structure.damping.T).max() > 0.0:
         reason = "structure: its damping is not symmetric; give the blocks yourself,"
         raise ModelError(f"{reason} ss.Interface(...)", study=f"{reason} interface of [disk]")
-    interface = Interface(
-        *(own.T @ getattr(structure, name) @ following for name in ("stiffness", "mass", "damping"))
-    )
+    interface = Interface(**{name: own.T @ matrix @ following for name, matrix in matrices.items()})
     law = structure.damping_law if isinstance(structure.damping_law, Rayleigh) else None
-    sector = Structure.of_law(blocks["mass"], blocks["stiffness"], blocks["damping"], kept, law)
-    return sector, interface
+    return Structure.of_law(**blocks, dofs=kept, law=law), interface
 
 
 def _checked(structure: Structure, boundary: object) -> dict[str, str]:

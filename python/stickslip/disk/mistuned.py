@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import Matrix, brief, members, set_fields, unknown
-from stickslip.disk.arguments import NEXT
-from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.bladed_disk import NEXT, BladedDisk
 from stickslip.disk.coupling import MATRICES, Blocks, CyclicMatrices, assembled
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
@@ -149,18 +148,14 @@ def deviating(
         return (sector,) * disk.sectors
     # A law makes new damping of the deviating matrices, a given matrix stays as it is.
     damping = sector.damping if sector.damping_law is None else sector.damping_law
-    blades = (
-        Structure((1.0 + m) * sector.mass, (1.0 + k) * sector.stiffness, damping, sector.dofs)
-        for m, k in zip(heavier, stiffer, strict=True)
-    )
-    # Mass and stiffness deviate as wholes, which leaves the mode shapes as they are.
-    return tuple(
-        Structure.of_law(
-            *(blade.mass, blade.stiffness, blade.damping, blade.dofs, blade.damping_law),
-            proportional=sector.proportional,
-        )
-        for blade in blades
-    )
+    made = []
+    for m, k in zip(heavier, stiffer, strict=True):
+        matrices = (1.0 + m) * sector.mass, (1.0 + k) * sector.stiffness
+        blade = Structure(*matrices, damping, sector.dofs)
+        # Mass and stiffness deviate as wholes, which leaves the mode shapes as they are.
+        set_fields(blade, proportional=blade.proportional or sector.proportional)
+        made.append(blade)
+    return tuple(made)
 
 
 def _contacts(disk: BladedDisk) -> tuple[Contact, ...]:

@@ -46,9 +46,7 @@ def mistuning_pattern(
     size = real_number(deviation, "deviation")
     if size < 0.0:
         raise ModelError(f"deviation: {size:g} is negative; give 0.05 for 5 %")
-    choice(distribution, "distribution", DISTRIBUTIONS)
-    generator = np.random.default_rng(whole_number(seed, "seed"))
-    return size * _drawn(generator, count, distribution)
+    return size * _drawn(whole_number(seed, "seed"), count, distribution)
 
 
 def drawn_patterns(
@@ -62,16 +60,17 @@ def drawn_patterns(
     """
     size = whole_number(sectors, "sectors", smallest=1)
     number = whole_number(count, "patterns", smallest=1)
-    choice(distribution, "distribution", DISTRIBUTIONS)
     entropy = whole_number(seed, "seed")
-    sequences = (np.random.SeedSequence(entropy, spawn_key=(i,)) for i in range(number))
-    rows = [_drawn(np.random.default_rng(one), size, distribution) for one in sequences]
-    return np.stack(rows)
+    seeds = (np.random.SeedSequence(entropy, spawn_key=(i,)) for i in range(number))
+    return np.stack([_drawn(one, size, distribution) for one in seeds])
 
 
-def _drawn(generator: np.random.Generator, count: int, distribution: str) -> NDArray[np.float64]:
+def _drawn(
+    seed: int | np.random.SeedSequence, count: int, distribution: str
+) -> NDArray[np.float64]:
     """Draw numbers of zero mean and unit deviation."""
-    if distribution == "normal":
+    generator = np.random.default_rng(seed)
+    if choice(distribution, "distribution", DISTRIBUTIONS) == "normal":
         return generator.standard_normal(count)
     bound = 3.0**0.5
     return generator.uniform(-bound, bound, count)

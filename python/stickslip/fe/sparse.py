@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future, wait
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -118,19 +119,15 @@ def lowest_modes(
 
 def _interruptible(make: Callable[[], _Made]) -> _Made:
     """Run compiled code in a thread, so that Ctrl-C is heard meanwhile."""
-    made: list[_Made] = []
-    failed: list[BaseException] = []
+    made: Future[_Made] = Future()
 
     def work() -> None:
         try:
-            made.append(make())
+            made.set_result(make())
         except BaseException as error:  # handed on to the caller below
-            failed.append(error)
+            made.set_exception(error)
 
-    thread = threading.Thread(target=work, daemon=True)
-    thread.start()
-    while thread.is_alive():
-        thread.join(0.2)
-    if failed:
-        raise failed[0]
-    return made[0]
+    threading.Thread(target=work, daemon=True).start()
+    while not wait([made], 0.2).done:
+        pass
+    return made.result()

@@ -181,7 +181,14 @@ def _require_matrix(body: memoryview, order: str) -> None:
         pointers = _integers(kinds[4], bodies[4], order)
         if counts[1] != shape[1] + 1 or max(counts[0], *counts[2:]) > max(room, 1):
             raise ValueError(f"the file is damaged: {counts} numbers in a sparse matrix {shape}")
-        _require_columns(shape[0], pointers, rows, min(counts[2:]))
+        # MATLAB leaves room behind the entries.
+        entries, held = int(pointers[-1]), min(rows.size, *counts[2:])
+        if not 0 <= entries <= held:
+            raise ValueError(f"{entries} entries announced, {held} present")
+        used = rows[:entries]
+        columns_of(pointers, used)
+        if entries and not 0 <= used.min() <= used.max() < shape[0]:
+            raise ValueError(f"a row index lies outside 1 to {shape[0]}")
     elif set(counts) != {math.prod(shape)}:
         raise ValueError(f"the file is damaged: {counts} numbers in a matrix of shape {shape}")
 
@@ -190,19 +197,6 @@ def _integers(kind: int, body: memoryview, order: str) -> NDArray[np.int64]:
     if kind not in _KINDS:
         raise ValueError(f"the file is damaged: elements of type {kind} count something")
     return np.frombuffer(body, f"{order}{_KINDS[kind]}").astype(np.int64)
-
-
-def _require_columns(
-    size: int, pointers: NDArray[np.int64], rows: NDArray[np.int64], values: int
-) -> None:
-    """Check rows and columns of a sparse matrix; MATLAB leaves room behind its entries."""
-    entries = int(pointers[-1])
-    if not 0 <= entries <= min(rows.size, values):
-        raise ValueError(f"{entries} entries announced, {min(rows.size, values)} present")
-    used = rows[:entries]
-    columns_of(pointers, used)
-    if entries and not 0 <= used.min() <= used.max() < size:
-        raise ValueError(f"a row index lies outside 1 to {size}")
 
 
 def _require_version_4(content: memoryview) -> None:

@@ -48,21 +48,18 @@ def _require_sound(stream: IO[bytes]) -> None:
             if len(set(archive.namelist())) < len(archive.namelist()):
                 raise ValueError("two arrays have the same name")
             for member in archive.infolist():
-                _require_member(archive, member)
+                name, size = member.filename, member.file_size
+                packed = member.compress_type != zipfile.ZIP_STORED
+                if size > source.LARGEST_UNPACKED and packed:
+                    raise ValueError(f"{name!r} unpacks to {size} bytes; save it unpacked")
+                if name.endswith(".npy"):
+                    with archive.open(member) as array:
+                        _require_held(array, size)
     else:
         size = stream.seek(0, os.SEEK_END)
         stream.seek(0)
         _require_held(stream, size)
     stream.seek(0)
-
-
-def _require_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
-    size = member.file_size
-    if size > source.LARGEST_UNPACKED and member.compress_type != zipfile.ZIP_STORED:
-        raise ValueError(f"{member.filename!r} unpacks to {size} bytes; save it unpacked")
-    if member.filename.endswith(".npy"):
-        with archive.open(member) as stream:
-            _require_held(stream, size)
 
 
 def _require_held(stream: IO[bytes], size: int) -> None:

@@ -30,13 +30,7 @@ class Key:
     name: str | None
 
     def among(self, known: Iterable[str]) -> str:
-        """Return the name, one of those in the file; where there is only one, it need not be given.
-
-        Raises
-        ------
-        ModelError
-            If there is no such name, or it is needed and missing.
-        """
+        """Return the name, one of those in the file; the only one need not be given."""
         names = list(known)
         if self.name is None:
             if len(names) == 1:

@@ -7,15 +7,13 @@ from stickslip.model.configurations import (
     slip_configurations,
 )
 from stickslip.model.contact import Contact
-from stickslip.model.force import Force, force_from_spec
+from stickslip.model.force import Force
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
-from stickslip.model.laws import LAWS, contact_from_spec
 from stickslip.model.model import ContactRef, Model, PointRef
 from stickslip.model.structural import StructuralDamper
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 __all__ = [
-    "LAWS",
     "Contact",
     "ContactRef",
     "Force",
@@ -28,8 +26,6 @@ __all__ = [
     "SlipConfigurations",
     "StructuralDamper",
     "Structure",
-    "contact_from_spec",
-    "force_from_spec",
     "join",
     "natural_frequencies",
     "slip_configurations",

@@ -53,15 +53,10 @@ def natural_frequencies(
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SlipConfigurations(Mapping[tuple[tuple[str, int], ...], NDArray[np.float64]]):
-    """Natural frequencies by the set of contact points that slip; printed, a table.
-
-    Attributes
-    ----------
-    frequencies : mapping
-        From sets ((contact, point), ...) to angular frequencies [rad/s], shape (N,).
-    """
+    """Natural frequencies by the set of contact points that slip; printed, a table."""
 
     frequencies: Mapping[tuple[tuple[str, int], ...], NDArray[np.float64]]
+    """From sets ((contact, point), ...) to angular frequencies [rad/s], shape (N,)."""
 
     def __getitem__(self, slipping: tuple[tuple[str, int], ...]) -> NDArray[np.float64]:
         return self.frequencies[slipping]

@@ -204,8 +204,7 @@ def modal_damping(
     Parameters
     ----------
     ratio : float or sequence of float, shape (N,)
-        Fraction of critical damping: one for all modes, or one per mode in ascending frequency.
-        0 leaves a mode alone, a negative ratio feeds energy into it.
+        As of `ModalDamping`; 0 leaves a mode alone.
     stuck : Model or iterable of Contact, optional
         Whose modes: with these contacts stuck, of a model all of them. Default: none, the modes of
         the structure by itself, in which all contacts slip without friction. The former are those

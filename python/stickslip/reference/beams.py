@@ -89,22 +89,10 @@ def beam_pair(
 ) -> Model:
     """Return two SNECMA beams rubbing against each other at their tips.
 
-    Parameters
-    ----------
-    force : float, optional
-        Amplitude of the force on either tip [N].
-    phase : float, optional
-        Phase lead of the force on beam "2" [rad]. Default: engine order 2 on 36 blades.
-    stiffness : float, optional
-        Stiffness of the contact between the tips [N/m].
-    slip_force : float, optional
-        Slip force of the contact between the tips [N].
-
-    Returns
-    -------
-    Model
-        6 degrees of freedom "1.damper", "1.tip", ..., "2.mode"; contacts "damper-1" and "damper-2"
-        to ground, as of `snecma_beam`, and "tips".
+    `force` is the amplitude of the force on either tip [N], ahead by `phase` on beam "2" [rad]: by
+    default as engine order 2 on 36 blades. The contact between the tips, "tips", has the stiffness
+    [N/m] and the slip force [N]; "damper-1" and "damper-2" to ground are as of `snecma_beam`. There
+    are 6 degrees of freedom "1.damper", "1.tip", ..., "2.mode".
     """
     return Model(
         join({"1": snecma_structure(), "2": snecma_structure()}),
@@ -166,7 +154,9 @@ def flutter_mass() -> tuple[Model, Matrix]:
 def flutter_beam(
     mode: int | None = None, reading: Literal["literal", "ordered", "first"] = "literal"
 ) -> tuple[Model, Matrix]:
-    """Return the SNECMA beam of chapter V with its negative damping.
+    """Return the SNECMA beam of chapter V, without force, and C_neg of the damping C + r C_neg.
+
+    C is the positive damping of the other modes [kg/s].
 
     Parameters
     ----------
@@ -177,13 +167,6 @@ def flutter_beam(
         damped negatively: modes 0, 1 and 2 as printed; modes 2, 1 and 0 as they follow from (5.22),
         the print being in reverse order; or the latter with the 12.0954 of "c_3" made negative
         whatever `mode`, which is that of mode 0.
-
-    Returns
-    -------
-    model : Model
-        With the positive damping of the other modes, without force.
-    negative_damping : ndarray of float64, shape (3, 3)
-        C_neg of the damping C + r C_neg [kg/s].
 
     References
     ----------

@@ -40,19 +40,9 @@ def laxalde_blisk(engine_order: int = 2, force: float = 1.0) -> BladedDisk:
     It has no friction contact of its own: friction rings act on "disk", added with
     ``blisk.replaced(contacts=[...])``.
 
-    Parameters
-    ----------
-    engine_order : int, optional
-        Engine order of the forces on the blades.
-    force : float, optional
-        Amplitude of the force on the outer mass of every blade [N].
-
-    Returns
-    -------
-    BladedDisk
-        Degrees of freedom "disk", "blade" and "tip", of 1.2, 0.35 and 0.25 kg. Nodal diameter 0:
-        88.26374399, 249.31165161 and 619.34330474 Hz; 1: 169.3441295 Hz; 2: 189.3018526 Hz; 12:
-        195.67605066 Hz.
+    `force` is the amplitude of the force on the outer mass of every blade [N]. The degrees of
+    freedom are "disk", "blade" and "tip", of 1.2, 0.35 and 0.25 kg. Nodal diameter 0: 88.26374399,
+    249.31165161 and 619.34330474 Hz; 1: 169.3441295 Hz; 2: 189.3018526 Hz; 12: 195.67605066 Hz.
 
     References
     ----------

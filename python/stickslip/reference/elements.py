@@ -19,6 +19,11 @@ BLADE_SLIP_FORCE = 1.3263
 """Slip force F_d0 that minimises the peak of the tip of `turbine_blade` [N]."""
 
 
+_MASS = [[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]
+_BENDING = [[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]
+"""Consistent mass of a beam element over 1/420 of its mass, and its stiffness over E I / h^3."""
+
+
 def rubber_beam(force: float = 1.5, *, damping_ratio: float = 1e-3) -> Model:
     """Return a finite-element model of the RubBeR friction-damped beam.
 
@@ -50,8 +55,8 @@ def rubber_beam(force: float = 1.5, *, damping_ratio: float = 1e-3) -> Model:
     area, inertia = width * height, width * height**3 / 12
     element = length / (nodes - 1)
     beam = Structure(
-        mass=_beam_matrix(density * area * element * _element_mass(element), nodes),
-        stiffness=_beam_matrix(modulus * inertia / element**3 * _element_stiffness(element), nodes),
+        mass=_beam_matrix(density * area * element / 420.0 * _element(_MASS, element), nodes),
+        stiffness=_beam_matrix(modulus * inertia / element**3 * _element(_BENDING, element), nodes),
         damping=ModalDamping(damping_ratio),
         dofs=[f"{kind}{node}" for node in range(2, nodes + 1) for kind in ("w", "slope")],
     )
@@ -67,19 +72,10 @@ def turbine_blade(slip_force: float = BLADE_SLIP_FORCE, load: float = 1.0) -> Mo
     modes. It takes the place of the proprietary blade of the dissertation. A pressure that grows
     along the airfoil, 100 Pa at the tip, excites all degrees of freedom.
 
-    Parameters
-    ----------
-    slip_force : float, optional
-        Of the damper under the platform [N].
-    load : float, optional
-        Factor on the pressure.
-
-    Returns
-    -------
-    Model
-        Degrees of freedom "damper" (under the platform, across the row of blades), "tip" (trailing
-        edge of the tip, same direction) and "mode-1", ..., "mode-16". The damping ratio is 5e-4 at
-        1600 and 47,000 rad/s and lower between them.
+    `slip_force` is that of the damper under the platform [N], `load` a factor on the pressure. The
+    degrees of freedom are "damper" (under the platform, across the row of blades), "tip" (trailing
+    edge of the tip, same direction) and "mode-1", ..., "mode-16". The damping ratio is 5e-4 at 1600
+    and 47,000 rad/s and lower between them.
 
     References
     ----------
@@ -97,31 +93,10 @@ def turbine_blade(slip_force: float = BLADE_SLIP_FORCE, load: float = 1.0) -> Mo
     return Model(Structure(mass, stiffness, damping, dofs), [damper], forces)
 
 
-def _element_mass(h: float) -> Matrix:
-    """Return the consistent mass of a beam element of length h, over its mass."""
-    return (
-        np.array(
-            [
-                [156.0, 22.0 * h, 54.0, -13.0 * h],
-                [22.0 * h, 4.0 * h**2, 13.0 * h, -3.0 * h**2],
-                [54.0, 13.0 * h, 156.0, -22.0 * h],
-                [-13.0 * h, -3.0 * h**2, -22.0 * h, 4.0 * h**2],
-            ]
-        )
-        / 420.0
-    )
-
-
-def _element_stiffness(h: float) -> Matrix:
-    """Return the stiffness of a beam element of length h, over E I / h^3."""
-    return np.array(
-        [
-            [12.0, 6.0 * h, -12.0, 6.0 * h],
-            [6.0 * h, 4.0 * h**2, -6.0 * h, 2.0 * h**2],
-            [-12.0, -6.0 * h, 12.0, -6.0 * h],
-            [6.0 * h, 2.0 * h**2, -6.0 * h, 4.0 * h**2],
-        ]
-    )
+def _element(shape: list[list[int]], h: float) -> Matrix:
+    """Return the matrix of a beam element of length h, whose slopes are counted in lengths."""
+    scale = np.array([1.0, h, 1.0, h])
+    return np.array(shape, dtype=np.float64) * scale * scale[:, None]
 
 
 def _beam_matrix(element: Matrix, nodes: int) -> Matrix:

@@ -16,7 +16,7 @@ from stickslip.analyses.arguments import loaded_dofs, physical_dofs
 from stickslip.analyses.run import share
 from stickslip.checks import brief, file_path, is_file, is_reserved, unknown, vanished
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
-from stickslip.disk.arguments import NEXT, stranger
+from stickslip.disk.bladed_disk import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Structure
