@@ -1,6 +1,6 @@
 //! NumPy arrays to matrices and series, and back.
 
-use numpy::ndarray::Dimension;
+use numpy::ndarray::{ArrayView2, Dimension};
 use numpy::{
     Complex64, Element, Ix1, Ix2, Ix3, PyArray1, PyArray2, PyReadonlyArray, PyUntypedArray,
     PyUntypedArrayMethods as _,
@@ -46,26 +46,6 @@ impl<'a, 'py, T: Element + 'a, D: Dimension + 'a> FromPyObject<'a, 'py> for Give
     }
 }
 
-/// One of two kinds of arguments; anything else is refused in one line.
-pub fn either<'a, 'py, A, B, T>(
-    given: Borrowed<'a, 'py, PyAny>,
-    expected: &str,
-    first: impl FnOnce(A) -> T,
-    second: impl FnOnce(B) -> T,
-) -> PyResult<T>
-where
-    A: FromPyObject<'a, 'py>,
-    B: FromPyObject<'a, 'py>,
-{
-    if let Ok(value) = given.extract() {
-        return Ok(first(value));
-    }
-    if let Ok(value) = given.extract() {
-        return Ok(second(value));
-    }
-    Err(PyTypeError::new_err(format!("expected {expected}, got {}", given.get_type())))
-}
-
 /// Checks that a history of `samples` instants fits into memory.
 pub fn check_samples(samples: usize, columns: usize) -> PyResult<()> {
     let most = MOST_VALUES / columns.max(1);
@@ -91,16 +71,16 @@ pyo3::create_exception!(_core, TooFastError, PyValueError);
 
 /// A dense matrix from a two-dimensional array.
 pub fn matrix(array: &Array2<'_, f64>) -> faer::Mat<f64> {
-    let view = array.as_array();
-    faer::Mat::from_fn(view.nrows(), view.ncols(), |i, j| view[[i, j]])
+    dense(array.as_array())
 }
 
 /// Dense matrices from the first dimension of a three-dimensional array.
-pub fn matrices(array: &Array3<'_, f64>) -> Vec<faer::Mat<f64>> {
-    let view = array.as_array();
-    view.outer_iter()
-        .map(|one| faer::Mat::from_fn(one.nrows(), one.ncols(), |i, j| one[[i, j]]))
-        .collect()
+pub fn matrices<T: Element + Copy>(array: &Array3<'_, T>) -> Vec<faer::Mat<T>> {
+    array.as_array().outer_iter().map(dense).collect()
+}
+
+fn dense<T: Copy>(view: ArrayView2<'_, T>) -> faer::Mat<T> {
+    faer::Mat::from_fn(view.nrows(), view.ncols(), |i, j| view[[i, j]])
 }
 
 /// Real coefficients of complex amplitudes `X_0, X_1, …`.
@@ -122,14 +102,6 @@ pub fn is_half_wave(orders: usize, amplitudes: impl Fn(usize) -> Complex64) -> b
     (0..orders).step_by(2).all(|k| amplitudes(k) == Complex64::new(0.0, 0.0))
 }
 
-/// A one-dimensional array.
-pub fn vector<'py, T: numpy::Element>(
-    py: Python<'py>,
-    values: impl IntoIterator<Item = T>,
-) -> Bound<'py, PyArray1<T>> {
-    PyArray1::from_iter(py, values)
-}
-
 /// A two-dimensional array from rows of equal length.
 pub fn table<'py, T: numpy::Element + Clone>(
     py: Python<'py>,
@@ -139,13 +111,4 @@ pub fn table<'py, T: numpy::Element + Clone>(
 ) -> PyResult<Bound<'py, PyArray2<T>>> {
     use numpy::PyArrayMethods as _;
     PyArray1::from_vec(py, values).reshape([rows, columns])
-}
-
-/// Indices of DOFs.
-pub fn indices(observe: &Array1<'_, i64>) -> PyResult<Vec<usize>> {
-    let dofs = observe.as_array();
-    dofs.iter()
-        .map(|&dof| usize::try_from(dof))
-        .collect::<Result<_, _>>()
-        .map_err(|_| PyValueError::new_err("observe: DOF indices must not be negative"))
 }

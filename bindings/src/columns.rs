@@ -9,23 +9,55 @@ use stickslip_core::contact::PointState;
 use stickslip_core::motion::Event;
 use stickslip_core::timing::Profile;
 
-const MISSING: Complex64 = Complex64::new(f64::NAN, f64::NAN);
-
-/// Columns that are being written.
-pub struct Columns<'py>(Bound<'py, PyDict>);
+/// Columns that are being written, and what is told besides.
+pub struct Columns<'py> {
+    columns: Bound<'py, PyDict>,
+    told: Bound<'py, PyDict>,
+}
 
 impl<'py> Columns<'py> {
     pub fn new(py: Python<'py>) -> Self {
-        Self(PyDict::new(py))
+        Self { columns: PyDict::new(py), told: PyDict::new(py) }
     }
 
-    pub fn end(self) -> Py<PyDict> {
-        self.0.unbind()
+    /// An attribute beside the columns.
+    pub fn tell(&self, name: &str, value: impl IntoPyObject<'py>) -> PyResult<()> {
+        self.told.set_item(name, value)
+    }
+
+    /// Seconds by stage and work by kind, of which `first` is counted elsewhere.
+    pub fn effort(&self, profile: &Profile, first: (&str, usize)) -> PyResult<()> {
+        let timings = [
+            ("compliance", profile.compliance),
+            ("law", profile.law),
+            ("linear_solve", profile.linear_solve),
+            ("recovery", profile.recovery),
+            ("estimate", profile.estimate),
+            ("total", profile.total),
+        ]
+        .map(|(stage, time)| (stage, time.as_secs_f64()));
+        let counters = [
+            first,
+            ("evaluations", profile.evaluations),
+            ("factorisations", profile.factorisations),
+            ("updates", profile.updates),
+            ("restarts", profile.restarts),
+            ("homotopies", profile.homotopies),
+            ("orbits", profile.orbits),
+        ];
+        self.tell("timings", timings.into_py_dict(self.told.py())?)?;
+        self.tell("counters", counters.into_py_dict(self.told.py())?)
+    }
+
+    /// An object with the columns and all that was told.
+    pub fn end(self) -> PyResult<Bound<'py, PyAny>> {
+        self.told.set_item("columns", &self.columns)?;
+        self.told.py().import("types")?.getattr("SimpleNamespace")?.call((), Some(&self.told))
     }
 
     /// One entry per row.
     pub fn one<T: Element>(&self, name: &str, values: impl IntoIterator<Item = T>) -> PyResult<()> {
-        self.0.set_item(name, PyArray1::from_iter(self.0.py(), values))
+        self.columns.set_item(name, PyArray1::from_iter(self.columns.py(), values))
     }
 
     /// An array of any shape.
@@ -40,7 +72,7 @@ impl<'py> Columns<'py> {
     {
         // Python keeps the vector itself, not the room that it grew in.
         values.shrink_to_fit();
-        self.0.set_item(name, PyArray1::from_vec(self.0.py(), values).reshape(shape)?)
+        self.columns.set_item(name, PyArray1::from_vec(self.columns.py(), values).reshape(shape)?)
     }
 
     /// Rows of `width` entries; rows that end earlier are filled up.
@@ -51,12 +83,7 @@ impl<'py> Columns<'py> {
         missing: T,
         rows: impl IntoIterator<Item = R>,
     ) -> PyResult<()> {
-        let (mut count, mut values) = (0, Vec::new());
-        for row in rows {
-            count += 1;
-            values.extend(row);
-            values.resize(count * width, missing.clone());
-        }
+        let (count, values) = filled(width, missing, rows);
         self.shaped(name, [count, width], values)
     }
 
@@ -76,12 +103,8 @@ impl<'py> Columns<'py> {
         width: usize,
         rows: impl IntoIterator<Item = &'a [[f64; 2]]>,
     ) -> PyResult<()> {
-        let (mut count, mut values) = (0, Vec::new());
-        for row in rows {
-            count += 1;
-            values.extend(row.iter().flatten());
-            values.resize(count * width * 2, f64::NAN);
-        }
+        let flat = rows.into_iter().map(|row| row.iter().flatten().copied());
+        let (count, values) = filled(2 * width, f64::NAN, flat);
         self.shaped("range", [count, width, 2], values)
     }
 
@@ -92,7 +115,8 @@ impl<'py> Columns<'py> {
         rows: impl Iterator<Item = (&'a [Complex64], usize)> + Clone,
     ) -> PyResult<()> {
         let values = rows.clone().map(|(values, _)| values.iter().copied());
-        self.rows("multipliers", width, MISSING, values)?;
+        let missing = Complex64::new(f64::NAN, f64::NAN);
+        self.rows("multipliers", width, missing, values)?;
         self.one("neutral", rows.map(|(_, neutral)| neutral as i64))
     }
 
@@ -155,6 +179,21 @@ impl<'py> Columns<'py> {
     }
 }
 
+/// How many rows there are, and their entries, each row filled up to `width` of them.
+fn filled<T: Clone, R: IntoIterator<Item = T>>(
+    width: usize,
+    missing: T,
+    rows: impl IntoIterator<Item = R>,
+) -> (usize, Vec<T>) {
+    let (mut count, mut values) = (0, Vec::new());
+    for row in rows {
+        count += 1;
+        values.extend(row);
+        values.resize(count * width, missing.clone());
+    }
+    (count, values)
+}
+
 /// Number of a status, as Python knows it.
 pub fn status_code(status: PointStatus) -> u8 {
     match status {
@@ -168,31 +207,4 @@ pub fn status_code(status: PointStatus) -> u8 {
         PointStatus::StepsLimit => 7,
         PointStatus::EffortLimit => 8,
     }
-}
-
-/// Seconds by stage.
-pub fn timings(py: Python<'_>, profile: &Profile) -> PyResult<Py<PyDict>> {
-    let stages = [
-        ("compliance", profile.compliance),
-        ("law", profile.law),
-        ("linear_solve", profile.linear_solve),
-        ("recovery", profile.recovery),
-        ("estimate", profile.estimate),
-        ("total", profile.total),
-    ];
-    Ok(stages.map(|(stage, time)| (stage, time.as_secs_f64())).into_py_dict(py)?.unbind())
-}
-
-/// Work by kind.
-pub fn counters(py: Python<'_>, profile: &Profile, iterations: usize) -> PyResult<Py<PyDict>> {
-    let counters = [
-        ("iterations", iterations),
-        ("evaluations", profile.evaluations),
-        ("factorisations", profile.factorisations),
-        ("updates", profile.updates),
-        ("restarts", profile.restarts),
-        ("homotopies", profile.homotopies),
-        ("orbits", profile.orbits),
-    ];
-    Ok(counters.into_py_dict(py)?.unbind())
 }

@@ -1,14 +1,17 @@
 //! Mistuned disks: the highest blade of one, and of many patterns in parallel threads.
 
-use crate::arrays::{matrix, refused, Array1, Array2};
+use crate::arrays::{matrix, refused, Array2};
 use crate::columns::status_code;
-use crate::problem::{harmonic_loads, sector_contacts, Forces, Matrix, Problem, SectorContactSpec};
-use crate::settings::{HarmonicSettings, LawEvaluation, PeakSettings};
-use crate::watch::{watched_parts, whole};
+use crate::problem::{
+    harmonic_loads, ring_coupling, sector_contacts, Forces, Matrix, Problem, SectorContactSpec,
+};
+use crate::settings::{self, get, harmonic, measure};
+use crate::watch::{raise_unless_interrupt, watched_parts, whole};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::design::{self, study, GlobalPeak, Pattern};
-use stickslip_core::structure::RingCoupling;
+use stickslip_core::balance::Settings;
+use stickslip_core::design::{self, study, GlobalPeak, Pattern, PeakQuery};
+use stickslip_core::fourier::Measure;
 
 /// A tuned disk, from which rings of deviating sectors are made.
 #[pyclass(frozen, module = "stickslip._core")]
@@ -23,7 +26,6 @@ impl TunedDisk {
     /// that goes with its root; the blocks of mass, damping and stiffness to the next sector;
     /// contacts of every sector, and forces sector by sector; whether a law made all of the damping.
     #[new]
-    #[allow(clippy::too_many_arguments)]
     fn new(
         mass: Matrix<'_>,
         stiffness: Matrix<'_>,
@@ -40,11 +42,7 @@ impl TunedDisk {
             coupled_stiffness: matrix(&coupled_stiffness),
             damping: [matrix(&damping.0), matrix(&damping.1), matrix(&damping.2)],
             proportional,
-            coupling: RingCoupling {
-                mass: matrix(&coupling.0),
-                damping: matrix(&coupling.1),
-                stiffness: matrix(&coupling.2),
-            },
+            coupling: ring_coupling([coupling.0, coupling.1, coupling.2]),
             contacts: sector_contacts(contacts)?,
             loads: forces.into_iter().map(harmonic_loads).collect(),
         };
@@ -52,16 +50,10 @@ impl TunedDisk {
     }
 
     /// The ring whose sectors' stiffnesses deviate.
-    fn mistuned(&self, py: Python<'_>, deviations: Array1<'_, f64>) -> PyResult<Problem> {
-        let deviations = deviations.as_array().to_vec();
+    fn mistuned(&self, py: Python<'_>, deviations: Vec<f64>) -> PyResult<Problem> {
         let disk = Arc::clone(&self.disk);
-        let model = whole(py, move |_| disk.mistuned(&deviations))?.map_err(refused)?;
-        Ok(Problem { model: Arc::new(model) })
+        Problem::of(py, move || disk.mistuned(&deviations))
     }
-}
-
-fn quest(groups: Vec<Vec<usize>>, measure: &str, span: (f64, f64)) -> PyResult<design::PeakQuery> {
-    Ok(design::PeakQuery { groups, measure: measure.parse().map_err(refused)?, span })
 }
 
 /// Frequency, amplitude, DOF by its position in the group, status, harmonics kept, error estimate,
@@ -69,9 +61,8 @@ fn quest(groups: Vec<Vec<usize>>, measure: &str, span: (f64, f64)) -> PyResult<d
 type Row = (f64, f64, usize, u8, usize, f64, bool);
 
 fn row(summit: &GlobalPeak) -> Row {
-    let GlobalPeak { omega, amplitude, member, status, harmonics, error_estimate, at_edge } =
-        *summit;
-    (omega, amplitude, member, status_code(status), harmonics, error_estimate, at_edge)
+    let GlobalPeak { omega, amplitude, member, harmonics, error_estimate, at_edge, .. } = *summit;
+    (omega, amplitude, member, status_code(summit.status), harmonics, error_estimate, at_edge)
 }
 
 /// The highest point of every group of DOFs, of each of which the highest.
@@ -81,17 +72,17 @@ pub fn summits(
     py: Python<'_>,
     problem: &Problem,
     groups: Vec<Vec<usize>>,
-    measure: &str,
+    #[pyo3(from_py_with = measure)] measure: Measure,
     span: (f64, f64),
-    settings: HarmonicSettings,
-    evaluation: Option<LawEvaluation>,
+    #[pyo3(from_py_with = harmonic)] settings: Settings,
+    evaluation: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<Row>> {
     let model = Arc::clone(&problem.model);
-    let quest = quest(groups, measure, span)?;
-    let settings = settings.parse()?;
-    let settings = evaluation.map_or(Ok(settings), |evaluation| evaluation.apply(settings))?;
-    let found = whole(py, move |look| design::summits(&model, settings, &quest, None, look))?;
-    Ok(found.map_err(refused)?.summits.iter().map(row).collect())
+    let query = PeakQuery { groups, measure, span };
+    let settings =
+        evaluation.map_or(Ok(settings), |given| settings::evaluation(given, settings))?;
+    let found = whole(py, move |look| design::summits(&model, settings, &query, None, look))?;
+    Ok(found.summits.iter().map(row).collect())
 }
 
 /// The highest blade of every pattern, one row of `deviations` each, of the disk at its position in
@@ -99,30 +90,29 @@ pub fn summits(
 /// `progress` from time to time.
 /// Whether all were computed: Ctrl-C ends the study early.
 #[pyfunction]
-#[allow(clippy::too_many_arguments)]
 pub fn mistuning_study(
     py: Python<'_>,
     disks: Vec<PyRef<'_, TunedDisk>>,
     which: Vec<usize>,
     deviations: Array2<'_, f64>,
     groups: Vec<Vec<usize>>,
-    peak: PeakSettings,
-    settings: HarmonicSettings,
+    peak: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = harmonic)] settings: Settings,
     orders: Vec<usize>,
     threads: usize,
     deliver: Py<PyAny>,
     progress: Py<PyAny>,
 ) -> PyResult<bool> {
-    let (quest, settings) = (quest(groups, &peak.measure, peak.span)?, settings.parse()?);
+    let measure = measure(&peak.getattr("measure")?)?;
+    let query = PeakQuery { groups, measure, span: get(peak, "span")? };
     let disks: Vec<Arc<design::TunedDisk>> =
         disks.iter().map(|one| Arc::clone(&one.disk)).collect();
-    let rows: Vec<Vec<f64>> =
-        deviations.as_array().outer_iter().map(|row| row.iter().copied().collect()).collect();
+    let rows: Vec<Vec<f64>> = deviations.as_array().outer_iter().map(|row| row.to_vec()).collect();
     let orders: Vec<Option<usize>> = orders.into_iter().map(Some).collect();
     let deliver = |py: Python<'_>, (index, rows, points): (usize, Vec<Row>, usize)| {
         deliver.call1(py, (index, rows, points)).map(drop)
     };
-    let (result, raised) = watched_parts(py, Some(&progress), deliver, move |look, hand_over| {
+    let (result, raised) = watched_parts(py, Some(progress), deliver, move |look, hand_over| {
         let disks: Vec<&design::TunedDisk> = disks.iter().map(AsRef::as_ref).collect();
         let patterns: Vec<Pattern<'_>> =
             rows.iter().zip(which).map(|(deviations, disk)| Pattern { disk, deviations }).collect();
@@ -130,10 +120,10 @@ pub fn mistuning_study(
             hand_over((index, found.summits.iter().map(row).collect(), found.points))
         };
         let mut wait = || look(0.0);
-        study(&disks, &patterns, settings, &quest, &orders, threads, &mut deliver, &mut wait)
+        study(&disks, &patterns, settings, &query, &orders, threads, &mut deliver, &mut wait)
     })?;
-    let complete = raised.is_empty();
-    raised.raise_unless_interrupt(py)?;
+    let complete = raised.is_none();
+    raise_unless_interrupt(py, raised)?;
     result.map_or(Ok(()), |ended| ended.map_err(refused))?;
     Ok(complete)
 }

@@ -1,22 +1,22 @@
 //! The problem: structure, contacts and loads in numbers.
 
-use crate::arrays::{matrices, matrix, refused, vector, Array1, Array2, Array3};
-use crate::settings::ResidualArgument;
+use crate::arrays::{matrices, matrix, refused, Array1, Array2, Array3};
+use crate::settings::residual;
 use crate::watch::whole;
 use numpy::{Complex64, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use stickslip_core::contact::{law, Parameters};
+use stickslip_core::contact::{law, ContactLaw, Parameters, Residual};
 use stickslip_core::model::{Contact, Model, SectorContact};
 use stickslip_core::structure::{
     CyclicMatrix, CyclicStructure, HarmonicLoad, RingCoupling, Structure,
 };
+use stickslip_core::Error;
 
 pub type Matrix<'py> = Array2<'py, f64>;
 type ContactSpec<'py> = (String, Matrix<'py>, Bound<'py, PyDict>);
 pub type SectorContactSpec<'py> = (String, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
-type SectorMatrices<'py> = Array3<'py, f64>;
 pub type Forces<'py> = Vec<(usize, Array1<'py, Complex64>)>;
 
 /// A structure with its contacts and loads, decomposed once.
@@ -25,18 +25,27 @@ pub struct Problem {
     pub model: Arc<Model>,
 }
 
+impl Problem {
+    /// The problem of a model that is built without the interpreter.
+    pub fn of(
+        py: Python<'_>,
+        model: impl FnOnce() -> Result<Model, Error> + Send + 'static,
+    ) -> PyResult<Self> {
+        Ok(Self { model: Arc::new(whole(py, move |_| model())?) })
+    }
+}
+
 #[pymethods]
 impl Problem {
     /// Whether x(t + T/2) = -x(t) in the steady motion.
-    fn half_wave(&self, residual: ResidualArgument) -> PyResult<bool> {
-        Ok(self.model.is_symmetric() && residual.parse()?.is_symmetric())
+    fn half_wave(&self, #[pyo3(from_py_with = residual)] residual: Residual) -> bool {
+        self.model.is_symmetric() && residual.is_symmetric()
     }
 
     /// Builds the problem from matrices, contacts `(law, rows, parameters)` and forces
     /// `(harmonic, amplitude per DOF)`; `proportional` says that a law made the damping, one that
     /// couples none of the modes without contacts.
     #[new]
-    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         mass: Array2<'_, f64>,
@@ -47,28 +56,21 @@ impl Problem {
         proportional: bool,
     ) -> PyResult<Self> {
         let (mass, damping, stiffness) = (matrix(&mass), matrix(&damping), matrix(&stiffness));
-        let specs = contacts
-            .into_iter()
-            .map(|(name, rows, dictionary)| Ok((name, matrix(&rows), parameters(&dictionary)?)))
-            .collect::<PyResult<Vec<_>>>()?;
+        let contact = |(name, rows, given): ContactSpec<'_>| {
+            Ok(Contact { law: law_of(&name, &given)?, rows: matrix(&rows) })
+        };
+        let contacts = contacts.into_iter().map(contact).collect::<PyResult<Vec<_>>>()?;
         let loads = harmonic_loads(forces);
-        let model = whole(py, move |_| {
-            let contacts = specs
-                .into_iter()
-                .map(|(name, rows, parameters)| Ok(Contact { law: law(&name, &parameters)?, rows }))
-                .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
+        Self::of(py, move || {
             let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
             Model::new(structure.with_law(proportional), contacts, loads)
-        })?
-        .map_err(refused)?;
-        Ok(Self { model: Arc::new(model) })
+        })
     }
 
     /// Builds one sector of a tuned disk in a travelling wave. Matrices are `(block of the sector,
     /// block that couples it to the next)`, contacts `(law, rows on the sector, rows on the next,
     /// parameters)`, forces those on sector 0.
     #[staticmethod]
-    #[allow(clippy::too_many_arguments)]
     fn travelling_wave(
         py: Python<'_>,
         mass: (Matrix<'_>, Matrix<'_>),
@@ -86,73 +88,52 @@ impl Problem {
             CyclicStructure { mass, damping, stiffness, sectors, engine_order, proportional };
         let contacts = sector_contacts(contacts)?;
         let loads = harmonic_loads(forces);
-        let model = whole(py, move |_| Model::travelling_wave(cyclic, contacts, loads))?
-            .map_err(refused)?;
-        Ok(Self { model: Arc::new(model) })
+        Self::of(py, move || Model::travelling_wave(cyclic, contacts, loads))
     }
 
     /// Builds a ring of sectors that may differ. Matrices are `(blocks of the sectors, block that
     /// couples each to the next)`; contacts and forces are given sector by sector, as of a wave.
     #[staticmethod]
-    #[allow(clippy::too_many_arguments)]
     fn ring(
         py: Python<'_>,
-        mass: (SectorMatrices<'_>, Matrix<'_>),
-        damping: (SectorMatrices<'_>, Matrix<'_>),
-        stiffness: (SectorMatrices<'_>, Matrix<'_>),
+        mass: (Array3<'_, f64>, Matrix<'_>),
+        damping: (Array3<'_, f64>, Matrix<'_>),
+        stiffness: (Array3<'_, f64>, Matrix<'_>),
         contacts: Vec<Vec<SectorContactSpec<'_>>>,
         forces: Vec<Forces<'_>>,
         proportional: bool,
     ) -> PyResult<Self> {
-        let coupling = RingCoupling {
-            mass: matrix(&mass.1),
-            damping: matrix(&damping.1),
-            stiffness: matrix(&stiffness.1),
-        };
-        let [mass, damping, stiffness] =
-            [mass.0, damping.0, stiffness.0].map(|stack| matrices(&stack));
+        let coupling = ring_coupling([mass.1, damping.1, stiffness.1]);
+        let blocks = [mass.0, damping.0, stiffness.0].map(|stack| matrices(&stack));
         let contacts = contacts.into_iter().map(sector_contacts).collect::<PyResult<Vec<_>>>()?;
         let loads = forces.into_iter().map(harmonic_loads).collect();
-        let model = whole(py, move |_| {
-            let structures = mass
-                .iter()
-                .zip(&damping)
-                .zip(&stiffness)
-                .map(|((m, c), k)| {
-                    let sector = Structure::new(m.as_ref(), c.as_ref(), k.as_ref())?;
-                    Ok(sector.with_law(proportional))
-                })
-                .collect::<Result<Vec<_>, stickslip_core::Error>>()?;
+        Self::of(py, move || {
+            let [mass, damping, stiffness] = &blocks;
+            let sector = |n: usize| {
+                let matrices = (mass[n].as_ref(), damping[n].as_ref(), stiffness[n].as_ref());
+                let sector = Structure::new(matrices.0, matrices.1, matrices.2)?;
+                Ok(sector.with_law(proportional))
+            };
+            let structures = (0..mass.len()).map(sector).collect::<Result<Vec<_>, Error>>()?;
             Model::ring(structures, coupling, contacts, loads)
-        })?
-        .map_err(refused)?;
-        Ok(Self { model: Arc::new(model) })
+        })
     }
 
-    /// Natural frequencies [rad/s] of a travelling wave of a nodal diameter, with the points
-    /// `(contact, point)` slipping, others stuck.
-    fn wave_frequencies<'py>(
-        &self,
-        py: Python<'py>,
-        diameter: usize,
-        slipping: Vec<(usize, usize)>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let model = Arc::clone(&self.model);
-        let frequencies =
-            whole(py, move |_| model.wave_frequencies(diameter, &slipping))?.map_err(refused)?;
-        Ok(vector(py, frequencies))
-    }
-
-    /// Natural frequencies [rad/s] with the points `(contact, point)` slipping, others stuck.
+    /// Natural frequencies [rad/s] with the points `(contact, point)` slipping, others stuck; of a
+    /// travelling wave those of a nodal diameter.
+    #[pyo3(signature = (slipping, diameter=None))]
     fn natural_frequencies<'py>(
         &self,
         py: Python<'py>,
         slipping: Vec<(usize, usize)>,
+        diameter: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let model = Arc::clone(&self.model);
-        let frequencies =
-            whole(py, move |_| model.natural_frequencies(&slipping))?.map_err(refused)?;
-        Ok(vector(py, frequencies))
+        let found = whole(py, move |_| match diameter {
+            Some(diameter) => model.wave_frequencies(diameter, &slipping),
+            None => model.natural_frequencies(&slipping),
+        })?;
+        Ok(PyArray1::from_vec(py, found))
     }
 
     /// Names of the contact laws that are no monotone operators of the motion.
@@ -181,25 +162,27 @@ impl Problem {
     }
 }
 
-/// Parameters of a law: numbers, or lists of numbers, by name.
-fn parameters(dictionary: &Bound<'_, PyDict>) -> PyResult<Parameters> {
+/// A law by its name and its parameters: numbers, or lists of numbers, by name.
+fn law_of(name: &str, given: &Bound<'_, PyDict>) -> PyResult<Box<dyn ContactLaw>> {
     let mut parameters = Parameters::new();
-    for (key, value) in dictionary.iter() {
-        let values =
-            value.extract::<f64>().map(|v| vec![v]).or_else(|_| value.extract::<Vec<f64>>())?;
+    for (key, value) in given.iter() {
+        let values = value.extract().map(|number| vec![number]).or_else(|_| value.extract())?;
         parameters.insert(key.extract()?, values);
     }
-    Ok(parameters)
+    law(name, &parameters).map_err(refused)
 }
 
 pub fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<SectorContact>> {
-    contacts
-        .into_iter()
-        .map(|(name, own, next, dictionary)| {
-            let law = law(&name, &parameters(&dictionary)?).map_err(refused)?;
-            Ok(SectorContact { law, own: matrix(&own), next: matrix(&next) })
-        })
-        .collect()
+    let contact = |(name, own, next, given): SectorContactSpec<'_>| {
+        Ok(SectorContact { law: law_of(&name, &given)?, own: matrix(&own), next: matrix(&next) })
+    };
+    contacts.into_iter().map(contact).collect()
+}
+
+/// Blocks of mass, damping and stiffness to the next sector.
+pub fn ring_coupling(blocks: [Matrix<'_>; 3]) -> RingCoupling {
+    let [mass, damping, stiffness] = blocks.map(|block| matrix(&block));
+    RingCoupling { mass, damping, stiffness }
 }
 
 pub fn harmonic_loads(forces: Forces<'_>) -> Vec<HarmonicLoad> {

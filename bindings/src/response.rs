@@ -1,141 +1,145 @@
 //! Forced response: settings in, curves out, progress and Ctrl-C in between.
 
-use crate::arrays::{either, indices, is_half_wave, refused, series, vector, Array1, Array2};
-use crate::columns::{counters, timings, Columns};
+use crate::arrays::{is_half_wave, series, Array1, Array2};
+use crate::columns::Columns;
 use crate::problem::Problem;
-use crate::settings::BalanceSettings;
-pub use crate::settings::ResidualArgument;
+use crate::settings::{balance as balance_settings, get, measure};
 use crate::watch::{given_up, watched};
 use numpy::{Complex64, PyArray1};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, sweep, sweep_range, ForcedBalance, Kept, Point, PointStatus, Progress, HIGHEST_ORDER,
+    self, sweep, sweep_range, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress,
+    Settings, HIGHEST_ORDER,
 };
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::orbit::OrbitInitialGuess;
+use stickslip_core::solve::NewtonSettings;
 use stickslip_core::timing::Profile;
-use stickslip_core::Model;
+use stickslip_core::{Error, Model};
 
 /// Frequencies: a grid, or a range whose steps the core chooses.
-pub enum Frequencies<'py> {
+pub enum Frequencies {
     Range((f64, f64)),
-    Grid(Array1<'py, f64>),
+    Grid(Vec<f64>),
 }
 
-impl<'a, 'py: 'a> FromPyObject<'a, 'py> for Frequencies<'py> {
-    type Error = PyErr;
-
-    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        let expected = "(from, to) or an array of float64 in 1 dimensions";
-        either(given, expected, Self::Range, Self::Grid)
+fn frequencies(given: &Bound<'_, PyAny>) -> PyResult<Frequencies> {
+    if let Ok(range) = given.extract() {
+        return Ok(Frequencies::Range(range));
     }
+    let grid: PyResult<Array1<'_, f64>> = given.extract();
+    grid.map(|grid| Frequencies::Grid(grid.as_array().to_vec())).map_err(|_| {
+        let expected = "(from, to) or an array of float64 in 1 dimensions";
+        PyTypeError::new_err(format!("expected {expected}, got {}", given.get_type()))
+    })
 }
 
-/// Runs a sweep without the GIL. Ctrl-C keeps what was solved; anything else that a progress
-/// callback raises is its own.
-pub fn swept(
+/// Runs work that keeps what it has solved, as `kept`, before it ends.
+pub fn keeping<K: Send + Sync + 'static, T: Send + 'static>(
     py: Python<'_>,
-    progress: Option<&Py<PyAny>>,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&Kept<K>, &Progress<'_>) -> Result<T, Error> + Send + 'static,
+    rest: impl FnOnce(Vec<Arc<K>>) -> Option<T>,
+) -> PyResult<T> {
+    let kept = Arc::new(Kept::default());
+    let own = Arc::clone(&kept);
+    if let Some(found) = watched(py, progress, move |look| work(&own, look))? {
+        return Ok(found);
+    }
+    let points = kept.lock().map(|mut points| take(&mut *points)).unwrap_or_default();
+    rest(points).ok_or_else(given_up)
+}
+
+/// Runs a sweep; Ctrl-C keeps what was solved.
+fn swept<'py>(
+    py: Python<'py>,
+    progress: Option<Py<PyAny>>,
     observed: usize,
     model: &Arc<Model>,
-    work: impl FnOnce(
-            &Model,
-            &Kept<Point>,
-            &Progress<'_>,
-        ) -> Result<balance::Solution, stickslip_core::Error>
+    work: impl FnOnce(&Model, &Kept<Point>, &Progress<'_>) -> Result<balance::Solution, Error>
         + Send
         + 'static,
-) -> PyResult<Solution> {
-    let kept = Arc::new(Kept::default());
-    let (own_model, own_kept) = (Arc::clone(model), Arc::clone(&kept));
-    let (inner, raised) = watched(py, progress, move |look| work(&own_model, &own_kept, look))?;
-    raised.raise_unless_interrupt(py)?;
-    let inner = match inner {
-        Some(inner) => inner.map_err(refused)?,
-        None => {
-            let points = kept.lock().map(|mut points| take(&mut *points)).unwrap_or_default();
-            let first = points.first().and_then(|point| point.unknowns()).ok_or_else(given_up)?;
-            let half_wave = first.harmonics().half_wave();
-            balance::Solution { points, half_wave, interrupted: true, profile: Profile::default() }
-        }
-    };
-    let points = inner.points.iter().map(AsRef::as_ref);
+) -> PyResult<Bound<'py, PyAny>> {
+    let own = Arc::clone(model);
+    let found = keeping(
+        py,
+        progress,
+        move |kept, look| work(&own, kept, look),
+        |points: Vec<Arc<Point>>| {
+            let half_wave = points.first()?.unknowns()?.harmonics().half_wave();
+            let profile = Profile::default();
+            Some(balance::Solution { points, half_wave, interrupted: true, profile })
+        },
+    )?;
+    let points = found.points.iter().map(AsRef::as_ref);
     let columns = Columns::new(py);
     columns.responses(points.clone(), observed, model.compliance().contacts())?;
-    Solution::new(py, columns, points, inner.half_wave, inner.interrupted, &inner.profile)
+    curve(columns, points, found.half_wave, found.interrupted, &found.profile)
 }
 
-/// A curve of periodic motions.
-#[pyclass(frozen, get_all, module = "stickslip._core")]
-pub struct Solution {
-    columns: Py<PyDict>,
+/// A curve of some points, whose columns are written.
+pub fn curve<'a, 'py>(
+    columns: Columns<'py>,
+    points: impl Iterator<Item = &'a Point> + Clone,
     half_wave: bool,
-    /// Number of points that were computed.
-    computed: usize,
     interrupted: bool,
-    timings: Py<PyDict>,
-    counters: Py<PyDict>,
-}
-
-impl Solution {
-    /// The curve of some points, whose columns are written.
-    pub fn new<'a>(
-        py: Python<'_>,
-        columns: Columns<'_>,
-        points: impl Iterator<Item = &'a Point> + Clone,
-        half_wave: bool,
-        interrupted: bool,
-        profile: &Profile,
-    ) -> PyResult<Self> {
-        let computed = |point: &&Point| point.status != PointStatus::NotComputed;
-        Ok(Self {
-            columns: columns.end(),
-            half_wave,
-            computed: points.clone().filter(computed).count(),
-            interrupted,
-            timings: timings(py, profile)?,
-            counters: counters(py, profile, points.map(|p| p.iterations).sum())?,
-        })
-    }
+    profile: &Profile,
+) -> PyResult<Bound<'py, PyAny>> {
+    let computed = points.clone().filter(|point| point.status != PointStatus::NotComputed);
+    columns.tell("half_wave", half_wave)?;
+    columns.tell("computed", computed.count())?;
+    columns.tell("interrupted", interrupted)?;
+    columns.effort(profile, ("iterations", points.map(|point| point.iterations).sum()))?;
+    columns.end()
 }
 
 /// Harmonic balance over a grid or a range of frequencies.
 #[pyfunction]
-pub fn forced_response(
-    py: Python<'_>,
+pub fn forced_response<'py>(
+    py: Python<'py>,
     problem: &Problem,
-    omega: Frequencies<'_>,
-    observe: Array1<'_, i64>,
-    driving: Array1<'_, i64>,
-    settings: BalanceSettings,
+    #[pyo3(from_py_with = frequencies)] omega: Frequencies,
+    observe: Vec<usize>,
+    driving: Vec<usize>,
+    #[pyo3(from_py_with = balance_settings)] settings: Settings,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Solution> {
-    let settings = settings.parse()?;
-    let (observe, driving) = (indices(&observe)?, indices(&driving)?);
-    let grid = match &omega {
-        Frequencies::Grid(grid) => grid.as_array().to_vec(),
-        Frequencies::Range(_) => Vec::new(),
-    };
-    let range = match omega {
-        Frequencies::Range(range) => Some(range),
-        Frequencies::Grid(_) => None,
-    };
-    let model = Arc::clone(&problem.model);
-    swept(py, progress.as_ref(), observe.len(), &model, move |model, kept, look| {
+) -> PyResult<Bound<'py, PyAny>> {
+    swept(py, progress, observe.len(), &problem.model, move |model, kept, look| {
         let orbits = OrbitInitialGuess::new(model, settings.residual, &observe, look);
         let balance = ForcedBalance::new(model, settings, &observe)?
             .watched(look)
             .rescued(&orbits)
             .driven_by(&driving)
             .keeping(kept);
-        match range {
-            Some((from, to)) => sweep_range(balance, from, to),
-            None => sweep(balance, &grid),
+        match omega {
+            Frequencies::Range((from, to)) => sweep_range(balance, from, to),
+            Frequencies::Grid(grid) => sweep(balance, &grid),
         }
+    })
+}
+
+/// Single-harmonic balance over a grid of frequencies.
+#[pyfunction]
+pub fn single_harmonic<'py>(
+    py: Python<'py>,
+    problem: &Problem,
+    omega: Vec<f64>,
+    observe: Vec<usize>,
+    settings: &Bound<'_, PyAny>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (estimate, max_iterations) = (get(settings, "estimate")?, get(settings, "max_iterations")?);
+    let settings = Settings {
+        harmonics: HarmonicChoice::Fixed(1),
+        newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
+        ..Settings::default()
+    };
+    swept(py, progress, observe.len(), &problem.model, move |model, kept, look| {
+        let balance = ForcedBalance::new(model, settings, &observe)?.watched(look).keeping(kept);
+        balance::single_harmonic(balance, &omega, estimate)
     })
 }
 
@@ -144,9 +148,8 @@ pub fn forced_response(
 pub fn amplitude<'py>(
     py: Python<'py>,
     coefficients: Array2<'py, Complex64>,
-    measure: &str,
+    #[pyo3(from_py_with = measure)] measure: Measure,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let measure: Measure = measure.parse().map_err(refused)?;
     let view = coefficients.as_array();
     let (rows, orders) = (view.nrows(), view.ncols());
     if !(2..=HIGHEST_ORDER + 1).contains(&orders) {
@@ -163,5 +166,5 @@ pub fn amplitude<'py>(
         }
         fourier::amplitude(&table, &row, measure)
     });
-    Ok(vector(py, amplitudes))
+    Ok(PyArray1::from_iter(py, amplitudes))
 }

@@ -4,6 +4,7 @@
 //! tells how far the work is and asks for signals, whatever the core is doing: a factorisation of a
 //! large matrix asks nobody. Work that does not end soon after it was told to is left to itself.
 
+use crate::arrays::refused;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::convert::Infallible;
@@ -11,6 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{sync_channel, RecvTimeoutError};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use stickslip_core::Error;
 
 /// Time between two looks at Python: often enough for Ctrl-C, rare enough to cost nothing.
 const LOOK: Duration = Duration::from_millis(50);
@@ -34,30 +36,49 @@ enum Word<M, T> {
     End(T),
 }
 
-/// Runs `work` without the interpreter, looking at Python from time to time. `None` if the work was
-/// told to end and did not.
-///
-/// # Errors
-/// The system grants no thread.
+/// Runs `work` without the interpreter, looking at Python from time to time. Ctrl-C ends it with
+/// what it has by then; `None` if it was told to end and did not.
 pub fn watched<T: Send + 'static>(
     py: Python<'_>,
-    progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&dyn Fn(f64) -> bool) -> T + Send + 'static,
-) -> PyResult<(Option<T>, Raised)> {
-    let nothing = |_: Python<'_>, never: Infallible| match never {};
-    watched_parts(py, progress, nothing, |look, _| work(look))
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, Error> + Send + 'static,
+) -> PyResult<Option<T>> {
+    let (value, raised) = watched_parts(py, progress, nothing, |look, _| work(look))?;
+    raise_unless_interrupt(py, raised)?;
+    value.transpose().map_err(refused)
 }
 
-/// [`watched`] work that hands over parts of its result, each of which `deliver` takes.
-///
-/// # Errors
-/// The system grants no thread.
+/// [`watched`] work that keeps nothing before its end.
+pub fn computed<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    watched(py, progress, work)?.ok_or_else(given_up)
+}
+
+/// Runs `work` without progress, of which a part is worth nothing: Ctrl-C is raised.
+pub fn whole<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    let (value, raised) = watched_parts(py, None, nothing, |look, _| work(look))?;
+    raised.map_or(Ok(()), Err)?;
+    value.ok_or_else(given_up)?.map_err(refused)
+}
+
+fn nothing(_: Python<'_>, never: Infallible) -> PyResult<()> {
+    match never {}
+}
+
+/// Runs `work` that hands over parts of its result, each of which `deliver` takes, and returns what
+/// Python has raised meanwhile beside its value.
 pub fn watched_parts<M: Send + 'static, T: Send + 'static>(
     py: Python<'_>,
-    progress: Option<&Py<PyAny>>,
+    progress: Option<Py<PyAny>>,
     mut deliver: impl FnMut(Python<'_>, M) -> PyResult<()> + Send,
     work: impl FnOnce(&dyn Fn(f64) -> bool, &dyn Fn(M) -> bool) -> T + Send + 'static,
-) -> PyResult<(Option<T>, Raised)> {
+) -> PyResult<(Option<T>, Option<PyErr>)> {
     let line = Arc::new(Line::default());
     // Nothing is in flight: nobody listens to work that was left to itself.
     let (sender, receiver) = sync_channel(0);
@@ -73,52 +94,37 @@ pub fn watched_parts<M: Send + 'static, T: Send + 'static>(
     py.detach(move || {
         let mut ended: Option<(Instant, PyErr)> = None;
         let mut last = Instant::now();
-        loop {
+        let value = loop {
             let mut asked = Ok(());
             match receiver.recv_timeout(LOOK) {
-                Ok(Word::End(value)) => {
-                    return Ok((Some(value), Raised(ended.map(|(_, error)| error))));
-                }
+                Ok(Word::End(value)) => break Some(value),
                 Ok(Word::Part(part)) if ended.is_none() => {
                     asked = Python::attach(|py| deliver(py, part));
                 }
                 Ok(Word::Part(_)) | Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => match worker.join() {
                     Err(panic) => std::panic::resume_unwind(panic),
-                    Ok(()) => return Ok((None, Raised(ended.map(|(_, error)| error)))),
+                    Ok(()) => break None,
                 },
             }
             match &ended {
                 None => {
                     if asked.is_ok() && last.elapsed() >= LOOK {
                         last = Instant::now();
-                        asked = look(progress, f64::from_bits(line.share.load(Ordering::Relaxed)));
+                        let share = f64::from_bits(line.share.load(Ordering::Relaxed));
+                        asked = look(progress.as_ref(), share);
                     }
                     if let Err(error) = asked {
                         line.stop.store(true, Ordering::Relaxed);
                         ended = Some((Instant::now(), error));
                     }
                 }
-                Some((since, _)) if since.elapsed() > PATIENCE => {
-                    return Ok((None, Raised(ended.map(|(_, error)| error))));
-                }
+                Some((since, _)) if since.elapsed() > PATIENCE => break None,
                 Some(_) => {}
             }
-        }
+        };
+        Ok((value, ended.map(|(_, error)| error)))
     })
-}
-
-/// Runs `work` that hands over nothing before its end; Ctrl-C is raised.
-///
-/// # Errors
-/// What Python raises meanwhile.
-pub fn whole<T: Send + 'static>(
-    py: Python<'_>,
-    work: impl FnOnce(&dyn Fn(f64) -> bool) -> T + Send + 'static,
-) -> PyResult<T> {
-    let (value, raised) = watched(py, None, work)?;
-    raised.raise()?;
-    value.ok_or_else(given_up)
 }
 
 /// The error of work that was left to itself without anything to keep.
@@ -136,26 +142,10 @@ fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
     })
 }
 
-/// What Python has raised meanwhile.
-pub struct Raised(Option<PyErr>);
-
-impl Raised {
-    /// Whether nothing was raised.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_none()
-    }
-
-    /// Raises it.
-    pub fn raise(self) -> PyResult<()> {
-        self.0.map_or(Ok(()), Err)
-    }
-
-    /// Raises it unless it is Ctrl-C, which keeps what was solved; anything else that a progress
-    /// callback raises is its own.
-    pub fn raise_unless_interrupt(self, py: Python<'_>) -> PyResult<()> {
-        match self.0 {
-            Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => Err(error),
-            _ => Ok(()),
-        }
+/// Raises what Python has raised unless it is Ctrl-C, which keeps what was solved.
+pub fn raise_unless_interrupt(py: Python<'_>, raised: Option<PyErr>) -> PyResult<()> {
+    match raised {
+        Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => Err(error),
+        _ => Ok(()),
     }
 }

@@ -288,7 +288,7 @@ class BladedDisk(Model):
             raise ModelError(
                 f"nodal_diameter: {diameter}; {self.sectors} sectors have 0 to {self.sectors // 2}"
             )
-        return self._unforced.wave_frequencies(diameter, points)
+        return self._unforced.natural_frequencies(points, diameter)
 
     @cached_property
     def _unforced(self) -> _core.Problem:

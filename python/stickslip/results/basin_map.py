@@ -107,12 +107,9 @@ class BasinMap(ColumnResult):
         ]
 
     def amplitude(self, dof: str) -> Float:
-        """Return half the range of a displacement at the end.
+        """Return half the range of a displacement at the end, shape `shape` [m].
 
-        Returns
-        -------
-        ndarray of float64, shape `shape`
-            [m]; not-a-number of unbounded motions.
+        Not-a-number of unbounded motions.
         """
         return self.arrays.amplitude[:, self._column(dof)].reshape(self.shape)
 

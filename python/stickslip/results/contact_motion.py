@@ -59,14 +59,9 @@ class ContactMotion(Sweep):
         return self.model.problem, number, series, self.settings.residual, samples
 
     def resultant(self, contact: ContactRef, index: int, samples: int = 512) -> Float:
-        """Return one period of the sum of the forces of a contact.
+        """Return one period of the sum of the forces of a contact, shape (samples,) [N].
 
         It vanishes for a damper of several points that nothing else holds.
-
-        Returns
-        -------
-        ndarray of float64, shape (samples,)
-            [N].
         """
         number = self.model.contact_index(contact)
         forces = self.contact_force(number, index, samples)

@@ -53,6 +53,7 @@ _PARAMETERS: Mapping[str, tuple[str, str]] = {
 }
 """What parameters mean, and what a refused value is none of."""
 
+_ARRAYS = {"Float": "float64", "Complex": "complex128", "Int": "int64"}
 _ORDER = ("Parameters", "Attributes", "Returns", "Raises", "Warns", "References")
 
 
@@ -92,8 +93,10 @@ def _of_method(function: FunctionType, overridden: object) -> str:
         sentence = f"    If there is no such {listed}."
         others = sections.get("Raises", "").splitlines()[1:]
         sections["Raises"] = "\n".join(dict.fromkeys(["ModelError", sentence, *others]))
-    if function.__annotations__.get("return") == "Axes":
-        sections["Returns"] = "matplotlib.axes.Axes\n    The axes."
+    array = _ARRAYS.get(function.__annotations__.get("return", ""))
+    shape = re.search(r", shape (.+)\.(\n|$)", sections[""])
+    if array and shape:
+        sections["Returns"] = f"ndarray of {array}, shape {shape[1]}"
     return _written(sections)
 
 

@@ -130,13 +130,7 @@ class ExactResponse(ForcedResponse, FloquetStability):
         return self._orbit(0, slice(None), index, samples)
 
     def velocity_waveform(self, dof: str, index: int, samples: int = 256) -> Float:
-        """Return one period of a velocity, along the orbit.
-
-        Returns
-        -------
-        ndarray of float64, shape (samples,)
-            [m/s].
-        """
+        """Return one period of a velocity, along the orbit, shape (samples,) [m/s]."""
         return self._orbit(1, self._column(dof), index, samples)
 
     def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:

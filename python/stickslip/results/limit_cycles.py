@@ -186,13 +186,7 @@ class LimitCycles(PeriodicMotions, FloquetStability):
         return constant(amplitude_of(self.coefficients(dof), measure))
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
-        """Return one period of a displacement from its harmonics.
-
-        Returns
-        -------
-        ndarray of float64, shape (samples,)
-            [m].
-        """
+        """Return one period of a displacement from its harmonics, shape (samples,) [m]."""
         series = self.coefficients(dof)[self.position(index)]
         count = whole_number(samples, "samples", smallest=1)
         turn = 2j * np.pi * np.outer(np.arange(count) / count, np.arange(series.size))

@@ -32,12 +32,9 @@ class PeriodicMotions(ColumnResult):
 
     @abstractmethod
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
-        """Return the amplitude of a displacement, motion by motion.
+        """Return the amplitude of a displacement, motion by motion, shape (n,) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m]. Exact extrema of the harmonic series or of the orbits, not those of samples.
+        Exact extrema of the harmonic series or of the orbits, not those of samples.
         """
 
     def coefficients(self, dof: str) -> Complex:
@@ -64,12 +61,9 @@ class PeriodicMotions(ColumnResult):
         return self.arrays.error_estimate[:, self._column(dof)]
 
     def slip_fraction(self, contact: PointRef) -> Float:
-        """Return the share of the period that each contact point slips.
+        """Return the share of the period that each contact point slips, shape (n, points) or (n,).
 
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            From 0, it never slips, to 1.
+        From 0, it never slips, to 1.
         """
         return self._select(self.arrays.slip_fraction, contact)
 

@@ -81,12 +81,9 @@ class Sweep(PeriodicMotions):
         return {}
 
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
-        """Return the amplitude of a displacement over frequency.
+        """Return the amplitude of a displacement over frequency, shape (n,) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m]. Exact extrema of the harmonic series or of the orbits, not those of samples.
+        Exact extrema of the harmonic series or of the orbits, not those of samples.
         """
         key = key_of(dof, measure)
         if key not in self._amplitudes:
@@ -98,25 +95,16 @@ class Sweep(PeriodicMotions):
         return np.where(self.arrays.solved, values, np.nan)
 
     def phase(self, dof: str) -> Float:
-        """Return the phase of the fundamental, x_1(t) = |X_1| cos(omega t + phase).
+        """Return the phase of the fundamental, x_1(t) = |X_1| cos(omega t + phase), shape (n,).
 
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            Phase lead, between -pi and pi [rad]; not-a-number where there is no fundamental.
+        Phase lead, between -pi and pi [rad]; not-a-number where there is no fundamental.
         """
         fundamental = self.coefficients(dof)[:, 1]
         known = self.arrays.solved & (fundamental != 0.0)
         return constant(np.where(known, np.angle(fundamental), np.nan))
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
-        """Return one period of a displacement.
-
-        Returns
-        -------
-        ndarray of float64, shape (samples,)
-            [m].
-        """
+        """Return one period of a displacement, shape (samples,) [m]."""
         return self._period(self.coefficients(dof), index, samples)
 
     def peak(self, dof: str, measure: Measure = "half_range") -> Peak:

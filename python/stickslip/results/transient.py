@@ -148,13 +148,7 @@ class Transient(ColumnResult):
         return Events(self.model, arrays.event_time, arrays.event_point, arrays.event_kind)
 
     def displacement(self, dof: str) -> Float:
-        """Return a displacement over `time`.
-
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m].
-        """
+        """Return a displacement over `time`, shape (n,) [m]."""
         return self.arrays.displacement[:, self._column(dof)]
 
     def velocity(self, dof: str) -> Float:
@@ -162,12 +156,9 @@ class Transient(ColumnResult):
         return self.arrays.velocity[:, self._column(dof)]
 
     def contact_force(self, contact: PointRef) -> Float:
-        """Return the contact forces over `time`.
+        """Return the contact forces over `time`, shape (n, points) or (n,) [N].
 
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            [N], positive against the relative displacement.
+        Positive against the relative displacement.
         """
         return self._select(self.arrays.contact_force, contact)
 
