@@ -8,7 +8,6 @@ import pytest
 
 import stickslip as ss
 from stickslip import _core
-from stickslip.analyses.orbits import Orbits
 from stickslip.reference import snecma_beam
 from stickslip.results.certificate import Certificate
 
@@ -160,14 +159,14 @@ def test_an_interrupted_certification_keeps_what_was_compared():
 
 
 def test_an_interruption_while_orbits_are_followed_keeps_them_all(coarse, monkeypatch):
-    whole = Orbits.waveforms
+    whole = ss.ExactResponse.waveforms
 
     def stop(self, index, samples):
         if index == 20:
             raise KeyboardInterrupt
         return whole(self, index, samples)
 
-    monkeypatch.setattr(Orbits, "waveforms", stop)
+    monkeypatch.setattr(ss.ExactResponse, "waveforms", stop)
     message = "interrupted after 51 of 51 points, 20 of them over the whole period"
     with pytest.raises(ss.Interrupted, match=message) as it:
         ss.certify(coarse, "all")

@@ -8,7 +8,8 @@ from typing import TypeAlias
 import numpy as np
 
 from stickslip.analyses.arguments import columns_of, observed_dofs, state_of
-from stickslip.analyses.classify import fate_assumptions, fates_of, free
+from stickslip.analyses.assumptions import free_assumptions
+from stickslip.analyses.classify import fates_of, free
 from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.run import Progress, Run
 from stickslip.checks import members, unknown, whole_number
@@ -85,7 +86,7 @@ def basin_map(
             interrupted=fates.interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
-            diagnostics=fate_assumptions(model, kept),
+            diagnostics=free_assumptions(model, kept),
         )
         done = sum(reason != "interrupted" for reason in result.reason)
         return run.ended(result, f"{done} of {len(result)} starts")

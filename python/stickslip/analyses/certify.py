@@ -9,7 +9,7 @@ from time import monotonic
 import numpy as np
 
 from stickslip.analyses.arguments import require_held
-from stickslip.analyses.orbits import Orbits, orbits_of
+from stickslip.analyses.exact_response import orbits_at
 from stickslip.analyses.run import Progress, Run, share
 from stickslip.checks import brief, members
 from stickslip.errors import Interrupted, ModelError
@@ -17,7 +17,7 @@ from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Int
 from stickslip.results.certificate import Certificate
 from stickslip.results.exact_response import ExactResponse
-from stickslip.settings.orbits import CertifySettings, OrbitSettings
+from stickslip.settings.orbits import CertifySettings, ExactSettings
 from stickslip.settings.settings import configured
 
 __all__ = ["certify"]
@@ -73,16 +73,10 @@ def certify(
     model, residual = result.model, result.settings.residual
     require_held(model, residual)
     with Run("certification", progress, model) as run:
-        exact = orbits_of(
-            model,
-            result.omega[indices],
-            compared,
-            OrbitSettings.of(harmonics=1, residual=residual),
-            share(run, 0.0, _ORBITS),
-            half_wave=result.half_wave,
-        )
+        kept = ExactSettings.of(harmonics=1, residual=residual)
+        exact = orbits_at(model, result.omega[indices], compared, kept, share(run, 0.0, _ORBITS))
         apart = np.full((exact.arrays.omega.size, len(compared)), np.nan)
-        if exact.solution.interrupted:
+        if exact.interrupted:
             raise _interrupted(result, exact, indices, apart, 0)
         reported, place = monotonic(), 0
         try:
@@ -100,7 +94,7 @@ def certify(
 
 
 def _interrupted(
-    result: ForcedResponse, exact: Orbits, indices: Int, apart: Float, followed: int
+    result: ForcedResponse, exact: ExactResponse, indices: Int, apart: Float, followed: int
 ) -> Interrupted:
     """Return the exception that holds the orbits so far, whose waveforms may be missing."""
     certificate = _certificate(result, exact, indices[: exact.arrays.omega.size], apart)
@@ -111,7 +105,9 @@ def _interrupted(
     )
 
 
-def _comparison(result: ForcedResponse, exact: Orbits, indices: Int) -> Callable[[int], Float]:
+def _comparison(
+    result: ForcedResponse, exact: ExactResponse, indices: Int
+) -> Callable[[int], Float]:
     """Return what gives the largest differences between curve and orbit over a period, (d,)."""
     series = np.stack([result.coefficients(dof) for dof in exact.dofs], axis=2)
     # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
@@ -126,7 +122,9 @@ def _comparison(result: ForcedResponse, exact: Orbits, indices: Int) -> Callable
     return compare
 
 
-def _certificate(result: ForcedResponse, exact: Orbits, indices: Int, apart: Float) -> Certificate:
+def _certificate(
+    result: ForcedResponse, exact: ExactResponse, indices: Int, apart: Float
+) -> Certificate:
     low, high = exact.arrays.range[..., 0], exact.arrays.range[..., 1]
     amplitude = 0.5 * (high - low)
     curve = np.stack([result.amplitude(dof)[indices] for dof in exact.dofs], axis=1)

@@ -53,8 +53,6 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
     """
     parameter = one_of(settings, "slip_force", "stiffness", "level")
     values = getattr(settings, parameter)
-    if isinstance(values, tuple):
-        raise ModelError(f"{parameter}: a range without points; give their number")
     if parameter == "stiffness" and settings.common == "factor" and np.isinf(values).any():
         raise ModelError(
             "stiffness: an infinite factor has no meaning; give finite ones, or values"
@@ -70,10 +68,7 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
 
 
 def settings_for(
-    model: Model,
-    variation: Variation,
-    values: Float,
-    settings: PeakKeys,
+    model: Model, variation: Variation, values: Float, settings: PeakKeys
 ) -> DamperSettings:
     """Return the checked settings of a curve over some values."""
     start = _rigid_from(model, variation)
@@ -84,10 +79,7 @@ def settings_for(
     if span is None:
         span = resonance_range(model, variation, settings.mode, finite)
     kept = DamperSettings.of(
-        **settings.part(PeakSettings),
-        dof=settings.dof,
-        variation=variation,
-        span=span,
+        **settings.part(PeakSettings), dof=settings.dof, variation=variation, span=span
     )
     model.structure.index(kept.dof)
     require_forced(model, kept)

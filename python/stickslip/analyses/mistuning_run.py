@@ -7,13 +7,12 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
-from stickslip.analyses.mistuning_disks import Series
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.analyses.peak_assumptions import mistuning_assumptions
 from stickslip.analyses.run import Run, refusals
@@ -26,12 +25,22 @@ from stickslip.results.mistuning_arrays import MistuningArrays
 from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningSettings
 
-__all__ = ["Work"]
+__all__ = ["Series", "Work"]
 
 EDGE = 1e-9
 """How far rounding may put a peak outside the range of frequencies, relative."""
 OFTEN = 0.1
 """Seconds between two calls of a progress callback."""
+
+
+class Series(NamedTuple):
+    """The disks of one stiffness of the couplings."""
+
+    disk: BladedDisk
+    coupling: float
+    """Stiffness of the couplings [N/m]; not-a-number: they have several, or there is none."""
+    tuned: tuple[Row, ...]
+    """Peaks of the tuned disk, one per degree of freedom."""
 
 
 class Work:

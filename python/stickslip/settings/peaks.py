@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, PlainValidator, Strict, model_validator
 
 from stickslip.checks import brief, real_number
-from stickslip.errors import EntryError
+from stickslip.errors import EntryError, ModelError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import (
     ONE_OF,
@@ -31,7 +31,7 @@ from stickslip.settings.ranges import (
     Float,
     Levels,
     Or,
-    PeakRange,
+    PeakSpan,
     SlipForces,
     Stiffnesses,
     numbers,
@@ -114,7 +114,7 @@ class PeakKeys(_FollowedPeak, ContactKeys):
     mode: Index = Field(
         default=0, description="The mode around whose resonance the peak is sought, counted from 0."
     )
-    omega: PeakRange | None = Field(
+    omega: PeakSpan | None = Field(
         default=None,
         description="Range of frequencies in which the peak is the highest point [rad/s]. Default: "
         "from 5 % below the free to 5 % above the highest stuck natural frequency of `mode`, over "
@@ -140,7 +140,9 @@ class DamperKeys(PeakKeys):
 
     @model_validator(mode="after")
     def _require_one(self) -> Self:
-        one_of(self, "slip_force", "stiffness", "level")
+        name = one_of(self, "slip_force", "stiffness", "level")
+        if isinstance(getattr(self, name), tuple):
+            raise ModelError(f"{name}: a range needs 'points' here; values are not chosen")
         return self
 
 
@@ -179,7 +181,7 @@ class MistuningKeys(PeakSettings):
         "(1 + S r_i) K, as ``disk.mistuned(S * r)``.",
         examples=["7 %", ["1 %", "3 %", "5 %"]],
     )
-    omega: PeakRange = Field(
+    omega: PeakSpan = Field(
         description="Range of frequencies in which peaks are the highest points [rad/s]."
     )
     patterns: _Patterns = Field(

@@ -46,7 +46,7 @@ __all__ = [
     "Frequencies",
     "Levels",
     "Or",
-    "PeakRange",
+    "PeakSpan",
     "PositiveList",
     "Ratios",
     "SlipForces",
@@ -171,11 +171,12 @@ class _Range(_Ends[_T], Generic[_T]):
 
     def values(self) -> Any:
         """Return what a call would give."""
-        ends: Any = super().values()
-        return ends if self.points is None else np.geomspace(ends[0], ends[1], self.points)
+        low: Any = self.begin
+        high: Any = inf if self.end is None else self.end
+        return (low, high) if self.points is None else np.geomspace(low, high, self.points)
 
 
-class PeakEnds(_Ends[Omega]):
+class PeakRange(_Ends[Omega]):
     """The range of frequencies in which peaks are looked for."""
 
 
@@ -235,7 +236,9 @@ class LevelRange(_Range[Factor]):
 class RatioRange(_Range[Factor]):
     """A range of the ratio r."""
 
-    end: Factor = Field(default=inf, alias="to", description="Highest ratio; left out: no limit.")
+    end: Factor | None = Field(  # type: ignore[assignment]
+        default=None, alias="to", description="Highest ratio; left out: no limit."
+    )
 
 
 # ----------------------------------------------------------------------------------------- entries
@@ -265,7 +268,7 @@ _Stiffnesses = ListOr[_Rigid, StiffnessRange]
 _SlipForces = ListOr[SlipForce, SlipForceRange]
 
 Frequencies = Annotated[Float | Span, Or(_Omegas, *_BOTH, _grid)]
-PeakRange = Annotated[Span, Or(PeakEnds, "tuple[float, float]", "(float, float)", span_of)]
+PeakSpan = Annotated[Span, Or(PeakRange, "tuple[float, float]", "(float, float)", span_of)]
 SlipForces = Annotated[Float | Span, Or(_SlipForces, *_LIST, _from_zero)]
 Stiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_LIST, _from_zero)]
 Levels = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_LIST, _above_zero)]

@@ -162,6 +162,12 @@ class BasinMapTable(BasinKeys, AnalysisTable):
     analysis: ClassVar = basin_map
     dof_keys = ("observe", "axes", "base")
 
+    @model_validator(mode="after")
+    def _require_axes(self) -> Self:
+        if self.axes is None:
+            raise ValueError("'axes' is missing")
+        return self
+
 
 class MistuningStudyTable(MistuningKeys, AnalysisTable):
     """Amplification factors of many disks whose sectors deviate, and their distribution."""

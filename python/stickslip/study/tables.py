@@ -14,7 +14,7 @@ from pydantic import (
 
 from stickslip.checks import brief
 from stickslip.errors import EntryError, ModelError
-from stickslip.model import Force, Jenkins, ParallelJenkins
+from stickslip.model import Force, Jenkins, ParallelJenkins, StructuralDamper
 from stickslip.settings.entries import (
     ONE_OF,
     Angle,
@@ -31,8 +31,7 @@ from stickslip.settings.entries import (
 )
 from stickslip.study.analysis import AnalysisTable, ByKind
 from stickslip.study.disk_table import CouplingTable, DiskTable
-from stickslip.study.structural_table import StructuralTable
-from stickslip.study.structure_table import StructureTable
+from stickslip.study.structure_table import Rows, StructureTable
 
 __all__ = ["ForceTable", "JenkinsTable", "OutputTable", "StudyTables"]
 
@@ -116,6 +115,43 @@ class ParallelJenkinsTable(EndsTable):
         """Return the contact."""
         return ParallelJenkins(
             *self.touched, stiffness=self.stiffness, slip_forces=self.slip_forces, name=self.name
+        )
+
+
+_GROUND = "ground"
+"""What a file calls the ground: it has no empty entries."""
+
+
+class StructuralTable(Table):
+    """A structure-like damper: a massless elastic body with several slipping contacts."""
+
+    law: Literal["structural"] = Field(description="Friction law.")
+    dofs: Some[Dof] = Field(
+        description="The DOF that each contact touches; 'ground' is the ground.",
+        examples=[["left.tip", "right.tip", "ground"]],
+    )
+    stiffness: Rows = Field(
+        description="Stiffness of the damper by itself, row by row [N/m].",
+        examples=[[[2e6, -2e6], [-2e6, 2e6]]],
+    )
+    slip_forces: Many[SlipForce] = Field(
+        description="Slip limit of each contact; inf: it never slips.",
+        examples=[["25 N", 1e3]],
+    )
+    name: Text | None = Field(default=None, description="Name; left out: that of the law.")
+
+    @property
+    def touched(self) -> tuple[str, ...]:
+        """The DOFs it acts on."""
+        return tuple(dof for dof in self.dofs if dof != _GROUND)
+
+    def build(self) -> StructuralDamper:
+        """Return the contact."""
+        return StructuralDamper(
+            [None if dof == _GROUND else dof for dof in self.dofs],
+            stiffness=self.stiffness,
+            slip_forces=self.slip_forces,
+            name=self.name,
         )
 
 
