@@ -99,8 +99,7 @@ class Study:
         Raises
         ------
         ModelError
-            The file is missing, is no TOML, has an unknown key, or any entry is refused: one line
-            beginning with the path.
+            If the file is missing, is no TOML, has an unknown key, or any entry is refused.
         """
         path = file_path(path, "study file")
         if not is_file(path):
@@ -134,12 +133,7 @@ class Study:
         Returns
         -------
         Study
-            The study.
-
-        Raises
-        ------
-        ModelError
-            As `load`.
+            As `load` reads it.
         """
         with named(source):
             tables = _read(text)
