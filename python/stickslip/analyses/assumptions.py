@@ -21,16 +21,6 @@ if TYPE_CHECKING:
     from stickslip.settings.motion import ClassifySettings, TransientSettings
     from stickslip.settings.orbits import ExactSettings
 
-__all__ = [
-    "LARGE_ERROR",
-    "balance_assumptions",
-    "direct_assumption",
-    "free_assumptions",
-    "orbit_assumptions",
-    "transient_assumptions",
-    "turn_per_step",
-]
-
 LARGE_ERROR = 0.05
 """Share of the amplitude above which the discarded harmonics are worth a warning."""
 

@@ -22,8 +22,6 @@ from stickslip.results.fate_arrays import FateArrays
 from stickslip.settings.motion import Axis, BasinKeys, BasinSettings, ClassifySettings
 from stickslip.settings.settings import configured
 
-__all__ = ["basin_map"]
-
 Grid: TypeAlias = tuple[tuple[Axis, tuple[float, ...]], ...]
 
 

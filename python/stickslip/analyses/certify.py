@@ -20,8 +20,6 @@ from stickslip.results.exact_response import ExactResponse
 from stickslip.settings.orbits import CertifySettings, ExactSettings
 from stickslip.settings.settings import configured
 
-__all__ = ["certify"]
-
 _SAMPLES = 1024
 """Instants per period at which curve and orbit are compared."""
 

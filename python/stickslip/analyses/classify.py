@@ -27,8 +27,6 @@ from stickslip.results.motion_class import MotionArrays, MotionClass
 from stickslip.settings.motion import ClassifyKeys, ClassifySettings, TransientSettings
 from stickslip.settings.settings import configured
 
-__all__ = ["classify", "fates_of", "free"]
-
 TAIL = 512
 """Slow periods of the motion that are kept for its spectrum."""
 

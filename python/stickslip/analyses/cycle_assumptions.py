@@ -15,8 +15,6 @@ from stickslip.settings.cycles import MOST_HARMONICS, CycleSettings
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["cycle_assumptions"]
-
 
 def cycle_assumptions(
     model: Model, settings: CycleSettings, arrays: CycleArrays, solution: _core.LimitCycles

@@ -24,8 +24,6 @@ from stickslip.settings.peaks import DamperKeys, DamperSettings, PeakKeys, PeakS
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import Variation, one_of
 
-__all__ = ["curve_of", "damper_curve", "settings_for"]
-
 RIGID = 250.0
 """Stiffness of a contact, over that of the structure, from which the rigid limit is taken.
 

@@ -18,8 +18,6 @@ from stickslip.settings.entries import Span
 from stickslip.settings.orbits import ExactSettings, OrbitKeys, OrbitSettings
 from stickslip.settings.settings import configured
 
-__all__ = ["exact_response"]
-
 # Share of the progress that choosing the frequencies of a range is given.
 _CHOOSING = 0.2
 

@@ -8,8 +8,6 @@ from typing import NamedTuple
 from stickslip.checks import real_number
 from stickslip.errors import ModelError
 
-__all__ = ["SingleCycle", "rigid_limit_cycle", "single_harmonic_cycles"]
-
 
 class SingleCycle(NamedTuple):
     """A limit cycle of one mass."""

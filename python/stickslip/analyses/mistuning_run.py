@@ -25,8 +25,6 @@ from stickslip.results.mistuning_arrays import MistuningArrays
 from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningSettings
 
-__all__ = ["Series", "Work"]
-
 EDGE = 1e-9
 """How far rounding may put a peak outside the range of frequencies, relative."""
 OFTEN = 0.1

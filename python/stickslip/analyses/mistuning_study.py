@@ -30,8 +30,6 @@ from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningKeys, MistuningSettings, PeakSettings
 from stickslip.settings.settings import configured
 
-__all__ = ["mistuning_study"]
-
 
 @configured(MistuningKeys, "deviation")
 def mistuning_study(

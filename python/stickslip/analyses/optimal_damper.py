@@ -26,8 +26,6 @@ from stickslip.settings.peaks import DamperSettings, OptimumKeys
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import Chosen, Variation, located
 
-__all__ = ["optimal_damper"]
-
 STICKS = 1.0
 """Upper bound of a slip force, over the largest force of the stuck contact: from it on nothing
 slips, and the peak does not change any more."""

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from stickslip.settings.peaks import DamperSettings, MistuningSettings
     from stickslip.settings.variation import Variation
 
-__all__ = ["damper_assumptions", "mistuning_assumptions"]
-
 
 def damper_assumptions(
     model: Model, settings: DamperSettings, arrays: DamperArrays, rigid: float | None

@@ -12,8 +12,6 @@ from stickslip.model import Model
 from stickslip.model.model import refusal
 from stickslip.results.result import Result
 
-__all__ = ["Progress", "Run", "refusals", "share"]
-
 Progress: TypeAlias = Callable[[float], None] | None
 
 _Kind = TypeVar("_Kind", bound=Result)

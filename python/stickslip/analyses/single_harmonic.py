@@ -19,8 +19,6 @@ from stickslip.settings.balance import ForcedSettings
 from stickslip.settings.orbits import SingleHarmonicKeys
 from stickslip.settings.settings import configured
 
-__all__ = ["single_harmonic"]
-
 
 @configured(SingleHarmonicKeys, "omega")
 def single_harmonic(

@@ -20,8 +20,6 @@ from stickslip.settings.cycles import CycleSettings, LimitSettings, MapKeys, Map
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import one_of
 
-__all__ = ["stability_map"]
-
 
 @configured(MapKeys)
 def stability_map(

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 
-__all__ = ["TEXTS", "told"]
-
 TEXTS = {
     # the method
     "harmonics": "All harmonics from 0 to {most} were solved for{_chosen}.",

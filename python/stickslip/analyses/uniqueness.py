@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 
-__all__ = ["damping_assumption"]
-
 
 def damping_assumption(damping: NDArray[np.float64]) -> Diagnostic | None:
     """Say that a solution need not be the only one, if the damping leaves that open."""

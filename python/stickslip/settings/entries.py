@@ -32,45 +32,6 @@ from stickslip.checks import MAX_COUNT, brief, choice, real_number, unknown, who
 from stickslip.errors import EntryError
 from stickslip.units import quantity
 
-__all__ = [
-    "CALL",
-    "ONE_OF",
-    "RESIDUALS",
-    "Angle",
-    "Count",
-    "Dof",
-    "Factor",
-    "Flag",
-    "Harmonics",
-    "Index",
-    "Length",
-    "ListOr",
-    "Many",
-    "Measure",
-    "NamedContact",
-    "Newtons",
-    "Number",
-    "Omega",
-    "Rate",
-    "Ratio",
-    "Residual",
-    "SlipForce",
-    "Some",
-    "Span",
-    "StiffnessValue",
-    "Table",
-    "Text",
-    "Time",
-    "Tolerance",
-    "Whole",
-    "Within",
-    "chosen_by",
-    "number_or",
-    "percent",
-    "quantity_of",
-    "span_of",
-]
-
 CALL = "call"
 """Context of the validation of a function's arguments; texts with units stand in study files."""
 

@@ -28,16 +28,6 @@ from stickslip.settings.entries import (
 from stickslip.settings.ranges import Or, numbers
 from stickslip.settings.settings import Settings
 
-__all__ = [
-    "Axis",
-    "BasinKeys",
-    "BasinSettings",
-    "ClassifyKeys",
-    "ClassifySettings",
-    "TransientKeys",
-    "TransientSettings",
-]
-
 Axis: TypeAlias = str | int
 """What an axis of a map is: the displacement of a degree of freedom, or the amplitude of a mode."""
 

@@ -38,16 +38,6 @@ from stickslip.settings.ranges import (
 )
 from stickslip.settings.variation import ContactKeys, Parameter, Variation, one_of
 
-__all__ = [
-    "DamperKeys",
-    "DamperSettings",
-    "MistuningKeys",
-    "MistuningSettings",
-    "OptimumKeys",
-    "PeakKeys",
-    "PeakSettings",
-]
-
 
 def _ascending(span: object) -> tuple[float, float]:
     low, high = span_of(span)

@@ -39,21 +39,6 @@ from stickslip.settings.entries import (
     span_of,
 )
 
-__all__ = [
-    "BranchSlipForces",
-    "BranchStiffnesses",
-    "Dofs",
-    "Frequencies",
-    "Levels",
-    "Or",
-    "PeakSpan",
-    "PositiveList",
-    "Ratios",
-    "SlipForces",
-    "Stiffnesses",
-    "numbers",
-]
-
 Float: TypeAlias = NDArray[np.float64]
 _T = TypeVar("_T")
 

@@ -11,8 +11,6 @@ from stickslip.checks import brief, unknown
 from stickslip.errors import EntryError, ModelError
 from stickslip.model.laws import unknown_law
 
-__all__ = ["refusal"]
-
 _PHRASES = {
     "string_type": "is not a text",
     "string_too_short": "is empty",

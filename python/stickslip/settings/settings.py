@@ -21,8 +21,6 @@ from stickslip.settings.entries import CALL, Table
 from stickslip.settings.ranges import Or
 from stickslip.settings.refusal import refusal
 
-__all__ = ["Settings", "configured", "described", "type_in_words"]
-
 _Result = TypeVar("_Result")
 _INDENT = 4 * " "
 _WIDTH = 100

@@ -18,18 +18,6 @@ from stickslip.settings.settings import Settings
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = [
-    "Chosen",
-    "Common",
-    "CommonSettings",
-    "ContactKeys",
-    "Contacts",
-    "Parameter",
-    "Variation",
-    "located",
-    "one_of",
-]
-
 Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
 Common = Annotated[Literal["value", "factor"], ONE_OF]
 

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
     from stickslip.results.result import Result
 
-__all__ = ["KINDS", "AnalysisTable", "ByKind", "MistuningStudyTable", "level_name"]
-
 # Share of the progress that the balance is given before it is certified.
 _BALANCE = 0.5
 

@@ -27,8 +27,6 @@ from stickslip.settings.entries import (
 )
 from stickslip.study.structure_table import DampingSource, MatrixSource
 
-__all__ = ["CouplingTable", "DiskTable", "InterfaceTable", "MistuningTable"]
-
 
 def _harmonics(value: object) -> object:
     # the keys of TOML tables are texts

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from stickslip.study.structure_table import StructureTable
     from stickslip.study.tables import ContactTable
 
-__all__ = ["Case", "Study", "json_schema", "notable_dofs"]
-
 _SHOWN_DOFS = 4
 # tomllib takes hours for a key of 100 000 parts.
 _DEEP = re.compile(r"(?<![\w.'\"-])(?:[\w'\"-]+[ \t]*\.[ \t]*){40}")

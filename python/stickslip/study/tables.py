@@ -33,8 +33,6 @@ from stickslip.study.analysis import AnalysisTable, ByKind
 from stickslip.study.disk_table import CouplingTable, DiskTable
 from stickslip.study.structure_table import Rows, StructureTable
 
-__all__ = ["ForceTable", "JenkinsTable", "OutputTable", "StudyTables"]
-
 
 def _two_dofs(value: object) -> object:
     if isinstance(value, list) and len(value) != 2:
