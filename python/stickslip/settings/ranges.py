@@ -62,9 +62,11 @@ class Or:
                 return self.call(value)
             found = inner(value)
             if isinstance(found, _Ends):
-                return found.values()
-            numeric = isinstance(found, tuple) and isinstance(found[0], float)
-            return np.array(found) if numeric else found
+                found = found.values()
+            elif isinstance(found, tuple) and found and isinstance(found[0], float):
+                found = np.array(found)
+            # Tuples are ranges and names, which have been checked.
+            return found if isinstance(found, tuple) else self.call(found)
 
         return core_schema.with_info_wrap_validator_function(
             read,
@@ -111,9 +113,13 @@ def _grid(omega: object) -> Float | Span:
 
 
 def _branch(values: object) -> Float | Span:
-    if not isinstance(values, tuple) or len(values) != 2:
-        return np.unique(numbers(values, "give finite values above 0, or (from, to)", positive))
-    low, high = sorted(real_number(end, "", finite=False) for end in values)
+    if isinstance(values, tuple) and len(values) == 2:
+        return _span(values)
+    return np.unique(numbers(values, "give finite values above 0, or (from, to)", positive))
+
+
+def _span(ends: Iterable[object]) -> Span:
+    low, high = sorted(real_number(end, "", finite=False) for end in ends)
     if not 0.0 < low < high:
         raise EntryError("", f": the range ({low:g}, {high:g}) must have two ends above 0")
     return low, high
@@ -144,7 +150,7 @@ class _Ends(Table, Generic[_T]):
 
     def values(self) -> Any:
         """Return what a call would give."""
-        return self.begin, self.end
+        return span_of((self.begin, self.end))
 
 
 class _Range(_Ends[_T], Generic[_T]):
@@ -156,9 +162,8 @@ class _Range(_Ends[_T], Generic[_T]):
 
     def values(self) -> Any:
         """Return what a call would give."""
-        low: Any = self.begin
-        high: Any = inf if self.end is None else self.end
-        return (low, high) if self.points is None else np.geomspace(low, high, self.points)
+        ends: Any = self.begin, inf if self.end is None else self.end
+        return _span(ends) if self.points is None else np.geomspace(ends[0], ends[1], self.points)
 
 
 class PeakRange(_Ends[Omega]):
