@@ -167,7 +167,7 @@ def _documented(text: str, signature: inspect.Signature, keys: Mapping[str, Fiel
     for block in _blocks(sections["Parameters"]):
         names = block.split(" : ")[0].replace("*", "").split(", ")
         said |= dict.fromkeys(names, block)
-    said |= {name: described(name, field, "") for name, field in keys.items()}
+    said |= {name: described(name, field) for name, field in keys.items()}
     sections["Parameters"] = "\n".join(
         dict.fromkeys(said[name] for name in signature.parameters if name in said)
     )
@@ -185,15 +185,14 @@ def _blocks(section: str) -> list[str]:
     return re.split(r"\n(?=\S)", section) if section else []
 
 
-def described(name: str, field: FieldInfo, indent: str) -> str:
+def described(name: str, field: FieldInfo) -> str:
     """Return what numpydoc says of a key."""
     optional = "" if field.is_required() else ", optional"
-    first = f"{indent}{name} : {type_in_words(field.annotation, field.metadata)}{optional}"
-    inner = indent + _INDENT
-    said = textwrap.wrap(
-        field.description or "", _WIDTH, initial_indent=inner, subsequent_indent=inner
+    first = f"{name} : {type_in_words(field.annotation, field.metadata)}{optional}"
+    said = textwrap.fill(
+        field.description or "", _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT
     )
-    return "\n".join((first, *said))
+    return f"{first}\n{said}"
 
 
 def type_in_words(annotation: Any, metadata: Iterable[Any] = ()) -> str:

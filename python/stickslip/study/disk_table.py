@@ -52,7 +52,7 @@ class CouplingTable(Table):
 
     def build(self) -> Coupling:
         """Return the coupling."""
-        return Coupling(self.dof, self.other, stiffness=self.stiffness, damping=self.damping)
+        return Coupling(**dict(self))
 
 
 class InterfaceTable(Table):
