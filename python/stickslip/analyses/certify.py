@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from time import monotonic
 
 import numpy as np
 
@@ -27,7 +26,6 @@ _SAMPLES = 1024
 _NO_ERROR = 1e-12
 # Share of the progress that the orbits are given; following them through the period takes the rest.
 _ORBITS = 0.5
-_REPORT_EVERY = 0.1
 
 
 @configured(CertifySettings, "points")
@@ -76,15 +74,13 @@ def certify(
         apart = np.full((exact.arrays.omega.size, len(compared)), np.nan)
         if exact.interrupted:
             raise _interrupted(result, exact, indices, apart, 0)
-        reported, place = monotonic(), 0
+        place = 0
         try:
             with run.at_once():
                 compare = _comparison(result, exact, indices)
                 for place in range(indices.size):
                     apart[place] = compare(place)
-                    if monotonic() > reported + _REPORT_EVERY:
-                        run(_ORBITS + (1.0 - _ORBITS) * (place + 1) / indices.size)
-                        reported = monotonic()
+                    run.reached(_ORBITS + (1.0 - _ORBITS) * (place + 1) / indices.size)
         except KeyboardInterrupt:
             raise _interrupted(result, exact, indices, apart, place) from None
         certified = replace(result, certificate=_certificate(result, exact, indices, apart))

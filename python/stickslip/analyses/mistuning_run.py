@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-import os
 import sys
-import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,8 +25,6 @@ from stickslip.settings.peaks import MistuningSettings
 
 EDGE = 1e-9
 """How far rounding may put a peak outside the range of frequencies, relative."""
-OFTEN = 0.1
-"""Seconds between two calls of a progress callback."""
 
 
 class Series(NamedTuple):
@@ -128,7 +124,6 @@ class Work:
         missing = np.argwhere(~self.known)
         if not missing.size:
             return True
-        report = _reporter(run)
 
         def deliver(index: int, found: list[_core.Summit], points: int) -> None:
             d, c, p = (int(at) for at in missing[index])
@@ -141,7 +136,7 @@ class Work:
                     kept = f"{self.done} of {self.total} disks are stored"
                     raise ModelError(f"{error}; {kept}, run again to go on from there") from None
             self._take((d, c, p), enumerate(rows), points)
-            report(self.done / self.total)
+            run.reached(self.done / self.total)
 
         with refusals(self.disk):
             return _core.mistuning_study(
@@ -152,7 +147,7 @@ class Work:
                 self.settings,
                 self.settings,
                 [max(row.harmonics for row in one.tuned) for one in self.series],
-                threads or _processors(),
+                threads or 0,
                 deliver,
                 lambda _: run.heed(),
             )
@@ -182,24 +177,3 @@ class Work:
             counters={"disks": self.done, "points": self.points},
             diagnostics=mistuning_assumptions(self.settings, arrays, self.dofs),
         )
-
-
-def _reporter(run: Run) -> Callable[[float], None]:
-    """Return what tells a callback how far a run is, not too often."""
-    last = time.monotonic()
-
-    def report(share: float) -> None:
-        nonlocal last
-        if time.monotonic() - last >= OFTEN:
-            last = time.monotonic()
-            run(share)
-
-    return report
-
-
-def _processors() -> int:
-    """Return how many processors this program may use."""
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:
-        return os.cpu_count() or 1

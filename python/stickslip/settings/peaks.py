@@ -142,7 +142,7 @@ class OptimumKeys(PeakKeys):
     parameter: Annotated[Parameter, ONE_OF] = Field(
         default="slip_force",
         description='What is varied. With "level", a factor on all forces, the amplitude per unit '
-        "of level is made least: friction knows the ratio of force and slip force alone.",
+        "of level is made least, as friction depends on the ratio of force and slip force.",
     )
     bounds: Annotated[tuple[float, float], PlainValidator(_bounds)] | None = Field(
         default=None,
