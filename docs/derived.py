@@ -43,7 +43,7 @@ class Derived(griffe.Extension):
         kind = getattr(import_module(cls.module.path), cls.name, None)
         if not (isinstance(kind, type) and issubclass(kind, Settings)) or kind is Settings:
             return
-        keys = "\n".join(described(name, one, "") for name, one in kind.model_fields.items())
+        keys = "\n".join(described(name, one) for name, one in kind.model_fields.items())
         said = f"{inspect.cleandoc(kind.__doc__ or '')}\n\nAttributes\n----------\n{keys}"
         cls.docstring = _docstring(said, cls)
         for name in kind.model_fields:

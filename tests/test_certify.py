@@ -1,19 +1,16 @@
 """Certificates: the true error of a harmonic balance, at chosen and at random points."""
 
 import pickle
-import sys
 
 import numpy as np
 import pytest
 
 import stickslip as ss
 from stickslip import _core
-from stickslip.analyses.orbits import Orbits
 from stickslip.reference import snecma_beam
 from stickslip.results.certificate import Certificate
 
 # the module, which the function of the same name hides in the package
-certify_module = sys.modules[ss.certify.__module__]
 
 
 @pytest.fixture(scope="module")
@@ -160,14 +157,14 @@ def test_an_interrupted_certification_keeps_what_was_compared():
 
 
 def test_an_interruption_while_orbits_are_followed_keeps_them_all(coarse, monkeypatch):
-    whole = Orbits.waveforms
+    whole = ss.ExactResponse.waveforms
 
     def stop(self, index, samples):
         if index == 20:
             raise KeyboardInterrupt
         return whole(self, index, samples)
 
-    monkeypatch.setattr(Orbits, "waveforms", stop)
+    monkeypatch.setattr(ss.ExactResponse, "waveforms", stop)
     message = "interrupted after 51 of 51 points, 20 of them over the whole period"
     with pytest.raises(ss.Interrupted, match=message) as it:
         ss.certify(coarse, "all")
@@ -193,7 +190,7 @@ def test_orbits_are_run_once_per_point(coarse, monkeypatch):
 
 
 def test_progress_covers_the_comparison(coarse, monkeypatch):
-    monkeypatch.setattr(certify_module, "_REPORT_EVERY", 0.0)
+    monkeypatch.setattr("stickslip.analyses.run.REPORT_EVERY", 0.0)
     shares = []
     ss.certify(coarse, "all", progress=shares.append)
     assert shares == sorted(shares)

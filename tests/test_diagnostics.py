@@ -11,6 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 import stickslip as ss
+from stickslip.analyses.texts import TEXTS
 from stickslip.analyses.uniqueness import uniqueness
 from stickslip.cli import app
 from stickslip.reference import snecma_beam
@@ -31,12 +32,15 @@ def one_dof(damping, *forces):
 
 
 def test_every_code_is_used_and_known():
-    used = set()
+    used, said = {"text"}, "".join(f.read_text("utf-8") for f in PACKAGE.glob("analyses/*.py"))
     for file in PACKAGE.rglob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "diagnostic":
-                used.add(node.args[0].value)
-    assert used == set(SEVERITIES)
+                used |= {one.value for one in node.args[:1] if isinstance(one, ast.Constant)}
+    assert used | {name.partition("/")[0] for name in TEXTS} == set(SEVERITIES)
+    built = ("modal-base/", "time-steps/")
+    for name in TEXTS:
+        assert said.count(f'"{name}"') > 1 or name.startswith(built), name
 
 
 def test_the_page_lists_every_code_by_severity():

@@ -17,21 +17,6 @@ from stickslip.results.arrays import Int
 from stickslip.settings.balance import HarmonicSettings, ObserveKeys
 from stickslip.settings.entries import Residual
 
-__all__ = [
-    "columns_of",
-    "driving_dofs",
-    "highest_harmonic",
-    "known_dofs",
-    "loaded_dofs",
-    "observed_dofs",
-    "physical_dofs",
-    "points_of",
-    "require_forced",
-    "require_held",
-    "require_time",
-    "state_of",
-]
-
 _MODAL = re.compile(r"(.*\.)?mode-\d+")
 
 

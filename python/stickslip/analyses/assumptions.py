@@ -7,27 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.analyses.texts import TEXTS, told
 from stickslip.analyses.uniqueness import uniqueness
 from stickslip.model import Model, StructuralDamper, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
-from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_tolerances, present
+from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip import _core
     from stickslip.settings.balance import ForcedSettings
     from stickslip.settings.entries import Span
-    from stickslip.settings.motion import TransientSettings
+    from stickslip.settings.motion import ClassifySettings, TransientSettings
     from stickslip.settings.orbits import ExactSettings
-
-__all__ = [
-    "LARGE_ERROR",
-    "balance_assumptions",
-    "direct_assumption",
-    "orbit_assumptions",
-    "transient_assumptions",
-    "turn_per_step",
-]
 
 LARGE_ERROR = 0.05
 """Share of the amplitude above which the discarded harmonics are worth a warning."""
@@ -36,35 +28,6 @@ COARSE_TURN = 0.5
 """Angle per Runge-Kutta step above which a motion loses accuracy noticeably [rad]."""
 
 _SHOWN = 6
-_BASES = {
-    "stuck modes": (
-        "The damping is proportional on the stuck structure: the compliance is the sum over its "
-        "real modes."
-    ),
-    "free modes": (
-        "The damping is proportional on the free structure: the compliance is the sum over its "
-        "real modes, the stuck contacts added exactly."
-    ),
-    "complex modes": (
-        "The damping matrix couples the modes, or rounding leaves open whether it does: the "
-        "compliance is the sum over the complex modes of the stuck structure."
-    ),
-    "waves": (
-        "All sectors are equal and move alike, one after the other: harmonic k of the motion meets "
-        "the disk at nodal diameter k E modulo n. With positive damping that is its only steady "
-        "state."
-    ),
-    "sectors": (
-        "The sectors of the ring are solved one by one, and joined exactly where neighbours touch."
-    ),
-}
-_DIRECT = (
-    "The damping matrix couples the modes, and the complex modes miss a direct solution by more "
-    "than 1e-8, as where two of them nearly coincide, or a dof of hardly any mass makes one much "
-    "faster than the others: every point costs a factorisation of the "
-    "whole dynamic stiffness per harmonic, and takes longer than modes would. Where the damping "
-    "follows a law, give that, Rayleigh or ModalDamping, instead of its matrix."
-)
 
 
 def balance_assumptions(
@@ -77,33 +40,30 @@ def balance_assumptions(
     *,
     single: bool = False,
 ) -> tuple[Diagnostic, ...]:
-    """Say what a harmonic balance took for granted.
-
-    `asked` counts the frequencies of a grid. A `single` harmonic says itself that it is one.
-    """
+    """Say what a harmonic balance took for granted; `asked` counts the frequencies of a grid."""
     orbits = solution.counters.get("orbits", 0)
-    remedy = "forced_response keeps more of them" if single else "keep more harmonics there"
+    base = f"modal-base/{model.problem.modal_base}"
     # Numbers far outside any unit overflow when squared; what is not finite then is left out.
     with np.errstate(all="ignore"):
         return present(
             (
-                None if single else _harmonics(settings, arrays, solution.half_wave),
+                single and told("method/single"),
+                not single and _harmonics(settings, arrays, solution.half_wave),
                 _static_traction(model, settings, arrays),
                 _start_of_march(model),
                 bool(model.contacts) and _samples(settings, arrays),
-                _base(model),
+                base in TEXTS and told(base, base=model.problem.modal_base),
                 direct_assumption(model),
                 _frequencies(settings.span, settings.tolerance, arrays, solution, asked),
                 orbits > 0
-                and diagnostic(
+                and told(
                     "exact-orbits",
-                    f"{orbits} {'point takes its' if orbits == 1 else 'points take their'} "
-                    "harmonics from the exact orbit, which costs less than a balance of as many.",
                     points=orbits,
+                    _take="point takes its" if orbits == 1 else "points take their",
                 ),
                 _observed(model, dofs),
                 uniqueness(model),
-                _truncation(dofs, arrays, remedy),
+                _truncation(dofs, arrays, single=single),
                 missed_tolerances(arrays.status, "points"),
             )
         )
@@ -119,31 +79,15 @@ def orbit_assumptions(
 ) -> tuple[Diagnostic, ...]:
     """Say what exact orbits took for granted."""
     low, high = sorted(settings.span or (0.0, 0.0))
-    half = (
-        "Orbits were sought on half a period: the forces and the friction laws are half-wave "
-        "symmetric, and so is the steady motion."
-        if solution.half_wave
-        else "Only motions of the period of the forces were sought."
-    )
     with np.errstate(all="ignore"):
         return present(
             (
-                diagnostic("half-period", half),
-                diagnostic(
-                    "harmonics",
-                    f"Harmonics are reported up to {settings.harmonics}; the orbits have no "
-                    "truncation.",
-                    most=settings.harmonics,
-                ),
+                told("half-period/half" if solution.half_wave else "half-period"),
+                told("harmonics/orbits", most=settings.harmonics),
                 _static_traction(model, settings, arrays),
                 _start_of_march(model),
                 settings.span is not None
-                and diagnostic(
-                    "frequencies",
-                    f"The frequencies between {low:g} and {high:g} rad/s are those that an "
-                    f"adaptive harmonic balance chose to a tolerance of {settings.tolerance:g}.",
-                    tolerance=settings.tolerance,
-                ),
+                and told("frequencies/balance", tolerance=settings.tolerance, _low=low, _high=high),
                 _frequencies(None, settings.tolerance, arrays, solution, asked),
                 _observed(model, dofs),
                 uniqueness(model),
@@ -163,48 +107,33 @@ def transient_assumptions(
     begun = "rest" if start is None else "a given state"
     if isinstance(start, Mapping):
         begun = "given displacements, without velocities and contact forces"
-    mean = (
-        "; a contact that never slips keeps for ever the mean force of its start, so that means "
-        "depend on it while half ranges do not"
-        if model.contacts
-        else ""
-    )
-    stepped = (
-        f"The motion was advanced in {settings.steps} Runge-Kutta steps per period; between them "
-        "the output is interpolated."
-        if settings.scheme == "rk4"
-        else "The motion was followed exactly between the instants of stick and slip."
-    )
-    turn = turn_per_step(model, settings)
+    scheme, turn = settings.scheme, turn_per_step(model, settings)
     needed = int(np.ceil(settings.steps * turn / COARSE_TURN))
+    open_end = not (history.settled or history.unbounded) and settings.tolerance is None
     return present(
         (
-            diagnostic("start", f"The run starts from {begun}{mean}."),
-            diagnostic("time-steps", stepped, scheme=settings.scheme),
-            turn > COARSE_TURN
-            and diagnostic(
-                "coarse-steps",
-                f"The highest stuck natural frequency turns by {turn:.2g} rad in a Runge-Kutta "
-                f"step, too much to be followed well; take {needed} steps per period.",
-                turn=turn,
-                needed=needed,
-            ),
-            not (history.settled or history.unbounded)
-            and settings.tolerance is None
-            and diagnostic(
-                "no-tolerance",
-                "No tolerance was given, so that the last period need not be a steady one; see "
-                "change.",
-            ),
+            told("start/contacts" if model.contacts else "start", _begun=begun),
+            told(f"time-steps/{scheme}", scheme=scheme, _steps=settings.steps),
+            turn > COARSE_TURN and told("coarse-steps", turn=turn, needed=needed),
+            open_end and told("no-tolerance"),
             settings.keep is not None
             and settings.keep < settings.periods
-            and diagnostic(
-                "kept-periods",
-                f"Time histories and events are kept of the last {settings.keep} periods only.",
-                periods=settings.keep,
-            ),
+            and told("kept-periods", periods=settings.keep),
             _observed(model, dofs),
             uniqueness(model),
+        )
+    )
+
+
+def free_assumptions(model: Model, settings: ClassifySettings) -> tuple[Diagnostic, ...]:
+    """Say what a classification of free motions took for granted."""
+    forces = len(model.forces)
+    return present(
+        (
+            told("method/free"),
+            forces > 0 and told("forces-left-out", forces=forces),
+            told("criterion", tolerance=settings.tolerance, periods=settings.periods),
+            told("modes"),
         )
     )
 
@@ -220,32 +149,25 @@ def _static_traction(
         "centred": "no force at mid-range of its displacement",
         "from_rest": "the force it built up from zero displacement",
     }.get(str(settings.residual), f"{settings.residual} N at mid-range of its displacement")
-    return diagnostic(
+    return told(
         "static-traction",
-        f"A contact that never slips was taken to hold {held} (residual={settings.residual!r}, "
-        f"of effect at {stuck.sum()} of {stuck.size} points); residual_bounds gives what it could "
-        "hold.",
         residual=settings.residual,
         points=int(stuck.sum()),
+        _held=held,
+        _solved=stuck.size,
     )
 
 
 def _start_of_march(model: Model) -> Diagnostic | None:
     """Say how dampers of several points begin, and what holds them."""
     several = [one for one in model.contacts if isinstance(one, StructuralDamper)]
-    told = [
-        "The march through a damper of several points begins without slip, so that points which "
-        "never slip hold what they built up from zero displacement, and no mean force where the "
-        "motion is half-wave symmetric",
-        *(
-            f"the rows of the stiffness of {one.name!r} do not sum to zero "
-            f"({one.grounding:.3g} N/m): it is also held by the ground, and its forces have a "
-            "resultant"
-            for one in several
-            if one.grounding
-        ),
-    ]
-    return diagnostic("start-of-march", f"{'; '.join(told)}.") if several else None
+    held = (
+        f"; the rows of the stiffness of {one.name!r} do not sum to zero ({one.grounding:.3g} "
+        "N/m): it is also held by the ground, and its forces have a resultant"
+        for one in several
+        if one.grounding
+    )
+    return told("start-of-march", _held="".join(held)) if several else None
 
 
 def _samples(settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
@@ -253,29 +175,19 @@ def _samples(settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
     if settings.march is None or not taken.size:
         return None
     least, most = int(taken.min()), int(taken.max())
-    count = f"{least}" if least == most else f"{least} to {most}"
-    chosen = (
-        f", chosen per point to a quarter of the tolerance of {settings.tolerance:g}"
-        if settings.march == "auto"
-        else ""
-    )
-    return diagnostic(
+    chosen = f", chosen per point to a quarter of the tolerance of {settings.tolerance:g}"
+    return told(
         "samples",
-        f"The contact forces were marched through {count} samples per period{chosen}; the error "
-        "of the sampling is part of the error estimate.",
         least=least,
         most=most,
+        _count=f"{least}" if least == most else f"{least} to {most}",
+        _chosen=chosen if settings.march == "auto" else "",
     )
-
-
-def _base(model: Model) -> Diagnostic | None:
-    base = model.problem.modal_base
-    return diagnostic("modal-base", _BASES[base], base=base) if base in _BASES else None
 
 
 def direct_assumption(model: Model) -> Diagnostic | None:
     """Say that points cost factorisations, and why, where no modes carry the compliance."""
-    return diagnostic("direct-solution", _DIRECT) if model.problem.is_direct else None
+    return told("direct-solution") if model.problem.is_direct else None
 
 
 def turn_per_step(model: Model, settings: TransientSettings) -> float:
@@ -294,24 +206,14 @@ def _harmonics(settings: ForcedSettings, arrays: Arrays, half_wave: bool) -> Dia
     if not kept.size:
         return None
     least, most = int(kept.min()), int(kept.max())
-    chosen = (
-        f", chosen per point ({least} to {most}) to a tolerance of {settings.tolerance:g}"
-        if settings.harmonics == "auto"
-        else ""
+    chosen = f", chosen per point ({least} to {most}) to a tolerance of {settings.tolerance:g}"
+    odd = "harmonics/one" if most == 1 else "harmonics/odd"
+    return told(
+        odd if half_wave else "harmonics",
+        least=least,
+        most=most,
+        _chosen=chosen if settings.harmonics == "auto" else "",
     )
-    if half_wave and most == 1:
-        text = (
-            "Only harmonic 1 was solved for: the forces and the friction laws are half-wave "
-            "symmetric, and harmonics above it were left out."
-        )
-    elif half_wave:
-        text = (
-            f"Only the odd harmonics up to {most} were solved for{chosen}: the forces and the "
-            "friction laws are half-wave symmetric."
-        )
-    else:
-        text = f"All harmonics from 0 to {most} were solved for{chosen}."
-    return diagnostic("harmonics", text, least=least, most=most)
 
 
 def _frequencies(
@@ -323,41 +225,31 @@ def _frequencies(
 ) -> Diagnostic | None:
     count = int((arrays.status != Status.NOT_COMPUTED.code).sum())
     missing = 0 if asked is None else asked - solution.computed
-    reached = f"{arrays.omega[-1] if count else np.nan:.6g} rad/s"
-    if span is None:
-        if not missing:
-            return None
-        text = (
-            f"The run was interrupted after {count} of {count + missing} frequencies, at {reached}."
-        )
-    elif solution.interrupted:
-        text = (
-            f"The run from {span[0]:g} to {span[1]:g} rad/s was interrupted: its {count} "
-            f"frequencies, chosen to a tolerance of {tolerance:g}, end at {reached}."
-        )
-    else:
-        low, high = sorted(span)
-        text = (
-            f"The {count} frequencies between {low:g} and {high:g} rad/s were chosen to a "
-            f"tolerance of {tolerance:g}."
-        )
-    return diagnostic("frequencies", text, count=count, missing=missing)
-
-
-def _observed(model: Model, dofs: tuple[str, ...]) -> Diagnostic | None:
-    total = len(model.structure)
-    if len(dofs) == total:
+    if span is None and not missing:
         return None
-    listed = ", ".join(dofs[:_SHOWN]) + (", ..." if len(dofs) > _SHOWN else "")
-    return diagnostic(
-        "observed-dofs",
-        f"Only {len(dofs)} of {total} dofs are kept in the result: {listed}.",
-        kept=len(dofs),
-        total=total,
+    variant = "frequencies/cut" if solution.interrupted else "frequencies"
+    start, end = span or (0.0, 0.0)
+    return told(
+        "frequencies/grid" if span is None else variant,
+        count=count,
+        missing=missing,
+        _asked=count + missing,
+        _reached=arrays.omega[-1] if count else np.nan,
+        _tolerance=tolerance,
+        _start=start,
+        _end=end,
+        _low=min(start, end),
+        _high=max(start, end),
     )
 
 
-def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> Diagnostic | None:
+def _observed(model: Model, dofs: tuple[str, ...]) -> Diagnostic | None:
+    kept, total = len(dofs), len(model.structure)
+    listed = ", ".join(dofs[:_SHOWN]) + (", ..." if kept > _SHOWN else "")
+    return None if kept == total else told("observed-dofs", kept=kept, total=total, _listed=listed)
+
+
+def _truncation(dofs: tuple[str, ...], arrays: Arrays, *, single: bool) -> Diagnostic | None:
     # The exact half range of every dof and point would cost as much as the solution; the root
     # sum of squares finds the point, and only there is the range taken.
     parts = arrays.displacement[:, 1:].real, arrays.displacement[:, 1:].imag
@@ -374,14 +266,9 @@ def _truncation(dofs: tuple[str, ...], arrays: Arrays, remedy: str) -> Diagnosti
     if not share > LARGE_ERROR:
         return None
     what = "The discarded harmonics"
+    remedy = "forced_response keeps more of them" if single else "keep more harmonics there"
     if arrays.samples[point]:
         what = f"{what} and the sampling"
         remedy = "keep more harmonics, or take more samples, there"
-    return diagnostic(
-        "truncation",
-        f"{what} could still change {dofs[dof]!r} by {share:.1%} at omega = "
-        f"{arrays.omega[point]:.6g} rad/s, the worst point; {remedy}.",
-        dof=dofs[dof],
-        share=share,
-        omega=float(arrays.omega[point]),
-    )
+    omega = float(arrays.omega[point])
+    return told("truncation", dof=dofs[dof], share=share, omega=omega, _what=what, _remedy=remedy)

@@ -8,7 +8,8 @@ from typing import TypeAlias
 import numpy as np
 
 from stickslip.analyses.arguments import columns_of, observed_dofs, state_of
-from stickslip.analyses.classify import fate_assumptions, fates_of, free
+from stickslip.analyses.assumptions import free_assumptions
+from stickslip.analyses.classify import fates_of, free
 from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.run import Progress, Run
 from stickslip.checks import members, unknown, whole_number
@@ -20,8 +21,6 @@ from stickslip.results.basin_map import BasinMap
 from stickslip.results.fate_arrays import FateArrays
 from stickslip.settings.motion import Axis, BasinKeys, BasinSettings, ClassifySettings
 from stickslip.settings.settings import configured
-
-__all__ = ["basin_map"]
 
 Grid: TypeAlias = tuple[tuple[Axis, tuple[float, ...]], ...]
 
@@ -85,7 +84,7 @@ def basin_map(
             interrupted=fates.interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
-            diagnostics=fate_assumptions(model, kept),
+            diagnostics=free_assumptions(model, kept),
         )
         done = sum(reason != "interrupted" for reason in result.reason)
         return run.ended(result, f"{done} of {len(result)} starts")

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from time import monotonic
 
 import numpy as np
 
 from stickslip.analyses.arguments import require_held
-from stickslip.analyses.orbits import Orbits, orbits_of
+from stickslip.analyses.exact_response import orbits_at
 from stickslip.analyses.run import Progress, Run, share
 from stickslip.checks import brief, members
 from stickslip.errors import Interrupted, ModelError
@@ -17,10 +16,8 @@ from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Int
 from stickslip.results.certificate import Certificate
 from stickslip.results.exact_response import ExactResponse
-from stickslip.settings.orbits import CertifySettings, OrbitSettings
+from stickslip.settings.orbits import CertifySettings, ExactSettings
 from stickslip.settings.settings import configured
-
-__all__ = ["certify"]
 
 _SAMPLES = 1024
 """Instants per period at which curve and orbit are compared."""
@@ -29,7 +26,6 @@ _SAMPLES = 1024
 _NO_ERROR = 1e-12
 # Share of the progress that the orbits are given; following them through the period takes the rest.
 _ORBITS = 0.5
-_REPORT_EVERY = 0.1
 
 
 @configured(CertifySettings, "points")
@@ -73,26 +69,18 @@ def certify(
     model, residual = result.model, result.settings.residual
     require_held(model, residual)
     with Run("certification", progress, model) as run:
-        exact = orbits_of(
-            model,
-            result.omega[indices],
-            compared,
-            OrbitSettings.of(harmonics=1, residual=residual),
-            share(run, 0.0, _ORBITS),
-            half_wave=result.half_wave,
-        )
+        kept = ExactSettings.of(harmonics=1, residual=residual)
+        exact = orbits_at(model, result.omega[indices], compared, kept, share(run, 0.0, _ORBITS))
         apart = np.full((exact.arrays.omega.size, len(compared)), np.nan)
-        if exact.solution.interrupted:
+        if exact.interrupted:
             raise _interrupted(result, exact, indices, apart, 0)
-        reported, place = monotonic(), 0
+        place = 0
         try:
             with run.at_once():
                 compare = _comparison(result, exact, indices)
                 for place in range(indices.size):
                     apart[place] = compare(place)
-                    if monotonic() > reported + _REPORT_EVERY:
-                        run(_ORBITS + (1.0 - _ORBITS) * (place + 1) / indices.size)
-                        reported = monotonic()
+                    run.reached(_ORBITS + (1.0 - _ORBITS) * (place + 1) / indices.size)
         except KeyboardInterrupt:
             raise _interrupted(result, exact, indices, apart, place) from None
         certified = replace(result, certificate=_certificate(result, exact, indices, apart))
@@ -100,7 +88,7 @@ def certify(
 
 
 def _interrupted(
-    result: ForcedResponse, exact: Orbits, indices: Int, apart: Float, followed: int
+    result: ForcedResponse, exact: ExactResponse, indices: Int, apart: Float, followed: int
 ) -> Interrupted:
     """Return the exception that holds the orbits so far, whose waveforms may be missing."""
     certificate = _certificate(result, exact, indices[: exact.arrays.omega.size], apart)
@@ -111,7 +99,9 @@ def _interrupted(
     )
 
 
-def _comparison(result: ForcedResponse, exact: Orbits, indices: Int) -> Callable[[int], Float]:
+def _comparison(
+    result: ForcedResponse, exact: ExactResponse, indices: Int
+) -> Callable[[int], Float]:
     """Return what gives the largest differences between curve and orbit over a period, (d,)."""
     series = np.stack([result.coefficients(dof) for dof in exact.dofs], axis=2)
     # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
@@ -126,7 +116,9 @@ def _comparison(result: ForcedResponse, exact: Orbits, indices: Int) -> Callable
     return compare
 
 
-def _certificate(result: ForcedResponse, exact: Orbits, indices: Int, apart: Float) -> Certificate:
+def _certificate(
+    result: ForcedResponse, exact: ExactResponse, indices: Int, apart: Float
+) -> Certificate:
     low, high = exact.arrays.range[..., 0], exact.arrays.range[..., 1]
     amplitude = 0.5 * (high - low)
     curve = np.stack([result.amplitude(dof)[indices] for dof in exact.dofs], axis=1)

@@ -15,19 +15,17 @@ from stickslip.analyses.arguments import (
     require_time,
     state_of,
 )
+from stickslip.analyses.assumptions import free_assumptions
 from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int
-from stickslip.results.diagnostic import Diagnostic, diagnostic, present
 from stickslip.results.fate_arrays import Motion, Reason
 from stickslip.results.motion_class import MotionArrays, MotionClass
 from stickslip.settings.motion import ClassifyKeys, ClassifySettings, TransientSettings
 from stickslip.settings.settings import configured
-
-__all__ = ["classify", "fate_assumptions", "fates_of", "free"]
 
 TAIL = 512
 """Slow periods of the motion that are kept for its spectrum."""
@@ -102,7 +100,7 @@ def classify(
             interrupted=interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
-            diagnostics=fate_assumptions(model, kept),
+            diagnostics=free_assumptions(model, kept),
         )
         if interrupted:
             raise Interrupted(
@@ -124,39 +122,6 @@ def fates_of(
     """Let the core follow motions from starts, shape (n, 2 N + n_p)."""
     with refusals(model):
         return _core.fates(model.problem, starts, settings, threads, progress)
-
-
-def fate_assumptions(model: Model, settings: ClassifySettings) -> tuple[Diagnostic, ...]:
-    """Say what a classification took for granted."""
-    return present(
-        (
-            diagnostic(
-                "method",
-                "The motion was followed exactly between the instants of stick and slip; decaying "
-                "and unbounded are bounds that hold for ever, settled and aperiodic what was seen "
-                "of it.",
-            ),
-            bool(model.forces)
-            and diagnostic(
-                "forces-left-out",
-                f"The {len(model.forces)} force(s) of the model were left out: the motion is free.",
-                forces=len(model.forces),
-            ),
-            diagnostic(
-                "criterion",
-                f"A motion counts as settled at a closing error of {settings.tolerance:g} that is "
-                f"falling, over 32 periods, and was followed over {settings.periods} periods of "
-                "the lowest stuck mode at most.",
-                tolerance=settings.tolerance,
-                periods=settings.periods,
-            ),
-            diagnostic(
-                "modes",
-                "Modes are those of the structure with all contacts stuck, told apart by kinetic "
-                "energy.",
-            ),
-        )
-    )
 
 
 def _tail_grid(model: Model, observed: int) -> tuple[float, int]:

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.analyses.texts import told
 from stickslip.model import Model
-from stickslip.results.diagnostic import Diagnostic, diagnostic, present
+from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.limit_cycles import CycleArrays
 from stickslip.settings.cycles import MOST_HARMONICS, CycleSettings
 
 if TYPE_CHECKING:
     from stickslip import _core
-
-__all__ = ["cycle_assumptions"]
 
 
 def cycle_assumptions(
@@ -27,38 +26,16 @@ def cycle_assumptions(
     returned = any(end == "returned" for end, _ in solution.ends)
     return present(
         (
-            diagnostic(
-                "onset",
-                f"Mode {settings.mode}, stuck at {omega:.6g} rad/s, loses its damping at "
-                f"r = {onset:.6g} with all contacts stuck: its limit cycles begin there.",
-                mode=settings.mode,
-                omega=omega,
-                ratio=onset,
-            ),
-            diagnostic(
-                "half-wave",
-                "Motions are half-wave symmetric, x(t + T/2) = -x(t); cycles that break this "
-                f"symmetry are not looked for. t = 0 is the maximum of {dof!r}.",
-            ),
-            any(force.amplitude for force in model.forces)
-            and diagnostic("forces-ignored", "The forces of the model are left out."),
+            told("onset", mode=settings.mode, omega=omega, ratio=onset),
+            told("half-wave", _dof=dof),
+            any(force.amplitude for force in model.forces) and told("forces-ignored"),
             *_stability(model, settings, arrays),
             *(
                 _end(model, settings, arrays, end, float(value), side)
                 for side, (end, value) in sides
             ),
-            arrays.limit is None
-            and not (solution.interrupted or returned)
-            and diagnostic(
-                "no-turn", "No turn: the branch does not turn in the range, and has one side alone."
-            ),
-            solution.jumps > 0
-            and diagnostic(
-                "branch-jumps",
-                f"{solution.jumps} places were stepped over, at corners or between folds close to "
-                "each other.",
-                jumps=solution.jumps,
-            ),
+            arrays.limit is None and not (solution.interrupted or returned) and told("no-turn"),
+            solution.jumps > 0 and told("branch-jumps", jumps=solution.jumps),
             settings.method == "newton" and _truncation(model, settings, arrays),
         )
     )
@@ -68,66 +45,32 @@ def _end(
     model: Model, settings: CycleSettings, arrays: CycleArrays, end: str, value: float, side: str
 ) -> Diagnostic | None:
     """Say why a side of the branch ends where it does."""
-    at = f"{settings.followed} = {value:.6g}"
+    at = {"value": value, "_followed": settings.followed}
+    remedy = _remedy(model, settings, arrays)
     match end:
         case "returned":
-            return diagnostic(
-                "branch-turned-back",
-                f"Stalled: at {at} the walk turned back on itself, or closed a loop: no way ahead "
-                "was found at a corner of the branch, which may go on to a farther limit. "
-                f"{_remedy(model, settings, arrays)}",
-                value=value,
-            )
+            return told("branch-turned-back", **at, _remedy=remedy)
         case "stalled":
-            return diagnostic(
-                "branch-stalled",
-                f"Stalled: the {side} side ends at {at}, where no continuation was found. "
-                f"{_remedy(model, settings, arrays)}",
-                side=side,
-                value=value,
-            )
+            return told("branch-stalled", **at, side=side, _remedy=remedy)
         case "points":
-            return diagnostic(
-                "points-limit",
-                f"The branch ends after {settings.max_points} points; raise max_points.",
-                points=settings.max_points,
-            )
+            return told("points-limit", points=settings.max_points)
         case "unbounded":
-            return diagnostic(
-                "unbounded-branch",
-                f"The {side} side grows without bound towards {at}.",
-                side=side,
-                value=value,
-            )
+            return told("unbounded-branch", **at, side=side)
     return None
 
 
 def _stability(
     model: Model, settings: CycleSettings, arrays: CycleArrays
 ) -> tuple[Diagnostic | bool, ...]:
-    cause = None
     if model.travels:
-        cause = "one sector of a wave has no motion of its own"
-    elif not settings.stability:
-        cause = "it was left out"
-    if cause is not None:
-        return (diagnostic("stability-undecided", f"Stability is not decided: {cause}."),)
+        return (told("stability-undecided/wave"),)
+    if not settings.stability:
+        return (told("stability-undecided/left out"),)
     along = int((~arrays.closed & arrays.known).sum())
     unknown = int((~arrays.known).sum())
     return (
-        along > 0
-        and diagnostic(
-            "multipliers",
-            f"{along} points have no exact orbit nearby at their {settings.followed}: their "
-            "multipliers are those of the exact flow along the harmonic balance.",
-            points=along,
-        ),
-        unknown > 0
-        and diagnostic(
-            "stability-undecided",
-            f"{unknown} points have no multipliers: their stability is not decided.",
-            points=unknown,
-        ),
+        along > 0 and told("multipliers", points=along, _followed=settings.followed),
+        unknown > 0 and told("stability-undecided", points=unknown),
     )
 
 
@@ -137,12 +80,7 @@ def _truncation(model: Model, settings: CycleSettings, arrays: CycleArrays) -> D
     worst = float(np.where(np.isnan(share), 0.0, share).max(initial=0.0))
     if not worst > settings.tolerance:
         return None
-    return diagnostic(
-        "truncation",
-        f"The discarded harmonics could still change amplitudes by up to {worst:.1e}; "
-        f"try {_finer(model, arrays)}.",
-        share=worst,
-    )
+    return told("truncation/cycles", share=worst, _finer=_finer(model, arrays))
 
 
 def _remedy(model: Model, settings: CycleSettings, arrays: CycleArrays) -> str:

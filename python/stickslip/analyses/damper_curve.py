@@ -24,8 +24,6 @@ from stickslip.settings.peaks import DamperKeys, DamperSettings, PeakKeys, PeakS
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import Variation, one_of
 
-__all__ = ["curve_of", "damper_curve", "settings_for"]
-
 RIGID = 250.0
 """Stiffness of a contact, over that of the structure, from which the rigid limit is taken.
 
@@ -53,8 +51,6 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
     """
     parameter = one_of(settings, "slip_force", "stiffness", "level")
     values = getattr(settings, parameter)
-    if isinstance(values, tuple):
-        raise ModelError(f"{parameter}: a range without points; give their number")
     if parameter == "stiffness" and settings.common == "factor" and np.isinf(values).any():
         raise ModelError(
             "stiffness: an infinite factor has no meaning; give finite ones, or values"
@@ -70,10 +66,7 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
 
 
 def settings_for(
-    model: Model,
-    variation: Variation,
-    values: Float,
-    settings: PeakKeys,
+    model: Model, variation: Variation, values: Float, settings: PeakKeys
 ) -> DamperSettings:
     """Return the checked settings of a curve over some values."""
     start = _rigid_from(model, variation)
@@ -84,10 +77,7 @@ def settings_for(
     if span is None:
         span = resonance_range(model, variation, settings.mode, finite)
     kept = DamperSettings.of(
-        **settings.part(PeakSettings),
-        dof=settings.dof,
-        variation=variation,
-        span=span,
+        **settings.part(PeakSettings), dof=settings.dof, variation=variation, span=span
     )
     model.structure.index(kept.dof)
     require_forced(model, kept)

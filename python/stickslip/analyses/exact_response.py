@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from stickslip.analyses.arguments import observed_dofs, points_of, require_held
+from stickslip import _core
+from stickslip.analyses.arguments import columns_of, observed_dofs, points_of, require_held
 from stickslip.analyses.assumptions import orbit_assumptions
 from stickslip.analyses.forced_response import forced_response
-from stickslip.analyses.orbits import orbits_of
-from stickslip.analyses.run import Progress, Run, share
+from stickslip.analyses.memory import require_memory
+from stickslip.analyses.run import Progress, Run, refusals, share
+from stickslip.disk.wave_ring import moving
 from stickslip.errors import Interrupted
 from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.exact_response import ExactResponse
+from stickslip.results.orbit_arrays import OrbitArrays
 from stickslip.settings.entries import Span
 from stickslip.settings.orbits import ExactSettings, OrbitKeys, OrbitSettings
 from stickslip.settings.settings import configured
-
-__all__ = ["exact_response"]
 
 # Share of the progress that choosing the frequencies of a range is given.
 _CHOOSING = 0.2
@@ -66,20 +67,35 @@ def exact_response(
         if isinstance(grid, tuple):
             grid = _frequencies(model, grid, kept, dofs, share(run, 0.0, _CHOOSING))
             part = share(run, _CHOOSING, 1.0)
-        half_wave = model.problem.half_wave(settings.residual)
-        orbits = orbits_of(model, grid, dofs, kept, part, half_wave=half_wave)
-        arrays, solution = orbits.arrays, orbits.solution
-        if orbits.sectors is not None:
-            arrays = arrays.of_sector(points_of(model), orbits.sectors)
-        result = ExactResponse.of(
-            solution,
-            model=model,
-            settings=kept,
-            dofs=dofs,
-            arrays=arrays,
-            diagnostics=orbit_assumptions(model, kept, dofs, arrays, solution, grid.size),
+        result = orbits_at(model, grid, dofs, kept, part)
+        return run.ended(result, f"{result.omega.size} of {grid.size} points")
+
+
+def orbits_at(
+    model: Model, grid: Float, dofs: tuple[str, ...], settings: ExactSettings, progress: Progress
+) -> ExactResponse:
+    """Return the exact orbits that are found before an interruption; of a wave, of sector 0."""
+    problem, rotation = moving(model, half_wave=model.problem.half_wave(settings.residual))
+    sectors = 1 if rotation is None else rotation.sectors
+    points = sectors * points_of(model)
+    further = 3 * (2 * sectors * len(model.structure) + points) + 2 * len(dofs) + 16
+    require_memory(grid.size, settings.harmonics, len(dofs), points, extra=further)
+    columns = columns_of(dofs, model)
+    with refusals(model):
+        solution = _core.exact_response(
+            problem, grid, columns, settings.harmonics, settings, progress, rotation
         )
-        return run.ended(result, f"{solution.computed} of {grid.size} points")
+    arrays = OrbitArrays.of(solution)
+    if rotation is not None:
+        arrays = arrays.of_sector(points // sectors, sectors)
+    return ExactResponse.of(
+        solution,
+        model=model,
+        settings=settings,
+        dofs=dofs,
+        arrays=arrays,
+        diagnostics=orbit_assumptions(model, settings, dofs, arrays, solution, grid.size),
+    )
 
 
 def _frequencies(

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import acos, pi, sin, sqrt, tanh
 from typing import NamedTuple
 
 from stickslip.checks import real_number
 from stickslip.errors import ModelError
-
-__all__ = ["SingleCycle", "rigid_limit_cycle", "single_harmonic_cycles"]
 
 
 class SingleCycle(NamedTuple):
@@ -52,6 +49,8 @@ def single_harmonic_cycles(
     Guillen (1999), eqs. (5.5) to (5.9); corrected: a = (A/pi) (theta - sin(2 theta)/2), and the
     sine balances c omega A = k_d b with both sides below 0.
     """
+    from scipy.optimize import brentq, minimize_scalar
+
     m, k, kd, limit = _positive(
         mass=mass, stiffness=stiffness, contact_stiffness=contact_stiffness, slip_force=slip_force
     )
@@ -70,14 +69,10 @@ def single_harmonic_cycles(
 
     # share = onset / A runs from 0, endless slip, to 1, the onset of slip; the excess is positive
     # at both ends, and has one minimum in between.
-    low, high = 0.0, 1.0
-    for _ in range(200):
-        one, two = low + (high - low) / 3.0, high - (high - low) / 3.0
-        low, high = (low, two) if excess(one) < excess(two) else (one, high)
-    least = 0.5 * (low + high)
+    least = minimize_scalar(excess, bounds=(0.0, 1.0), method="bounded", options={"xatol": 1e-12}).x
     if excess(least) > 0.0:
         return ()
-    shares = [_root(excess, least, 1.0), _root(excess, least, 0.0)]
+    shares = [brentq(excess, least, end, xtol=1e-300, rtol=1e-15) for end in (1.0, 0.0)]
     return tuple(SingleCycle(onset / share, omega(share)) for share in shares)
 
 
@@ -126,17 +121,6 @@ def rigid_limit_cycle(
         raise ModelError(f"damping: {c:g} kg/s is overcritical, so that nothing oscillates")
     omega = sqrt(free**2 - rate**2)
     return SingleCycle(limit / k / tanh(0.5 * rate * pi / omega), omega)
-
-
-def _root(function: Callable[[float], float], inside: float, outside: float) -> float:
-    """Return the root between a point below zero and one above."""
-    for _ in range(200):
-        middle = 0.5 * (inside + outside)
-        if function(middle) <= 0.0:
-            inside = middle
-        else:
-            outside = middle
-    return 0.5 * (inside + outside)
 
 
 def _positive(**values: float) -> list[float]:

@@ -25,8 +25,6 @@ from stickslip.results.arrays import Arrays
 from stickslip.settings.balance import BalanceKeys, BalanceSettings, ForcedSettings
 from stickslip.settings.settings import configured
 
-__all__ = ["forced_response"]
-
 
 @configured(BalanceKeys, "omega", "harmonics")
 def forced_response(

@@ -23,8 +23,6 @@ from stickslip.results.limit_cycles import CycleArrays, LimitCycles
 from stickslip.settings.cycles import LOWEST_RATIO, BranchSettings, CycleKeys, CycleSettings
 from stickslip.settings.settings import configured
 
-__all__ = ["NegativeDamping", "limit_cycles"]
-
 AROUND = 1e3
 """Factor beyond the values of a parameter of contacts within which the branch is followed."""
 

@@ -8,8 +8,6 @@ from pathlib import Path
 
 from stickslip.errors import ModelError
 
-__all__ = ["require_memory", "require_numbers"]
-
 SHARE = 0.75
 """Share of the memory that an analysis may take."""
 

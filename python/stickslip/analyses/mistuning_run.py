@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-import os
 import sys
-import time
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
-from stickslip.analyses.mistuning_disks import Series
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.analyses.peak_assumptions import mistuning_assumptions
 from stickslip.analyses.run import Run, refusals
@@ -25,12 +22,18 @@ from stickslip.results.mistuning import MistuningArrays, MistuningStudy
 from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningSettings
 
-__all__ = ["Work"]
-
 EDGE = 1e-9
 """How far rounding may put a peak outside the range of frequencies, relative."""
-OFTEN = 0.1
-"""Seconds between two calls of a progress callback."""
+
+
+class Series(NamedTuple):
+    """The disks of one stiffness of the couplings."""
+
+    disk: BladedDisk
+    coupling: float
+    """Stiffness of the couplings [N/m]; not-a-number: they have several, or there is none."""
+    tuned: tuple[Row, ...]
+    """Peaks of the tuned disk, one per degree of freedom."""
 
 
 class Work:
@@ -120,7 +123,6 @@ class Work:
         missing = np.argwhere(~self.known)
         if not missing.size:
             return True
-        report = _reporter(run)
 
         def deliver(index: int, found: list[_core.Summit], points: int) -> None:
             d, c, p = (int(at) for at in missing[index])
@@ -133,7 +135,7 @@ class Work:
                     kept = f"{self.done} of {self.total} disks are stored"
                     raise ModelError(f"{error}; {kept}, run again to go on from there") from None
             self._take((d, c, p), enumerate(rows), points)
-            report(self.done / self.total)
+            run.reached(self.done / self.total)
 
         with refusals(self.disk):
             return _core.mistuning_study(
@@ -144,7 +146,7 @@ class Work:
                 self.settings,
                 self.settings,
                 [max(row.harmonics for row in one.tuned) for one in self.series],
-                threads or _processors(),
+                threads or 0,
                 deliver,
                 lambda _: run.heed(),
             )
@@ -174,24 +176,3 @@ class Work:
             counters={"disks": self.done, "points": self.points},
             diagnostics=mistuning_assumptions(self.settings, arrays, self.dofs),
         )
-
-
-def _reporter(run: Run) -> Callable[[float], None]:
-    """Return what tells a callback how far a run is, not too often."""
-    last = time.monotonic()
-
-    def report(share: float) -> None:
-        nonlocal last
-        if time.monotonic() - last >= OFTEN:
-            last = time.monotonic()
-            run(share)
-
-    return report
-
-
-def _processors() -> int:
-    """Return how many processors this program may use."""
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:
-        return os.cpu_count() or 1

@@ -12,6 +12,7 @@ from stickslip.analyses.arguments import highest_harmonic
 from stickslip.analyses.damper_curve import curve_of, settings_for
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.texts import told
 from stickslip.analyses.variation import chosen_contacts, local_stiffness, variation_of
 from stickslip.errors import ModelError
 from stickslip.interruption import stopped
@@ -19,13 +20,11 @@ from stickslip.model import Model
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import amplitude_of
 from stickslip.results.damper_curve import DamperArrays, LeastPeak
-from stickslip.results.diagnostic import Diagnostic, diagnostic, present
+from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.optimal_damper import OptimalDamper
 from stickslip.settings.peaks import DamperSettings, OptimumKeys
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import Chosen, Variation, located
-
-__all__ = ["optimal_damper"]
 
 STICKS = 1.0
 """Upper bound of a slip force, over the largest force of the stuck contact: from it on nothing
@@ -101,19 +100,8 @@ def _diagnostics(result: OptimalDamper) -> tuple[Diagnostic, ...]:
     unit = result.curve.settings.variation.unit
     return present(
         (
-            diagnostic(
-                "coarse-search",
-                f"The least peak was looked for between {low:.6g} and {high:.6g} {unit}; a local "
-                "minimum narrower than the coarse curve of 40 values may have been passed over.",
-                low=low,
-                high=high,
-            ),
-            result.at_bound
-            and diagnostic(
-                "optimum-at-bound",
-                "The least peak lies at a bound; a better one may lie outside.",
-                value=result.value,
-            ),
+            told("coarse-search", low=low, high=high, _unit=unit),
+            result.at_bound and told("optimum-at-bound", value=result.value),
             *result.curve.diagnostics,
         )
     )

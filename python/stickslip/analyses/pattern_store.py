@@ -22,8 +22,6 @@ from stickslip.checks import brief, file_path, is_file
 from stickslip.errors import ModelError
 from stickslip.files import require_place
 
-__all__ = ["Identity", "Key", "PatternStore", "Row", "digest"]
-
 FORMAT = 2
 """Version of the tables; it rises when an older reader could not read them. 1 had no digests."""
 

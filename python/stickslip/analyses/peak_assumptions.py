@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption
+from stickslip.analyses.texts import told
 from stickslip.analyses.uniqueness import uniqueness
 from stickslip.checks import listed
 from stickslip.model import Model
 from stickslip.results.arrays import Bool
-from stickslip.results.diagnostic import Diagnostic, diagnostic, missed_tolerances, present
+from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip.results.damper_curve import DamperArrays
     from stickslip.results.mistuning import MistuningArrays
     from stickslip.settings.peaks import DamperSettings, MistuningSettings
-
-__all__ = ["damper_assumptions", "mistuning_assumptions"]
+    from stickslip.settings.variation import Variation
 
 
 def damper_assumptions(
@@ -30,16 +30,8 @@ def damper_assumptions(
     return present(
         (
             _range(settings, "The peak is the highest point", at_edge, arrays.at_edge),
-            _common(settings),
-            rigid is not None
-            and diagnostic(
-                "rigid-limit",
-                f"Stiffnesses above {2.0 * rigid:.4g} N/m were not solved: an infinite stiffness "
-                f"is the limit of {rigid:.4g} and {2.0 * rigid:.4g} N/m, some hundred times the "
-                "stiffness of the structure at the contact, taken as linear in 1/k_d, and finite "
-                "ones lie on the same line; the error estimate holds the whole last change.",
-                stiffness=rigid,
-            ),
+            _common(settings.variation),
+            rigid is not None and told("rigid-limit", stiffness=rigid, _twice=2.0 * rigid),
             *_peaks(settings, arrays, "values"),
             _truncation_of_peaks(settings, arrays),
             uniqueness(model),
@@ -57,21 +49,13 @@ def mistuning_assumptions(
         f"{arrays.tuned_at_edge.sum()} of {arrays.tuned_at_edge.size}, lie"
     )
     edges = np.concatenate((arrays.at_edge.ravel(), arrays.tuned_at_edge.ravel()))
+    drawn = settings.distribution
     return present(
         (
-            diagnostic("patterns", "The patterns were given, in units of the standard deviation.")
-            if settings.distribution is None
-            else diagnostic(
-                "patterns",
-                f"Patterns were drawn from a {settings.distribution} distribution of zero mean and "
-                f"unit deviation with seed {settings.seed}; those of a single disk have others.",
-                distribution=settings.distribution,
-                seed=int(settings.seed or 0),
-            ),
-            diagnostic(
-                "deviations",
-                "The stiffness of whole sectors deviates; couplings, contacts and forces do not.",
-            ),
+            told("patterns/given")
+            if drawn is None
+            else told("patterns", distribution=drawn, seed=int(settings.seed or 0)),
+            told("deviations"),
             _range(settings, "Peaks are the highest points", at_edge, edges),
             *_peaks(settings, arrays, "peaks"),
             _truncation_of_factors(arrays, dofs),
@@ -86,17 +70,8 @@ def _peaks(
     limited = int((arrays.status == Status.HARMONICS_LIMIT.code).sum())
     return (
         _harmonics(settings, arrays),
-        diagnostic(
-            "static-traction",
-            f"A contact that never slips was taken to hold residual={settings.residual!r}.",
-            residual=settings.residual,
-        ),
-        limited > 0
-        and diagnostic(
-            "harmonics-limit",
-            f"{limited} {noun} at the limit of harmonics; raise max_harmonics.",
-            count=limited,
-        ),
+        told("static-traction/peaks", residual=settings.residual),
+        limited > 0 and told("harmonics-limit", count=limited, _noun=noun),
         missed_tolerances(arrays.status.ravel(), noun),
     )
 
@@ -105,31 +80,22 @@ def _range(
     settings: DamperSettings | MistuningSettings, what: str, at_edge: str, edges: Bool
 ) -> Diagnostic:
     low, high = settings.span
-    where = f"{what} from {low:.6g} to {high:.6g} rad/s"
-    if not edges.any():
-        return diagnostic("peak-range", f"{where}.", low=low, high=high)
-    return diagnostic(
-        "peak-at-edge",
-        f"{where}; {at_edge} at an end of this range, and the response may be higher outside: "
-        "widen omega.",
-        low=low,
-        high=high,
-        count=int(edges.sum()),
-    )
+    count = int(edges.sum())
+    if not count:
+        return told("peak-range", low=low, high=high, _what=what)
+    return told("peak-at-edge", low=low, high=high, count=count, _what=what, _at_edge=at_edge)
 
 
-def _common(settings: DamperSettings) -> Diagnostic | None:
-    variation = settings.variation
-    names = listed(variation.names)
+def _common(variation: Variation) -> Diagnostic | None:
     if variation.parameter == "level":
-        text = "The level multiplies every force, static ones included."
-    elif len(variation.contacts) < 2:
+        return told("varied-together/level")
+    if len(variation.contacts) < 2:
         return None
-    elif variation.common == "factor":
-        text = f"Each of {names} has its own {variation.parameter} times the factor."
-    else:
-        text = f"All of {names} have the same {variation.parameter}."
-    return diagnostic("varied-together", text)
+    return told(
+        "varied-together/factor" if variation.common == "factor" else "varied-together",
+        _names=listed(variation.names),
+        _parameter=variation.parameter,
+    )
 
 
 def _harmonics(
@@ -138,15 +104,17 @@ def _harmonics(
     kept = arrays.harmonics[arrays.solved]
     if not kept.size:
         return None
-    low, high = int(kept.min()), int(kept.max())
-    text = f"Harmonics up to {settings.harmonics} were kept."
-    if settings.harmonics == "auto":
-        several = "" if low == high else f", at some peaks only up to {low}"
-        text = (
-            f"Harmonics up to {high} were kept{several}, chosen at each peak to a tolerance of "
-            f"{settings.tolerance:g}."
-        )
-    return diagnostic("harmonics", text, least=low, most=high)
+    least, most = int(kept.min()), int(kept.max())
+    if settings.harmonics != "auto":
+        return told("harmonics/peaks", least=least, most=most)
+    several = "" if least == most else f", at some peaks only up to {least}"
+    return told(
+        "harmonics/chosen",
+        least=least,
+        most=most,
+        _several=several,
+        _tolerance=settings.tolerance,
+    )
 
 
 def _truncation_of_peaks(settings: DamperSettings, arrays: DamperArrays) -> Diagnostic | None:
@@ -158,13 +126,8 @@ def _truncation_of_peaks(settings: DamperSettings, arrays: DamperArrays) -> Diag
     if not share[worst] > LARGE_ERROR:
         return None
     value = float(arrays.value[known][worst])
-    return diagnostic(
-        "truncation",
-        f"The discarded harmonics could still change the peak by {share[worst]:.1%} at "
-        f"{settings.variation.parameter} = {value:.6g}, the worst value; keep more harmonics.",
-        share=float(share[worst]),
-        value=value,
-    )
+    parameter = settings.variation.parameter
+    return told("truncation/peak", share=float(share[worst]), value=value, _parameter=parameter)
 
 
 def _truncation_of_factors(arrays: MistuningArrays, dofs: tuple[str, ...]) -> Diagnostic | None:
@@ -177,10 +140,4 @@ def _truncation_of_factors(arrays: MistuningArrays, dofs: tuple[str, ...]) -> Di
     worst = np.unravel_index(share.argmax(), share.shape)
     if not share[worst] > LARGE_ERROR:
         return None
-    return diagnostic(
-        "truncation",
-        f"The discarded harmonics could still change amplification factors by up to "
-        f"{share[worst]:.1%} (dof {dofs[worst[-1]]!r}); keep more harmonics.",
-        dof=dofs[worst[-1]],
-        share=float(share[worst]),
-    )
+    return told("truncation/factors", dof=dofs[worst[-1]], share=float(share[worst]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import monotonic
 from typing import TypeAlias, TypeVar
 
 from stickslip.errors import ModelError
@@ -12,11 +13,12 @@ from stickslip.model import Model
 from stickslip.model.model import refusal
 from stickslip.results.result import Result
 
-__all__ = ["Progress", "Run", "refusals", "share"]
-
 Progress: TypeAlias = Callable[[float], None] | None
 
 _Kind = TypeVar("_Kind", bound=Result)
+
+REPORT_EVERY = 0.1
+"""Seconds between two calls of a progress callback."""
 
 
 class Run(Interruption):
@@ -34,8 +36,14 @@ class Run(Interruption):
 
     def __init__(self, what: str, progress: Progress, model: Model | None = None) -> None:
         super().__init__(progress)
-        self._what = what
+        self._what, self._reported = what, monotonic()
         _ = None if model is None else model.problem
+
+    def reached(self, share: float) -> None:
+        """Tell how much of the work is done, but not too often."""
+        if monotonic() > self._reported + REPORT_EVERY:
+            self(share)
+            self._reported = monotonic()
 
     def ended(self, result: _Kind, count: str, advice: str = "") -> _Kind:
         """Return the result of a run that is complete.

@@ -9,25 +9,15 @@ from stickslip.analyses.arguments import columns_of, observed_dofs, points_of
 from stickslip.analyses.assumptions import balance_assumptions
 from stickslip.analyses.memory import require_memory
 from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.texts import told
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Arrays
-from stickslip.results.diagnostic import diagnostic, present
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
 from stickslip.settings.orbits import SingleHarmonicKeys
 from stickslip.settings.settings import configured
-
-__all__ = ["single_harmonic"]
-
-_METHOD = (
-    "The motion was taken to be harmonic, and of every contact force its first harmonic: Griffin's "
-    "method with complex amplitudes."
-)
-_NO_ESTIMATE = (
-    "The error of leaving the higher harmonics out was not estimated; estimate=True does it."
-)
 
 
 @configured(SingleHarmonicKeys, "omega")
@@ -83,20 +73,18 @@ def single_harmonic(
                 model.problem, grid, columns_of(dofs, model), settings, run
             )
         arrays = Arrays.of(solution)
-        told = balance_assumptions(model, kept, dofs, arrays, solution, grid.size, single=True)
+        diagnostics = balance_assumptions(
+            model, kept, dofs, arrays, solution, grid.size, single=True
+        )
+        if not settings.estimate:
+            diagnostics = (*diagnostics, told("no-error-estimate"))
         result = ForcedResponse.of(
             solution,
             model=model,
             settings=kept,
             dofs=dofs,
             arrays=arrays,
-            diagnostics=present(
-                (
-                    diagnostic("method", _METHOD),
-                    *told,
-                    not settings.estimate and diagnostic("no-error-estimate", _NO_ESTIMATE),
-                )
-            ),
+            diagnostics=diagnostics,
         )
         done = int((arrays.status != Status.NOT_COMPUTED.code).sum())
         return run.ended(result, f"{done} of {grid.size} points")

@@ -8,18 +8,17 @@ from numpy.typing import ArrayLike
 from stickslip.analyses.arguments import require_time
 from stickslip.analyses.limit_cycles import NegativeDamping
 from stickslip.analyses.run import Progress, Run, share
+from stickslip.analyses.texts import told
 from stickslip.analyses.variation import variation_of
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.diagnostic import Diagnostic, diagnostic
+from stickslip.results.diagnostic import Diagnostic
 from stickslip.results.limit_cycles import CycleArrays
 from stickslip.results.stability import stability_of
 from stickslip.results.stability_map import MapArrays, StabilityMap
 from stickslip.settings.cycles import CycleSettings, LimitSettings, MapKeys, MapSettings
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import one_of
-
-__all__ = ["stability_map"]
 
 
 @configured(MapKeys)
@@ -63,7 +62,7 @@ def stability_map(
     branch = settings.part(LimitSettings)
     cycles = CycleSettings.of(**branch)
     rows: list[tuple[float, float, float]] = []
-    told: list[Diagnostic] = []
+    notes: list[Diagnostic] = []
     interrupted = False
     with Run("stability map", progress) as run:
         try:
@@ -74,7 +73,7 @@ def stability_map(
                         solution = negative.cycles(variation.apply(model, value), cycles, part)
                     except ModelError as error:
                         rows.append((np.nan, np.nan, np.nan))
-                        told.append(_without_limit(name, value, str(error)))
+                        notes.append(_without_limit(name, value, str(error)))
                         continue
                     if solution.interrupted:
                         interrupted = True
@@ -83,15 +82,14 @@ def stability_map(
                     ratio, omega = arrays.turn
                     rows.append((ratio, omega, _stable_limit(arrays)))
                     if np.isnan(ratio):
-                        told.append(_without_limit(name, value, "the branch does not turn"))
+                        notes.append(_without_limit(name, value, "the branch does not turn"))
         except KeyboardInterrupt:
             interrupted = True
         done = len(rows)
         limit, omega, stable = np.array(rows, dtype=np.float64).reshape(-1, 3).T
         unknown = int((np.isfinite(limit) & ~np.isfinite(stable)).sum())
         if unknown:
-            text = f"The stability of {unknown} values is not decided."
-            told.append(diagnostic("stability-unknown", text, count=unknown))
+            notes.append(told("stability-unknown", count=unknown))
         result = StabilityMap(
             model=model,
             dofs=model.structure.dofs,
@@ -106,13 +104,13 @@ def stability_map(
             interrupted=interrupted,
             timings={},
             counters={"branches": done},
-            diagnostics=tuple(told),
+            diagnostics=tuple(notes),
         )
         return run.ended(result, f"{done} of {total} values")
 
 
 def _without_limit(name: str, value: float, cause: str) -> Diagnostic:
-    return diagnostic("no-limit", f"{name} = {value:.6g}: {cause}", value=float(value))
+    return told("no-limit", value=float(value), _name=name, _cause=cause)
 
 
 def _stable_limit(arrays: CycleArrays) -> float:

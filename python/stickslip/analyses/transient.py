@@ -21,8 +21,6 @@ from stickslip.results.transient import Transient, TransientArrays
 from stickslip.settings.motion import TransientKeys, TransientSettings
 from stickslip.settings.settings import configured
 
-__all__ = ["transient"]
-
 STABLE_TURN = 2.8
 """Largest angle per step at which the classical Runge-Kutta method is stable: sqrt(8), rounded."""
 

@@ -9,8 +9,6 @@ from stickslip.checks import listed
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 
-__all__ = ["uniqueness"]
-
 
 def uniqueness(model: Model) -> Diagnostic | None:
     """Say that a solution need not be the only one, if contact laws or damping leave that open.

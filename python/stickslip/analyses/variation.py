@@ -22,8 +22,6 @@ from stickslip.settings.variation import (
     located,
 )
 
-__all__ = ["chosen_contacts", "local_stiffness", "resonance_range", "variation_of"]
-
 MARGIN = 0.05
 """Share by which the range around a resonance reaches beyond its free and its stuck frequency."""
 

@@ -19,17 +19,6 @@ from stickslip.settings.entries import (
 from stickslip.settings.ranges import Dofs, Frequencies
 from stickslip.settings.settings import Settings
 
-__all__ = [
-    "BalanceKeys",
-    "BalanceSettings",
-    "CurveKeys",
-    "ForcedSettings",
-    "HarmonicSettings",
-    "ObserveKeys",
-    "PointSettings",
-    "SteadySettings",
-]
-
 
 class ObserveKeys(Settings):
     """What is kept of a motion."""

@@ -15,18 +15,6 @@ from stickslip.settings.ranges import BranchSlipForces, BranchStiffnesses, Posit
 from stickslip.settings.settings import Settings
 from stickslip.settings.variation import ContactKeys, Variation
 
-__all__ = [
-    "LOWEST_RATIO",
-    "MOST_HARMONICS",
-    "BranchSettings",
-    "CycleKeys",
-    "CycleMethod",
-    "CycleSettings",
-    "LimitSettings",
-    "MapKeys",
-    "MapSettings",
-]
-
 LOWEST_RATIO = 0.01
 """Ratio at which whole branches begin and end."""
 

@@ -32,45 +32,6 @@ from stickslip.checks import MAX_COUNT, brief, choice, real_number, unknown, who
 from stickslip.errors import EntryError
 from stickslip.units import quantity
 
-__all__ = [
-    "CALL",
-    "ONE_OF",
-    "RESIDUALS",
-    "Angle",
-    "Count",
-    "Dof",
-    "Factor",
-    "Flag",
-    "Harmonics",
-    "Index",
-    "Length",
-    "ListOr",
-    "Many",
-    "Measure",
-    "NamedContact",
-    "Newtons",
-    "Number",
-    "Omega",
-    "Rate",
-    "Ratio",
-    "Residual",
-    "SlipForce",
-    "Some",
-    "Span",
-    "StiffnessValue",
-    "Table",
-    "Text",
-    "Time",
-    "Tolerance",
-    "Whole",
-    "Within",
-    "chosen_by",
-    "number_or",
-    "percent",
-    "quantity_of",
-    "span_of",
-]
-
 CALL = "call"
 """Context of the validation of a function's arguments; texts with units stand in study files."""
 
@@ -228,19 +189,19 @@ def _residual(value: object, info: ValidationInfo) -> float | str:
     return value
 
 
-def span_of(span: object, entry: str = "") -> tuple[float, float]:
+def span_of(span: object) -> tuple[float, float]:
     """Return the two ends of a range of frequencies, checked."""
     if not isinstance(span, tuple):
-        raise EntryError(entry, ": give a range (from, to) in rad/s")
+        raise EntryError("", ": give a range (from, to) in rad/s")
     if len(span) != 2:
-        raise EntryError(entry, f": a range has two ends, not {len(span)}; write (start, end)")
+        raise EntryError("", f": a range has two ends, not {len(span)}; write (start, end)")
     try:
         start, end = (real_number(value, "") for value in span)
     except EntryError as error:
-        raise EntryError(entry, f": end of the range{error.said}") from None
+        raise EntryError("", f": end of the range{error.said}") from None
     if not (start > 0.0 and end > 0.0 and start != end):
         raise EntryError(
-            entry,
+            "",
             f": the range ({start:g}, {end:g}) must have two different ends above 0 rad/s; write a "
             "list for single frequencies",
         )
@@ -303,17 +264,11 @@ def chosen_by(key: str, *choices: str, default: str | None = None) -> Discrimina
     )
 
 
-def number_or(*others: str) -> Discriminator:
-    """Tell a number from a text or a list by its type, so that each is complained of as itself."""
-    kinds: dict[str, tuple[type, ...]] = {"<text>": (str,), "<list>": (list, tuple)}
-
-    def form(value: object) -> Hashable:
-        return next((other for other in others if isinstance(value, kinds[other])), "<number>")
-
-    return Discriminator(form)
+def _form(value: object) -> Hashable:
+    return "<list>" if isinstance(value, list | tuple) else "<number>"
 
 
 ListOr: TypeAlias = Annotated[
-    Annotated[Some[_T], Tag("<list>")] | Annotated[_R, Tag("<number>")], number_or("<list>")
+    Annotated[Some[_T], Tag("<list>")] | Annotated[_R, Tag("<number>")], Discriminator(_form)
 ]
-"""A list of some, or something else."""
+"""A list of some, or something else; each is complained of as itself."""

@@ -18,6 +18,7 @@ from stickslip.settings.entries import (
     Dof,
     Index,
     Length,
+    Many,
     Omega,
     Table,
     Whole,
@@ -26,16 +27,6 @@ from stickslip.settings.entries import (
 )
 from stickslip.settings.ranges import Or, numbers
 from stickslip.settings.settings import Settings
-
-__all__ = [
-    "Axis",
-    "BasinKeys",
-    "BasinSettings",
-    "ClassifyKeys",
-    "ClassifySettings",
-    "TransientKeys",
-    "TransientSettings",
-]
 
 Axis: TypeAlias = str | int
 """What an axis of a map is: the displacement of a degree of freedom, or the amplitude of a mode."""
@@ -124,7 +115,7 @@ class AxisTable(Table):
         return self
 
 
-def _written_axes(given: tuple[AxisTable, AxisTable]) -> dict[Axis, list[float]]:
+def _written_axes(given: tuple[AxisTable, ...]) -> dict[Axis, list[float]]:
     axes: dict[Axis, list[float]] = {
         one.mode or 0 if one.dof is None else one.dof: np.linspace(
             one.begin, one.end, one.points
@@ -148,7 +139,9 @@ def _axes(given: object) -> dict[Axis, list[float]]:
 _Axes = Annotated[
     dict[Axis, list[float]],
     Or(
-        Annotated[tuple[AxisTable, AxisTable], Strict(False), AfterValidator(_written_axes)],
+        Annotated[
+            Many[AxisTable], Field(min_length=2, max_length=2), AfterValidator(_written_axes)
+        ],
         "Mapping[str | int, ArrayLike]",
         "mapping of str or int to array_like",
         _axes,

@@ -13,14 +13,6 @@ from stickslip.settings.balance import CurveKeys, PointSettings, SteadySettings
 from stickslip.settings.entries import ONE_OF, Flag, Index, Span, Tolerance, Whole
 from stickslip.settings.settings import Settings
 
-__all__ = [
-    "CertifySettings",
-    "ExactSettings",
-    "OrbitKeys",
-    "OrbitSettings",
-    "SingleHarmonicKeys",
-]
-
 
 class OrbitSettings(SteadySettings):
     """How exact orbits are computed."""

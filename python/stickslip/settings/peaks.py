@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, PlainValidator, Strict, model_validator
 
 from stickslip.checks import brief, real_number
-from stickslip.errors import EntryError
+from stickslip.errors import EntryError, ModelError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import (
     ONE_OF,
@@ -31,22 +31,12 @@ from stickslip.settings.ranges import (
     Float,
     Levels,
     Or,
-    PeakRange,
+    PeakSpan,
     SlipForces,
     Stiffnesses,
     numbers,
 )
 from stickslip.settings.variation import ContactKeys, Parameter, Variation, one_of
-
-__all__ = [
-    "DamperKeys",
-    "DamperSettings",
-    "MistuningKeys",
-    "MistuningSettings",
-    "OptimumKeys",
-    "PeakKeys",
-    "PeakSettings",
-]
 
 
 def _ascending(span: object) -> tuple[float, float]:
@@ -114,7 +104,7 @@ class PeakKeys(_FollowedPeak, ContactKeys):
     mode: Index = Field(
         default=0, description="The mode around whose resonance the peak is sought, counted from 0."
     )
-    omega: PeakRange | None = Field(
+    omega: PeakSpan | None = Field(
         default=None,
         description="Range of frequencies in which the peak is the highest point [rad/s]. Default: "
         "from 5 % below the free to 5 % above the highest stuck natural frequency of `mode`, over "
@@ -140,7 +130,9 @@ class DamperKeys(PeakKeys):
 
     @model_validator(mode="after")
     def _require_one(self) -> Self:
-        one_of(self, "slip_force", "stiffness", "level")
+        name = one_of(self, "slip_force", "stiffness", "level")
+        if isinstance(getattr(self, name), tuple):
+            raise ModelError(f"{name}: a range needs 'points' here; values are not chosen")
         return self
 
 
@@ -150,7 +142,7 @@ class OptimumKeys(PeakKeys):
     parameter: Annotated[Parameter, ONE_OF] = Field(
         default="slip_force",
         description='What is varied. With "level", a factor on all forces, the amplitude per unit '
-        "of level is made least: friction knows the ratio of force and slip force alone.",
+        "of level is made least, as friction depends on the ratio of force and slip force.",
     )
     bounds: Annotated[tuple[float, float], PlainValidator(_bounds)] | None = Field(
         default=None,
@@ -179,7 +171,7 @@ class MistuningKeys(PeakSettings):
         "(1 + S r_i) K, as ``disk.mistuned(S * r)``.",
         examples=["7 %", ["1 %", "3 %", "5 %"]],
     )
-    omega: PeakRange = Field(
+    omega: PeakSpan = Field(
         description="Range of frequencies in which peaks are the highest points [rad/s]."
     )
     patterns: _Patterns = Field(

@@ -39,21 +39,6 @@ from stickslip.settings.entries import (
     span_of,
 )
 
-__all__ = [
-    "BranchSlipForces",
-    "BranchStiffnesses",
-    "Dofs",
-    "Frequencies",
-    "Levels",
-    "Or",
-    "PeakRange",
-    "PositiveList",
-    "Ratios",
-    "SlipForces",
-    "Stiffnesses",
-    "numbers",
-]
-
 Float: TypeAlias = NDArray[np.float64]
 _T = TypeVar("_T")
 
@@ -77,9 +62,11 @@ class Or:
                 return self.call(value)
             found = inner(value)
             if isinstance(found, _Ends):
-                return found.values()
-            numeric = isinstance(found, tuple) and isinstance(found[0], float)
-            return np.array(found) if numeric else found
+                found = found.values()
+            elif isinstance(found, tuple) and found and isinstance(found[0], float):
+                found = np.array(found)
+            # Tuples are ranges and names, which have been checked.
+            return found if isinstance(found, tuple) else self.call(found)
 
         return core_schema.with_info_wrap_validator_function(
             read,
@@ -126,9 +113,13 @@ def _grid(omega: object) -> Float | Span:
 
 
 def _branch(values: object) -> Float | Span:
-    if not isinstance(values, tuple) or len(values) != 2:
-        return np.unique(numbers(values, "give finite values above 0, or (from, to)", positive))
-    low, high = sorted(real_number(end, "", finite=False) for end in values)
+    if isinstance(values, tuple) and len(values) == 2:
+        return _span(values)
+    return np.unique(numbers(values, "give finite values above 0, or (from, to)", positive))
+
+
+def _span(ends: Iterable[object]) -> Span:
+    low, high = sorted(real_number(end, "", finite=False) for end in ends)
     if not 0.0 < low < high:
         raise EntryError("", f": the range ({low:g}, {high:g}) must have two ends above 0")
     return low, high
@@ -159,7 +150,7 @@ class _Ends(Table, Generic[_T]):
 
     def values(self) -> Any:
         """Return what a call would give."""
-        return self.begin, self.end
+        return span_of((self.begin, self.end))
 
 
 class _Range(_Ends[_T], Generic[_T]):
@@ -171,11 +162,11 @@ class _Range(_Ends[_T], Generic[_T]):
 
     def values(self) -> Any:
         """Return what a call would give."""
-        ends: Any = super().values()
-        return ends if self.points is None else np.geomspace(ends[0], ends[1], self.points)
+        ends: Any = self.begin, inf if self.end is None else self.end
+        return _span(ends) if self.points is None else np.geomspace(ends[0], ends[1], self.points)
 
 
-class PeakEnds(_Ends[Omega]):
+class PeakRange(_Ends[Omega]):
     """The range of frequencies in which peaks are looked for."""
 
 
@@ -235,7 +226,9 @@ class LevelRange(_Range[Factor]):
 class RatioRange(_Range[Factor]):
     """A range of the ratio r."""
 
-    end: Factor = Field(default=inf, alias="to", description="Highest ratio; left out: no limit.")
+    end: Factor | None = Field(  # type: ignore[assignment]
+        default=None, alias="to", description="Highest ratio; left out: no limit."
+    )
 
 
 # ----------------------------------------------------------------------------------------- entries
@@ -265,7 +258,7 @@ _Stiffnesses = ListOr[_Rigid, StiffnessRange]
 _SlipForces = ListOr[SlipForce, SlipForceRange]
 
 Frequencies = Annotated[Float | Span, Or(_Omegas, *_BOTH, _grid)]
-PeakRange = Annotated[Span, Or(PeakEnds, "tuple[float, float]", "(float, float)", span_of)]
+PeakSpan = Annotated[Span, Or(PeakRange, "tuple[float, float]", "(float, float)", span_of)]
 SlipForces = Annotated[Float | Span, Or(_SlipForces, *_LIST, _from_zero)]
 Stiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_LIST, _from_zero)]
 Levels = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_LIST, _above_zero)]

@@ -11,8 +11,6 @@ from stickslip.checks import brief, unknown
 from stickslip.errors import EntryError, ModelError
 from stickslip.model.laws import unknown_law
 
-__all__ = ["refusal"]
-
 _PHRASES = {
     "string_type": "is not a text",
     "string_too_short": "is empty",
@@ -33,19 +31,11 @@ _TABLES = (*_REPEATED, "structure", "disk", "output")
 
 
 def refusal(error: ValidationError) -> ModelError:
-    """Word the first finding of a validation, and count the others.
+    """Word the first finding of a validation in one line, and count the others.
 
-    Parameters
-    ----------
-    error : pydantic.ValidationError
-        What settings, or the tables of a study file, raised.
-
-    Returns
-    -------
-    ModelError
-        One line: the entry as it stands in the call or the file, its value and the remedy, for
-        example ``contact 2: unknown key 'stifness'; did you mean 'stiffness'?``. Contacts, forces
-        and positions in lists are counted from 1.
+    The entry as it stands in the call or the file, its value and the remedy, for example
+    ``contact 2: unknown key 'stifness'; did you mean 'stiffness'?``. Contacts, forces and positions
+    in lists are counted from 1.
     """
     first, *others = error.errors(include_url=False)
     cause = first.get("ctx", {}).get("error")

@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Self, TypeVar, Union, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -21,8 +21,6 @@ from stickslip.settings.entries import CALL, Table
 from stickslip.settings.ranges import Or
 from stickslip.settings.refusal import refusal
 
-__all__ = ["Settings", "configured", "described", "type_in_words"]
-
 _Result = TypeVar("_Result")
 _INDENT = 4 * " "
 _WIDTH = 100
@@ -33,13 +31,7 @@ class Settings(Table):
 
     @classmethod
     def of(cls, **values: Any) -> Self:
-        """Return checked settings.
-
-        Raises
-        ------
-        ModelError
-            If a value is of the wrong type or outside its range.
-        """
+        """Return settings of checked values."""
         try:
             return cls.model_validate(values, context=CALL)
         except ValidationError as error:
@@ -65,13 +57,6 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-class _Common(NamedTuple):
-    """An argument that most analyses have: what is said of it, and what is refused."""
-
-    said: str
-    check: Callable[[Any], None] = lambda _: None
-
-
 def _require_model(model: object) -> None:
     if not isinstance(model, Model):
         raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
@@ -84,13 +69,14 @@ def _require_progress(progress: object) -> None:
         )
 
 
-_COMMON = {
-    "model": _Common("Model\n    Structure, contacts and forces.", _require_model),
-    "progress": _Common(
-        """callable, optional
+_CHECKS: dict[str, Callable[[object], None]] = {
+    "model": _require_model,
+    "progress": _require_progress,
+}
+_SAID = {
+    "model": "model : Model\n    Structure, contacts and forces.",
+    "progress": """progress : callable, optional
     Called about ten times per second with the fraction of the work that is done.""",
-        _require_progress,
-    ),
 }
 _RAISED = {
     "ModelError": """
@@ -106,19 +92,10 @@ def configured(
 ) -> Callable[[Callable[..., _Result]], Callable[..., _Result]]:
     """Let an analysis take settings as its keywords.
 
-    Parameters
-    ----------
-    kind : type of Settings
-        The settings, which the function itself takes as one argument of this name.
-    *placed : str
-        Keys that may be given by position as well, after the function's own.
-
-    Returns
-    -------
-    callable
-        Decorator. Signature and documentation of the function have a parameter for every key;
-        `model` and `progress` are checked, and documented like what most analyses raise. A table of
-        a study file, whose keys are checked, is passed on as ``settings``.
+    The function itself takes them as one argument, ``settings``; a table of a study file, whose
+    keys are checked, is passed on as it is. Keys that are `placed` may be given by position as
+    well, after the function's own. Signature and documentation have a parameter for every key;
+    `model` and `progress` are checked, and documented like what most analyses raise.
     """
 
     def decorate(function: Callable[..., _Result]) -> Callable[..., _Result]:
@@ -148,9 +125,9 @@ def configured(
                 given = signature.bind(*args, **keywords).arguments
             except TypeError:
                 raise CallError(str(misfit(call, args, keywords))) from None
-            for name, value in given.items():
-                if name in _COMMON:
-                    _COMMON[name].check(value)
+            for name, check in _CHECKS.items():
+                if name in given:
+                    check(given[name])
             settings = kind.of(**{name: given.pop(name) for name in keys if name in given})
             return function(**given, settings=settings)
 
@@ -186,11 +163,11 @@ def _documented(text: str, signature: inspect.Signature, keys: Mapping[str, Fiel
     head, *parts = re.split(r"\n\n(\w+)\n-+\n", inspect.cleandoc(text))
     sections = dict.fromkeys(("Parameters", "Returns", "Raises"), "")
     sections |= zip(parts[::2], parts[1::2], strict=True)
-    said = {name: f"{name} : {common.said}" for name, common in _COMMON.items()}
+    said = dict(_SAID)
     for block in _blocks(sections["Parameters"]):
         names = block.split(" : ")[0].replace("*", "").split(", ")
         said |= dict.fromkeys(names, block)
-    said |= {name: described(name, field, "") for name, field in keys.items()}
+    said |= {name: described(name, field) for name, field in keys.items()}
     sections["Parameters"] = "\n".join(
         dict.fromkeys(said[name] for name in signature.parameters if name in said)
     )
@@ -208,15 +185,14 @@ def _blocks(section: str) -> list[str]:
     return re.split(r"\n(?=\S)", section) if section else []
 
 
-def described(name: str, field: FieldInfo, indent: str) -> str:
+def described(name: str, field: FieldInfo) -> str:
     """Return what numpydoc says of a key."""
     optional = "" if field.is_required() else ", optional"
-    first = f"{indent}{name} : {type_in_words(field.annotation, field.metadata)}{optional}"
-    inner = indent + _INDENT
-    said = textwrap.wrap(
-        field.description or "", _WIDTH, initial_indent=inner, subsequent_indent=inner
+    first = f"{name} : {type_in_words(field.annotation, field.metadata)}{optional}"
+    said = textwrap.fill(
+        field.description or "", _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT
     )
-    return "\n".join((first, *said))
+    return f"{first}\n{said}"
 
 
 def type_in_words(annotation: Any, metadata: Iterable[Any] = ()) -> str:

@@ -18,18 +18,6 @@ from stickslip.settings.settings import Settings
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = [
-    "Chosen",
-    "Common",
-    "CommonSettings",
-    "ContactKeys",
-    "Contacts",
-    "Parameter",
-    "Variation",
-    "located",
-    "one_of",
-]
-
 Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
 Common = Annotated[Literal["value", "factor"], ONE_OF]
 
@@ -87,13 +75,7 @@ class Variation(CommonSettings):
         )
 
     def varied(self, model: Model) -> _core.Varied:
-        """Return the variation as the compiled core takes it.
-
-        Raises
-        ------
-        ModelError
-            If the model lacks one of the contacts.
-        """
+        """Return the variation as the compiled core takes it; refuse a model without a contact."""
         return {
             "parameter": self.parameter,
             "contacts": [located(model, ref) for ref in self.contacts],
@@ -108,25 +90,7 @@ class Variation(CommonSettings):
         return {"slip_force": "N", "stiffness": "N/m", "level": "1"}[self.parameter]
 
     def apply(self, model: Model, value: float) -> Model:
-        """Return the model at a value of the parameter.
-
-        Parameters
-        ----------
-        model : Model
-            The model as it is.
-        value : float
-            The value, or the factor.
-
-        Returns
-        -------
-        Model
-            A new model.
-
-        Raises
-        ------
-        ModelError
-            If a contact refuses the value.
-        """
+        """Return the model at a value of the parameter, or at a factor; contacts may refuse it."""
         if self.parameter == "level":
             return model.scaled(force=value)
 
@@ -163,11 +127,5 @@ def _name(ref: Chosen) -> str:
 
 
 def located(model: Model, ref: Chosen) -> tuple[int, int | None]:
-    """Return the position of a contact, and of one of its points if one is meant.
-
-    Raises
-    ------
-    ModelError
-        If the model lacks it.
-    """
+    """Return the position of a contact, and of one of its points if one is meant."""
     return (model.contact_index(ref), None) if isinstance(ref, str) else model.slider(ref)

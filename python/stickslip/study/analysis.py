@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
     from stickslip.results.result import Result
 
-__all__ = ["KINDS", "AnalysisTable", "ByKind", "MistuningStudyTable", "level_name"]
-
 # Share of the progress that the balance is given before it is certified.
 _BALANCE = 0.5
 
@@ -161,6 +159,12 @@ class BasinMapTable(BasinKeys, AnalysisTable):
     kind: Literal["basin-map"] = Field(description="The analysis.")
     analysis: ClassVar = basin_map
     dof_keys = ("observe", "axes", "base")
+
+    @model_validator(mode="after")
+    def _require_axes(self) -> Self:
+        if self.axes is None:
+            raise ValueError("'axes' is missing")
+        return self
 
 
 class MistuningStudyTable(MistuningKeys, AnalysisTable):

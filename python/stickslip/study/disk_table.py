@@ -27,8 +27,6 @@ from stickslip.settings.entries import (
 )
 from stickslip.study.structure_table import DampingSource, MatrixSource
 
-__all__ = ["CouplingTable", "DiskTable", "InterfaceTable", "MistuningTable"]
-
 
 def _harmonics(value: object) -> object:
     # the keys of TOML tables are texts
@@ -54,7 +52,7 @@ class CouplingTable(Table):
 
     def build(self) -> Coupling:
         """Return the coupling."""
-        return Coupling(self.dof, self.other, stiffness=self.stiffness, damping=self.damping)
+        return Coupling(**dict(self))
 
 
 class InterfaceTable(Table):

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from stickslip.model.structure import DampingLaw
     from stickslip.study.structure_table import Rows
 
-__all__ = ["damping_of", "matrix_of", "named", "neighbour"]
-
 
 @contextmanager
 def named(entry: str) -> Iterator[None]:

@@ -21,16 +21,6 @@ from stickslip.settings.entries import (
     Time,
 )
 
-__all__ = [
-    "DampingSource",
-    "MatrixFile",
-    "MatrixSource",
-    "ModalDampingTable",
-    "RayleighDamping",
-    "Rows",
-    "StructureTable",
-]
-
 
 class MatrixFile(Table):
     """A matrix of a file that holds several."""

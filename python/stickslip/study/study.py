@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from stickslip.study.structure_table import StructureTable
     from stickslip.study.tables import ContactTable
 
-__all__ = ["Case", "Study", "json_schema", "notable_dofs"]
-
 _SHOWN_DOFS = 4
 # tomllib takes hours for a key of 100 000 parts.
 _DEEP = re.compile(r"(?<![\w.'\"-])(?:[\w'\"-]+[ \t]*\.[ \t]*){40}")
@@ -99,8 +97,7 @@ class Study:
         Raises
         ------
         ModelError
-            The file is missing, is no TOML, has an unknown key, or any entry is refused: one line
-            beginning with the path.
+            If the file is missing, is no TOML, has an unknown key, or any entry is refused.
         """
         path = file_path(path, "study file")
         if not is_file(path):
@@ -134,12 +131,7 @@ class Study:
         Returns
         -------
         Study
-            The study.
-
-        Raises
-        ------
-        ModelError
-            As `load`.
+            As `load` reads it.
         """
         with named(source):
             tables = _read(text)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from collections.abc import Callable
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import (
     BeforeValidator,
@@ -14,7 +15,8 @@ from pydantic import (
 
 from stickslip.checks import brief
 from stickslip.errors import EntryError, ModelError
-from stickslip.model import Force, Jenkins, ParallelJenkins
+from stickslip.model import Force, Jenkins, ParallelJenkins, StructuralDamper
+from stickslip.model.contact import Contact
 from stickslip.settings.entries import (
     ONE_OF,
     Angle,
@@ -31,10 +33,7 @@ from stickslip.settings.entries import (
 )
 from stickslip.study.analysis import AnalysisTable, ByKind
 from stickslip.study.disk_table import CouplingTable, DiskTable
-from stickslip.study.structural_table import StructuralTable
-from stickslip.study.structure_table import StructureTable
-
-__all__ = ["ForceTable", "JenkinsTable", "OutputTable", "StudyTables"]
+from stickslip.study.structure_table import Rows, StructureTable
 
 
 def _two_dofs(value: object) -> object:
@@ -55,7 +54,30 @@ def _length_unit(value: object) -> object:
 # ------------------------------------------------------------------------ [[contact]], [[force]]
 
 
-class EndsTable(Table):
+class LawTable(Table):
+    """A contact: the values of its law, by their names there."""
+
+    makes: ClassVar[Callable[..., Contact]]
+
+    name: Text | None = Field(default=None, description="Name; left out: that of the law.")
+
+    @property
+    def ends(self) -> tuple[object, ...]:
+        """What the law takes by position."""
+        return self.touched
+
+    @property
+    def touched(self) -> tuple[str, ...]:
+        """The DOFs it acts on."""
+        raise NotImplementedError
+
+    def build(self) -> Contact:
+        """Return the contact."""
+        values = {key: value for key, value in self if key not in ("law", "dof", "dofs")}
+        return type(self).makes(*self.ends, **values)
+
+
+class EndsTable(LawTable):
     """A contact of one relative displacement: to ground, or between two DOFs."""
 
     dof: Dof | None = Field(
@@ -66,7 +88,6 @@ class EndsTable(Table):
         description="The two DOFs, for a contact between them.",
         examples=[["left.tip", "right.tip"]],
     )
-    name: Text | None = Field(default=None, description="Name; left out: that of the law.")
 
     @model_validator(mode="after")
     def _require_one_place(self) -> Self:
@@ -90,20 +111,16 @@ class EndsTable(Table):
 class JenkinsTable(EndsTable):
     """A Jenkins element: a spring in series with a Coulomb slider."""
 
+    makes = Jenkins
     law: Literal["jenkins"] = Field(description="Friction law.")
     stiffness: StiffnessValue = Field(description="Contact stiffness k_d.")
     slip_force: SlipForce = Field(description="Slip limit F_d; inf: it never slips.")
-
-    def build(self) -> Jenkins:
-        """Return the contact."""
-        return Jenkins(
-            *self.touched, stiffness=self.stiffness, slip_force=self.slip_force, name=self.name
-        )
 
 
 class ParallelJenkinsTable(EndsTable):
     """Jenkins elements in parallel on one displacement: the discrete Iwan model."""
 
+    makes = ParallelJenkins
     law: Literal["parallel-jenkins"] = Field(description="Friction law.")
     stiffness: Some[StiffnessValue] = Field(
         description="Stiffness of each element.", examples=[["1e5 N/m", 2e5]]
@@ -112,11 +129,38 @@ class ParallelJenkinsTable(EndsTable):
         description="Slip limit of each element; inf: it never slips.", examples=[["5 N", 20]]
     )
 
-    def build(self) -> ParallelJenkins:
-        """Return the contact."""
-        return ParallelJenkins(
-            *self.touched, stiffness=self.stiffness, slip_forces=self.slip_forces, name=self.name
-        )
+
+_GROUND = "ground"
+"""What a file calls the ground: it has no empty entries."""
+
+
+class StructuralTable(LawTable):
+    """A structure-like damper: a massless elastic body with several slipping contacts."""
+
+    makes = StructuralDamper
+    law: Literal["structural"] = Field(description="Friction law.")
+    dofs: Some[Dof] = Field(
+        description="The DOF that each contact touches; 'ground' is the ground.",
+        examples=[["left.tip", "right.tip", "ground"]],
+    )
+    stiffness: Rows = Field(
+        description="Stiffness of the damper by itself, row by row [N/m].",
+        examples=[[[2e6, -2e6], [-2e6, 2e6]]],
+    )
+    slip_forces: Many[SlipForce] = Field(
+        description="Slip limit of each contact; inf: it never slips.",
+        examples=[["25 N", 1e3]],
+    )
+
+    @property
+    def ends(self) -> tuple[object, ...]:
+        """What the law takes by position."""
+        return ([None if dof == _GROUND else dof for dof in self.dofs],)
+
+    @property
+    def touched(self) -> tuple[str, ...]:
+        """The DOFs it acts on."""
+        return tuple(dof for dof in self.dofs if dof != _GROUND)
 
 
 class ForceTable(Table):
@@ -134,7 +178,7 @@ class ForceTable(Table):
 
     def build(self) -> Force:
         """Return the force."""
-        return Force(self.dof, self.amplitude, phase=self.phase, harmonic=self.harmonic)
+        return Force(**dict(self))
 
 
 ContactTable = Annotated[

@@ -1,0 +1,140 @@
+"""What diagnostics say, by their codes; numbers and names come from their data."""
+
+from __future__ import annotations
+
+from stickslip.results.diagnostic import Diagnostic, diagnostic
+
+TEXTS = {
+    # the method
+    "harmonics": "All harmonics from 0 to {most} were solved for{_chosen}.",
+    "harmonics/odd": "Only the odd harmonics up to {most} were solved for{_chosen}: the forces and "
+    "the friction laws are half-wave symmetric.",
+    "harmonics/one": "Only harmonic 1 was solved for: the forces and the friction laws are "
+    "half-wave symmetric, and harmonics above it were left out.",
+    "harmonics/orbits": "Harmonics are reported up to {most}; the orbits have no truncation.",
+    "harmonics/peaks": "Harmonics up to {most} were kept.",
+    "harmonics/chosen": "Harmonics up to {most} were kept{_several}, chosen at each peak to a "
+    "tolerance of {_tolerance:g}.",
+    "samples": "The contact forces were marched through {_count} samples per period{_chosen}; the "
+    "error of the sampling is part of the error estimate.",
+    "method/single": "The motion was taken to be harmonic, and of every contact force its first "
+    "harmonic: Griffin's method with complex amplitudes.",
+    "method/free": "The motion was followed exactly between the instants of stick and slip; "
+    "decaying and unbounded are bounds that hold for ever, settled and aperiodic what was seen of "
+    "it.",
+    "no-error-estimate": "The error of leaving the higher harmonics out was not estimated; "
+    "estimate=True does it.",
+    "half-period": "Only motions of the period of the forces were sought.",
+    "half-period/half": "Orbits were sought on half a period: the forces and the friction laws are "
+    "half-wave symmetric, and so is the steady motion.",
+    "modal-base/stuck modes": "The damping is proportional on the stuck structure: the compliance "
+    "is the sum over its real modes.",
+    "modal-base/free modes": "The damping is proportional on the free structure: the compliance is "
+    "the sum over its real modes, the stuck contacts added exactly.",
+    "modal-base/complex modes": "The damping matrix couples the modes, or rounding leaves open "
+    "whether it does: the compliance is the sum over the complex modes of the stuck structure.",
+    "modal-base/waves": "All sectors are equal and move alike, one after the other: harmonic k of "
+    "the motion meets the disk at nodal diameter k E modulo n. With positive damping that is its "
+    "only steady state.",
+    "modal-base/sectors": "The sectors of the ring are solved one by one, and joined exactly where "
+    "neighbours touch.",
+    "direct-solution": "The damping matrix couples the modes, and the complex modes miss a direct "
+    "solution by more than 1e-8, as where two of them nearly coincide, or a dof of hardly any mass "
+    "makes one much faster than the others: every point costs a factorisation of the whole dynamic "
+    "stiffness per harmonic, and takes longer than modes would. Where the damping follows a law, "
+    "give that, Rayleigh or ModalDamping, instead of its matrix.",
+    "exact-orbits": "{points} {_take} harmonics from the exact orbit, which costs less than a "
+    "balance of as many.",
+    "frequencies": "The {count} frequencies between {_low:g} and {_high:g} rad/s were chosen to a "
+    "tolerance of {_tolerance:g}.",
+    "frequencies/cut": "The run from {_start:g} to {_end:g} rad/s was interrupted: its {count} "
+    "frequencies, chosen to a tolerance of {_tolerance:g}, end at {_reached:.6g} rad/s.",
+    "frequencies/grid": "The run was interrupted after {count} of {_asked} frequencies, at "
+    "{_reached:.6g} rad/s.",
+    "frequencies/balance": "The frequencies between {_low:g} and {_high:g} rad/s are those that an "
+    "adaptive harmonic balance chose to a tolerance of {tolerance:g}.",
+    "observed-dofs": "Only {kept} of {total} dofs are kept in the result: {_listed}.",
+    "truncation": "{_what} could still change {dof!r} by {share:.1%} at omega = {omega:.6g} rad/s, "
+    "the worst point; {_remedy}.",
+    "truncation/peak": "The discarded harmonics could still change the peak by {share:.1%} at "
+    "{_parameter} = {value:.6g}, the worst value; keep more harmonics.",
+    "truncation/factors": "The discarded harmonics could still change amplification factors by up "
+    "to {share:.1%} (dof {dof!r}); keep more harmonics.",
+    "truncation/cycles": "The discarded harmonics could still change amplitudes by up to "
+    "{share:.1e}; try {_finer}.",
+    "harmonics-limit": "{count} {_noun} at the limit of harmonics; raise max_harmonics.",
+    # the model
+    "static-traction": "A contact that never slips was taken to hold {_held} "
+    "(residual={residual!r}, of effect at {points} of {_solved} points); residual_bounds gives "
+    "what it could hold.",
+    "static-traction/peaks": "A contact that never slips was taken to hold residual={residual!r}.",
+    "start-of-march": "The march through a damper of several points begins without slip, so that "
+    "points which never slip hold what they built up from zero displacement, and no mean force "
+    "where the motion is half-wave symmetric{_held}.",
+    # transients and free motions
+    "start": "The run starts from {_begun}.",
+    "start/contacts": "The run starts from {_begun}; a contact that never slips keeps for ever the "
+    "mean force of its start, so that means depend on it while half ranges do not.",
+    "time-steps/exact": "The motion was followed exactly between the instants of stick and slip.",
+    "time-steps/rk4": "The motion was advanced in {_steps} Runge-Kutta steps per period; between "
+    "them the output is interpolated.",
+    "kept-periods": "Time histories and events are kept of the last {periods} periods only.",
+    "coarse-steps": "The highest stuck natural frequency turns by {turn:.2g} rad in a Runge-Kutta "
+    "step, too much to be followed well; take {needed} steps per period.",
+    "no-tolerance": "No tolerance was given, so that the last period need not be a steady one; see "
+    "change.",
+    "forces-left-out": "The {forces} force(s) of the model were left out: the motion is free.",
+    "criterion": "A motion counts as settled at a closing error of {tolerance:g} that is falling, "
+    "over 32 periods, and was followed over {periods} periods of the lowest stuck mode at most.",
+    "modes": "Modes are those of the structure with all contacts stuck, told apart by kinetic "
+    "energy.",
+    # peaks along a parameter, and of many disks
+    "peak-range": "{_what} from {low:.6g} to {high:.6g} rad/s.",
+    "peak-at-edge": "{_what} from {low:.6g} to {high:.6g} rad/s; {_at_edge} at an end of this "
+    "range, and the response may be higher outside: widen omega.",
+    "varied-together": "All of {_names} have the same {_parameter}.",
+    "varied-together/factor": "Each of {_names} has its own {_parameter} times the factor.",
+    "varied-together/level": "The level multiplies every force, static ones included.",
+    "rigid-limit": "Stiffnesses above {_twice:.4g} N/m were not solved: an infinite stiffness is "
+    "the limit of {stiffness:.4g} and {_twice:.4g} N/m, some hundred times the stiffness of the "
+    "structure at the contact, taken as linear in 1/k_d, and finite ones lie on the same line; the "
+    "error estimate holds the whole last change.",
+    "coarse-search": "The least peak was looked for between {low:.6g} and {high:.6g} {_unit}; a "
+    "local minimum narrower than the coarse curve of 40 values may have been passed over.",
+    "optimum-at-bound": "The least peak lies at a bound; a better one may lie outside.",
+    "patterns": "Patterns were drawn from a {distribution} distribution of zero mean and unit "
+    "deviation with seed {seed}; those of a single disk have others.",
+    "patterns/given": "The patterns were given, in units of the standard deviation.",
+    "deviations": "The stiffness of whole sectors deviates; couplings, contacts and forces do not.",
+    # limit cycles
+    "onset": "Mode {mode}, stuck at {omega:.6g} rad/s, loses its damping at r = {ratio:.6g} with "
+    "all contacts stuck: its limit cycles begin there.",
+    "half-wave": "Motions are half-wave symmetric, x(t + T/2) = -x(t); cycles that break this "
+    "symmetry are not looked for. t = 0 is the maximum of {_dof!r}.",
+    "forces-ignored": "The forces of the model are left out.",
+    "stability-undecided/wave": "Stability is not decided: one sector of a wave has no motion of "
+    "its own.",
+    "stability-undecided/left out": "Stability is not decided: it was left out.",
+    "stability-undecided": "{points} points have no multipliers: their stability is not decided.",
+    "stability-unknown": "The stability of {count} values is not decided.",
+    "multipliers": "{points} points have no exact orbit nearby at their {_followed}: their "
+    "multipliers are those of the exact flow along the harmonic balance.",
+    "branch-turned-back": "Stalled: at {_followed} = {value:.6g} the walk turned back on itself, "
+    "or closed a loop: no way ahead was found at a corner of the branch, which may go on to a "
+    "farther limit. {_remedy}",
+    "branch-stalled": "Stalled: the {side} side ends at {_followed} = {value:.6g}, where no "
+    "continuation was found. {_remedy}",
+    "points-limit": "The branch ends after {points} points; raise max_points.",
+    "unbounded-branch": "The {side} side grows without bound towards {_followed} = {value:.6g}.",
+    "no-turn": "No turn: the branch does not turn in the range, and has one side alone.",
+    "no-limit": "{_name} = {value:.6g}: {_cause}",
+    "branch-jumps": "{jumps} places were stepped over, at corners or between folds close to each "
+    "other.",
+}
+"""Texts by code, and of variants by "code/variant"; words begin with an underscore."""
+
+
+def told(name: str, **data: object) -> Diagnostic:
+    """Return a diagnostic, of whose data words are in the text alone."""
+    numbers = {key: value for key, value in data.items() if not key.startswith("_")}
+    return diagnostic(name.partition("/")[0], TEXTS[name].format(**data), **numbers)  # type: ignore[arg-type]
