@@ -42,9 +42,8 @@ def command(
     """Let a function be a command, with examples and a note below its help."""
 
     def add(function: Callable[P, None]) -> Callable[P, None]:
-        return app.command(name, cls=Command, epilog=_epilog(*examples, note=note))(
-            guarded(function)
-        )
+        epilog = _epilog(*examples, note=note)
+        return app.command(name, cls=Command, epilog=epilog)(guarded(function))
 
     return add
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, cast
 
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
 
 __all__ = ["certify", "plot", "report", "schema", "show"]
+
+
+_file = partial(typer.Option, metavar="FILE")
+_omega = partial(typer.Option, metavar="OMEGA")
 
 
 @command("stickslip show results/snecma-beam-20.313.nc")
@@ -53,10 +58,7 @@ def plot(
     results: Files,
     dof: Dofs = None,
     out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Picture (.png, .pdf, .svg); default: beside the result.", metavar="FILE"
-        ),
+        Path | None, _file(help="Picture (.png, .pdf, .svg); default: beside the result.")
     ] = None,
     hertz: Hertz = False,
     log: Annotated[bool, typer.Option("--log/--linear", help="Amplitude axis.")] = True,
@@ -64,19 +66,14 @@ def plot(
         bool, typer.Option("--per-force", help="Amplitude per unit of force.")
     ] = False,
     waveform: Annotated[
-        str | None,
-        typer.Option(help="Draw one period at this frequency instead.", metavar="OMEGA"),
+        str | None, _omega(help="Draw one period at this frequency instead.")
     ] = None,
-    loop: Annotated[
-        str | None,
-        typer.Option(help="Draw the hysteresis loop at this frequency.", metavar="OMEGA"),
-    ] = None,
+    loop: Annotated[str | None, _omega(help="Draw the hysteresis loop at this frequency.")] = None,
     contact: Annotated[
         str, typer.Option(help="Contact of the loop: position, from 0, or name.")
     ] = "0",
     events: Annotated[
-        str | None,
-        typer.Option(help="Draw stick and slip over the period, of orbits.", metavar="OMEGA"),
+        str | None, _omega(help="Draw stick and slip over the period, of orbits.")
     ] = None,
     multipliers: Annotated[
         bool, typer.Option("--multipliers", help="Draw the Floquet multipliers of orbits.")
@@ -117,9 +114,7 @@ def certify(
     dof: Annotated[
         list[str] | None, typer.Option(help="DOF to compare, repeatable; default: all.")
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="File to write; default: the same.", metavar="FILE")
-    ] = None,
+    out: Annotated[Path | None, _file(help="File to write; default: the same.")] = None,
 ) -> None:
     """Compare a curve with exact orbits, and put its true error into the file."""
     from stickslip import certify, load
@@ -152,9 +147,7 @@ def certify(
 
 @command("stickslip schema --out stickslip.schema.json")
 def schema(
-    out: Annotated[
-        Path | None, typer.Option(help="File to write; default: the terminal.", metavar="FILE")
-    ] = None,
+    out: Annotated[Path | None, _file(help="File to write; default: the terminal.")] = None,
 ) -> None:
     """Print the JSON schema of study files, with which editors complete and check them."""
     from stickslip.cli.console import tell
@@ -176,8 +169,7 @@ def schema(
 def report(
     results: Files,
     out: Annotated[
-        Path | None,
-        typer.Option(help="Page to write; default: report.html beside the result.", metavar="FILE"),
+        Path | None, _file(help="Page to write; default: report.html beside the result.")
     ] = None,
     title: Annotated[str | None, typer.Option(help="Heading of the page.")] = None,
     dof: Dofs = None,

@@ -36,20 +36,9 @@ class Wanted:
     def picture(
         self, asked: Mapping[str, str], results: Sequence[tuple[str, Result]]
     ) -> tuple[str, list[Panel]]:
-        """Return the name of a picture and its panels, from top to bottom.
+        """Return the name of a picture of named results and its panels, from top to bottom.
 
-        Parameters
-        ----------
-        asked : mapping of str
-            The pictures asked for instead of the default one, each with its frequency.
-        results : sequence of (str, Result)
-            What to draw, each with its name.
-
-        Raises
-        ------
-        ModelError
-            If several pictures are asked for, the results have no such picture, or are of kinds
-            that do not go together.
+        `asked` are the pictures asked for instead of the default one, each with its frequency.
         """
         if len(asked) > 1:
             first, second, *_ = asked

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from types import FrameType
-from typing import Any, ParamSpec, TypeAlias, cast
+from typing import Any, ParamSpec, cast
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -28,34 +28,28 @@ STOPPED = 128
 """Exit code of a run that a signal has ended, beside the signal's number."""
 
 P = ParamSpec("P")
-# The class is typer's or click's, as the version of typer has it.
-Parameter: TypeAlias = Any
 # Its own base class has moved from click into typer.
 _Refusal = cast("type[Exception]", typer.BadParameter.__mro__[2])
 
 
-def _untyped(parameters: list[Parameter]) -> list[Parameter]:
-    """Show flags in the help without a type: they take no value."""
-    for parameter in parameters:
-        if getattr(parameter, "is_flag", False):
-            parameter.metavar = ""
-    return parameters
+class _Untyped:
+    """Flags take no value: the help shows them without a type."""
 
-
-class Command(TyperCommand):
-    """A command with flags that are shown without a type."""
-
-    def get_params(self, ctx: Any) -> list[Parameter]:
+    def get_params(self, ctx: Any) -> Any:
         """Return arguments and options."""
-        return _untyped(super().get_params(ctx))
+        parameters = super().get_params(ctx)  # type: ignore[misc]
+        for parameter in parameters:
+            if getattr(parameter, "is_flag", False):
+                parameter.metavar = ""
+        return parameters
 
 
-class Commands(TyperGroup):
+class Command(_Untyped, TyperCommand):
+    """A command."""
+
+
+class Commands(_Untyped, TyperGroup):
     """The commands; what cannot be understood of a command line is refused in one line."""
-
-    def get_params(self, ctx: Any) -> list[Parameter]:
-        """Return the options."""
-        return _untyped(super().get_params(ctx))
 
     def main(self, args: Sequence[str] | None = None, *others: Any, **options: Any) -> object:
         """Run the command that the arguments name."""

@@ -6,12 +6,14 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import TypeVar
 
+import numpy as np
+
 from stickslip.checks import brief, text
 from stickslip.errors import ModelError
 from stickslip.results import ForcedResponse
 from stickslip.settings.variation import Variation
 
-__all__ = ["at", "checked_labels", "dofs_of", "label_of", "of_kind", "require_solved", "several"]
+__all__ = ["at", "checked_labels", "dofs_of", "label_of", "of_kind", "several", "solved_points"]
 
 _Kind = TypeVar("_Kind")
 _SYMBOLS = {"slip_force": "slip force $F_d$", "stiffness": "contact stiffness $k_d$"}
@@ -69,14 +71,19 @@ def checked_labels(labels: object, default: Sequence[str]) -> Sequence[str]:
     return given
 
 
-def require_solved(result: ForcedResponse, indices: Sequence[int]) -> None:
-    """Refuse points without a solution."""
-    for index in indices:
-        status = result.status[result.position(index)]
+def solved_points(result: ForcedResponse, index: int | Sequence[int]) -> list[int]:
+    """Return one or several points of a sweep as a list; refuse those without a solution."""
+    indices = list(index) if isinstance(index, Sequence | np.ndarray) else [index]
+    if not indices:
+        raise ModelError("index: empty; give the position of at least one point")
+    points = [result.position(one) for one in indices]
+    for point in points:
+        status = result.status[point]
         if not status.solved:
             raise ModelError(
-                f"index: {at(result, index)} has no solution to draw ({status}). {status.advice}"
+                f"index: {at(result, point)} has no solution to draw ({status}). {status.advice}"
             )
+    return points
 
 
 def at(result: ForcedResponse, index: int) -> str:

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from stickslip.checks import brief, members, whole_number
 from stickslip.errors import ModelError
 from stickslip.plot import style
-from stickslip.plot.arguments import at, require_solved
+from stickslip.plot.arguments import at, solved_points
 from stickslip.plot.figure import figure
 from stickslip.plot.options import BladeBarOptions, BladeCurveOptions
 from stickslip.plot.style import Looks
@@ -43,7 +43,7 @@ def blade_bars(
             raise ModelError("result: no point is solved, and nothing to draw; see status")
         heights, title = np.nanmax(amplitudes, axis=0), "largest over frequency"
     else:
-        require_solved(result, [index])
+        solved_points(result, index)
         heights, title = amplitudes[result.position(index)], at(result, index)
     if options["tuned"] is not None:
         tuned = _tuned(options["tuned"])

@@ -13,7 +13,7 @@ from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
 from stickslip.plot import style
-from stickslip.plot.arguments import at, dofs_of, require_solved
+from stickslip.plot.arguments import at, dofs_of, solved_points
 from stickslip.plot.figure import figure, keywords
 from stickslip.plot.limits import limit_model
 from stickslip.plot.options import Drawing, ForceOptions, LoopOptions
@@ -40,7 +40,7 @@ def waveform(
 ) -> None:
     """Draw one period of the motion of one or several degrees of freedom."""
     dofs, length = dofs_of(dof), style.LENGTH[options["length_unit"]]
-    require_solved(result, [index])
+    solved_points(result, index)
     waves = [result.waveform(one, index, options["samples"]) for one in dofs]
     time = np.linspace(0.0, 1.0, options["samples"] + 1)
     for one, wave, colour in zip(dofs, waves, style.colours(len(dofs)), strict=True):
@@ -67,11 +67,8 @@ def hysteresis(
     index : int or sequence of int
         Positions of points of the sweep, one loop each; see `ForcedResponse.index`.
     """
-    indices = list(index) if isinstance(index, Sequence | np.ndarray) else [index]
-    if not indices:
-        raise ModelError("index: empty; give the position of at least one point")
     length = style.LENGTH[options["length_unit"]]
-    require_solved(result, indices)
+    indices = solved_points(result, index)
     loops = [loop for one in indices for loop in _loops(result, contact, one, options["samples"])]
     labels = [label for _, _, label in loops]
     if len(indices) > 1:
@@ -97,7 +94,7 @@ def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Dr
 
     Of exact orbits the events themselves are drawn.
     """
-    require_solved(result, [index])
+    solved_points(result, index)
     names = point_names(result.model)
     if not names:
         raise ModelError("result: the model has no contact, so that nothing sticks or slips")
@@ -129,7 +126,7 @@ def contact_forces(
         One per point and, for several points, one for the sum. Shaded where the point slips; its
         slip limits are dotted.
     """
-    require_solved(result, [index])
+    solved_points(result, index)
     number = result.model.contact_index(contact)
     count = whole_number(options["samples"], "samples", smallest=8)
     one = result.model.contacts[number]

@@ -18,7 +18,7 @@ from stickslip.model import Model, PointRef
 from stickslip.plot import style
 from stickslip.plot.arguments import checked_labels, several
 from stickslip.plot.figure import figure
-from stickslip.plot.limits import force_level, limit_curve
+from stickslip.plot.limits import force_level, limit_curve, unit_level
 from stickslip.plot.options import CurveOptions, Swept
 from stickslip.plot.style import Colour, Looks, Scale
 from stickslip.results import ForcedResponse
@@ -206,14 +206,7 @@ class _View:
         self.ax.plot(x, y, **style.mark("o", 5, colour), mew=1.3, label=label)
 
     def _factor(self, model: Model) -> float:
-        if not self.per_force:
-            return self.length.factor
-        level = force_level(model)
-        if level == 0.0:
-            raise ModelError(
-                'normalise: "force" needs a harmonic force, and a result has none; use None'
-            )
-        return self.length.factor / level
+        return self.length.factor / (unit_level(model) if self.per_force else 1.0)
 
 
 def _draw_limits(

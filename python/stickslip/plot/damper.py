@@ -12,7 +12,7 @@ from stickslip.errors import ModelError
 from stickslip.plot import style
 from stickslip.plot.arguments import checked_labels, label_of, several
 from stickslip.plot.figure import figure
-from stickslip.plot.limits import force_level, limit_curve
+from stickslip.plot.limits import force_level, limit_curve, unit_level
 from stickslip.plot.options import DamperOptions
 from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float, Int
@@ -90,11 +90,7 @@ def _view(curve: DamperCurve, length: Scale, *, per_force: bool) -> _View:
     stretch = x if curve.parameter == "level" else np.ones(x.size)
     factor, unit = np.full(x.size, length.factor), length.label
     if per_force:
-        if level == 0.0:
-            raise ModelError(
-                'normalise: "force" needs a harmonic force, and the model has none; use None'
-            )
-        factor, unit = length.factor / (level * stretch), f"{length.label}/N"
+        factor, unit = length.factor / (unit_level(curve.model) * stretch), f"{length.label}/N"
     x, label = _abscissa(curve, x, level, per_force=per_force)
     best = int(np.nanargmin(curve.objective[shown]))
     return _View(x, factor * curve.amplitude[shown], shown, label, factor, stretch, best, unit)

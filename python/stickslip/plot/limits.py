@@ -7,11 +7,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from stickslip.analyses.forced_response import forced_response
+from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.structure import Structure
 from stickslip.results.arrays import Float, Measure
 
-__all__ = ["force_level", "limit_curve", "limit_model"]
+__all__ = ["force_level", "limit_curve", "limit_model", "unit_level"]
 
 _POINTS = 400
 # Points beside each resonance, so that a damping ratio down to 1e-4 still shows its peak.
@@ -23,6 +24,16 @@ _KNOWN: WeakKeyDictionary[Model, dict[tuple[bool, bool], tuple[Model, Float]]] =
 def force_level(model: Model) -> float:
     """Return the largest amplitude among the harmonic forces [N]; 0 without any."""
     return max((abs(force.amplitude) for force in model.forces if force.harmonic), default=0.0)
+
+
+def unit_level(model: Model) -> float:
+    """Return the same, by which amplitudes are divided; refuse a model without any."""
+    level = force_level(model)
+    if level == 0.0:
+        raise ModelError(
+            'normalise: "force" needs a harmonic force, and a result has none; use None'
+        )
+    return level
 
 
 def limit_model(model: Model, *, stuck: bool) -> Model:

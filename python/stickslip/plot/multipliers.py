@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from stickslip.errors import ModelError
 from stickslip.plot import style
-from stickslip.plot.arguments import at, require_solved
+from stickslip.plot.arguments import at, solved_points
 from stickslip.plot.figure import figure
 from stickslip.plot.options import Drawing, MultiplierOptions
 from stickslip.plot.style import Looks
@@ -33,7 +33,12 @@ def multipliers(ax: Axes, /, result: ExactResponse, **options: Unpack[Multiplier
         The axes. Neutral multipliers, of contacts that never slip, are hollow.
     """
     omega = style.OMEGA[options["omega_unit"]]
-    chosen = _chosen(result, options["index"])
+    index: Sequence[int] | int | None = options["index"]
+    if index is None:
+        index = np.flatnonzero(result.arrays.solved).tolist()
+        if not index:
+            raise ModelError("result: no point is solved, so that there are no multipliers")
+    chosen = solved_points(result, index)
     values = result.multipliers[chosen]
     neutral = np.arange(values.shape[1]) < result.neutral[chosen][:, None]
     shade = np.broadcast_to(omega.factor * result.omega[chosen][:, None], values.shape)
@@ -44,12 +49,11 @@ def multipliers(ax: Axes, /, result: ExactResponse, **options: Unpack[Multiplier
     if kept.size:
         hollow: Looks = {"ls": "", "marker": "o", "mfc": "none", "mec": style.GREY}
         ax.plot(kept.real, kept.imag, **hollow, label="neutral: a contact never slips")
+        ax.legend(frameon=False, fontsize="small", loc="lower left")
     if len(chosen) > 1:
         ax.figure.colorbar(cloud, ax=ax, label=omega.label)
     else:
         ax.set_title(at(result, chosen[0]), fontsize="medium")
-    if kept.size:
-        ax.legend(frameon=False, fontsize="small", loc="lower left")
 
 
 @figure
@@ -81,16 +85,3 @@ def cycle_multipliers(ax: Axes, /, result: LimitCycles, **options: Unpack[Drawin
     ax.figure.colorbar(cloud, ax=ax, label="frequency [rad/s]")
     edge = 1.08 * np.clip(np.nanmax(np.abs(result.multipliers[known])), 1.0, _WIDEST)
     ax.set(xlim=(-edge, edge), ylim=(-edge, edge))
-
-
-def _chosen(result: ExactResponse, index: int | Sequence[int] | None) -> list[int]:
-    if index is None:
-        chosen = [int(place) for place in np.flatnonzero(result.arrays.solved)]
-        if not chosen:
-            raise ModelError("result: no point is solved, so that there are no multipliers")
-        return chosen
-    places = list(index) if isinstance(index, Sequence | np.ndarray) else [index]
-    if not places:
-        raise ModelError("index: empty; give the position of at least one point")
-    require_solved(result, places)
-    return [result.position(place) for place in places]

@@ -14,8 +14,6 @@ from stickslip.plot.style import LengthUnit, OmegaUnit
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Measure
 
-_OF_AXIS = "Unit of frequencies."
-
 
 class Drawing(TypedDict, total=False):
     """Keywords of all figures."""
@@ -32,13 +30,13 @@ class Frame(Drawing, total=False):
 class Swept(Drawing, total=False):
     """Keywords of figures over frequency."""
 
-    omega_unit: Annotated[OmegaUnit, "rad/s", _OF_AXIS]
+    omega_unit: Annotated[OmegaUnit, "rad/s", "Unit of frequencies."]
 
 
 class Spectral(Drawing, total=False):
     """Keywords of figures over frequency in Hz."""
 
-    omega_unit: Annotated[OmegaUnit, "Hz", _OF_AXIS]
+    omega_unit: Annotated[OmegaUnit, "Hz", "Unit of frequencies."]
 
 
 class Amplitude(Frame, total=False):
@@ -50,11 +48,7 @@ class Amplitude(Frame, total=False):
 class Several(Frame, Swept, total=False):
     """Keywords of figures of several results."""
 
-    labels: Annotated[
-        Sequence[str] | None,
-        None,
-        "One per result. Default: what distinguishes them, as forces, modes or degrees of freedom.",
-    ]
+    labels: Annotated[Sequence[str] | None, None, "One per result. Default: what tells them apart."]
 
 
 class LoopOptions(Frame, total=False):
@@ -105,9 +99,7 @@ class DamperOptions(Several, total=False):
         "Divide amplitudes by the largest force, and show curves over the level against the force "
         "over the slip force, P/F_d. Without it curves over the level rise with the force.",
     ]
-    frequency: Annotated[
-        bool, True, "Draw the frequency of the peak too, dashed, on an axis at the right."
-    ]
+    frequency: Annotated[bool, True, "Draw the frequency of the peak too, dashed, at the right."]
     limits: Annotated[
         bool,
         True,
@@ -126,9 +118,7 @@ class CycleOptions(Several, Amplitude, total=False):
 class MultiplierOptions(Swept, total=False):
     """Keywords of `multipliers`."""
 
-    index: Annotated[
-        int | Sequence[int] | None, None, "Positions of points of the sweep. Default: all."
-    ]
+    index: Annotated[int | Sequence[int] | None, None, "Points of the sweep. Default: all."]
 
 
 class BladeBarOptions(Amplitude, total=False):
@@ -151,9 +141,7 @@ class BladeBarOptions(Amplitude, total=False):
 class BladeCurveOptions(Amplitude, Swept, total=False):
     """Keywords of `blade_curves`."""
 
-    tuned: Annotated[
-        ForcedResponse | None, None, "The response of the tuned disk, drawn beside them."
-    ]
+    tuned: Annotated[ForcedResponse | None, None, "That of the tuned disk, drawn beside them."]
     log: Annotated[bool, True, "Logarithmic amplitude axis."]
 
 
@@ -177,9 +165,7 @@ class SafeOptions(DiameterOptions, total=False):
 class LastOptions(Drawing, total=False):
     """Keywords of `contact_history`."""
 
-    last: Annotated[
-        int | None, None, "How many of the last periods to draw. Default: all that are kept."
-    ]
+    last: Annotated[int | None, None, "Draw this many periods, the last. Default: all kept."]
 
 
 class HistoryOptions(Frame, LastOptions, total=False):
@@ -208,9 +194,7 @@ class LineOptions(Spectral, total=False):
 class Confidence(Drawing, total=False):
     """Keywords of figures of statistics."""
 
-    confidence: Annotated[
-        float, 0.95, "Probability with which the interval is to hold the true percentile."
-    ]
+    confidence: Annotated[float, 0.95, "Probability that the interval holds the percentile."]
 
 
 class TrendOptions(Confidence, total=False):
@@ -224,8 +208,4 @@ class DistributionOptions(Confidence, total=False):
 
     deviation: Annotated[float | None, None, "See `MistuningStudy.factors`."]
     coupling: Annotated[float | None, None, "See `MistuningStudy.factors`."]
-    percentile: Annotated[
-        float | None,
-        99.9,
-        "Percentile of the fit that is marked with its interval; None marks none.",
-    ]
+    percentile: Annotated[float | None, 99.9, "That of the fit that is marked, with its interval."]
