@@ -57,6 +57,22 @@ def test_no_error_is_far_above_its_estimate(seed: int) -> None:
             assert (error <= 5.0 * frf.error_estimate(dof) + rounding).all(), (harmonics, dof)
 
 
+@pytest.mark.parametrize("harmonic", [2, 3])
+def test_loads_of_one_higher_harmonic_are_answered_at_its_multiples(harmonic: int) -> None:
+    stiffness = 1e4 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.2, -1.0], [0.0, -1.0, 1.5]])
+    structure = ss.Structure(np.eye(3), stiffness, ss.ModalDamping(1e-3), ["a", "b", "c"])
+    contacts = [ss.Jenkins("b", stiffness=2e4, slip_force=0.5)]
+    model = ss.Model(structure, contacts, [ss.Force("a", 1.0, harmonic=harmonic)])
+    omega = np.linspace(10.0, 150.0, 6) / harmonic
+    exact, frf = ss.exact_response(model, omega), ss.forced_response(model, omega, harmonic)
+    automatic = ss.forced_response(model, omega)
+    for dof in frf.dofs:
+        error = np.abs(frf.amplitude(dof) - exact.amplitude(dof))
+        assert error.max() > 1e-3 * exact.amplitude(dof).max()
+        assert (error <= 5.0 * frf.error_estimate(dof) + 1e-5 * exact.amplitude(dof)).all()
+        assert automatic.amplitude(dof) == pytest.approx(exact.amplitude(dof), rel=3e-3)
+
+
 def exact_size(exact: ss.ExactResponse):
     return lambda dof: np.nanmax(exact.amplitude(dof))
 

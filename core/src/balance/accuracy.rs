@@ -27,7 +27,8 @@ const PAST_LAST_MODE: f64 = 1.2;
 const SHARE: f64 = 0.5;
 /// … but not beyond this multiple of them and so many more: what follows is small, …
 const FARTHEST: (usize, usize) = (2, 60);
-/// … and only as far as its effort stays below that of the solution, though at least so far.
+/// … and only as far as its effort stays below that of the solution, though at least so far, in
+/// multiples of the harmonics that loads have in common: friction answers loads at 3ω at 9ω, 15ω, …
 const LEAST: usize = 2;
 
 /// Newton steps that the solution of a point with slip takes: four to seven, the last ones without a
@@ -65,7 +66,8 @@ impl Extension {
     ) -> Self {
         let highest = kept.highest();
         let reach = PAST_LAST_MODE * model.compliance().highest_frequency() / omega;
-        let beyond = highest + (SHARE * highest as f64) as usize;
+        let least = LEAST * common_divisor(&model.compliance().forced_harmonics());
+        let beyond = highest + least.max((SHARE * highest as f64) as usize);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
         let wanted = (reach.min(farthest as f64) as usize).max(beyond);
         let effort = Effort { model, half_wave: kept.half_wave(), slipping, observed };
@@ -77,15 +79,26 @@ impl Extension {
         let affordable = |order: &usize| {
             effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order) <= allowed
         };
-        let candidates = (highest + LEAST..=wanted).step_by(LEAST);
+        let candidates = (highest + least..=wanted).step_by(least);
         let farthest = candidates.take_while(affordable).last();
-        Self { highest: farthest.unwrap_or(highest + LEAST), second_step: farthest.is_some() }
+        Self { highest: farthest.unwrap_or(highest + least), second_step: farthest.is_some() }
     }
 
     /// Not beyond a harmonic.
     pub(super) fn within(self, resolved: usize) -> Self {
         Self { highest: self.highest.min(resolved), ..self }
     }
+}
+
+/// Greatest common divisor of numbers, 1 of none.
+fn common_divisor(numbers: &[usize]) -> usize {
+    let divisor = |mut a: usize, mut b: usize| {
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    numbers.iter().copied().fold(0, divisor).max(1)
 }
 
 /// About the time of a balance on a common processor \[ns\]; its ratios count.
