@@ -287,14 +287,14 @@ def real_matrix(value: object, entry: str) -> Matrix:
 
 
 def require_square(
-    matrix: Matrix, entry: str, size: int | None = None, other: str = "mass matrix"
+    matrix: Matrix, entry: str, size: int | None = None, other: str = ", but the mass matrix is"
 ) -> None:
-    """Refuse a matrix that is not square, or of another size than the `other`."""
+    """Refuse a matrix that is not square, or of another size than another one is."""
     rows, columns = matrix.shape
     if rows != columns:
         raise ModelError(f"{entry}: {rows} x {columns} is not square; give N x N for N dofs")
     if size is not None and rows != size:
-        raise ModelError(f"{entry}: {rows} x {columns}, but the {other} is {size} x {size}")
+        raise ModelError(f"{entry}: {rows} x {columns}{other} {size} x {size}")
 
 
 def require_finite(matrix: Matrix, entry: str, names: Sequence[str] | None = None) -> None:

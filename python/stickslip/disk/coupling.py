@@ -160,7 +160,7 @@ class Interface:
 
 def _block(matrix: MatrixLike, name: str, size: int | None) -> Matrix:
     block = real_matrix(matrix, f"interface: {name}")
-    require_square(block, f"interface: {name}", size, "stiffness")
+    require_square(block, f"interface: {name}", size, ", but the stiffness is")
     require_finite(block, f"interface: {name}")
     return block
 

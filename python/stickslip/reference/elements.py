@@ -96,8 +96,7 @@ def turbine_blade(slip_force: float = BLADE_SLIP_FORCE, load: float = 1.0) -> Mo
 def _element(shape: list[list[int]], h: float) -> Matrix:
     """Return the matrix of a beam element of length h, whose slopes are counted in lengths."""
     scale = np.array([1.0, h, 1.0, h])
-    matrix: Matrix = np.array(shape, dtype=np.float64) * scale * scale[:, None]
-    return matrix
+    return np.asarray(np.array(shape) * scale * scale[:, None], dtype=np.float64)
 
 
 def _beam_matrix(element: Matrix, nodes: int) -> Matrix:
