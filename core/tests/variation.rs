@@ -1,4 +1,5 @@
 //! What is varied, and what the analyses refuse.
+#![allow(clippy::unwrap_used)]
 
 use faer::{mat, Mat};
 use stickslip_core::balance::Settings;
