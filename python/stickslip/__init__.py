@@ -34,7 +34,7 @@ _HOMES = {
     "Rayleigh": "model",
     "Reduction": "fe",
     "Solid": "fe",
-    "StabilityMap": "results.stability_map",
+    "StabilityMap": "results.limit_cycles",
     "Severity": "results.diagnostic",
     "State": "model.state",
     "Status": "results",

@@ -26,8 +26,7 @@ from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.model import refusal
 from stickslip.results.arrays import Float
-from stickslip.results.exact_response import ExactResponse
-from stickslip.results.orbit_arrays import OrbitArrays
+from stickslip.results.exact_response import ExactResponse, OrbitArrays
 from stickslip.settings.entries import Span
 from stickslip.settings.orbits import ExactSettings, OrbitSettings
 from stickslip.settings.settings import configured

@@ -14,7 +14,7 @@ from stickslip.errors import ModelError
 from stickslip.model.model import refusal
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
-from stickslip.results.orbit_arrays import OrbitArrays
+from stickslip.results.exact_response import OrbitArrays
 from stickslip.settings.orbits import OrbitSettings
 
 if TYPE_CHECKING:

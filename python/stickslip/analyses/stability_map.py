@@ -15,9 +15,8 @@ from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
 from stickslip.model.destabilised import is_proportional
 from stickslip.results.diagnostic import Diagnostic, diagnostic
-from stickslip.results.limit_cycles import CycleArrays
+from stickslip.results.limit_cycles import CycleArrays, MapArrays, StabilityMap
 from stickslip.results.stability import stability_of
-from stickslip.results.stability_map import MapArrays, StabilityMap
 from stickslip.settings.cycles import CycleSettings, MapKeys, MapSettings
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import Parameter, Variation

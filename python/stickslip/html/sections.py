@@ -23,10 +23,9 @@ from stickslip.results.result import Result
 from stickslip.results.store import content_of
 from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
-from stickslip.views.kinds import VIEWS, cautions, failures, view_of
+from stickslip.views.kinds import VIEWS, View, cautions, failures, view_of
 from stickslip.views.picture import Panel
 from stickslip.views.tables import Row, Table, new_table
-from stickslip.views.view import View
 
 __all__ = ["Entry", "content"]
 

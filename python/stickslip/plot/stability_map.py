@@ -10,7 +10,7 @@ from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.plot.states import marks
 from stickslip.plot.style import GREY, finish, new_axes
-from stickslip.results.stability_map import StabilityMap
+from stickslip.results.limit_cycles import StabilityMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
