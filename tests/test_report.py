@@ -19,8 +19,8 @@ from stickslip.cli import app
 from stickslip.results.diagnostic import diagnostic
 from stickslip.results.result import Result
 from stickslip.views import kinds
+from stickslip.views.kinds import View
 from stickslip.views.tables import tabulated
-from stickslip.views.view import View
 
 BEAM = ss.reference.snecma_beam(20.313)
 FLUTTER = ss.destabilised(ss.reference.single_dof(), ss.Rayleigh(mass=-20.0))

@@ -138,8 +138,7 @@ def test_a_file_of_every_first_kind_is_read_shown_and_written_again(kind, tmp_pa
 def test_every_kind_has_its_class_and_its_view():
     from importlib import import_module
 
-    from stickslip.views.kinds import VIEWS
-    from stickslip.views.view import View
+    from stickslip.views.kinds import VIEWS, View
 
     assert set(VIEWS) == set(store.KINDS)
     for kind, (module, name) in store.KINDS.items():

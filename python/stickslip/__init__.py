@@ -39,11 +39,10 @@ _NAMES = {
     "results.damper_curve": "DamperCurve",
     "results.diagnostic": "Diagnostic Severity",
     "results.exact_response": "ExactResponse",
-    "results.limit_cycles": "LimitCycles",
+    "results.limit_cycles": "LimitCycles StabilityMap",
     "results.mistuning": "MistuningStudy",
     "results.motion_class": "MotionClass",
     "results.optimal_damper": "OptimalDamper",
-    "results.stability_map": "StabilityMap",
     "results.store": "load",
     "results.transient": "Transient",
 }

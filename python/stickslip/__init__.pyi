@@ -56,10 +56,10 @@ from stickslip.results.diagnostic import Diagnostic as Diagnostic
 from stickslip.results.diagnostic import Severity as Severity
 from stickslip.results.exact_response import ExactResponse as ExactResponse
 from stickslip.results.limit_cycles import LimitCycles as LimitCycles
+from stickslip.results.limit_cycles import StabilityMap as StabilityMap
 from stickslip.results.mistuning import MistuningStudy as MistuningStudy
 from stickslip.results.motion_class import MotionClass as MotionClass
 from stickslip.results.optimal_damper import OptimalDamper as OptimalDamper
-from stickslip.results.stability_map import StabilityMap as StabilityMap
 from stickslip.results.store import load as load
 from stickslip.results.transient import Transient as Transient
 from stickslip.settings.variation import Contacts

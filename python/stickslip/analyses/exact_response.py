@@ -12,8 +12,7 @@ from stickslip.disk.wave_ring import moving
 from stickslip.errors import Interrupted
 from stickslip.model import Model
 from stickslip.results.arrays import Float
-from stickslip.results.exact_response import ExactResponse
-from stickslip.results.orbit_arrays import OrbitArrays
+from stickslip.results.exact_response import ExactResponse, OrbitArrays
 from stickslip.settings.entries import Span
 from stickslip.settings.orbits import ExactSettings, OrbitKeys, OrbitSettings
 from stickslip.settings.settings import configured

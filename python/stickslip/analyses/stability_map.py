@@ -13,9 +13,8 @@ from stickslip.analyses.variation import variation_of
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic
-from stickslip.results.limit_cycles import CycleArrays
+from stickslip.results.limit_cycles import CycleArrays, MapArrays, StabilityMap
 from stickslip.results.stability import stability_of
-from stickslip.results.stability_map import MapArrays, StabilityMap
 from stickslip.settings.cycles import CycleSettings, LimitSettings, MapKeys, MapSettings
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import one_of

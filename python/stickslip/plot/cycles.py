@@ -16,9 +16,8 @@ from stickslip.plot.figure import figure, keywords
 from stickslip.plot.options import CycleOptions, Drawing
 from stickslip.plot.style import Colour, Looks
 from stickslip.results.arrays import Float
-from stickslip.results.limit_cycles import LimitCycles
+from stickslip.results.limit_cycles import LimitCycles, StabilityMap
 from stickslip.results.stability import STATES, States
-from stickslip.results.stability_map import StabilityMap
 
 __all__ = ["limit_cycles", "stability_map"]
 

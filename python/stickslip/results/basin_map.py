@@ -116,20 +116,14 @@ class BasinMap(ColumnResult):
     def start(self, *index: int) -> State:
         """Return a start, ``classify(map.model, map.start(i, j))`` looks at it closely.
 
+        The state at the start.
+
+        Raises ModelError if there is no such start.
+
         Parameters
         ----------
         *index : int
             Its position: one number in a list, two in a map.
-
-        Returns
-        -------
-        State
-            The state at the start.
-
-        Raises
-        ------
-        ModelError
-            If there is no such start.
         """
         if len(index) != len(self.shape):
             raise ModelError(f"start: {len(index)} positions; the map has {len(self.shape)} axes")

@@ -42,21 +42,15 @@ class BladeMotion(ContactMotion):
     def sector(self, number: int) -> Self:
         """Return the motion of another sector of a tuned disk.
 
+        The same result seen from that sector: harmonic k of everything, contacts and forces
+        included, is ahead by 2 pi k E number / n.
+
+        Raises ModelError if the result is not one of a `BladedDisk`, or there is no such sector.
+
         Parameters
         ----------
         number : int
             The sector, from 0 to n-1.
-
-        Returns
-        -------
-        ForcedResponse
-            The same result seen from that sector: harmonic k of everything, contacts and forces
-            included, is ahead by 2 pi k E number / n.
-
-        Raises
-        ------
-        ModelError
-            If the result is not one of a `BladedDisk`, or there is no such sector.
         """
         disk = self._tuned_disk()
         model = disk.seen_from(number)
@@ -74,20 +68,15 @@ class BladeMotion(ContactMotion):
     def blades(self, dof: str) -> tuple[int, ...]:
         """Return the blades of a mistuned disk at which a degree of freedom was observed.
 
+        Ascending, counted from 0.
+
+        Raises ModelError if the result is not one of a `MistunedDisk`, or the dof was observed at
+        no blade.
+
         Parameters
         ----------
         dof : str
             Degree of freedom of a sector, without the number of the sector: "tip".
-
-        Returns
-        -------
-        tuple of int
-            Ascending, counted from 0.
-
-        Raises
-        ------
-        ModelError
-            If the result is not one of a `MistunedDisk`, or the dof was observed at no blade.
         """
         disk = self._mistuned_disk()
         known = disk.disk.structure.dofs
@@ -104,6 +93,8 @@ class BladeMotion(ContactMotion):
     def blade_amplitudes(self, dof: str, measure: Measure = "half_range") -> Float:
         """Return the amplitudes of one degree of freedom at all blades of a mistuned disk.
 
+        Raises ModelError as `blades`.
+
         Parameters
         ----------
         dof : str
@@ -113,11 +104,6 @@ class BladeMotion(ContactMotion):
         -------
         ndarray of float64, shape (n, blades)
             [m], of the blades that `blades` returns.
-
-        Raises
-        ------
-        ModelError
-            As `blades`.
         """
         columns = [self.amplitude(f"{blade}.{dof}", measure) for blade in self.blades(dof)]
         return constant(np.stack(columns, axis=1))
@@ -126,6 +112,8 @@ class BladeMotion(ContactMotion):
         """Return the blade with the highest peak, and the peak.
 
         All observed blades are followed together over the range of the computed points.
+
+        Raises ModelError as `blades`; if no point is solved.
 
         Parameters
         ----------
@@ -138,11 +126,6 @@ class BladeMotion(ContactMotion):
             Counted from 0.
         peak : Peak
             Its peak, refined between the computed points.
-
-        Raises
-        ------
-        ModelError
-            As `blades`; if no point is solved.
         """
         if not self.arrays.solved.any():
             raise ModelError(f"peak of {dof!r}: no point is solved; see status")
@@ -158,22 +141,16 @@ class BladeMotion(ContactMotion):
         The highest peak over the computed frequencies and the observed blades, over the peak of the
         tuned disk.
 
+        Factor, blade and both peaks.
+
+        Raises ModelError as `highest_blade`; if `tuned` is not a result of a `BladedDisk`.
+
         Parameters
         ----------
         tuned : ForcedResponse
             The response of the tuned disk.
         dof : str
             Degree of freedom of a sector: "tip".
-
-        Returns
-        -------
-        Amplification
-            Factor, blade and both peaks.
-
-        Raises
-        ------
-        ModelError
-            As `highest_blade`; if `tuned` is not a result of a `BladedDisk`.
         """
         if not isinstance(tuned, BladeMotion) or not tuned.model.travels:
             raise ModelError(

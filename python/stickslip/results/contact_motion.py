@@ -12,7 +12,7 @@ from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
 from stickslip.results.arrays import Complex, Float, amplitude_of, constant, mean_forces
 from stickslip.results.events import ContactStates
-from stickslip.results.sweep import Sweep
+from stickslip.results.periodic import Sweep
 
 if TYPE_CHECKING:
     from stickslip import _core
@@ -70,15 +70,9 @@ class ContactMotion(Sweep):
     def contact_states(self, contact: ContactRef, index: int) -> ContactStates:
         """Return when the points of a contact stick and slip over one period.
 
-        Returns
-        -------
-        ContactStates
-            The phases, and the sets of points that slip at once.
+        The phases, and the sets of points that slip at once.
 
-        Raises
-        ------
-        ModelError
-            If the point was not solved.
+        Raises ModelError if the point was not solved.
         """
         from stickslip import _core
 
@@ -111,15 +105,12 @@ class ContactMotion(Sweep):
         motion while the contact sticks and rests at F_d / k_d while it slips. For a single harmonic
         this is Guillen's improvement of Griffin's method.
 
+        Raises ModelError if its law has no single stiffness above 0.
+
         Returns
         -------
         ndarray of float64, shape (samples, points) or (samples,)
             [m].
-
-        Raises
-        ------
-        ModelError
-            If its law has no single stiffness above 0.
 
         References
         ----------
@@ -131,15 +122,12 @@ class ContactMotion(Sweep):
     def damper_amplitude(self, contact: PointRef) -> Float:
         """Return half the range of the deflection of the contact springs over a period.
 
+        Raises ModelError if its law has no single stiffness above 0.
+
         Returns
         -------
         ndarray of float64, shape (n, points) or (n,)
             [m]: that of the relative displacement where the contact never slips, else F_d / k_d.
-
-        Raises
-        ------
-        ModelError
-            If its law has no single stiffness above 0.
 
         References
         ----------
@@ -158,15 +146,12 @@ class ContactMotion(Sweep):
         bounds are those of the mean force. A contact that slips holds the mean force that the
         motion gives it, and the two bounds are 0.
 
+        Raises ModelError if its law has no single stiffness and slip force.
+
         Returns
         -------
         ndarray of float64, shape (n, points, 2) or (n, 2)
             Lower and upper bound [N].
-
-        Raises
-        ------
-        ModelError
-            If its law has no single stiffness and slip force.
         """
         number, _ = self.locate(contact)
         parameters = self.model.contacts[number].parameters()

@@ -127,20 +127,14 @@ class DamperCurve(ColumnResult):
     def model_at(self, value: float) -> Model:
         """Return the model at a value of the parameter, for any other analysis.
 
+        A new model.
+
+        Raises ModelError if a contact refuses the value.
+
         Parameters
         ----------
         value : float
             The value, also between the computed ones.
-
-        Returns
-        -------
-        Model
-            A new model.
-
-        Raises
-        ------
-        ModelError
-            If a contact refuses the value.
         """
         return self.settings.variation.apply(self.model, value)
 

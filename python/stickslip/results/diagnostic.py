@@ -28,66 +28,27 @@ class Severity(StrEnum):
     """Something that was asked for is missing."""
 
 
-_NOTE, _CAUTION, _FAILURE = Severity
+_CODES = {
+    Severity.NOTE: """
+        harmonics samples method no-error-estimate half-period half-wave modal-base direct-solution
+        exact-orbits frequencies observed-dofs tolerances-missed static-traction start-of-march
+        start time-steps kept-periods criterion modes peak-range varied-together rigid-limit
+        coarse-search patterns deviations onset forces-ignored stability-undecided multipliers
+        unbounded-branch text
+    """,
+    Severity.CAUTION: """
+        truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps
+        no-tolerance forces-left-out peak-at-edge optimum-at-bound points-limit no-turn branch-jumps
+        stability-unknown
+    """,
+    Severity.FAILURE: """
+        branch-stalled branch-turned-back no-limit
+    """,
+}
 SEVERITIES: Mapping[str, Severity] = MappingProxyType(
-    {
-        # the method
-        "harmonics": _NOTE,
-        "samples": _NOTE,
-        "method": _NOTE,
-        "no-error-estimate": _NOTE,
-        "half-period": _NOTE,
-        "half-wave": _NOTE,
-        "modal-base": _NOTE,
-        "direct-solution": _NOTE,
-        "exact-orbits": _NOTE,
-        "frequencies": _NOTE,
-        "observed-dofs": _NOTE,
-        "tolerances-missed": _NOTE,
-        "truncation": _CAUTION,
-        "harmonics-limit": _CAUTION,
-        # the model
-        "static-traction": _NOTE,
-        "start-of-march": _NOTE,
-        "law-not-monotone": _CAUTION,
-        "undamped-motion": _CAUTION,
-        "negative-damping": _CAUTION,
-        # transients and free motions
-        "start": _NOTE,
-        "time-steps": _NOTE,
-        "kept-periods": _NOTE,
-        "coarse-steps": _CAUTION,
-        "no-tolerance": _CAUTION,
-        "forces-left-out": _CAUTION,
-        "criterion": _NOTE,
-        "modes": _NOTE,
-        # peaks along a parameter, and of many disks
-        "peak-range": _NOTE,
-        "peak-at-edge": _CAUTION,
-        "varied-together": _NOTE,
-        "rigid-limit": _NOTE,
-        "coarse-search": _NOTE,
-        "optimum-at-bound": _CAUTION,
-        "patterns": _NOTE,
-        "deviations": _NOTE,
-        # limit cycles
-        "onset": _NOTE,
-        "forces-ignored": _NOTE,
-        "stability-undecided": _NOTE,
-        "multipliers": _NOTE,
-        "unbounded-branch": _NOTE,
-        "points-limit": _CAUTION,
-        "no-turn": _CAUTION,
-        "branch-jumps": _CAUTION,
-        "branch-stalled": _FAILURE,
-        "branch-turned-back": _FAILURE,
-        "no-limit": _FAILURE,
-        "stability-unknown": _CAUTION,
-        # files of the first version hold texts alone
-        "text": _NOTE,
-    }
+    {code: severity for severity, codes in _CODES.items() for code in codes.split()}
 )
-"""Every code, with what it means for the use of a result."""
+"""Every code, with what it means for the use of a result; "text" is that of the first files."""
 
 
 @dataclass(frozen=True)

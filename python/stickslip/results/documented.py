@@ -1,7 +1,8 @@
 """What results say of themselves: what their methods have in common is written once.
 
 `help` and the pages show it in full: a method has its own sentences, those of the method that it
-overrides, and for each parameter in the table below what it means and how it is refused.
+overrides, and for each parameter in the table below what it means and how it is refused. A last
+sentence "Raises ModelError if ..." becomes a section, as does the shape of a returned array.
 """
 
 from __future__ import annotations
@@ -128,7 +129,12 @@ def _arguments(function: FunctionType) -> tuple[str, ...]:
 def _sections(text: str | None) -> dict[str, str]:
     """Return the sections of a documentation by their names, what precedes them under ""."""
     head, *rest = re.split(r"\n\n(\w+)\n-+\n", cleandoc(text or ""))
-    return {"": head, **dict(zip(rest[::2], rest[1::2], strict=True))}
+    head, _, refused = head.partition("\n\nRaises ModelError ")
+    sections = {"": head, **dict(zip(rest[::2], rest[1::2], strict=True))}
+    if refused:
+        told = f"{refused[0].upper()}{refused[1:]}".replace("\n", "\n    ")
+        sections["Raises"] = f"ModelError\n    {told}"
+    return sections
 
 
 def _entries(section: str) -> dict[str, str]:

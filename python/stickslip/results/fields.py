@@ -80,11 +80,10 @@ class _Column(NamedTuple):
 
 
 class Computed(Protocol):
-    """What the core returns."""
+    """What the core returns: arrays by name."""
 
     @property
-    def columns(self) -> Mapping[str, NDArray[Any]]:
-        """Arrays by name."""
+    def columns(self) -> Mapping[str, NDArray[Any]]: ...  # noqa: D102
 
 
 def column(
@@ -176,20 +175,7 @@ class Columns:
 
     @classmethod
     def of(cls, solution: Computed, **more: NDArray[Any]) -> Self:
-        """Take over what the core returns, and what it does not know.
-
-        Parameters
-        ----------
-        solution : object
-            What the core returns.
-        **more
-            Further columns, or others in their place.
-
-        Returns
-        -------
-        Columns
-            The same arrays, read-only.
-        """
+        """Take over what the core returns, with further columns, or others in their place."""
         given = {**solution.columns, **more}
         return cls(**{name: given[name] for name in cls.table()})
 

@@ -25,15 +25,23 @@ from stickslip.results.arrays import (
     constant,
 )
 from stickslip.results.drawn import Drawn, plots
-from stickslip.results.fields import Numbers, Shown, column
+from stickslip.results.fields import Columns, Numbers, Shown, column
 from stickslip.results.periodic import PeriodicMotions
+from stickslip.results.result import ColumnResult
 from stickslip.results.stability import FloquetStability, stability_counts
-from stickslip.settings.cycles import CycleSettings
+from stickslip.settings.cycles import CycleSettings, MapSettings
 
 if TYPE_CHECKING:
-    pass
+    from matplotlib.axes import Axes
 
-__all__ = ["CycleArrays", "Limit", "LimitCycles", "StabilityChange"]
+__all__ = [
+    "CycleArrays",
+    "Limit",
+    "LimitCycles",
+    "MapArrays",
+    "StabilityChange",
+    "StabilityMap",
+]
 
 
 class Limit(NamedTuple):
@@ -195,15 +203,9 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     def state(self, index: int) -> State:
         """Return the state at t = 0, from which `stickslip.transient` continues an exact orbit.
 
-        Returns
-        -------
-        State
-            Displacements, velocities and contact forces.
+        Displacements, velocities and contact forces.
 
-        Raises
-        ------
-        ModelError
-            If it is no exact orbit.
+        Raises ModelError if it is no exact orbit.
         """
         values = self.arrays.state[self.position(index)]
         if not np.isfinite(values).all():
@@ -213,15 +215,9 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     def model_at(self, index: int) -> Model:
         """Return the model whose limit cycle one point is, with the damping C + r C_neg in it.
 
-        Returns
-        -------
-        Model
-            Without forces, for `stickslip.transient` and any other analysis.
+        Without forces, for `stickslip.transient` and any other analysis.
 
-        Raises
-        ------
-        ModelError
-            If the model is a sector of a travelling wave.
+        Raises ModelError if the model is a sector of a travelling wave.
         """
         from stickslip.model.structure import Structure
 
@@ -251,3 +247,50 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     def _turn(self, value: float, omega: float) -> Limit:
         ratio = value if self.settings.variation is None else self.settings.ratio
         return Limit(ratio, omega, value)
+
+
+class MapArrays(Columns):
+    """The numbers of a stability map."""
+
+    value: Float = column("value", "{unit}", "{parameter} of the contacts")
+    limit: Float = column(
+        "value", "1", "ratio at which the branch turns for good; not-a-number if nowhere"
+    )
+    omega: Float = column("value", "rad/s", "frequency there", least=0.0)
+    stable_limit: Float = column(
+        "value",
+        "1",
+        "ratio up to which the sticking side is stable without a gap; 0 if it is unstable from the "
+        "start, and not-a-number if a cycle below is not decided",
+    )
+    negative_damping: Numbers = column("row column", "kg/s", "C_neg of the damping C + r C_neg")
+
+
+class StabilityMap(ColumnResult):
+    """Largest ratio r with limit cycles, and with stable ones, over a parameter of the contacts."""
+
+    kind: ClassVar[str] = "stability_map"
+    title = "Negative damping that friction bounds"
+
+    settings: MapSettings
+    arrays: MapArrays
+
+    def __repr__(self) -> str:
+        return (
+            f"StabilityMap({self.values.size} values of {self.settings.variation.parameter}, limit "
+            f"{np.nanmin(self.limit):.6g} to {np.nanmax(self.limit):.6g})"
+        )
+
+    values = Shown[Float]("value")
+    limit = Shown[Float]()
+    omega = Shown[Float]()
+    stable_limit = Shown[Float]()
+    negative_damping = Shown[Numbers]()
+
+    def _words(self) -> Mapping[str, str]:
+        variation = self.settings.variation
+        return {"unit": variation.unit, "parameter": variation.parameter}
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the map; see `stickslip.plot.stability_map`."""
+        return plots.stability_map(self, ax=ax)

@@ -179,15 +179,9 @@ class MistuningStudy(ColumnResult):
     ) -> WeibullFit:
         """Return the three-parameter Weibull distribution of the factors.
 
-        Returns
-        -------
-        WeibullFit
-            Shape, scale and location with their intervals, its distance from the factors.
+        Shape, scale and location with their intervals, its distance from the factors.
 
-        Raises
-        ------
-        ModelError
-            If there are fewer than 30 factors, or all are equal.
+        Raises ModelError if there are fewer than 30 factors, or all are equal.
         """
         return fit_weibull(self.factors(dof, deviation=deviation, coupling=coupling), confidence)
 
@@ -203,22 +197,16 @@ class MistuningStudy(ColumnResult):
     ) -> Percentile:
         """Return the factor that q percent of all disks do not exceed, with its confidence.
 
+        Value, low and high end.
+
+        Raises ModelError as `weibull`; if q or the method is unknown.
+
         Parameters
         ----------
         q : float
             From 0 to 100, exclusive: 99.9.
         method : {"weibull", "empirical"}, optional
             From the fitted distribution, also beyond the data; or from the factors themselves.
-
-        Returns
-        -------
-        Percentile
-            Value, low and high end.
-
-        Raises
-        ------
-        ModelError
-            As `weibull`; if q or the method is unknown.
         """
         chosen = choice(method, "method", ("weibull", "empirical"))
         if chosen == "empirical":

@@ -127,10 +127,7 @@ class MotionClass(ColumnResult):
     def amplitude(self, dof: str) -> float:
         """Return half the range of a displacement at the end.
 
-        Returns
-        -------
-        float
-            [m]; of a settled motion over a period, not-a-number if it is unbounded.
+        [m]; of a settled motion over a period, not-a-number if it is unbounded.
         """
         return float(self.arrays.amplitude[0, self._column(dof)])
 
@@ -139,15 +136,9 @@ class MotionClass(ColumnResult):
 
         By Welch's method in Hann windows, which hold the leakage of a motion without period down.
 
-        Returns
-        -------
-        Spectrum
-            `frequency` [Hz] and `density` [m^2/Hz].
+        `frequency` [Hz] and `density` [m^2/Hz].
 
-        Raises
-        ------
-        ModelError
-            If there is no such motion.
+        Raises ModelError if there is no such motion.
         """
         column = self._column(dof)
         if not len(self.tail):
@@ -168,22 +159,16 @@ class MotionClass(ColumnResult):
         A line is a peak of the density that stands out tenfold from what is around it; its power
         is that of the main lobe of the window, four steps of frequency to either side.
 
+        Frequencies interpolated between the steps of the spectrum.
+
+        Raises ModelError as `spectrum`; if a number is outside its range.
+
         Parameters
         ----------
         most : int, optional
             How many at most.
         least : float, optional
             Least amplitude relative to the strongest.
-
-        Returns
-        -------
-        list of Line
-            Frequencies interpolated between the steps of the spectrum.
-
-        Raises
-        ------
-        ModelError
-            As `spectrum`; if a number is outside its range.
         """
         from scipy.signal import find_peaks
 

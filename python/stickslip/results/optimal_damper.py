@@ -121,11 +121,8 @@ class OptimalDamper(Result):
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
-        Returns
-        -------
-        xarray.Dataset
-            That of the curve, with the dimension minimum of the local minima, the least first,
-            and the contacts and forces of the model that was given.
+        That of the curve, with the dimension minimum of the local minima, the least first, and the
+        contacts and forces of the model that was given.
         """
         dataset = self.curve.to_dataset(derived=derived)
         unit = self.curve.settings.variation.unit

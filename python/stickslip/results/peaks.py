@@ -17,7 +17,7 @@ from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip import _core
-    from stickslip.results.sweep import Sweep
+    from stickslip.results.periodic import Sweep
 
 __all__ = ["Peak", "Summary", "highest", "of_orbits", "rows", "summits"]
 

@@ -91,15 +91,12 @@ class Result(Frozen, ABC):
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
+        Numbers as variables, everything else as attributes; all numbers are copies.
+
         Parameters
         ----------
         derived : bool, optional
             Whether to add what follows from the other variables, as amplitudes.
-
-        Returns
-        -------
-        xarray.Dataset
-            Numbers as variables, everything else as attributes; all numbers are copies.
         """
 
     @classmethod
@@ -107,17 +104,14 @@ class Result(Frozen, ABC):
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
         """Return the result that a dataset holds.
 
+        Equal to the one that made the dataset, bit by bit.
+
         Parameters
         ----------
         dataset : xarray.Dataset
             As `to_dataset` makes it; derived variables are not needed.
         model : Model
             What was computed.
-
-        Returns
-        -------
-        Result
-            Equal to the one that made the dataset, bit by bit.
 
         Raises
         ------
@@ -128,15 +122,12 @@ class Result(Frozen, ABC):
     def save(self, path: str | PathLike[str]) -> None:
         """Write the result with its model to a NetCDF file, whole or not at all.
 
+        Raises ModelError if the file cannot be written.
+
         Parameters
         ----------
         path : path-like
             The file; an existing one is replaced. Read it with `stickslip.load`.
-
-        Raises
-        ------
-        ModelError
-            If the file cannot be written.
         """
         from stickslip.results.store import save
 
@@ -218,12 +209,9 @@ class ColumnResult(Result):
     def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
-        Returns
-        -------
-        xarray.Dataset
-            The columns of `arrays` as variables, with names along their dimensions; everything
-            else as attributes, of which `settings`, `diagnostics`, `timings` and `counters` are
-            JSON texts. All numbers are copies.
+        The columns of `arrays` are the variables, with names along their dimensions; everything
+        else are attributes, of which `settings`, `diagnostics`, `timings` and `counters` are JSON
+        texts.
         """
         import xarray as xr
 

@@ -11,7 +11,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
-from stickslip.results.sweep import key_of
+from stickslip.results.periodic import key_of
 
 __all__ = ["COMMON", "Sensitivities"]
 
@@ -59,6 +59,9 @@ class Sensitivities(ContactMotion):
         Where two turning points are equally high, or a contact is just about to slip, it is that
         of one side.
 
+        Raises ModelError if there is no such parameter, or one of all contacts is a factor on some
+        and a value of others.
+
         Parameters
         ----------
         dof : str
@@ -76,12 +79,6 @@ class Sensitivities(ContactMotion):
             structure-like damper, a factor on its matrix. Without a parameter: one array for
             every (contact name, parameter), of contacts with several points
             ((contact name, point), parameter). Not-a-number at points that were not solved.
-
-        Raises
-        ------
-        ModelError
-            If there is no such parameter, or one of all contacts is a factor on some and a value
-            of others.
         """
         causes = _causes(self.model, contact, parameter)
         slopes = self._slopes(dof, list(causes.values()), measure)
@@ -118,6 +115,8 @@ class Sensitivities(ContactMotion):
         The frequency of the peak moves with the parameter, but the amplitude is stationary in it:
         the derivative of the peak is that of the amplitude at its frequency.
 
+        Raises ModelError as `sensitivity` and `ForcedResponse.peak`.
+
         Parameters
         ----------
         dof, contact, parameter, measure
@@ -127,11 +126,6 @@ class Sensitivities(ContactMotion):
         -------
         float or dict
             As `sensitivity`, one number each.
-
-        Raises
-        ------
-        ModelError
-            As `sensitivity` and `ForcedResponse.peak`.
         """
         from stickslip.analyses.forced_response import forced_response
         from stickslip.settings.balance import BalanceSettings

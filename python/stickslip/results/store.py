@@ -35,7 +35,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "motion_class": ("stickslip.results.motion_class", "MotionClass"),
     "basin_map": ("stickslip.results.basin_map", "BasinMap"),
     "mistuning_study": ("stickslip.results.mistuning", "MistuningStudy"),
-    "stability_map": ("stickslip.results.stability_map", "StabilityMap"),
+    "stability_map": ("stickslip.results.limit_cycles", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 
@@ -47,24 +47,12 @@ FORMAT = 2
 
 
 def save(result: Result, path: str | os.PathLike[str]) -> None:
-    """Write a result with its model to a NetCDF 4 file, whole or not at all.
+    """Write a result, also a partial one, with its model to a NetCDF 4 file; see `Result.save`.
 
     Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
     reader opens the file; what follows from other variables is left out. Contacts and forces are
     JSON texts, one per variable entry. The file carries a digest of its bytes; `load` refuses a
     file that was changed.
-
-    Parameters
-    ----------
-    result : Result
-        The result, of any kind in `KINDS`, also a partial one.
-    path : path-like
-        The file; an existing one is replaced.
-
-    Raises
-    ------
-    ModelError
-        If the folder does not exist or the file cannot be written.
     """
     target = file_path(path, "path")
     require_place(target)
@@ -120,13 +108,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 
 
 def content_of(source: Path) -> bytes:
-    """Return the bytes of a result file.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be read, or is larger than the memory.
-    """
+    """Return the bytes of a result file, or refuse one that is larger than the memory."""
     from stickslip.analyses.memory import SHARE, physical_memory
 
     try:

@@ -203,11 +203,8 @@ class Transient(ColumnResult):
     def amplitude(self, dof: str, measure: Measure = "half_range") -> float:
         """Return the amplitude of a displacement in the last period.
 
-        Returns
-        -------
-        float
-            [m]; not-a-number if not one period was completed. The fundamental is that of the
-            samples of the period.
+        [m]; not-a-number if not one period was completed. The fundamental is that of the samples of
+        the period.
         """
         choice(measure, "measure", get_args(Measure))
         motion = self.displacement(dof)
@@ -232,6 +229,10 @@ class Transient(ColumnResult):
         The windows are whole periods: the lines of a periodic motion at multiples of the
         excitation frequency then have no width, and need no taper.
 
+        `frequency` [Hz] and `density` [m^2/Hz]; the mean of the motion is taken out.
+
+        Raises ModelError if there is no such window, or fewer periods are kept.
+
         Parameters
         ----------
         last : int, optional
@@ -241,16 +242,6 @@ class Transient(ColumnResult):
             by half and are averaged. Default: one window.
         window : str, optional
             As `scipy.signal.get_window` names it; "hann" for a motion that has not settled.
-
-        Returns
-        -------
-        Spectrum
-            `frequency` [Hz] and `density` [m^2/Hz]; the mean of the motion is taken out.
-
-        Raises
-        ------
-        ModelError
-            If there is no such window, or fewer periods are kept.
         """
         motion, kept = self.displacement(dof), self.kept_periods
         if not kept:
@@ -281,10 +272,7 @@ class Transient(ColumnResult):
     def summary(self) -> list[Settled]:
         """Return the amplitudes of the last period, one row per observed degree of freedom.
 
-        Returns
-        -------
-        list of Settled
-            Empty if not one period was completed.
+        Empty if not one period was completed.
         """
         rows = []
         for dof in self.dofs if self.periods else ():

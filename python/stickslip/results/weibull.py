@@ -181,28 +181,9 @@ class WeibullFit:
 
 
 def fit_weibull(factors: ArrayLike, confidence: float = 0.95) -> WeibullFit:
-    """Fit a Weibull distribution of maxima.
-
-    Parameters
-    ----------
-    factors : array_like
-        Amplification factors; not-a-number is left out.
-    confidence : float, optional
-        Probability of the intervals.
-
-    Returns
-    -------
-    WeibullFit
-        Parameters with their intervals.
-
-    Raises
-    ------
-    ModelError
-        If there are too few factors, or they are all equal.
-    """
+    """Fit a Weibull distribution of maxima to factors, of which not-a-number is left out."""
     level = _confidence(confidence)
-    data = np.sort(np.asarray(factors, dtype=np.float64).ravel())
-    data = data[np.isfinite(data)]
+    data = _sorted(factors)
     if data.size < FEWEST:
         raise ModelError(
             f"weibull: {data.size} factors for three parameters; compute at least {FEWEST} patterns"
@@ -218,30 +199,13 @@ def fit_weibull(factors: ArrayLike, confidence: float = 0.95) -> WeibullFit:
 def empirical_percentile(factors: ArrayLike, q: float, confidence: float = 0.95) -> Percentile:
     """Return a percentile of the factors themselves, whatever their distribution.
 
-    Parameters
-    ----------
-    factors : array_like
-        Amplification factors; not-a-number is left out.
-    q : float
-        From 0 to 100, exclusive.
-    confidence : float, optional
-        Probability of the interval, which is that of order statistics (binomial).
-
-    Returns
-    -------
-    Percentile
-        Ends for which there are too few factors are infinite.
-
-    Raises
-    ------
-    ModelError
-        If there is no factor, or q lies outside.
+    Its interval is that of order statistics (binomial); ends for which there are too few factors
+    are infinite.
     """
     from scipy.stats import binom
 
     share, level = _share(q), _confidence(confidence)
-    data = np.sort(np.asarray(factors, dtype=np.float64).ravel())
-    data = data[np.isfinite(data)]
+    data = _sorted(factors)
     if not data.size:
         raise ModelError("percentile: no factor; compute at least one pattern")
     tail = 0.5 * (1.0 - level)
@@ -254,6 +218,11 @@ def empirical_percentile(factors: ArrayLike, q: float, confidence: float = 0.95)
         float(data[low[-1]]) if low.size else -np.inf,
         float(data[high[0]]) if high.size else np.inf,
     )
+
+
+def _sorted(factors: ArrayLike) -> Float:
+    data = np.sort(np.asarray(factors, dtype=np.float64).ravel())
+    return data[np.isfinite(data)]
 
 
 def _share(q: float) -> float:

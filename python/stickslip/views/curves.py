@@ -15,8 +15,8 @@ from stickslip.results.exact_response import ExactResponse
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts
 from stickslip.units import quantity
+from stickslip.views.kinds import View
 from stickslip.views.tables import Row, Table, tabulated
-from stickslip.views.view import View
 
 if TYPE_CHECKING:
     from stickslip.disk import MistunedDisk

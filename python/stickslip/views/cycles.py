@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.results.limit_cycles import LimitCycles
+from stickslip.results.limit_cycles import LimitCycles, StabilityMap
 from stickslip.results.stability import STATES, stability_counts
-from stickslip.results.stability_map import StabilityMap
+from stickslip.views.kinds import View
 from stickslip.views.tables import Row, counted
-from stickslip.views.view import View
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable

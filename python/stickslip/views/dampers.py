@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from stickslip.results.damper_curve import DamperCurve
 from stickslip.results.optimal_damper import OptimalDamper
+from stickslip.views.kinds import View
 from stickslip.views.tables import Row, assumed, counted
-from stickslip.views.view import View
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable

@@ -11,8 +11,8 @@ import numpy as np
 from stickslip.errors import ModelError
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import fit_weibull
+from stickslip.views.kinds import View
 from stickslip.views.tables import Row, counted, listed
-from stickslip.views.view import View
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable

@@ -13,8 +13,8 @@ from stickslip.errors import ModelError
 from stickslip.results.basin_map import BasinMap
 from stickslip.results.fate_arrays import Motion
 from stickslip.results.motion_class import MotionClass
+from stickslip.views.kinds import View
 from stickslip.views.tables import Row
-from stickslip.views.view import View
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable

@@ -7,8 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from stickslip.results.transient import Transient
+from stickslip.views.kinds import View
 from stickslip.views.tables import Row
-from stickslip.views.view import View
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
