@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import inspect
+import re
 from importlib import import_module
+from inspect import formatannotation
 from typing import Any
 
 import griffe
@@ -51,7 +53,8 @@ class Derived(griffe.Extension):
 
 
 def _annotation(kind: Any) -> str:
-    return kind if isinstance(kind, str) else inspect.formatannotation(kind)
+    """Return a type as it is written, without the modules it comes from."""
+    return kind if isinstance(kind, str) else re.sub(r"(\w+\.)+", "", formatannotation(kind))
 
 
 def _docstring(text: str, parent: Any) -> griffe.Docstring:

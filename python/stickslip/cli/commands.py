@@ -88,7 +88,7 @@ def plot(
     pictures = {"waveform": waveform, "loop": loop, "events": events}
     asked = {name: omega for name, omega in pictures.items() if omega is not None}
     asked |= {"multipliers": ""} if multipliers else {}
-    wanted = drawing.Wanted(dof, hertz=hertz, log=log, per_force=per_force, contact=contact)
+    wanted = drawing.Wanted(dof, "Hz" if hertz else "rad/s", log, per_force, contact)
     name, panels = wanted.picture(asked, named)
     picture = out or results[0].with_name(f"{results[0].stem}-{name}.png")
     draw(panels, picture)
@@ -127,10 +127,7 @@ def certify(
         raise ModelError(f"--points = {points!r}: give a number, or all") from None
     target = out or result
     require_place(target)
-    with (
-        console.progress(result.name, wanted=True) as advance,
-        Interruption(advance) as watch,
-    ):
+    with console.progress(result.name, wanted=True) as advance, Interruption(advance) as watch:
         try:
             certified = certify(load(result), wanted, seed=seed, dofs=dof, progress=watch)
         except Interrupted as stop:

@@ -201,8 +201,7 @@ def _print(table: Table) -> None:
     # the reader is a program, a file or a narrow terminal: lines are not broken and carry no
     # blanks at their end
     page = io.StringIO()
-    Console(file=page, width=_PLAIN_WIDTH, highlight=False, markup=False, no_color=True).print(
-        table
-    )
+    plain = Console(file=page, width=_PLAIN_WIDTH, highlight=False, markup=False, no_color=True)
+    plain.print(table)
     for line in page.getvalue().splitlines():
         tell(line.rstrip())

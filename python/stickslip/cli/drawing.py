@@ -17,6 +17,7 @@ from stickslip.views.kinds import view_of
 from stickslip.views.picture import titled
 
 if TYPE_CHECKING:
+    from stickslip.plot.style import OmegaUnit
     from stickslip.results.result import Result
     from stickslip.views.picture import Panel
 
@@ -28,7 +29,7 @@ class Wanted:
     """What of results is to be drawn, as the options of the command say."""
 
     dofs: Sequence[str] | None
-    hertz: bool
+    omega_unit: OmegaUnit
     log: bool
     per_force: bool
     contact: str
@@ -61,14 +62,14 @@ class Wanted:
         from stickslip import plot
 
         view, dofs = view_of(results), self._dofs(results[0])
-        unit = OutputTable(omega_unit="Hz" if self.hertz else "rad/s")
         curves = [result for result in results if isinstance(result, ForcedResponse)]
         if not curves:
-            return results[0].kind.replace("_", "-"), view.panels(results, dofs, unit)
+            output = OutputTable(omega_unit=self.omega_unit)
+            return results[0].kind.replace("_", "-"), view.panels(results, dofs, output)
         drawn = partial(
             plot.curves,
             curves,
-            omega_unit=unit.omega_unit,
+            omega_unit=self.omega_unit,
             log=self.log,
             normalise="force" if self.per_force else None,
         )
@@ -97,7 +98,7 @@ class Wanted:
         elif picture == "events":
             yield partial(plot.events, result, _index(result, omega, "--events"))
         else:
-            yield partial(plot.multipliers, result, omega_unit="Hz" if self.hertz else "rad/s")
+            yield partial(plot.multipliers, result, omega_unit=self.omega_unit)
 
 
 def _index(result: ForcedResponse, text: str, option: str) -> int:

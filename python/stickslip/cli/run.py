@@ -115,6 +115,7 @@ def _stored(study: Study, folder: Path) -> Study:
 
 
 def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Result]:
+    from stickslip import load
     from stickslip.cli.console import complain, progress
 
     computed: list[Result] = []
@@ -139,7 +140,11 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Resu
             for case, result in zip(cases, study.run(watch), strict=True):
                 with clock("saving"):
                     save(result, _file(out, case))
-                    _remove_partial(_file(out, case, "-partial"))
+                    part = _file(out, case, "-partial")
+                    # Another study may have this name; its results say that they are whole.
+                    with suppress(ModelError, OSError):
+                        if part.is_file() and load(part).interrupted:
+                            part.unlink()
                 computed.append(result)
                 watch.heed()
         except Interrupted as stop:
@@ -161,16 +166,6 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Resu
 def _file(out: Path, case: Case, part: str = "") -> Path:
     """Return where a result is saved, or the part of one that a run has when it is stopped."""
     return out / f"{case.name}{part}.nc"
-
-
-def _remove_partial(file: Path) -> None:
-    """Remove what an interrupted run left, once the run is complete."""
-    from stickslip import load
-
-    # Another study may have this name; its results say that they are whole.
-    with suppress(ModelError, OSError):
-        if file.is_file() and load(file).interrupted:
-            file.unlink()
 
 
 def _tell_files(study: Study, out: Path, picture: Path | None) -> None:

@@ -17,19 +17,18 @@ __all__ = ["at", "checked_labels", "dofs_of", "label_of", "of_kind", "several", 
 
 _Kind = TypeVar("_Kind")
 _SYMBOLS = {"slip_force": "slip force $F_d$", "stiffness": "contact stiffness $k_d$"}
-_SOURCES = {"motion_class": "classify"}
-"""What returns the results that are not called as their function is."""
 
 
 def of_kind(kind: type[_Kind], result: object, entry: str = "result") -> _Kind:
     """Return a result, or refuse anything else."""
     if not isinstance(result, kind):
         name = kind.__name__
+        # The function has the name of its result, but one.
         source = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+        source = source.replace("motion_class", "classify")
         article = "an" if name[0] in "AE" else "a"
         raise ModelError(
-            f"{entry}: {brief(result)} is not {article} {name}; "
-            f"give what {_SOURCES.get(source, source)} returned"
+            f"{entry}: {brief(result)} is not {article} {name}; give what {source} returned"
         )
     return result
 

@@ -67,8 +67,7 @@ def hysteresis(
     index : int or sequence of int
         Positions of points of the sweep, one loop each; see `ForcedResponse.index`.
     """
-    length = style.LENGTH[options["length_unit"]]
-    indices = solved_points(result, index)
+    indices, length = solved_points(result, index), style.LENGTH[options["length_unit"]]
     loops = [loop for one in indices for loop in _loops(result, contact, one, options["samples"])]
     labels = [label for _, _, label in loops]
     if len(indices) > 1:

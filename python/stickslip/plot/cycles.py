@@ -52,8 +52,7 @@ def limit_cycles(
         if below is not None:
             _line(below, one, omega.factor * one.omega, colour, name)
     followed, unit = branches[0].settings.followed, branches[0].settings.unit
-    label = _AXES[followed]
-    (below or ax).set_xlabel(label if unit == "1" else f"{label} [{unit}]")
+    (below or ax).set_xlabel(_AXES[followed] + ("" if unit == "1" else f" [{unit}]"))
     if followed != "ratio":
         ax.set_xscale("log")
     for single in (False, True):

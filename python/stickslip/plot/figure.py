@@ -72,20 +72,24 @@ def keywords(function: Callable[P, Result]) -> Callable[P, Result]:
 
 def _derived(call: Callable[..., Result], written: Callable[..., object]) -> Callable[..., Result]:
     """Return a call with the keywords of the options that a function is written with."""
-    source = inspect.signature(written)
-    parameters = [*source.parameters.values()]
-    own = [one for one in parameters if one.kind is one.POSITIONAL_OR_KEYWORD]
     hints = get_type_hints(written)
-    (options,) = get_args(hints[parameters[-1].name])
+    source = inspect.signature(written)
+    *placed, starred = source.parameters.values()
+    own = [one for one in placed if one.kind is not one.POSITIONAL_ONLY]
+    (options,) = get_args(hints[starred.name])
     keys = get_type_hints(options, include_extras=True)
-    kind = inspect.Parameter.KEYWORD_ONLY
-    added = [
-        inspect.Parameter(name, kind, default=key.__metadata__[0], annotation=key.__origin__)
-        for name, key in keys.items()
-    ]
+    which = inspect.Parameter.KEYWORD_ONLY
     returned = source.return_annotation if call is written else "Axes"
-    signature = inspect.Signature([*own, *added], return_annotation=returned)
-    choices = {name: texts for name, key in keys.items() if (texts := _texts(key.__origin__))}
+    signature = inspect.Signature(
+        [one.replace(annotation=hints[one.name]) for one in own]
+        + [
+            inspect.Parameter(name, which, default=key.__metadata__[0], annotation=key.__origin__)
+            for name, key in keys.items()
+        ],
+        return_annotation=returned,
+    )
+    kinds = {name: one.annotation for name, one in signature.parameters.items()}
+    first, choices = own[0].name, {name: _texts(kind) for name, kind in kinds.items()}
 
     @wraps(written)
     def drawing(*args: Any, **given: Any) -> Result:
@@ -94,16 +98,17 @@ def _derived(call: Callable[..., Result], written: Callable[..., object]) -> Cal
         except TypeError:
             raise CallError(str(misfit(drawing, args, given))) from None
         for name, known in choices.items():
-            if bound.arguments.get(name) is not None:
-                choice(bound.arguments[name], name, known)
-        if own and isinstance(kind := hints[own[0].name], type):
-            of_kind(kind, bound.arguments[own[0].name], own[0].name)
+            default = signature.parameters[name].default
+            if known and (value := bound.arguments.get(name, default)) is not default:
+                choice(value, name, known)
+        if isinstance(kinds[first], type):
+            of_kind(kinds[first], bound.arguments[first], first)
         bound.apply_defaults()
         return call(**bound.arguments)
 
     meanings = _MEANINGS | {name: key.__metadata__[1] for name, key in keys.items()}
     drawing.__signature__ = signature  # type: ignore[attr-defined]
-    drawing.__doc__ = _documented(written.__doc__, signature, hints, meanings)
+    drawing.__doc__ = _documented(written.__doc__, signature, meanings)
     return drawing
 
 
@@ -115,10 +120,7 @@ def _texts(kind: Any) -> list[str]:
 
 
 def _documented(
-    text: str | None,
-    signature: inspect.Signature,
-    hints: Mapping[str, object],
-    meanings: Mapping[str, str],
+    text: str | None, signature: inspect.Signature, meanings: Mapping[str, str]
 ) -> str | None:
     """Complete the sections of a text; its own are for what means more than elsewhere."""
     if text is None:  # python -OO
@@ -132,9 +134,8 @@ def _documented(
     blocks = []
     for name, one in signature.parameters.items():
         optional = "" if one.default is one.empty else ", optional"
-        kind = _in_words(hints.get(name, one.annotation))
-        said = textwrap.fill(meanings.get(name, ""), 96)
-        block = f"{name} : {kind}{optional}\n{textwrap.indent(said, '    ')}"
+        said = textwrap.indent(textwrap.fill(meanings.get(name, ""), 96), "    ")
+        block = f"{name} : {_in_words(one.annotation)}{optional}\n{said}"
         blocks.append(own.get(name, block))
     sections = {"Parameters": "\n".join(blocks), "Returns": _RETURNS, "Raises": _RAISES} | sections
     written = (f"{name}\n{'-' * len(name)}\n{said}" for name, said in sections.items())

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from stickslip.checks import choice, real_number
+from stickslip.checks import real_number
 from stickslip.errors import ModelError
 from stickslip.plot import style
 from stickslip.plot.figure import figure
@@ -92,7 +92,6 @@ def amplification(
     against : {"deviation", "coupling"}, optional
         What stands below; every value of the other one has a line of its own.
     """
-    choice(against, "against", ("deviation", "coupling"))
     factors = result.amplification(dof)
     below, others = result.deviation, result.coupling_stiffness
     label, named = "standard deviation of the sectors' stiffness", ", {:g} N/m"
