@@ -28,8 +28,13 @@ from stickslip.settings.entries import Factor, Some, Table, chosen_by
 from stickslip.settings.motion import BasinKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys
-from stickslip.study.matrices import damping_of, matrix_of
-from stickslip.study.structure_table import DampingSource, ModalDampingTable, RayleighDamping
+from stickslip.study.matrices import (
+    DampingSource,
+    ModalDampingTable,
+    RayleighDamping,
+    damping_of,
+    matrix_of,
+)
 
 if TYPE_CHECKING:
     from pydantic_core import CoreSchema

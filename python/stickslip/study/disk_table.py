@@ -25,7 +25,7 @@ from stickslip.settings.entries import (
     StiffnessValue,
     Table,
 )
-from stickslip.study.structure_table import DampingSource, MatrixSource
+from stickslip.study.matrices import DampingSource, MatrixSource
 
 
 def _harmonics(value: object) -> object:

@@ -28,7 +28,7 @@ from stickslip.study.tables import ForceTable, StudyTables
 if TYPE_CHECKING:
     from stickslip.results.result import Result
     from stickslip.study.disk_table import DiskTable, InterfaceTable
-    from stickslip.study.structure_table import StructureTable
+    from stickslip.study.matrices import StructureTable
     from stickslip.study.tables import ContactTable
 
 _SHOWN_DOFS = 4

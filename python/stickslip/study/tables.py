@@ -33,7 +33,7 @@ from stickslip.settings.entries import (
 )
 from stickslip.study.analysis import AnalysisTable, ByKind
 from stickslip.study.disk_table import CouplingTable, DiskTable
-from stickslip.study.structure_table import Rows, StructureTable
+from stickslip.study.matrices import Rows, StructureTable
 
 
 def _two_dofs(value: object) -> object:
