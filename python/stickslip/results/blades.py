@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self, TypeAlias
 
 import numpy as np
 
@@ -17,7 +17,10 @@ from stickslip.results.peaks import Peak
 if TYPE_CHECKING:
     from stickslip.disk import BladedDisk, MistunedDisk
 
-__all__ = ["Amplification", "BladeMotion"]
+__all__ = ["Amplification", "BladeMotion", "SectorDof"]
+
+SectorDof: TypeAlias = str
+"""Of the equal sectors of a disk."""
 
 
 class Amplification(NamedTuple):
@@ -65,18 +68,13 @@ class BladeMotion(ContactMotion):
         turned = {name: getattr(self.arrays, name) * turn for name in names}
         return replace(self, model=model, arrays=replace(self.arrays, **turned))
 
-    def blades(self, dof: str) -> tuple[int, ...]:
+    def blades(self, dof: SectorDof) -> tuple[int, ...]:
         """Return the blades of a mistuned disk at which a degree of freedom was observed.
 
         Ascending, counted from 0.
 
         Raises ModelError if the result is not one of a `MistunedDisk`, or the dof was observed at
         no blade.
-
-        Parameters
-        ----------
-        dof : str
-            Degree of freedom of a sector, without the number of the sector: "tip".
         """
         disk = self._mistuned_disk()
         known = disk.disk.structure.dofs
@@ -90,15 +88,10 @@ class BladeMotion(ContactMotion):
             )
         return seen
 
-    def blade_amplitudes(self, dof: str, measure: Measure = "half_range") -> Float:
+    def blade_amplitudes(self, dof: SectorDof, measure: Measure = "half_range") -> Float:
         """Return the amplitudes of one degree of freedom at all blades of a mistuned disk.
 
         Raises ModelError as `blades`.
-
-        Parameters
-        ----------
-        dof : str
-            Degree of freedom of a sector: "tip".
 
         Returns
         -------
@@ -108,17 +101,12 @@ class BladeMotion(ContactMotion):
         columns = [self.amplitude(f"{blade}.{dof}", measure) for blade in self.blades(dof)]
         return constant(np.stack(columns, axis=1))
 
-    def highest_blade(self, dof: str, measure: Measure = "half_range") -> tuple[int, Peak]:
+    def highest_blade(self, dof: SectorDof, measure: Measure = "half_range") -> tuple[int, Peak]:
         """Return the blade with the highest peak, and the peak.
 
         All observed blades are followed together over the range of the computed points.
 
         Raises ModelError as `blades`; if no point is solved.
-
-        Parameters
-        ----------
-        dof : str
-            Degree of freedom of a sector: "tip".
 
         Returns
         -------
@@ -134,7 +122,7 @@ class BladeMotion(ContactMotion):
         return blades[index], peak
 
     def amplification(
-        self, tuned: BladeMotion, dof: str, measure: Measure = "half_range"
+        self, tuned: BladeMotion, dof: SectorDof, measure: Measure = "half_range"
     ) -> Amplification:
         """Return the amplification factor of a mistuned disk.
 
@@ -149,8 +137,6 @@ class BladeMotion(ContactMotion):
         ----------
         tuned : ForcedResponse
             The response of the tuned disk.
-        dof : str
-            Degree of freedom of a sector: "tip".
         """
         if not isinstance(tuned, BladeMotion) or not tuned.model.travels:
             raise ModelError(

@@ -127,13 +127,7 @@ class Certificate(Columns):
         )
 
     def column(self, dof: str) -> int:
-        """Return the column of a degree of freedom.
-
-        Raises
-        ------
-        ModelError
-            If it was not compared.
-        """
+        """Return the column of a degree of freedom; one that was not compared is refused."""
         if text(dof, "dof") not in self.dofs:
             raise ModelError(f"certificate: {unknown('dof', dof, self.dofs)}; name it in certify")
         return self.dofs.index(dof)
@@ -155,13 +149,7 @@ class Certificate(Columns):
 
     @classmethod
     def of_dataset(cls, dataset: xr.Dataset) -> Certificate | None:
-        """Return what `variables` added to a dataset; None if nothing was.
-
-        Raises
-        ------
-        KeyError
-            If it is not complete.
-        """
+        """Return what `variables` added to a dataset; None if nothing was."""
         if "certified_dof" not in dataset:
             return None
         tolerance = float(dataset["certified_tolerance"].values)

@@ -67,13 +67,7 @@ def settings_of(kind: type[ColumnResult], dataset: xr.Dataset) -> Settings:
 
 
 def require_fit(dataset: xr.Dataset, model: Model, states: Sequence[str]) -> tuple[str, ...]:
-    """Return the observed degrees of freedom of a dataset, if its sizes are those of a model.
-
-    Raises
-    ------
-    ValueError
-        If the dataset belongs to another model.
-    """
+    """Return the observed dofs of a dataset, or refuse one that belongs to another model."""
     for dimension, noun, names in (
         ("point", "contact points in the arrays", point_names(model)),
         ("state_entry", "entries per state", states),

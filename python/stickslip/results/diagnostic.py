@@ -112,13 +112,7 @@ def to_json(diagnostics: Iterable[Diagnostic]) -> str:
 
 
 def from_attributes(attributes: Mapping[str, str]) -> tuple[Diagnostic, ...]:
-    """Read what `to_json` wrote as the attribute `diagnostics` of a file.
-
-    Raises
-    ------
-    KeyError, ValueError
-        If it is missing or damaged.
-    """
+    """Read what `to_json` wrote as the attribute `diagnostics` of a file."""
     if "diagnostics" not in attributes:
         return tuple(diagnostic("text", str(one)) for one in json.loads(attributes["assumptions"]))
     return tuple(

@@ -22,6 +22,10 @@ _VALUE = (
 )
 _PARAMETERS: Mapping[str, tuple[str, str]] = {
     "dof": ("dof : str\n    An observed degree of freedom.", "observed degree of freedom"),
+    "dof: SectorDof": (
+        'dof : str\n    Degree of freedom of a sector, without the number of the sector: "tip".',
+        "degree of freedom of a sector",
+    ),
     "measure": (
         'measure : {"half_range", "max", "fundamental"}, optional\n'
         "    Half the peak-to-peak range over a period, the largest |x|, or |X_1|.",

@@ -201,13 +201,8 @@ class Columns:
     def read(cls, dataset: xr.Dataset, **more: Any) -> Self:
         """Return the columns that a dataset holds, with fields that are no columns.
 
-        Raises
-        ------
-        KeyError
-            If a variable is missing.
-        ValueError
-            If one has other dimensions, or numbers that no result has: a negative frequency, the
-            blade 99999, text for a number.
+        A variable that is missing is a KeyError; other dimensions, or numbers that no result has,
+        as a negative frequency or the blade 99999, are a ValueError.
         """
         arrays: dict[str, Any] = {}
         for name, entry in cls.table().items():

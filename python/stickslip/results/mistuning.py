@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from stickslip.checks import choice, real_number, unknown
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.blades import SectorDof
 from stickslip.results.drawn import Drawn, plots
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
@@ -123,11 +124,11 @@ class MistuningStudy(ColumnResult):
         status.setflags(write=False)
         return status
 
-    def amplification(self, dof: str) -> Float:
+    def amplification(self, dof: SectorDof) -> Float:
         """Return amplification factors, shape (d, c, p); not-a-number if not found."""
         return self.arrays.amplification[..., self._dof(dof)]
 
-    def error(self, dof: str) -> Float:
+    def error(self, dof: SectorDof) -> Float:
         """Return what the discarded harmonics could change in the factors, shape (d, c, p).
 
         Of the mistuned and of the tuned peak together.
@@ -137,24 +138,24 @@ class MistuningStudy(ColumnResult):
         own = arrays.error_estimate[..., at] / arrays.amplitude[..., at]
         return constant(self.amplification(dof) * (own + tuned[np.newaxis, :, np.newaxis]))
 
-    def blade(self, dof: str) -> Int:
+    def blade(self, dof: SectorDof) -> Int:
         """Return the blades of the highest peaks, shape (d, c, p); -1 if not found."""
         return self.arrays.blade[..., self._dof(dof)]
 
-    def omega(self, dof: str) -> Float:
+    def omega(self, dof: SectorDof) -> Float:
         """Return the frequencies of the highest peaks, shape (d, c, p) [rad/s]."""
         return self.arrays.omega[..., self._dof(dof)]
 
-    def amplitude(self, dof: str) -> Float:
+    def amplitude(self, dof: SectorDof) -> Float:
         """Return the amplitudes of the highest peaks, shape (d, c, p) [m]."""
         return self.arrays.amplitude[..., self._dof(dof)]
 
-    def tuned(self, dof: str) -> Float:
+    def tuned(self, dof: SectorDof) -> Float:
         """Return the amplitudes of the peaks of the tuned disk, shape (c,) [m]."""
         return self.arrays.tuned_amplitude[:, self._dof(dof)]
 
     def factors(
-        self, dof: str, *, deviation: float | None = None, coupling: float | None = None
+        self, dof: SectorDof, *, deviation: float | None = None, coupling: float | None = None
     ) -> Float:
         """Return the amplification factors found for one deviation and one coupling.
 
@@ -171,7 +172,7 @@ class MistuningStudy(ColumnResult):
 
     def weibull(
         self,
-        dof: str,
+        dof: SectorDof,
         *,
         deviation: float | None = None,
         coupling: float | None = None,
@@ -187,7 +188,7 @@ class MistuningStudy(ColumnResult):
 
     def percentile(
         self,
-        dof: str,
+        dof: SectorDof,
         q: float,
         *,
         method: Literal["weibull", "empirical"] = "weibull",
@@ -215,11 +216,11 @@ class MistuningStudy(ColumnResult):
         fit = self.weibull(dof, deviation=deviation, coupling=coupling, confidence=confidence)
         return fit.percentile(q)
 
-    def plot_deviation(self, dof: str, **options: Unpack[TrendOptions]) -> Axes:
+    def plot_deviation(self, dof: SectorDof, **options: Unpack[TrendOptions]) -> Axes:
         """Draw factors against the deviation; see `stickslip.plot.amplification`."""
         return plots.amplification(self, dof, "deviation", **options)
 
-    def plot_coupling(self, dof: str, **options: Unpack[TrendOptions]) -> Axes:
+    def plot_coupling(self, dof: SectorDof, **options: Unpack[TrendOptions]) -> Axes:
         """Draw factors against the stiffness of couplings; see `stickslip.plot.amplification`."""
         return plots.amplification(self, dof, "coupling", **options)
 
@@ -228,7 +229,7 @@ class MistuningStudy(ColumnResult):
         factors = (ALL.split(), self.arrays.amplification.copy(), said)
         return {"amplification": factors} if derived else {}
 
-    def _dof(self, dof: str) -> int:
+    def _dof(self, dof: SectorDof) -> int:
         if dof not in self.dofs:
             raise ModelError(unknown("dof of the study", dof, self.dofs))
         return self.dofs.index(dof)

@@ -75,13 +75,7 @@ def sealed_whole(content: bytes) -> bool | None:
 
 
 def require_harmless(content: bytes) -> None:
-    """Refuse a file over which HDF5 crashes, never ends, or needs too much memory.
-
-    Raises
-    ------
-    ValueError
-        With the reason.
-    """
+    """Refuse, by a ValueError, a file over which HDF5 crashes, never ends, or fills the memory."""
     patience = _PATIENCE + len(content) / _PACE
     command = [sys.executable, "-P", "-c", _READ, str(_RATIO * len(content))]
     try:

@@ -25,18 +25,7 @@ class Ending(StrEnum):
 
     @classmethod
     def from_code(cls, code: int) -> Self:
-        """Return the member that the compiled core, or a file, writes as a number.
-
-        Parameters
-        ----------
-        code : int
-            Position among the members, from 0.
-
-        Raises
-        ------
-        ModelError
-            If there is no such member.
-        """
+        """Return the member that the compiled core, or a file, writes as a number, from 0."""
         members = tuple(cls)
         if not 0 <= code < len(members):
             raise ModelError(f"status {code} is unknown; known: 0 to {len(members) - 1}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -36,20 +36,14 @@ def model_variables(model: Model) -> Mapping[Hashable, object]:
     are added.
     """
     kind = type(model).__name__
-    return {"model": ((), kind, {"long_name": "kind of model"}), **_WRITERS[kind](model)}
+    return {"model": ((), kind, {"long_name": "kind of model"}), **_KINDS[kind][0](model)}
 
 
 def model_of(dataset: xr.Dataset) -> Model:
-    """Return the model that a dataset holds; see `model_variables`.
-
-    Raises
-    ------
-    KeyError, ValueError
-        If the dataset is incomplete, or of no kind of model that there is.
-    """
+    """Return the model that a dataset holds; see `model_variables`."""
     # The first files held no other kind and did not say so.
     kind = str(dataset["model"].values) if "model" in dataset else "Model"
-    return _READERS[kind](dataset)
+    return _KINDS[kind][1](dataset)
 
 
 def _model(model: Model) -> dict[Hashable, object]:
@@ -127,15 +121,11 @@ def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
     return MistunedDisk(disk, blades, *parts_of(dataset))
 
 
-_WRITERS: Mapping[str, Callable[[Any], Mapping[Hashable, object]]] = {
-    "Model": _model,
-    "BladedDisk": _bladed,
-    "MistunedDisk": _mistuned,
-}
-_READERS: Mapping[str, Callable[[xr.Dataset], Model]] = {
-    "Model": _read_model,
-    "BladedDisk": _read_bladed,
-    "MistunedDisk": _read_mistuned,
+_Writer: TypeAlias = Callable[[Any], Mapping[Hashable, object]]
+_KINDS: Mapping[str, tuple[_Writer, Callable[[xr.Dataset], Model]]] = {
+    "Model": (_model, _read_model),
+    "BladedDisk": (_bladed, _read_bladed),
+    "MistunedDisk": (_mistuned, _read_mistuned),
 }
 
 

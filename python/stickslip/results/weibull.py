@@ -12,7 +12,6 @@ section 2.6.6). They are not symmetric, as they should be for what lies beyond t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -22,6 +21,7 @@ from numpy.typing import ArrayLike
 from stickslip.checks import real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float, constant
+from stickslip.results.documented import Frozen
 from stickslip.results.weibull_likelihood import best_fit, excess_at_no_limit, interval
 
 __all__ = ["FEWEST", "Estimate", "Percentile", "WeibullFit", "empirical_percentile", "fit_weibull"]
@@ -55,8 +55,7 @@ class Percentile(NamedTuple):
     """Upper end; infinity if there are too few factors for one."""
 
 
-@dataclass(frozen=True, repr=False)
-class WeibullFit:
+class WeibullFit(Frozen):
     """A Weibull distribution of maxima, F(x) = exp(-((location - x)/scale)^shape).
 
     Attributes
@@ -130,22 +129,14 @@ class WeibullFit:
         return np.asarray(_frozen(self.best).ppf(probability), dtype=np.float64)
 
     def percentile(self, q: float) -> Percentile:
-        """Return a percentile of the fit.
+        """Return a percentile of the fit, with the interval of its profile likelihood.
+
+        Raises ModelError if q lies outside.
 
         Parameters
         ----------
         q : float
             From 0 to 100, exclusive: 99.9.
-
-        Returns
-        -------
-        Percentile
-            With the interval of its profile likelihood.
-
-        Raises
-        ------
-        ModelError
-            If q lies outside.
         """
         share = _share(q)
         value = float(self.quantile(share))
@@ -154,22 +145,17 @@ class WeibullFit:
     def test(self, samples: int = 99, seed: int = 0) -> float:
         """Return how likely so large a distance is, if the distribution is right.
 
+        The share of draws with a larger one, from 1/(samples + 1) to 1; below 0.05 the distribution
+        is doubtful.
+
+        Raises ModelError if samples or seed are no whole numbers in their range.
+
         Parameters
         ----------
         samples : int, optional
             Samples of the fit that are drawn, each fitted anew (parametric bootstrap).
         seed : int, optional
             Of the draws.
-
-        Returns
-        -------
-        float
-            Share of the draws, from 1/(samples + 1) to 1; below 0.05 the distribution is doubtful.
-
-        Raises
-        ------
-        ModelError
-            If samples or seed are no whole numbers in their range.
         """
         count = whole_number(samples, "samples", smallest=19)
         generator = np.random.default_rng(whole_number(seed, "seed"))
@@ -193,7 +179,7 @@ def fit_weibull(factors: ArrayLike, confidence: float = 0.95) -> WeibullFit:
             f"weibull: all {data.size} factors are {data[0]:.6g}, which is no distribution; give a "
             "deviation above 0"
         )
-    return WeibullFit(level, constant(data), best_fit(data))
+    return WeibullFit(confidence=level, factors=constant(data), best=best_fit(data))
 
 
 def empirical_percentile(factors: ArrayLike, q: float, confidence: float = 0.95) -> Percentile:

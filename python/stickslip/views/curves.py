@@ -11,18 +11,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.results.certificate import Certificate
+from stickslip.results.drawn import plots
 from stickslip.results.exact_response import ExactResponse
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts
 from stickslip.units import quantity
-from stickslip.views.kinds import View
+from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.tables import Row, Table, tabulated
 
 if TYPE_CHECKING:
     from stickslip.disk import MistunedDisk
     from stickslip.results.fields import Int
     from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel
+    from stickslip.views.picture import Panel, Panels
 
 __all__ = ["CurveView", "certificates"]
 
@@ -37,9 +38,7 @@ class CurveView(View[ForcedResponse]):
     # short headings: eight columns have to fit on a terminal of 80
     numbers = ("rad/s", "Hz", "peak [{}]", "error [{}]", "H", "converged")
 
-    def rows(
-        self, result: ForcedResponse, dofs: Sequence[str], length: float
-    ) -> Iterator[Sequence[str]]:
+    def rows(self, result: ForcedResponse, dofs: Dofs, length: float) -> Rows:
         """Return a row per DOF."""
         for row in result.summary(dofs):
             mark = "*" * row.at_edge + "?" * row.beside_gap
@@ -111,47 +110,40 @@ class CurveView(View[ForcedResponse]):
             found.append(f"{count} ({failed[0]}). {failed[0].advice}")
         return found
 
-    def panels(
-        self, results: Sequence[ForcedResponse], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[ForcedResponse], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the response curves, one panel per DOF."""
-        from stickslip import plot
-
         length, omega = output.length_unit, output.omega_unit
-        draw = partial(plot.curves, results, omega_unit=omega, length_unit=length)
+        draw = partial(plots.curves, results, omega_unit=omega, length_unit=length)
         return [partial(draw, dof) for dof in dofs]
 
-    def details(
-        self, result: ForcedResponse, dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def details(self, result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Panels:
         """Return blades, slip, loops at the peak and multipliers, as far as a curve has them."""
         return list(_details(result, dofs, output)) if result.arrays.solved.any() else []
 
 
-def _details(result: ForcedResponse, dofs: Sequence[str], output: OutputTable) -> Iterator[Panel]:
-    from stickslip import plot
+def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterator[Panel]:
     from stickslip.disk import MistunedDisk
 
     length, omega = output.length_unit, output.omega_unit
     if isinstance(result.model, MistunedDisk):
         for dof in _of_sectors(result.model, dofs):
-            yield partial(plot.blade_bars, result, dof, length_unit=length)
-            yield partial(plot.blade_curves, result, dof, omega_unit=omega, length_unit=length)
+            yield partial(plots.blade_bars, result, dof, length_unit=length)
+            yield partial(plots.blade_curves, result, dof, omega_unit=omega, length_unit=length)
     contacts = result.model.contacts
     if contacts:
         points = sum(contact.points for contact in contacts)
         if points <= _SLIP_POINTS and result.omega.size > 1:
-            yield partial(plot.slip, result, omega_unit=omega)
+            yield partial(plots.slip, result, omega_unit=omega)
         at = int(np.nanargmax(result.amplitude(dofs[0])))
         shares = [result.slip_fraction(contact)[at].max() for contact in range(len(contacts))]
         # The contacts that slip most tell most.
         for contact in sorted(np.argsort(shares)[::-1][:_LOOPS].tolist()):
-            yield partial(plot.hysteresis, result, contact, at, length_unit=length)
+            yield partial(plots.hysteresis, result, contact, at, length_unit=length)
     if isinstance(result, ExactResponse):
-        yield partial(plot.multipliers, result, omega_unit=omega)
+        yield partial(plots.multipliers, result, omega_unit=omega)
 
 
-def _of_sectors(disk: MistunedDisk, dofs: Sequence[str]) -> list[str]:
+def _of_sectors(disk: MistunedDisk, dofs: Dofs) -> list[str]:
     """Return the DOFs of a sector to which DOFs of a mistuned disk belong."""
     known = disk.disk.structure.dofs
     return [one for one in dict.fromkeys(dof.partition(".")[2] for dof in dofs) if one in known]

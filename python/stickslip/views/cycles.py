@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.results.drawn import plots
 from stickslip.results.limit_cycles import LimitCycles, StabilityMap
 from stickslip.results.stability import STATES, stability_counts
-from stickslip.views.kinds import View
+from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.tables import Row, counted
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel
+    from stickslip.views.picture import Panels
 
 __all__ = ["CycleView", "MapView"]
 
@@ -26,13 +27,11 @@ class CycleView(View[LimitCycles]):
     texts = ("", "followed")
     last = ("stable",)
 
-    def headings(self, dofs: Sequence[str], length_unit: str) -> list[str]:
+    def headings(self, dofs: Dofs, length_unit: str) -> list[str]:
         """Return the headings of the numbers, among them one for every DOF."""
         return ["r", "rad/s", *(f"{dof} [{length_unit}]" for dof in dofs), "|multiplier|"]
 
-    def rows(
-        self, result: LimitCycles, dofs: Sequence[str], length: float
-    ) -> Iterator[Sequence[str]]:
+    def rows(self, result: LimitCycles, dofs: Dofs, length: float) -> Rows:
         """Return a row per cycle."""
         for place, index in _places(result):
             sizes = np.abs(result.multipliers[index, int(result.neutral[index]) :])
@@ -67,15 +66,11 @@ class CycleView(View[LimitCycles]):
         """Word what was not solved, one line per cause."""
         return counted(result.status, f"{result.omega.size} cycles")
 
-    def panels(
-        self, results: Sequence[LimitCycles], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[LimitCycles], dofs: Dofs, output: OutputTable) -> Panels:
         """Return amplitude over what is followed, one panel per DOF, and the multipliers."""
-        from stickslip import plot
-
         length, omega = output.length_unit, output.omega_unit
         curves = partial(
-            plot.limit_cycles,
+            plots.limit_cycles,
             list(results),
             length_unit=length,
             omega_unit=omega,
@@ -84,7 +79,7 @@ class CycleView(View[LimitCycles]):
         known = [result for result in results if result.arrays.known.any()]
         return [
             *(partial(curves, dof) for dof in dofs),
-            *(partial(plot.cycle_multipliers, result) for result in known),
+            *(partial(plots.cycle_multipliers, result) for result in known),
         ]
 
 
@@ -105,9 +100,7 @@ class MapView(View[StabilityMap]):
 
     numbers = ("varied", "value", "limit r", "rad/s", "stable up to r")
 
-    def rows(
-        self, result: StabilityMap, dofs: Sequence[str], length: float
-    ) -> Iterator[Sequence[str]]:
+    def rows(self, result: StabilityMap, dofs: Dofs, length: float) -> Rows:
         """Return a row per value."""
         variation = result.settings.variation
         columns = (result.values, result.limit, result.omega, result.stable_limit)
@@ -125,10 +118,6 @@ class MapView(View[StabilityMap]):
             ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
         ]
 
-    def panels(
-        self, results: Sequence[StabilityMap], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[StabilityMap], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the maps."""
-        from stickslip import plot
-
-        return [partial(plot.stability_map, result) for result in results]
+        return [partial(plots.stability_map, result) for result in results]

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
 from stickslip.results.damper_curve import DamperCurve
+from stickslip.results.drawn import plots
 from stickslip.results.optimal_damper import OptimalDamper
-from stickslip.views.kinds import View
+from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.tables import Row, assumed, counted
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel
+    from stickslip.views.picture import Panels
 
 __all__ = ["DamperView", "OptimumView"]
 
@@ -24,9 +25,7 @@ class DamperView(View[DamperCurve]):
     texts = ("dof", "", "varied")
     numbers = ("value", "peak [{}]", "rad/s", "error", "H")
 
-    def rows(
-        self, result: DamperCurve, dofs: Sequence[str], length: float
-    ) -> Iterator[Sequence[str]]:
+    def rows(self, result: DamperCurve, dofs: Dofs, length: float) -> Rows:
         """Return first, lowest and last solved value."""
         solved = result.arrays.solved.nonzero()[0].tolist()
         if not solved:
@@ -61,14 +60,10 @@ class DamperView(View[DamperCurve]):
         """Word what was not solved, one line per cause."""
         return counted(result.status, f"{result.values.size} values")
 
-    def panels(
-        self, results: Sequence[DamperCurve], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[DamperCurve], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the damper performance curves: amplitude, frequency, limits and optimum."""
-        from stickslip import plot
-
         length, omega = output.length_unit, output.omega_unit
-        draw = partial(plot.damper, length_unit=length, omega_unit=omega)
+        draw = partial(plots.damper, length_unit=length, omega_unit=omega)
         return [partial(draw, result) for result in results]
 
 
@@ -78,9 +73,7 @@ class OptimumView(View[OptimalDamper]):
     texts = ("dof", "varied")
     numbers = ("value", "peak [{}]", "rad/s")
 
-    def rows(
-        self, result: OptimalDamper, dofs: Sequence[str], length: float
-    ) -> Iterator[Sequence[str]]:
+    def rows(self, result: OptimalDamper, dofs: Dofs, length: float) -> Rows:
         """Return a row per minimum."""
         settings = result.curve.settings
         for minimum in result.minima:
@@ -101,8 +94,6 @@ class OptimumView(View[OptimalDamper]):
         """Word what was not solved, one line per cause."""
         return DamperView().failures(result.curve)
 
-    def panels(
-        self, results: Sequence[OptimalDamper], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[OptimalDamper], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the damper performance curves."""
         return DamperView().panels([result.curve for result in results], dofs, output)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from stickslip.errors import ModelError
 from stickslip.results.diagnostic import Severity
@@ -15,9 +15,9 @@ from stickslip.views.tables import Row, Table, assumed, model_rows, tabulated
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel
+    from stickslip.views.picture import Panels
 
-__all__ = ["VIEWS", "View", "cautions", "failures", "view_of"]
+__all__ = ["VIEWS", "Dofs", "Rows", "View", "cautions", "failures", "view_of"]
 
 VIEWS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.views.curves", "CurveView"),
@@ -35,6 +35,10 @@ VIEWS: Mapping[str, tuple[str, str]] = {
 
 
 Kind = TypeVar("Kind", bound=Result)
+Dofs: TypeAlias = Sequence[str]
+"""Names of DOFs."""
+Rows: TypeAlias = Iterable[Sequence[str]]
+"""Cells of tables, row by row."""
 
 
 class View(ABC, Generic[Kind]):
@@ -51,12 +55,12 @@ class View(ABC, Generic[Kind]):
     last: Sequence[str] = ()
     """Headings of texts behind the numbers."""
 
-    def headings(self, dofs: Sequence[str], length_unit: str) -> list[str]:
+    def headings(self, dofs: Dofs, length_unit: str) -> list[str]:
         """Return the headings of the numbers."""
         return [heading.format(length_unit) for heading in self.numbers]
 
     @abstractmethod
-    def rows(self, result: Kind, dofs: Sequence[str], length: float) -> Iterable[Sequence[str]]:
+    def rows(self, result: Kind, dofs: Dofs, length: float) -> Rows:
         """Return the rows of a result, with amplitudes in units of a length."""
 
     def tables(
@@ -96,12 +100,10 @@ class View(ABC, Generic[Kind]):
         return []
 
     @abstractmethod
-    def panels(
-        self, results: Sequence[Kind], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[Kind], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the default picture of results, together."""
 
-    def details(self, result: Kind, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
+    def details(self, result: Kind, dofs: Dofs, output: OutputTable) -> Panels:
         """Return what a report shows of one result beside the default picture."""
         return []
 

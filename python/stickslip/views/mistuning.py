@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.errors import ModelError
+from stickslip.results.drawn import plots
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import fit_weibull
-from stickslip.views.kinds import View
+from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.tables import Row, counted, listed
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel
+    from stickslip.views.picture import Panels
 
 __all__ = ["MistuningView"]
 
@@ -30,9 +31,7 @@ class MistuningView(View[MistuningStudy]):
     texts = ("dof",)
     numbers = ("deviation", "coupling [N/m]", "disks", "mean", "largest", f"{_HIGH:g} %", "95 %")
 
-    def rows(
-        self, result: MistuningStudy, dofs: Sequence[str], length: float
-    ) -> Iterator[Sequence[str]]:
+    def rows(self, result: MistuningStudy, dofs: Dofs, length: float) -> Rows:
         """Return a row for the disks of one deviation and one coupling, and every DOF."""
         for d, deviation in enumerate(result.deviation):
             for c, coupling in enumerate(result.coupling_stiffness):
@@ -75,34 +74,26 @@ class MistuningView(View[MistuningStudy]):
         """Word what was not solved, one line per cause."""
         return counted(result.status.ravel(), f"{result.status.size} peaks")
 
-    def panels(
-        self, results: Sequence[MistuningStudy], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[MistuningStudy], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the distributions; of several deviations or couplings how they move them."""
-        from stickslip import plot
-
-        drawn: list[Panel] = []
+        drawn: Panels = []
         for result in results:
             several = (result.deviation.size > 1, result.coupling_stiffness.size > 1)
             for dof in _chosen(result, dofs):
                 if several[0]:
-                    drawn.append(partial(plot.amplification, result, dof, "deviation"))
+                    drawn.append(partial(plots.amplification, result, dof, "deviation"))
                 if several[1]:
-                    drawn.append(partial(plot.amplification, result, dof, "coupling"))
+                    drawn.append(partial(plots.amplification, result, dof, "coupling"))
                 if not any(several):
-                    drawn.append(partial(plot.distribution, result, dof))
+                    drawn.append(partial(plots.distribution, result, dof))
         return drawn
 
-    def details(
-        self, result: MistuningStudy, dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def details(self, result: MistuningStudy, dofs: Dofs, output: OutputTable) -> Panels:
         """Return the distributions behind a picture of several deviations or couplings."""
-        from stickslip import plot
-
         if result.deviation.size == 1 and result.coupling_stiffness.size == 1:
             return []
-        return [partial(plot.distribution, result, dof) for dof in _chosen(result, dofs)]
+        return [partial(plots.distribution, result, dof) for dof in _chosen(result, dofs)]
 
 
-def _chosen(result: MistuningStudy, dofs: Sequence[str]) -> Sequence[str]:
+def _chosen(result: MistuningStudy, dofs: Dofs) -> Sequence[str]:
     return [dof for dof in dofs if dof in result.dofs] or result.dofs

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,14 +11,15 @@ import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.results.basin_map import BasinMap
+from stickslip.results.drawn import plots
 from stickslip.results.fate_arrays import Motion
 from stickslip.results.motion_class import MotionClass
-from stickslip.views.kinds import View
+from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.tables import Row
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel
+    from stickslip.views.picture import Panels
 
 __all__ = ["BasinView", "MotionView"]
 
@@ -29,9 +30,7 @@ class MotionView(View[MotionClass]):
     texts = ("dof", "motion", "mode")
     numbers = ("amplitude [{}]", "rad/s", "decided [s]")
 
-    def rows(
-        self, result: MotionClass, dofs: Sequence[str], length: float
-    ) -> Iterator[Sequence[str]]:
+    def rows(self, result: MotionClass, dofs: Dofs, length: float) -> Rows:
         """Return a row per DOF."""
         for dof in dofs:
             yield (
@@ -56,16 +55,12 @@ class MotionView(View[MotionClass]):
         undecided = result.motion == Motion.UNDECIDED
         return [f"{result.motion}. {result.reason.advice}"] if undecided else []
 
-    def panels(
-        self, results: Sequence[MotionClass], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[MotionClass], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the spectra of motions that have one."""
-        from stickslip import plot
-
         unit, drawn = output.omega_unit, [result for result in results if len(result.tail)]
         if not drawn:
             raise ModelError("motion: one that decays or grows for ever has no picture")
-        return [partial(plot.lines, one, dof, omega_unit=unit) for one in drawn for dof in dofs]
+        return [partial(plots.lines, one, dof, omega_unit=unit) for one in drawn for dof in dofs]
 
 
 class BasinView(View[BasinMap]):
@@ -74,7 +69,7 @@ class BasinView(View[BasinMap]):
     texts = ("motion", "mode")
     numbers = ("starts", "share", "rad/s")
 
-    def rows(self, result: BasinMap, dofs: Sequence[str], length: float) -> Iterator[Sequence[str]]:
+    def rows(self, result: BasinMap, dofs: Dofs, length: float) -> Rows:
         """Return a row per outcome."""
         for place, (outcome, count) in enumerate(result.outcomes.items()):
             omega = result.omega[result.codes == place]
@@ -109,16 +104,12 @@ class BasinView(View[BasinMap]):
             for reason, count in counts.items()
         ]
 
-    def panels(
-        self, results: Sequence[BasinMap], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[BasinMap], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the maps over two axes."""
-        from stickslip import plot
-
         unit, drawn = output.length_unit, [result for result in results if result.settings.axes]
         if not drawn:
             raise ModelError("basin map: of a list of starts, which has no picture; give it axes")
-        return [partial(plot.basins, result, length_unit=unit) for result in drawn]
+        return [partial(plots.basins, result, length_unit=unit) for result in drawn]
 
 
 def _span(result: MotionClass | BasinMap) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from stickslip.errors import ModelError
 from stickslip.files import make_folder, write
@@ -13,7 +13,7 @@ from stickslip.files import make_folder, write
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Panel", "draw", "titled"]
+__all__ = ["Panel", "Panels", "draw", "titled"]
 
 
 class Panel(Protocol):
@@ -22,6 +22,9 @@ class Panel(Protocol):
     def __call__(self, *, ax: Axes) -> object:
         """Draw it."""
         ...
+
+
+Panels: TypeAlias = list[Panel]
 
 
 def draw(panels: Sequence[Panel], file: Path) -> None:

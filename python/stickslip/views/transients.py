@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from stickslip.results.drawn import plots
 from stickslip.results.transient import Transient
-from stickslip.views.kinds import View
+from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.tables import Row
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel
+    from stickslip.views.picture import Panels
 
 __all__ = ["TransientView"]
 
@@ -24,9 +25,7 @@ class TransientView(View[Transient]):
     numbers = ("amplitude [{}]", "periods", "change", "rad/s")
     last = ("status",)
 
-    def rows(
-        self, result: Transient, dofs: Sequence[str], length: float
-    ) -> Iterator[Sequence[str]]:
+    def rows(self, result: Transient, dofs: Dofs, length: float) -> Rows:
         """Return a row per DOF."""
         for dof in dofs:
             yield (
@@ -62,26 +61,20 @@ class TransientView(View[Transient]):
             return []
         return [f"{result.status} after {result.periods} periods. {result.status.advice}"]
 
-    def panels(
-        self, results: Sequence[Transient], dofs: Sequence[str], output: OutputTable
-    ) -> list[Panel]:
+    def panels(self, results: Sequence[Transient], dofs: Dofs, output: OutputTable) -> Panels:
         """Return histories of DOFs and contacts, section and spectrum of the first DOF."""
-        from stickslip import plot
-
-        drawn: list[Panel] = []
+        drawn: Panels = []
         for result in results:
             unit, contacts = output.length_unit, result.model.contact_names[:2]
-            drawn += [partial(plot.history, result, dof, length_unit=unit) for dof in dofs]
-            drawn += [partial(plot.contact_history, result, contact) for contact in contacts]
-            drawn.append(partial(plot.poincare, result, dofs[0], length_unit=unit))
+            drawn += [partial(plots.history, result, dof, length_unit=unit) for dof in dofs]
+            drawn += [partial(plots.contact_history, result, contact) for contact in contacts]
+            drawn.append(partial(plots.poincare, result, dofs[0], length_unit=unit))
             if result.kept_periods:
-                drawn.append(partial(plot.spectrum, result, dofs[0], omega_unit=output.omega_unit))
+                drawn.append(partial(plots.spectrum, result, dofs[0], omega_unit=output.omega_unit))
         return drawn
 
-    def details(self, result: Transient, dofs: Sequence[str], output: OutputTable) -> list[Panel]:
+    def details(self, result: Transient, dofs: Dofs, output: OutputTable) -> Panels:
         """Return the phase plane of the first DOF."""
-        from stickslip import plot
-
         if not result.periods:
             return []
-        return [partial(plot.phase, result, dofs[0], length_unit=output.length_unit)]
+        return [partial(plots.phase, result, dofs[0], length_unit=output.length_unit)]
