@@ -40,7 +40,7 @@ const OF_SOLUTION: f64 = 6.0;
 /// less, estimates at low frequencies stop short of the stuck modes, and of the error.
 const ALLOWED: f64 = 3.0;
 /// The same of a ring, of which nearly all is reckoned.
-const ALLOWED_OF_RING: f64 = 1.5;
+const ALLOWED_OF_RING: f64 = 2.0;
 
 /// The change after the second step counts up to this multiple of that after the first: where it is
 /// still larger, the second one overshoots.
