@@ -13,8 +13,6 @@ from typing import Any
 from stickslip.checks import listed, unknown
 from stickslip.errors import CallError
 
-__all__ = ["checked", "checked_names", "misfit"]
-
 _PACKAGE = __name__.partition(".")[0]
 _WRAPPED = "__stickslip_checked__"
 _done: set[type] = set()

@@ -17,33 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.errors import EntryError, ModelError
 
-__all__ = [
-    "MAX_COUNT",
-    "MAX_DENSE",
-    "MAX_SPARSE",
-    "Matrix",
-    "MatrixLike",
-    "SparseMatrix",
-    "brief",
-    "choice",
-    "file_path",
-    "is_file",
-    "is_reserved",
-    "listed",
-    "members",
-    "optional_package",
-    "real_matrix",
-    "real_number",
-    "require_finite",
-    "require_keys",
-    "require_square",
-    "set_fields",
-    "text",
-    "unknown",
-    "vanished",
-    "whole_number",
-]
-
 MAX_DENSE = 5000
 """Largest sparse matrix, in rows, that is made dense."""
 

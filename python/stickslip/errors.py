@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["CallError", "EntryError", "Interrupted", "ModelError"]
-
 
 class ModelError(ValueError):
     """Input that cannot be used; one line names the entry, its value and the remedy.

@@ -20,8 +20,6 @@ from pathlib import Path
 from stickslip.checks import is_reserved
 from stickslip.errors import ModelError
 
-__all__ = ["make_folder", "refusal", "require_place", "require_writable", "write"]
-
 _MARK, _END = ".stickslip-", ".part"
 _HOST = f"{zlib.crc32(platform.node().encode()):08x}"
 _TEMPORARY = re.compile(

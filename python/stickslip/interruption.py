@@ -12,8 +12,6 @@ from typing import Any, Self, TypeVar
 
 from stickslip.errors import Interrupted
 
-__all__ = ["SIGNALS", "Interruption", "stopped"]
-
 SIGNALS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )

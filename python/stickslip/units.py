@@ -14,8 +14,6 @@ from stickslip.errors import EntryError
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-__all__ = ["quantity"]
-
 # Angles carry a dimension of their own. In pint's stock registry the radian is a pure number: there
 # "25 Hz" silently becomes 25 rad/s and "5 %" a phase of 0.05 rad. Here a hertz is a turn per second
 # and what is not an angle is refused. The short list also loads 15 times faster than the stock one.

@@ -12,8 +12,6 @@ import typer
 
 from stickslip.cli.exit_codes import Command, Commands, guarded
 
-__all__ = ["Dofs", "Files", "Hertz", "app", "command"]
-
 P = ParamSpec("P")
 
 Files = Annotated[

@@ -19,9 +19,6 @@ from stickslip.interruption import Interruption
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
 
-__all__ = ["certify", "plot", "report", "schema", "show"]
-
-
 _file = partial(typer.Option, metavar="FILE")
 _omega = partial(typer.Option, metavar="OMEGA")
 

@@ -22,17 +22,6 @@ from stickslip.views.tables import new_table
 if TYPE_CHECKING:
     from stickslip.results.result import Result
 
-__all__ = [
-    "complain",
-    "give_up",
-    "grid",
-    "progress",
-    "show",
-    "show_all",
-    "stages",
-    "tell",
-]
-
 _STAGES = {
     "compliance": "compliance",
     "law": "law (force, tangent)",

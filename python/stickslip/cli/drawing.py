@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from stickslip.results.result import Result
     from stickslip.views.picture import Panel
 
-__all__ = ["Wanted"]
-
 
 @dataclass(frozen=True)
 class Wanted:

@@ -21,8 +21,6 @@ from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.interruption import SIGNALS
 
-__all__ = ["NOT_CONVERGED", "Command", "Commands", "guarded", "integer"]
-
 NOT_CONVERGED, REFUSED, DEFECT = 1, 2, 70
 STOPPED = 128
 """Exit code of a run that a signal has ended, beside the signal's number."""

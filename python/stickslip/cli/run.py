@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from stickslip.results.result import Result
     from stickslip.study import Case, Study
 
-__all__ = ["run", "warned"]
-
 
 class Clock(dict[str, float]):
     """Seconds spent, by what was done."""

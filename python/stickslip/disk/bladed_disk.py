@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from stickslip.disk.mistuned import MistunedDisk
     from stickslip.disk.waves import NodalDiameters
 
-__all__ = ["ALL_SECTORS", "NEXT", "BladedDisk", "stranger"]
-
 ALL_SECTORS = "mistuning = {deviation = 0.0} in [disk]"
 """How study files ask for all sectors of a tuned disk."""
 

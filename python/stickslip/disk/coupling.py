@@ -26,17 +26,6 @@ from stickslip.errors import ModelError
 from stickslip.model.damping import makes_blocks
 from stickslip.model.structure import Rayleigh, Structure
 
-__all__ = [
-    "MATRICES",
-    "Blocks",
-    "Coupling",
-    "CyclicMatrices",
-    "Interface",
-    "assembled",
-    "coupling_from_spec",
-    "cyclic_sector",
-]
-
 
 @dataclass(frozen=True)
 class Coupling:

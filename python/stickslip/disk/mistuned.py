@@ -23,8 +23,6 @@ from stickslip.model.structure import Structure
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["MistunedDisk", "Ring", "SectorContact", "deviating", "tuned_disk"]
-
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class MistunedDisk(Model):

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from stickslip.checks import choice, real_number, whole_number
 from stickslip.errors import ModelError
 
-__all__ = ["DISTRIBUTIONS", "Distribution", "drawn_patterns", "mistuning_pattern"]
-
 Distribution: TypeAlias = Literal["normal", "uniform"]
 DISTRIBUTIONS: tuple[str, ...] = get_args(Distribution)
 """What deviations may be drawn from."""

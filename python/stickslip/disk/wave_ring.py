@@ -20,8 +20,6 @@ from stickslip.model.model import Model, from_core
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["Rotation", "moving", "rotation_of", "wave_ring"]
-
 
 class Rotation(NamedTuple):
     """A symmetry in space and time: ``X_j(t + T/parts) = sign X_(j+shift)(t)``."""

@@ -26,15 +26,6 @@ if TYPE_CHECKING:
 
     from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
 
-__all__ = [
-    "AerodynamicWaves",
-    "InfluenceCoefficients",
-    "NodalDiameters",
-    "Wave",
-    "aerodynamic_waves",
-    "nodal_diameters",
-]
-
 
 @dataclass(frozen=True, eq=False)
 class Wave:

@@ -20,8 +20,6 @@ from stickslip.errors import ModelError
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.sparse import Factor, lowest_modes, symmetric_sparse
 
-__all__ = ["craig_bampton"]
-
 Dof: TypeAlias = int | str
 _FIRST = 20
 """Modes computed at first where a frequency says how many are wanted."""

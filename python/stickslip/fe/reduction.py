@@ -17,8 +17,6 @@ from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
 from stickslip.model.structure import Structure
 
-__all__ = ["Reduction", "ReductionReport"]
-
 
 class Reduction:
     """What `craig_bampton` makes of a structure; x = T q.

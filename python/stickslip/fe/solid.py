@@ -20,8 +20,6 @@ from stickslip.files import refusal, write
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-__all__ = ["Solid", "von_mises", "von_mises_range"]
-
 _BOTTOM = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)]
 _EDGES = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)]
 _VTK = np.array(

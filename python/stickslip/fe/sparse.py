@@ -16,8 +16,6 @@ from stickslip.errors import ModelError
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-__all__ = ["Factor", "asymmetry", "lowest_modes", "symmetric_sparse"]
-
 _ASYMMETRY = 1e-8
 _DENSE = 400
 """Rows up to which a dense eigenproblem is faster and surer than Lanczos' method."""

@@ -14,8 +14,6 @@ from matplotlib.axes import Axes
 from stickslip.html.notation import colour_of, label, scaled
 from stickslip.results.arrays import Float
 
-__all__ = ["Trace", "UndrawableError", "proxy", "traces"]
-
 Trace: TypeAlias = dict[str, Any]
 
 _FRACTION = "y3"

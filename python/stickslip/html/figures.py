@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
     from stickslip.views.picture import Panel
 
-__all__ = ["Drawn", "drawn"]
-
 _SIZE = (7.4, 4.2)
 _HEIGHT, _LEGEND_ROW, _LEGEND_WIDTH = 400, 22, 800
 _BUTTONS = 20

@@ -15,8 +15,6 @@ from stickslip.model.structure import Rayleigh, Structure
 from stickslip.results.result import Result
 from stickslip.views.tables import Row, Table, model_rows, new_table
 
-__all__ = ["ModelSummary", "summaries"]
-
 _MODES = 12
 
 

@@ -12,8 +12,6 @@ from matplotlib import colors
 
 from stickslip.results.arrays import Float
 
-__all__ = ["colour_of", "label", "plain", "scaled"]
-
 _STEPS = 32
 _MATH = re.compile(r"(?<!\\)\$([^$]+)\$")
 _SHIFT = re.compile(r"([_^])(?:\{([^{}]*)\}|(\w))")

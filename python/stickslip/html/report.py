@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from stickslip.html.sections import Entry
 
-__all__ = ["report"]
-
 Reported: TypeAlias = Union[Result, str, "os.PathLike[str]"]
 
 

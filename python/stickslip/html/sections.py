@@ -26,8 +26,6 @@ from stickslip.views.kinds import VIEWS, cautions, failures, view_of
 from stickslip.views.picture import Panel
 from stickslip.views.tables import Row, Table, new_table
 
-__all__ = ["Entry", "content"]
-
 
 class Entry(NamedTuple):
     """A result of the report."""

@@ -16,8 +16,6 @@ from stickslip.io.source import Key, read_text
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = ["read_abaqus", "read_calculix", "read_calculix_dofs"]
-
 _MATRIX = re.compile(r"\*MATRIX,\s*TYPE\s*=\s*(\w+)", re.I).match
 _NAME = re.compile(r"[1-9][0-9]*\.[0-6]")
 

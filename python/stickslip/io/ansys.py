@@ -18,8 +18,6 @@ from stickslip.errors import ModelError
 from stickslip.io.entries import Labelled, node_names, whole_matrix
 from stickslip.io.source import Key
 
-__all__ = ["read_ansys"]
-
 _PATIENCE = 600
 """Seconds; the largest sound files take one or two minutes."""
 

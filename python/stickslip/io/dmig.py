@@ -17,8 +17,6 @@ from stickslip.io.source import Key, read_text
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = ["read_dmig"]
-
 _Place = tuple[int, int]
 """Grid point and component."""
 

@@ -17,17 +17,6 @@ from stickslip.checks import MAX_SPARSE
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = [
-    "SIGNS",
-    "Labelled",
-    "columns_of",
-    "node_names",
-    "require_once",
-    "require_size",
-    "square_matrix",
-    "whole_matrix",
-]
-
 SIGNS = {"general": 0, "symmetric": 1, "skew-symmetric": -1}
 """What an entry is multiplied by when it is mirrored; 0: it is not."""
 

@@ -30,8 +30,6 @@ from stickslip.io.source import readable
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
 
-__all__ = ["Frf", "read_frf", "write_frf"]
-
 Quantity: TypeAlias = Literal["displacement", "velocity", "acceleration"]
 
 _QUANTITIES = {8: "displacement", 11: "velocity", 12: "acceleration"}

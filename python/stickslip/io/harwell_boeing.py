@@ -22,8 +22,6 @@ from stickslip.io.source import read_text
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = ["read_harwell_boeing"]
-
 _FORMAT = re.compile(
     r"\(\s*(?P<scale>[0-9]+\s*P\s*,?\s*)?(?P<repeat>[0-9]*)\s*(?P<kind>[IEDFG])"
     r"\s*(?P<width>[0-9]+)",

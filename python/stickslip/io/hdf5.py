@@ -10,8 +10,6 @@ from stickslip.io import source
 if TYPE_CHECKING:
     import h5py  # type: ignore[import-untyped, unused-ignore]
 
-__all__ = ["require_held", "require_own"]
-
 _DEFLATE, _SHUFFLE, _FLETCHER = 1, 2, 3
 """Numbers of filters in HDF5; the last one has a check sum that HDF5 looks at."""
 _RATIO = 1032

@@ -24,8 +24,6 @@ from stickslip.io.source import Key, inflate
 if TYPE_CHECKING:
     import h5py  # type: ignore[import-untyped, unused-ignore]
 
-__all__ = ["read_matlab"]
-
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 _NUMBERS = {"double", "single", "sparse", "logical"} | {

@@ -34,8 +34,6 @@ from stickslip.io.source import Key, plain, readable
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-__all__ = ["read_dofs", "read_matrix"]
-
 _Reader: TypeAlias = Callable[[Path, Key], object]
 
 

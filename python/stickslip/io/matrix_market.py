@@ -23,8 +23,6 @@ from stickslip.io.source import plain, unzip
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = ["read_matrix_market"]
-
 _FIELDS = {"real": False, "double": False, "integer": True, "unsigned-integer": True}
 """Whether the values are whole numbers."""
 _ENTRY = np.dtype([("row", np.int64), ("column", np.int64), ("value", np.float64)])

@@ -13,8 +13,6 @@ import numpy as np
 from stickslip.io import source
 from stickslip.io.source import Key
 
-__all__ = ["read_numpy"]
-
 _HEADERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
     (2, 0): np.lib.format.read_array_header_2_0,

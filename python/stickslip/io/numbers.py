@@ -14,15 +14,6 @@ from numpy.typing import NDArray
 
 from stickslip.checks import vanished
 
-__all__ = [
-    "counted",
-    "entry_table",
-    "real_field",
-    "require_representable",
-    "require_whole_numbers",
-    "whole_field",
-]
-
 _WHOLE = re.compile(r"[+-]?[0-9]+")
 # Fortran drops the letter of an exponent of three digits: 1.5-101.
 _BARE_EXPONENT = re.compile(r"(?<=[0-9.])([+-][0-9]+)$")

@@ -23,8 +23,6 @@ from stickslip.io.source import Key, plain
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = ["read_op4"]
-
 _FORMAT = re.compile(r"(?:1P,?)?(\d+)[ED](\d+)\.\d+", re.I)
 _LARGE = 65536
 """Rows from which on a sparse matrix has the addresses of large ones, whatever its sign."""

@@ -12,8 +12,6 @@ from pathlib import Path
 from stickslip.checks import brief, is_file, listed, unknown
 from stickslip.errors import ModelError
 
-__all__ = ["LARGEST_UNPACKED", "Key", "inflate", "plain", "read_text", "readable", "unzip"]
-
 LARGEST_UNPACKED = 2**30
 """Bytes that packed content may take unpacked, a heuristic: 30 million entries as text, a dense
 matrix of 11 000 rows. What is not packed may be as large as its file."""

@@ -14,8 +14,6 @@ from stickslip.checks import members
 from stickslip.errors import ModelError
 from stickslip.model.model import Model, PointRef, from_core, require_model
 
-__all__ = ["SlipConfigurations", "natural_frequencies", "slip_configurations"]
-
 _MOST = 12
 """Points whose sets, 4096 of them, are still a table."""
 _SHOWN = 6

@@ -17,8 +17,6 @@ from stickslip.checks import Matrix, members, real_number, require_keys, text
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
 
-__all__ = ["Contact", "Sliders", "real_numbers"]
-
 
 @dataclass(frozen=True)
 class Contact(ABC):

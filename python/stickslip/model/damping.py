@@ -18,17 +18,6 @@ if TYPE_CHECKING:
     from stickslip.model.model import Model
     from stickslip.model.structure import Structure
 
-__all__ = [
-    "DampingLaw",
-    "ModalDamping",
-    "Rayleigh",
-    "held_stiffness",
-    "law_from_spec",
-    "makes_blocks",
-    "modal_damping",
-]
-
-
 _ROUNDING = 1e-13
 # Ratio of stiffness over mass between dofs from which their order decides how many digits slow
 # modes keep.

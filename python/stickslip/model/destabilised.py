@@ -8,8 +8,6 @@ from stickslip.model.damping import DampingLaw
 from stickslip.model.model import Model, require_model
 from stickslip.model.structure import Structure
 
-__all__ = ["destabilised", "is_proportional", "negative_matrix"]
-
 
 def destabilised(
     model: Model, negative_damping: MatrixLike | DampingLaw, ratio: float = 1.0

@@ -10,8 +10,6 @@ from typing import Any
 from stickslip.checks import brief, real_number, require_keys, set_fields, text, whole_number
 from stickslip.errors import ModelError
 
-__all__ = ["Force", "force_from_spec"]
-
 
 @dataclass(frozen=True)
 class Force:

@@ -13,8 +13,6 @@ from stickslip.errors import ModelError
 from stickslip.model.contact import Contact, Sliders, real_numbers
 from stickslip.model.structure import Structure
 
-__all__ = ["Jenkins", "ParallelJenkins"]
-
 
 @dataclass(frozen=True)
 class _TwoEnds(Contact):

@@ -10,8 +10,6 @@ from stickslip.model.contact import Contact
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
 from stickslip.model.structural import StructuralDamper
 
-__all__ = ["LAWS", "contact_from_spec", "unknown_law"]
-
 LAWS: Mapping[str, type[Contact]] = {
     law.law: law for law in (Jenkins, ParallelJenkins, StructuralDamper)
 }

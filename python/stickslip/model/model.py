@@ -24,16 +24,6 @@ from stickslip.model.structure import Structure
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = [
-    "ContactRef",
-    "Model",
-    "PointRef",
-    "from_core",
-    "listed_items",
-    "refusal",
-    "require_model",
-]
-
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")
 

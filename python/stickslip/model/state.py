@@ -13,8 +13,6 @@ from stickslip.checks import brief, real_number, set_fields, unknown
 from stickslip.errors import ModelError
 from stickslip.model.model import Model, PointRef, require_model
 
-__all__ = ["State"]
-
 Float: TypeAlias = NDArray[np.float64]
 
 # A force on the slip limit may lie above it by what rounding leaves.

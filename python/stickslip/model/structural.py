@@ -22,8 +22,6 @@ from stickslip.errors import ModelError
 from stickslip.model.contact import Sliders, real_numbers
 from stickslip.model.structure import Structure
 
-__all__ = ["StructuralDamper", "condensed_stiffness"]
-
 _PRINTED = 1e-6
 """Asymmetry, or row sum, relative to the largest stiffness, that printed digits may leave."""
 

@@ -13,8 +13,6 @@ from stickslip.errors import ModelError
 from stickslip.results import ForcedResponse
 from stickslip.settings.variation import Variation
 
-__all__ = ["at", "checked_labels", "dofs_of", "label_of", "of_kind", "several", "solved_points"]
-
 _Kind = TypeVar("_Kind")
 _SYMBOLS = {"slip_force": "slip force $F_d$", "stiffness": "contact stiffness $k_d$"}
 

@@ -20,8 +20,6 @@ from stickslip.results.basin_map import BasinMap, Outcome
 from stickslip.results.fate_arrays import Motion
 from stickslip.results.motion_class import MotionClass
 
-__all__ = ["basins", "lines"]
-
 _COLOURS = {
     Motion.DECAYING: "#e8e8e8",
     Motion.UNBOUNDED: "#7f2704",

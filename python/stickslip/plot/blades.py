@@ -18,8 +18,6 @@ from stickslip.plot.options import BladeBarOptions, BladeCurveOptions
 from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
 
-__all__ = ["blade_bars", "blade_curves"]
-
 
 @figure
 def blade_bars(

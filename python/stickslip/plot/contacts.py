@@ -22,8 +22,6 @@ from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
 from stickslip.results.dataset import point_names
 
-__all__ = ["contact_forces", "events", "hysteresis", "waveform"]
-
 _FORWARD, _BACKWARD = ("slips forward", style.BLUE), ("slips backward", style.ORANGE)
 _STATES = {0: ("stuck", "0.85"), 1: _FORWARD, -1: _BACKWARD}
 """Name and colour by the direction of slip."""

@@ -25,8 +25,6 @@ from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float, Measure
 from stickslip.results.exact_response import ExactResponse
 
-__all__ = ["curves", "slip"]
-
 _MEASURE = {
     "half_range": "half peak-to-peak",
     "max": "largest displacement",

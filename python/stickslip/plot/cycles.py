@@ -19,8 +19,6 @@ from stickslip.results.arrays import Float
 from stickslip.results.limit_cycles import LimitCycles, StabilityMap
 from stickslip.results.stability import STATES, States
 
-__all__ = ["limit_cycles", "stability_map"]
-
 _AXES = {"ratio": "negative damping ratio r", "stiffness": "$k_d$", "slip_force": "$F_d$"}
 
 

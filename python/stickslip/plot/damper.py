@@ -18,8 +18,6 @@ from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float, Int
 from stickslip.results.damper_curve import DamperCurve
 
-__all__ = ["damper"]
-
 
 @figure
 def damper(

@@ -19,8 +19,6 @@ from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
 from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float
 
-__all__ = ["aerodynamic", "nodal_diameters", "safe"]
-
 
 @figure
 def nodal_diameters(

@@ -30,8 +30,6 @@ from stickslip.plot.arguments import of_kind
 from stickslip.plot.style import finish, new_axes
 from stickslip.settings.settings import type_in_words
 
-__all__ = ["figure", "keywords"]
-
 P = ParamSpec("P")
 Result = TypeVar("Result")
 _SECTION = re.compile(r"^(Parameters|Returns|Raises)\n-+\n", re.M)

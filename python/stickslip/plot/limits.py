@@ -12,8 +12,6 @@ from stickslip.model import Model, natural_frequencies
 from stickslip.model.structure import Structure
 from stickslip.results.arrays import Float, Measure
 
-__all__ = ["force_level", "limit_curve", "limit_model", "unit_level"]
-
 _POINTS = 400
 # Points beside each resonance, so that a damping ratio down to 1e-4 still shows its peak.
 _NEAR = np.geomspace(1e-6, 0.05, 30)

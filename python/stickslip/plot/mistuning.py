@@ -18,8 +18,6 @@ from stickslip.results.arrays import Float
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import FEWEST, empirical_percentile
 
-__all__ = ["amplification", "distribution"]
-
 _TICKS = (0.1, 1, 10, 25, 50, 75, 90, 95, 99, 99.5, 99.9, 99.99)
 """Percentages that the axis of probabilities names."""
 

@@ -17,8 +17,6 @@ from stickslip.plot.style import Looks
 from stickslip.results.exact_response import ExactResponse
 from stickslip.results.limit_cycles import LimitCycles
 
-__all__ = ["cycle_multipliers", "multipliers"]
-
 # Widest part of the plane of multipliers that is drawn: large ones say no more than unstable.
 _WIDEST = 3.0
 

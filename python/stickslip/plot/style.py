@@ -19,36 +19,6 @@ from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
 from stickslip.results.stability import STATES, States
 
-__all__ = [
-    "BLUE",
-    "FREE",
-    "GREY",
-    "LENGTH",
-    "LIMIT",
-    "LINES",
-    "OMEGA",
-    "ORANGE",
-    "RESPONSE",
-    "STUCK",
-    "Colour",
-    "LengthUnit",
-    "Looks",
-    "OmegaUnit",
-    "Scale",
-    "bare",
-    "colours",
-    "finish",
-    "fit",
-    "mark",
-    "marks",
-    "name_states",
-    "new_axes",
-    "pieces",
-    "prefixed",
-    "slip_limits",
-    "unit_circle",
-]
-
 OmegaUnit: TypeAlias = Literal["rad/s", "Hz"]
 LengthUnit: TypeAlias = Literal["m", "mm", "um", "µm"]
 Colour: TypeAlias = tuple[float, float, float, float] | str

@@ -16,8 +16,6 @@ from stickslip.plot.figure import figure
 from stickslip.plot.options import HistoryOptions, LastOptions, PoincareOptions, SpectrumOptions
 from stickslip.results.transient import Transient
 
-__all__ = ["contact_history", "history", "phase", "poincare", "spectrum"]
-
 # More lines than this would hide what they are to explain.
 _MARKED = 30
 

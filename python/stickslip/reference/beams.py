@@ -11,21 +11,6 @@ from stickslip.checks import Matrix, choice, whole_number
 from stickslip.model import Force, Jenkins, Model, StructuralDamper
 from stickslip.model.structure import Rayleigh, Structure, join
 
-__all__ = [
-    "DAMPER_SLIP_FORCE",
-    "DAMPER_STIFFNESS",
-    "SNECMA_LOADS",
-    "beam_pair",
-    "damped_pair",
-    "damper",
-    "flutter_beam",
-    "flutter_mass",
-    "negative_damping",
-    "single_dof",
-    "snecma_beam",
-    "snecma_structure",
-]
-
 SNECMA_LOADS = (0.938, 2.188, 6.563, 16.563, 20.313, 25.0, 31.475, 38.438)
 """The eight excitation levels of Table 2.3 [N]."""
 

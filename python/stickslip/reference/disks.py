@@ -9,8 +9,6 @@ from stickslip.model import Force
 from stickslip.model.structure import ModalDamping, Structure
 from stickslip.reference.beams import damper, snecma_structure
 
-__all__ = ["RING_COUPLINGS", "beam_ring", "laxalde_blisk"]
-
 RING_COUPLINGS = (1e3, 3e3, 5e3, 6e3, 7e3, 1.2e4, 1e5)
 """Coupling stiffnesses between the tips of the ring of beams, Figs 4.20-4.22 [N/m]."""
 

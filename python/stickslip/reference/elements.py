@@ -10,8 +10,6 @@ from stickslip.checks import Matrix
 from stickslip.model import Force, Jenkins, Model
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure
 
-__all__ = ["BLADE_DAMPER_STIFFNESS", "BLADE_SLIP_FORCE", "rubber_beam", "turbine_blade"]
-
 BLADE_DAMPER_STIFFNESS = 1e6
 """Stiffness of the damper under the platform of `turbine_blade` [N/m]."""
 

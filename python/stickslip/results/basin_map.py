@@ -29,9 +29,6 @@ if TYPE_CHECKING:
     from stickslip.plot.options import Frame
 
 
-__all__ = ["BasinMap", "Outcome"]
-
-
 class Outcome(NamedTuple):
     """What some starts lead to."""
 

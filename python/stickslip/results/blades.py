@@ -17,8 +17,6 @@ from stickslip.results.peaks import Peak
 if TYPE_CHECKING:
     from stickslip.disk import BladedDisk, MistunedDisk
 
-__all__ = ["Amplification", "BladeMotion", "SectorDof"]
-
 SectorDof: TypeAlias = str
 """Of the equal sectors of a disk."""
 

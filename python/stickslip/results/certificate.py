@@ -18,8 +18,6 @@ from stickslip.results.status import Status
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Certificate", "WorstPoint"]
-
 ROUNDING = 1e-9
 """Relative difference that two solvers leave: a smaller one is no error of truncation."""
 

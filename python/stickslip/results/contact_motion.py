@@ -17,8 +17,6 @@ from stickslip.results.periodic import Sweep
 if TYPE_CHECKING:
     from stickslip import _core
 
-__all__ = ["ContactMotion"]
-
 
 class ContactMotion(Sweep):
     """The part of a result that concerns the contacts."""

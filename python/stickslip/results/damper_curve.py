@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from stickslip.plot.options import DamperOptions
 
 
-__all__ = ["DamperArrays", "DamperCurve", "LeastPeak"]
-
-
 class LeastPeak(NamedTuple):
     """A parameter at which a peak is least."""
 

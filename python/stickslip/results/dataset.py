@@ -18,16 +18,6 @@ if TYPE_CHECKING:
     from stickslip.results.result import ColumnResult
     from stickslip.settings.settings import Settings
 
-__all__ = [
-    "attributes",
-    "coordinates",
-    "labels",
-    "point_names",
-    "require_fit",
-    "settings_of",
-    "state_names",
-]
-
 Coordinate: TypeAlias = tuple[str, NDArray[np.generic], dict[str, str]]
 
 _NUMBERED = {"harmonic": "multiple of omega", "pattern": "number of the pattern"}

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from stickslip.results.status import Status
 
-__all__ = ["SEVERITIES", "Diagnostic", "Severity", "diagnostic", "missed_tolerances", "present"]
-
 
 class Severity(StrEnum):
     """What a diagnostic means for the use of a result."""

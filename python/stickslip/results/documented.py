@@ -14,8 +14,6 @@ from inspect import CO_VARARGS, CO_VARKEYWORDS, cleandoc
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
 
-__all__ = ["Frozen"]
-
 _VALUE = (
     "deviation, coupling : float, optional\n"
     "    One of the values of the study. Default: the only one."

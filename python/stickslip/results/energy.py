@@ -12,8 +12,6 @@ from stickslip.results.arrays import Float, constant
 if TYPE_CHECKING:
     from stickslip.results.forced_response import ForcedResponse
 
-__all__ = ["Energy", "apparent_work", "energy_of"]
-
 
 class Energy(NamedTuple):
     """Energy per period, one entry per point of the curve; not-a-number where it is not solved."""

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from stickslip.model import Model
 from stickslip.results.arrays import Float, Int, constant
 
-__all__ = ["KINDS", "ContactStates", "Event", "Events", "states_of"]
-
 KINDS = ("sticks", "slips forward", "slips backward")
 """What happens, by the code that the core and files have; forward is du/dt > 0."""
 _DIRECTIONS = (0, 1, -1)

@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from stickslip import _core
     from stickslip.disk.wave_ring import Rotation
 
-__all__ = ["ExactResponse", "OrbitArrays"]
-
 
 class OrbitArrays(Arrays, ExactColumns):
     """The numbers of exact orbits: those of a forced response, and what only orbits have.

@@ -9,8 +9,6 @@ from stickslip.results.arrays import SHARE, Code, Float, Int
 from stickslip.results.fields import Columns, column
 from stickslip.results.status import Ending
 
-__all__ = ["FateArrays", "Motion", "Reason"]
-
 
 class Motion(StrEnum):
     """What becomes of a free motion; compares equal to its text."""

@@ -32,19 +32,6 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "Bool",
-    "Code",
-    "Columns",
-    "Complex",
-    "Computed",
-    "Float",
-    "Int",
-    "Numbers",
-    "Shown",
-    "column",
-]
-
 Bool: TypeAlias = NDArray[np.bool_]
 Code: TypeAlias = NDArray[np.uint8]
 Complex: TypeAlias = NDArray[np.complex128]

@@ -6,19 +6,14 @@ from collections.abc import Hashable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from stickslip.results.arrays import Measure
 from stickslip.results.blades import BladeMotion
 from stickslip.results.certificate import Certificate
 from stickslip.results.drawn import Drawn, plots
 from stickslip.results.energy import Energy, energy_of
-from stickslip.results.peaks import Peak, Summary
 from stickslip.results.sensitivities import Sensitivities
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-__all__ = ["ForcedResponse", "Measure", "Peak", "Summary"]
 
 
 class ForcedResponse(BladeMotion, Sensitivities):

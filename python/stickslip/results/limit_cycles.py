@@ -34,15 +34,6 @@ from stickslip.settings.cycles import CycleSettings, MapSettings
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = [
-    "CycleArrays",
-    "Limit",
-    "LimitCycles",
-    "MapArrays",
-    "StabilityChange",
-    "StabilityMap",
-]
-
 
 class Limit(NamedTuple):
     """Where a branch of limit cycles turns."""

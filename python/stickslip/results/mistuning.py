@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
     from stickslip.plot.options import TrendOptions
 
-__all__ = ["MistuningArrays", "MistuningStudy"]
-
 ALL = "deviation coupling_stiffness pattern dof"
 _TUNED = "coupling_stiffness dof"
 _ESTIMATE = "what the discarded harmonics could still change"

@@ -20,8 +20,6 @@ from stickslip.settings.motion import ClassifySettings
 if TYPE_CHECKING:
     pass
 
-__all__ = ["Line", "MotionArrays", "MotionClass"]
-
 SEGMENTS = 8
 """Windows over which a spectrum is averaged, so that what is noise in one is level in the mean."""
 

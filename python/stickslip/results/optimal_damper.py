@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from stickslip.plot.options import DamperOptions
 
-__all__ = ["OptimalDamper"]
-
 
 class _Minima(Columns):
     """The local minima of a peak, the least first."""

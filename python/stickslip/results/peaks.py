@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from stickslip import _core
     from stickslip.results.periodic import Sweep
 
-__all__ = ["Peak", "Summary", "highest", "of_orbits", "rows", "summits"]
-
 RIVAL = 0.9
 """Local maxima from this share of the largest may be the true peak once they are refined."""
 

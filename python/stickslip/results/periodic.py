@@ -31,8 +31,6 @@ from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
 from stickslip.settings.orbits import ExactSettings
 
-__all__ = ["PeriodicMotions", "Sweep", "key_of"]
-
 
 class PeriodicMotions(ColumnResult):
     """Periodic motions, one after the other."""

@@ -33,8 +33,6 @@ from stickslip.settings.settings import Settings
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Attributes", "ColumnResult", "Result"]
-
 Kind = TypeVar("Kind", bound=np.generic)
 Attributes: TypeAlias = Mapping[str, Callable[[Any], object]]
 """Attributes of a result that are attributes of its dataset, with their types."""

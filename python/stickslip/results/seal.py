@@ -15,8 +15,6 @@ from collections.abc import Hashable
 
 import numpy as np
 
-__all__ = ["SEAL", "require_harmless", "seal_variable", "sealed", "sealed_whole"]
-
 SEAL = "seal"
 """Name of the variable."""
 

@@ -13,8 +13,6 @@ from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
 from stickslip.results.periodic import key_of
 
-__all__ = ["COMMON", "Sensitivities"]
-
 COMMON = {"level": "m", "omega": "m s/rad"}
 """What belongs to no contact: a factor on all forces, and the excitation frequency."""
 

@@ -6,8 +6,6 @@ from typing import NamedTuple
 
 from stickslip.results.arrays import Float, constant
 
-__all__ = ["Spectrum", "spectrum_of"]
-
 
 class Spectrum(NamedTuple):
     """One-sided power spectral density."""

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from stickslip.results.arrays import Bool, Complex, ExactColumns, Int, constant
 
-__all__ = ["STATES", "FloquetStability", "States", "stability_counts", "stability_of"]
-
 States = NDArray[np.str_]
 """A name of `STATES` per motion."""
 

@@ -7,8 +7,6 @@ from typing import NamedTuple, Self
 
 from stickslip.errors import ModelError
 
-__all__ = ["Ending", "Settled", "Status", "TransientStatus"]
-
 
 class Ending(StrEnum):
     """How something ended; compares equal to its text (``Status.STALLED == "stalled"``)."""

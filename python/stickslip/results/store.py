@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from stickslip.results.result import Result
 
-__all__ = ["KINDS", "content_of", "load", "save"]
-
 KINDS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.results.forced_response", "ForcedResponse"),
     "exact_response": ("stickslip.results.exact_response", "ExactResponse"),

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from stickslip.disk import BladedDisk, MistunedDisk
 
-__all__ = ["model_of", "model_variables", "part_variables", "parts_of"]
-
 _MATRICES = {
     "mass": ("kg", "mass matrix"),
     "damping": ("kg/s", "damping matrix"),

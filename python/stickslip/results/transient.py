@@ -24,8 +24,6 @@ from stickslip.settings.motion import TransientSettings
 if TYPE_CHECKING:
     pass
 
-__all__ = ["Transient", "TransientArrays"]
-
 
 class TransientArrays(Columns):
     """The numbers of a transient; a state is (x, v, f) of all dofs and contact points."""

@@ -24,8 +24,6 @@ from stickslip.results.arrays import Float, constant
 from stickslip.results.documented import Frozen
 from stickslip.results.weibull_likelihood import best_fit, excess_at_no_limit, interval
 
-__all__ = ["FEWEST", "Estimate", "Percentile", "WeibullFit", "empirical_percentile", "fit_weibull"]
-
 FEWEST = 30
 """Factors below which three parameters mean nothing."""
 

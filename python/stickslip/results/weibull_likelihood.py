@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from stickslip.results.arrays import Float
 
-__all__ = ["best_fit", "excess_at_no_limit", "interval"]
-
 _SHAPES = (1.0, 500.0)
 """Bounds of the shape: below 1 the likelihood has no maximum; at 500 no limit can be told."""
 _FAR = 1e4

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panel, Panels
 
-__all__ = ["CurveView", "certificates"]
-
 _SLIP_POINTS = 12
 _LOOPS = 2
 

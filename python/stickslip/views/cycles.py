@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panels
 
-__all__ = ["CycleView", "MapView"]
-
 
 class CycleView(View[LimitCycles]):
     """Ends and limit of every branch, or all cycles of a list."""

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panels
 
-__all__ = ["DamperView", "OptimumView"]
-
 
 class DamperView(View[DamperCurve]):
     """The ends of every curve and its lowest peak."""

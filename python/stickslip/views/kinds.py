@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panels
 
-__all__ = ["VIEWS", "Dofs", "Rows", "View", "cautions", "failures", "view_of"]
-
 VIEWS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.views.curves", "CurveView"),
     "exact_response": ("stickslip.views.curves", "CurveView"),

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panels
 
-__all__ = ["MistuningView"]
-
 _HIGH = 99.9
 """Percentile of the fit that is printed."""
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panels
 
-__all__ = ["BasinView", "MotionView"]
-
 
 class MotionView(View[MotionClass]):
     """Class, mode and amplitudes of motions."""

@@ -13,8 +13,6 @@ from stickslip.files import make_folder, write
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Panel", "Panels", "draw", "titled"]
-
 
 class Panel(Protocol):
     """Draws something on axes."""

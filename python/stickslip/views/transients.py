@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
     from stickslip.views.picture import Panels
 
-__all__ = ["TransientView"]
-
 
 class TransientView(View[Transient]):
     """The amplitudes of the last period."""
