@@ -4,12 +4,13 @@ VENV   := .venv
 PYTHON ?= python3
 BIN    := $(VENV)/bin
 
-.PHONY: demo test rust python docs bench peers clean tools
+.PHONY: demo test quick rust python docs bench peers clean tools
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo   build, run the SNECMA beam study, say where its table, picture and files are"
 	@echo "make test   build, then all Rust and Python tests, linters and the documentation"
+	@echo "make quick  build, then the linter and the quick Python tests: a minute after the build"
 	@echo "make bench  criterion benchmarks of the core and the speed tables of the package"
 	@echo "make peers  the same study with pyHarm-os, in an environment of its own"
 
@@ -45,6 +46,10 @@ demo: tools $(VENV)/.installed
 	$(BIN)/stickslip run examples/snecma-beam/study.toml --out results
 
 test: tools rust python docs
+
+quick: $(VENV)/.developed
+	$(BIN)/ruff check .
+	$(BIN)/pytest -m "not slow"
 
 rust:
 	cargo fmt --all --check

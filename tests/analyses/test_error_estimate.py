@@ -1,0 +1,167 @@
+"""Error estimates and automatic harmonics on mixes of soft and stiff contacts, by exact orbits."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+
+def mixed(seed: int) -> tuple[ss.Model, np.ndarray]:
+    """A random chain or full system of 2 to 8 DOFs with contacts of 6e-6 to 1.5e3 its stiffness."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(2, 9))
+    if rng.random() < 0.5:
+        k = 10 ** rng.uniform(3, 5, n + 1)
+        stiffness = np.diag(k[:-1] + k[1:]) - np.diag(k[1:-1], 1) - np.diag(k[1:-1], -1)
+        mass = np.diag(10 ** rng.uniform(-0.5, 0.5, n))
+    else:
+        a = rng.normal(size=(n, n))
+        stiffness = 1e4 * (a @ a.T / n + 0.05 * np.eye(n))
+        a = rng.normal(size=(n, n))
+        mass = a @ a.T / n + 0.5 * np.eye(n)
+    ratio = float(rng.choice([0.0, 1e-5, 1e-4, 1e-3, 5e-3, 2e-2]))
+    names = [f"x{i}" for i in range(n)]
+    damping = ss.ModalDamping(ratio) if ratio else None
+    structure = ss.Structure(mass=mass, stiffness=stiffness, damping=damping, dofs=names)
+    count = int(rng.integers(1, min(3, n) + 1))
+    base = float(np.mean(np.diag(stiffness)))
+    contacts = []
+    for i in rng.choice(n, count, replace=False):
+        spring = base * 10 ** rng.uniform(np.log10(6e-6), np.log10(1.5e3))
+        limit = 10 ** rng.uniform(-1.5, 1.0)
+        other = None
+        if rng.random() < 0.3 and n > 1:
+            other = names[int(rng.choice([d for d in range(n) if d != i]))]
+        dofs = (names[i],) if other is None else (names[i], other)
+        contacts.append(ss.Jenkins(*dofs, stiffness=spring, slip_force=limit))
+    model = ss.Model(structure, contacts, [ss.Force(names[int(rng.integers(n))], 1.0)])
+    free = np.sort(np.sqrt(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
+    ends = np.log(0.3 * free[0]), np.log(1.2 * free[-1])
+    return model, np.sort(np.exp(rng.uniform(*ends, 10)))
+
+
+# In 22, 26, 40 and 59 contacts that stick in the truncated solution slip in the true one, which one
+# Newton step does not foresee. In 22 the second one does not either: a DOF errs by 12 estimates.
+MISSED = pytest.mark.xfail(strict=True, reason="contacts that stick in the truncated solution")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3, 5, pytest.param(22, marks=MISSED), 26, 40, 59])
+def test_no_error_is_far_above_its_estimate(seed: int) -> None:
+    model, omega = mixed(seed)
+    exact = ss.exact_response(model, omega)
+    for harmonics in (1, 3, 7, 15):
+        frf = ss.forced_response(model, omega, harmonics)
+        for dof in frf.dofs:
+            error = np.abs(frf.amplitude(dof) - exact.amplitude(dof))
+            rounding = 1e-5 * exact.amplitude(dof) + 1e-7 * max(map(exact_size(exact), frf.dofs))
+            assert (error <= 5.0 * frf.error_estimate(dof) + rounding).all(), (harmonics, dof)
+
+
+@pytest.mark.parametrize("harmonic", [2, 3])
+def test_loads_of_one_higher_harmonic_are_answered_at_its_multiples(harmonic: int) -> None:
+    stiffness = 1e4 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.2, -1.0], [0.0, -1.0, 1.5]])
+    structure = ss.Structure(np.eye(3), stiffness, ss.ModalDamping(1e-3), ["a", "b", "c"])
+    contacts = [ss.Jenkins("b", stiffness=2e4, slip_force=0.5)]
+    model = ss.Model(structure, contacts, [ss.Force("a", 1.0, harmonic=harmonic)])
+    omega = np.linspace(10.0, 150.0, 6) / harmonic
+    exact, frf = ss.exact_response(model, omega), ss.forced_response(model, omega, harmonic)
+    automatic = ss.forced_response(model, omega)
+    for dof in frf.dofs:
+        error = np.abs(frf.amplitude(dof) - exact.amplitude(dof))
+        assert error.max() > 1e-3 * exact.amplitude(dof).max()
+        assert (error <= 5.0 * frf.error_estimate(dof) + 1e-5 * exact.amplitude(dof)).all()
+        assert automatic.amplitude(dof) == pytest.approx(exact.amplitude(dof), rel=3e-3)
+
+
+def exact_size(exact: ss.ExactResponse):
+    return lambda dof: np.nanmax(exact.amplitude(dof))
+
+
+# In 252 estimates were small where more harmonics change the state of a contact.
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("seed", "points"), [(seed, slice(None)) for seed in (1, 2, 22, 59)] + [(252, slice(1, 4))]
+)
+def test_automatic_harmonics_keep_the_tolerance(seed: int, points: slice) -> None:
+    model, omega = mixed(seed)
+    omega = omega[points]
+    exact = ss.exact_response(model, omega)
+    frf = ss.forced_response(model, omega, observe=model.structure.dofs)
+    for dof in frf.dofs:
+        size = np.maximum(exact.amplitude(dof), 1e-3 * np.nanmax(frf.amplitude(dof)))
+        error = np.abs(frf.amplitude(dof) - exact.amplitude(dof)) / size
+        assert (error[frf.converged] < 3e-3).all(), dof
+
+
+def test_modal_coordinates_are_observed_if_they_are_named() -> None:
+    blade = ss.reference.turbine_blade()
+    frf = ss.forced_response(blade, (1508.0, 1747.0))
+    assert frf.dofs == ("damper", "tip")
+    assert frf.omega.size < 400
+    assert frf.harmonics.max() < 60
+    named = ss.forced_response(blade, [1600.0], 3, observe=["mode-2"])
+    assert named.dofs == ("mode-2",)
+
+
+def many_contacts(slipping: int) -> ss.Model:
+    """A chain of 48 masses, each with a contact to ground, few of which slip."""
+    springs = 1e4 * np.random.default_rng(0).uniform(0.8, 1.2, 49)
+    off = np.diag(springs[1:-1], 1)
+    stiffness = np.diag(springs[:-1] + springs[1:]) - off - off.T
+    names = [f"x{i}" for i in range(48)]
+    chain = ss.Structure(np.eye(48), stiffness, ss.ModalDamping(5e-3), names)
+    contacts = [
+        ss.Jenkins(name, stiffness=1e4, slip_force=0.3 if i < slipping else 1e3)
+        for i, name in enumerate(names)
+    ]
+    return ss.Model(chain, contacts, [ss.Force("x0", 1.0)])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_estimates_with_few_slipping_contacts_are_right_within_their_effort(harmonics: int) -> None:
+    model, omega = many_contacts(2), np.linspace(120.0, 200.0, 9)
+    frf = ss.forced_response(model, omega, harmonics)
+    fine = ss.forced_response(model, omega, 41)
+    assert frf.slip_fraction(0).min() > 0.1
+    for dof in ("x0", "x1", "x5"):
+        error = np.abs(frf.coefficients(dof)[:, 1] - fine.coefficients(dof)[:, 1])
+        assert (error <= 5.0 * frf.error_estimate(dof) + 1e-9 * fine.amplitude(dof)).all()
+    assert set(frf.timings) >= {"recovery", "estimate"}
+
+
+def test_estimates_do_not_depend_on_the_way_to_the_solution() -> None:
+    model, omega = many_contacts(2), [130.0, 150.0, 180.0]
+    newton = ss.forced_response(model, omega, 3)
+    others = (
+        ss.forced_response(model, omega, 3, method="broyden"),
+        ss.forced_response(model, omega[::-1], 3),
+    )
+    for other, order in zip(others, ([0, 1, 2], [2, 1, 0]), strict=True):
+        np.testing.assert_allclose(
+            other.error_estimate("x5")[order], newton.error_estimate("x5"), rtol=1e-5
+        )
+
+
+@pytest.mark.slow
+def test_loaded_and_named_dofs_drive_automatic_harmonics_and_steps() -> None:
+    blade = ss.reference.turbine_blade()
+    structure = blade.structure
+    # Modal coordinates under names that do not tell them.
+    dofs = ["damper", "tip", *(f"q{i}" for i in range(1, 17))]
+    renamed = ss.Structure(structure.mass, structure.stiffness, structure.damping, dofs)
+    model = ss.Model(renamed, blade.contacts, [ss.Force("tip", 0.05)])
+    span = (1508.0, 1747.0)
+    default = ss.forced_response(model, span)
+    assert default.dofs == tuple(dofs)
+    named = ss.forced_response(model, span, observe=["damper", "tip"])
+    # The effort of an estimate, and so its reach, depends a little on how much is observed.
+    assert default.omega.size <= 1.1 * named.omega.size
+    assert default.harmonics.sum() <= 1.1 * named.harmonics.sum()
+    all_named = ss.forced_response(model, [1600.0, 1650.0], observe=dofs)
+    outputs = ss.forced_response(model, [1600.0, 1650.0], outputs=dofs)
+    assert (all_named.harmonics == outputs.harmonics).all()
+    assert outputs.harmonics.max() > default.harmonics.max()
+    with pytest.raises(ss.ModelError, match=r"outputs: unknown dof 'tpi'; did you mean 'tip'\?"):
+        ss.forced_response(model, [1600.0], outputs="tpi")

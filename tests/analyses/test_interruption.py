@@ -1,0 +1,110 @@
+"""Interruption and progress of forced responses: what was computed is kept."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.reference import snecma_beam
+from stickslip.results.arrays import Arrays
+
+GRID = np.linspace(150.0, 250.0, 60)
+
+
+@pytest.fixture(scope="module")
+def frf():
+    return ss.forced_response(snecma_beam(), GRID, harmonics=9)
+
+
+def one_dof(*forces, damping=0.4, stiffness=8.0, slip_force=1.0):
+    structure = ss.Structure([[2.0]], [[stiffness]], damping=[[damping]], dofs=["x"])
+    contact = ss.Jenkins("x", stiffness=10.0, slip_force=slip_force)
+    return ss.Model(structure, [contact], forces or [ss.Force("x", 0.5)])
+
+
+class StopAt:
+    """A progress callback that presses Ctrl-C."""
+
+    def __init__(self, share):
+        self.share = share
+
+    def __call__(self, done):
+        if done > self.share:
+            raise KeyboardInterrupt
+
+
+def interrupted(omega, **options):
+    with pytest.raises(ss.Interrupted, match="interrupted after") as caught:
+        ss.forced_response(snecma_beam(), omega, progress=StopAt(0.0), **options)
+    return caught.value.result
+
+
+def test_interruption_keeps_what_was_computed():
+    omega = np.linspace(180, 200, 20000)
+    partial = interrupted(omega, harmonics=21)
+    done = partial.omega.size
+    assert partial.interrupted
+    assert 0 < done < 20000
+    assert partial.converged.all()
+    np.testing.assert_array_equal(partial.omega, omega[:done])
+    assert partial.coefficients("tip").shape == (done, 22)
+    assert partial.peak("tip").omega <= partial.omega.max()
+    assert any(f"after {done} of 20000 frequencies, at" in text for text in partial.assumptions)
+
+
+def test_interruption_of_a_range():
+    partial = interrupted((150.0, 250.0), tolerance=1e-7)
+    assert partial.arrays.solved.all()
+    assert partial.omega[-1] < 250.0
+    assert any(f"end at {partial.omega[-1]:.6g} rad/s" in text for text in partial.assumptions)
+    assert not any("between 150 and 250" in text for text in partial.assumptions)
+
+
+def test_an_interruption_can_be_pickled(frf):
+    again = pickle.loads(pickle.dumps(ss.Interrupted("after 2 points", frf)))
+    assert isinstance(again, ss.Interrupted)
+    assert str(again) == "after 2 points"
+    np.testing.assert_array_equal(again.result.omega, frf.omega)
+
+
+def test_interruption_before_the_first_point():
+    """Nothing of a result without any solution fails, though there is nothing in it."""
+    model, n = one_dof(), 3
+    empty = Arrays(
+        omega=np.ones(n),
+        harmonics=np.zeros(n, int),
+        samples=np.zeros(n, int),
+        status=np.full(n, 3, np.uint8),
+        residual=np.full(n, np.nan),
+        iterations=np.zeros(n, int),
+        displacement=np.full((n, 2, 1), np.nan + 0j),
+        contact_displacement=np.full((n, 2, 1), np.nan + 0j),
+        contact_force=np.full((n, 2, 1), np.nan + 0j),
+        error_estimate=np.full((n, 1), np.nan),
+        sampling_error=np.full((n, 1), np.nan),
+        slip_fraction=np.full((n, 1), np.nan),
+        dissipation=np.full((n, 1), np.nan),
+    )
+    frf = replace(ss.forced_response(model, [1.0], 1), arrays=empty, interrupted=True)
+    assert np.isnan(frf.amplitude("x")).all()
+    assert np.isnan(frf.phase("x")).all()
+    assert frf.summary() == []
+    assert "0 solved" in repr(frf)
+
+
+def test_a_failing_progress_callback_is_not_an_interruption():
+    def fail(_):
+        raise RuntimeError("bar broke")
+
+    with pytest.raises(RuntimeError, match="bar broke"):
+        ss.forced_response(snecma_beam(), [190.0], 3, progress=fail)
+
+
+@pytest.mark.slow
+def test_progress_ends_at_one():
+    shares = []
+    ss.forced_response(snecma_beam(), np.linspace(180, 200, 3000), 15, progress=shares.append)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0

@@ -1,0 +1,417 @@
+"""Reports: what stands on the page, what is refused, and how a new kind of result joins."""
+
+import json
+import re
+import sys
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+from types import ModuleType
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import stickslip as ss
+from packed import numbers
+from stickslip.cli import app
+from stickslip.results.diagnostic import diagnostic
+from stickslip.results.result import Result
+from stickslip.views import kinds
+from stickslip.views.kinds import View
+from stickslip.views.tables import tabulated
+
+BEAM = ss.reference.snecma_beam(20.313)
+FLUTTER = ss.destabilised(ss.reference.single_dof(), ss.Rayleigh(mass=-20.0))
+VOID = {"meta", "img", "br", "link"}
+
+
+class Page(HTMLParser):
+    """What stands on a page, with a complaint about every element that is not closed."""
+
+    def __init__(self, file):
+        super().__init__()
+        self.open, self.ids, self.links, self.tags = [], [], [], []
+        self.data, self.texts, self.captions = [], [], []
+        self.feed(Path(file).read_text(encoding="utf-8"))
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        self.tags.append((tag, given))
+        if "id" in given:
+            self.ids.append(given["id"])
+        if tag == "a":
+            self.links.append(given["href"])
+        if tag not in VOID:
+            self.open.append((tag, given))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop()[0] == tag
+
+    def handle_data(self, data):
+        if not self.open:
+            return
+        tag, given = self.open[-1]
+        if given.get("type") == "application/json":
+            self.data.append(json.loads(data))
+        elif tag == "caption":
+            self.captions.append(data.strip())
+        elif tag not in ("script", "style") and data.strip():
+            self.texts.append(" ".join(data.split()))
+
+    @property
+    def text(self):
+        return "\n".join(self.texts)
+
+    @property
+    def figures(self):
+        return self.data
+
+
+def names_of(figure):
+    return [trace["name"] for trace in figure["data"] if trace["showlegend"]]
+
+
+@pytest.fixture(scope="module")
+def results():
+    grid = np.linspace(150.0, 250.0, 24)
+    disk = ss.reference.beam_ring()
+    mistuned = disk.mistuned(0.05 * ss.mistuning_pattern(disk.sectors, 1.0, seed=1))
+    forces = np.geomspace(10.0, 1e3, 8)
+    return {
+        "low": ss.forced_response(ss.reference.snecma_beam(6.563), grid, 5),
+        "high": ss.certify(ss.forced_response(BEAM, grid, 5), 3),
+        "griffin": ss.single_harmonic(BEAM, grid),
+        "exact": ss.exact_response(BEAM, grid),
+        "transient": ss.transient(BEAM, 170.0, 12, keep=3, samples=32),
+        "curve": ss.damper_curve(BEAM, slip_force=forces, dof="tip"),
+        "optimum": ss.optimal_damper(BEAM, dof="tip", bounds=(50.0, 1e3)),
+        "tuned": ss.forced_response(disk, grid, 3),
+        "mistuned": ss.forced_response(mistuned, grid[::4], 3),
+        "patterns": ss.mistuning_study(
+            disk, 0.05, patterns=12, omega=(180.0, 230.0), dofs=["damper"], harmonics=1
+        ),
+        "branch": ss.limit_cycles(*ss.reference.flutter_mass(), harmonics=5),
+        "boundary": ss.stability_map(*ss.reference.flutter_mass(), stiffness=[1.2e7, 2.4e7]),
+        "settled": ss.classify(FLUTTER, {"mass": 5e-5}),
+        "starts": ss.basin_map(FLUTTER, {"mass": [1e-5, 1e-4], 0: [2e-5, 2e-4]}),
+    }
+
+
+@pytest.fixture(scope="module")
+def page(results, tmp_path_factory):
+    file = tmp_path_factory.mktemp("report") / "all.html"
+    ss.report(results, file, title="All kinds", length_unit="um")
+    return Page(file)
+
+
+# ---------------------------------------------------------------------------------- the page
+
+
+@pytest.mark.slow
+def test_every_kind_is_there(results, page):
+    assert {result.kind for result in results.values()} == set(kinds.VIEWS)
+    for name in results:
+        assert name in page.texts
+    assert page.texts[0] == "All kinds"
+    assert "No figure" not in page.text
+    assert not any(tag == "img" for tag, _ in page.tags)
+
+
+@pytest.mark.slow
+def test_the_page_is_well_formed(page):
+    assert dict(page.tags)["html"] == {"lang": "en"}
+    assert len(page.ids) == len(set(page.ids))
+    assert {link.removeprefix("#") for link in page.links} <= set(page.ids)
+    levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch("h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(later - before <= 1 for before, later in pairwise(levels))
+    assert len(page.captions) == sum(tag == "table" for tag, _ in page.tags)
+    assert all(page.captions)
+    described = [given for tag, given in page.tags if given.get("class") == "plot"]
+    assert len(described) == len(page.figures) > 20
+    assert all(given["aria-label"] for given in described)
+
+
+def test_nothing_is_fetched(page):
+    assert not any("src" in given for tag, given in page.tags if tag != "img")
+    assert not any(tag == "link" for tag, _ in page.tags)
+    (policy,) = [given["content"] for tag, given in page.tags if "http-equiv" in given]
+    assert policy.startswith("default-src 'none';")
+    assert "http" not in policy
+
+
+def test_results_of_one_kind_and_the_same_dofs_are_drawn_together(page):
+    first = page.figures[0]
+    assert [name for name in names_of(first) if name.startswith("P = ")] == [
+        "P = 6.563 N, H = 5",
+        "P = 20.313 N, H = 5",
+        "P = 20.313 N, H = 1",
+        "P = 20.313 N, exact",
+    ]
+    assert first["layout"]["yaxis"]["title"]["text"] == "half peak-to-peak of tip [µm]"
+    assert page.texts.count("Forced response and Exact response") == 2
+
+
+def test_numbers_are_those_of_the_results(results, page):
+    peak = results["high"].peak("tip")
+    assert f"{1e6 * peak.amplitude:.4e}" in page.texts
+    assert f"{results['optimum'].value:.6g}" in page.texts
+    stuck = ss.natural_frequencies(BEAM)
+    free = ss.natural_frequencies(BEAM, slipping=[0])
+    for omega in (*stuck, *free):
+        assert f"{omega:#.6g}" in page.texts
+    assert "Rayleigh, C = 7.49/s M + 2.6e-05 s K" in page.texts
+    assert "3: damper, tip, mode" in page.texts
+    assert "24 converged" in page.texts
+
+
+def test_all_that_is_assumed_and_in_doubt_is_said(results, page):
+    for result in results.values():
+        for line in result.assumptions:
+            assert " ".join(line.split()) in page.texts
+    assert "In doubt:" in page.texts
+    assert "largest true error, against exact orbits" in page.captions
+    assert ss.__version__ in page.texts
+
+
+@pytest.mark.slow
+def test_curves_are_those_of_the_picture(results, tmp_path):
+    frf = results["high"]
+    ss.report(frf, tmp_path / "a.html", dofs="tip", omega_unit="Hz")
+    figure = Page(tmp_path / "a.html").figures[0]
+    traces = {trace.get("name"): trace for trace in figure["data"]}
+    curve = traces["P = 20.313 N"]
+    np.testing.assert_allclose(numbers(curve["x"]), frf.omega / (2 * np.pi), rtol=1e-12)
+    np.testing.assert_allclose(numbers(curve["y"]), frf.amplitude("tip"), rtol=1e-12)
+    assert figure["layout"]["xaxis"]["title"]["text"] == "frequency [Hz]"
+    assert figure["layout"]["yaxis"]["type"] == "log"
+    dashes = {name: traces[name]["line"]["dash"] for name in ("stuck (linear)", "free (linear)")}
+    assert len({"solid", curve["line"]["dash"], *dashes.values()}) == 3
+
+
+@pytest.mark.slow
+def test_marks_go_with_the_curve_of_their_colour(results, tmp_path):
+    pair = {name: results[name] for name in ("low", "griffin")}
+    ss.report(pair, tmp_path / "a.html", dofs=["tip"])
+    data = Page(tmp_path / "a.html").figures[0]["data"]
+    marks = [trace for trace in data if not trace["showlegend"] and trace["mode"] == "markers"]
+    assert len(marks) == 2
+    curves = {trace["name"]: trace for trace in data if trace["showlegend"]}
+    for mark in marks:
+        assert curves[mark["name"]]["legendgroup"] == mark["legendgroup"]
+
+
+# ---------------------------------------------------------------------------------- files
+
+
+@pytest.mark.slow
+def test_the_command(results, tmp_path):
+    for name in ("low", "high"):
+        results[name].save(tmp_path / f"{name}.nc")
+    files = [str(tmp_path / f"{name}.nc") for name in ("low", "high")]
+    done = CliRunner().invoke(app, ["report", *files, "--title", "Two", "--dof", "tip", "--hertz"])
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert done.stdout == f"report: {tmp_path / 'report.html'}\n"
+    page = Page(tmp_path / "report.html")
+    assert page.texts[0] == "Two"
+    assert files[0] in page.texts
+    import hashlib
+
+    assert hashlib.sha256(Path(files[0]).read_bytes()).hexdigest() in page.texts
+    assert any(text.endswith(f"by stickslip {ss.__version__}") for text in page.texts)
+
+
+@pytest.mark.slow
+def test_files_of_the_same_name_are_told_apart(results, tmp_path):
+    files = []
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        files.append(tmp_path / folder / "run.nc")
+        results["low"].save(files[-1])
+    ss.report(files, tmp_path / "two.html")
+    page = Page(tmp_path / "two.html")
+    assert {"a/run", "b/run"} <= set(page.texts)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["none.nc"], "none.nc: no such file"),
+        (["cut.nc"], "cut.nc: not a readable NetCDF file, or a damaged one"),
+        (["changed.nc"], "changed.nc: was changed since it was saved, its digest differs"),
+        (["low.nc", "cut.nc"], "cut.nc: not a readable"),
+        (["odd.nc"], "odd.nc: holds 'mystery', this version reads"),
+        (["low.nc", "--dof", "tpi"], "unknown dof 'tpi'; did you mean 'tip'?"),
+        (["low.nc", "--out", "a.pdf"], "a.pdf: a report is a page of HTML; let its name end in"),
+        (["low.nc", "--out", "none/a.html"], "there is no folder none; create it first"),
+        (["low.nc", "--length-unit", "km"], "unknown choice 'km'"),
+    ],
+)
+def test_refused_in_one_line(results, tmp_path, monkeypatch, arguments, message):
+    import xarray as xr
+
+    monkeypatch.chdir(tmp_path)
+    results["low"].save("low.nc")
+    Path("cut.nc").write_bytes(Path("low.nc").read_bytes()[:9000])
+    Path("changed.nc").write_bytes(Path("low.nc").read_bytes() + b"\n")
+    odd = xr.load_dataset("low.nc", engine="h5netcdf").drop_dims("seal_byte")
+    odd.assign_attrs(stickslip_kind="mystery").to_netcdf("odd.nc", engine="h5netcdf")
+    before = sorted(tmp_path.iterdir())
+    done = CliRunner().invoke(app, ["report", *arguments])
+    assert (done.exit_code, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert message in line
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ([], "results: empty; give at least one result or file"),
+        ({}, "results: empty"),
+        (3, "results: 3 is neither a result nor a file of one"),
+        ([BEAM], "is neither a result nor a file of one"),
+        ({3: "a.nc"}, "name of a result"),
+    ],
+)
+def test_what_is_no_result_is_refused(tmp_path, given, message):
+    with pytest.raises(ss.ModelError, match=re.escape(message)):
+        ss.report(given, tmp_path / "a.html")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_whole_or_not_at_all(results, tmp_path, monkeypatch):
+    file = tmp_path / "a.html"
+    file.write_text("before")
+
+    def fail(handle):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", fail)
+    with pytest.raises(ss.ModelError, match=r"a\.html: cannot be written \(No space left"):
+        ss.report(results["low"], file)
+    assert file.read_text() == "before"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_missing_library_is_named(results, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "plotly", None)
+    with pytest.raises(ss.ModelError, match=r"plotly is not installed; .*'stickslip\[report\]'"):
+        ss.report(results["low"], tmp_path / "a.html")
+
+
+def test_points_that_failed_are_said_and_marked(tmp_path):
+    # far fewer iterations than the friction needs
+    frf = ss.forced_response(BEAM, [150.0, 180.0, 190.0, 200.0], 9, max_iterations=1)
+    failed = int((~frf.arrays.solved).sum())
+    assert 0 < failed < 4
+    ss.report(frf, tmp_path / "a.html", dofs="tip")
+    page = Page(tmp_path / "a.html")
+    assert "Failed:" in page.texts
+    assert f"{4 - failed} converged, {failed} stalled" in page.text
+    assert f"{failed} not solved" in names_of(page.figures[0])
+
+
+def test_a_curve_without_any_solution_still_has_a_report(tmp_path):
+    frf = ss.forced_response(BEAM, [185.0, 190.0], 9, max_iterations=1)
+    assert not frf.arrays.solved.any()
+    ss.report(frf, tmp_path / "a.html")
+    assert "2 stalled" in Page(tmp_path / "a.html").texts
+
+
+# ---------------------------------------------------------------------------------- hostile names
+
+BAD = ["<script>window.hacked = 1</script>", '"><img src=x onerror="hacked=1">', "</script>&amp;"]
+
+
+@pytest.fixture(scope="module")
+def hostile():
+    beam = BEAM.structure
+    structure = ss.Structure(beam.mass, beam.stiffness, beam.damping, BAD)
+    contact = ss.Jenkins(BAD[0], stiffness=2.4e7, slip_force=246.0, name="<b onclick=x>damper")
+    return ss.Model(structure, [contact], [ss.Force(BAD[1], 20.0)])
+
+
+@pytest.mark.slow
+def test_names_are_texts_only(hostile, tmp_path):
+    grid = [150.0, 190.0, 230.0]
+    given = {
+        "<i>one</i>": ss.forced_response(hostile, grid, 3),
+        "two": ss.transient(hostile, 170.0, 3),
+        "three": ss.damper_curve(hostile, slip_force=[10.0, 100.0], dof=BAD[0]),
+    }
+    ss.report(given, tmp_path / "a.html", title="</title><script>hacked=1</script>", dofs=BAD)
+    page = Page(tmp_path / "a.html")
+    scripts = [given for tag, given in page.tags if tag == "script"]
+    assert len(scripts) == len(page.figures) + 2
+    assert not any(tag in ("img", "i", "b") for tag, _ in page.tags)
+    assert "<i>one</i>" in page.texts
+    assert BAD[1] in page.texts
+    labels = json.dumps(page.figures)
+    assert "<script" not in labels
+    assert "&lt;script&gt;" in labels
+
+
+# ---------------------------------------------------------------------------------- a new kind
+
+
+class Branch(Result):
+    kind: ClassVar[str] = "branch"
+
+    def to_dataset(self, *, derived=True):
+        raise NotImplementedError
+
+    @classmethod
+    def from_dataset(cls, dataset, model):
+        raise NotImplementedError
+
+
+BRANCH = Branch(
+    model=BEAM,
+    dofs=("tip",),
+    interrupted=False,
+    timings={},
+    counters={},
+    diagnostics=(diagnostic("text", "None."),),
+)
+
+
+def test_an_unknown_kind_is_refused_with_the_known_ones(tmp_path):
+    with pytest.raises(ss.ModelError, match="nothing is known to show of a branch; known: forced"):
+        ss.report(BRANCH, tmp_path / "a.html")
+
+
+def test_a_new_kind_joins_with_its_view(tmp_path, monkeypatch):
+    class BranchView(View):
+        def rows(self, result, dofs, length):
+            return [("1.25",)]
+
+        def tables(self, results, label, dofs, length_unit):
+            rows = [("", row) for row in self.rows(results[0][1], dofs, 1.0)]
+            table = tabulated("", (), ("ratio",), (), rows)
+            table.title = "turning points"
+            return [table]
+
+        def panels(self, results, dofs, output):
+            return [lambda *, ax: ax.plot([1, 2], [3, 4], label="sticking")]
+
+        def facts(self, result):
+            return [("branches", "2"), ("assumed", "None.")]
+
+        def failures(self, result):
+            return ["turned back"]
+
+    module = ModuleType("branch_view")
+    module.BranchView = BranchView
+    monkeypatch.setitem(sys.modules, "branch_view", module)
+    monkeypatch.setitem(kinds.VIEWS, "branch", ("branch_view", "BranchView"))
+    ss.report({"lco": BRANCH}, tmp_path / "a.html")
+    page = Page(tmp_path / "a.html")
+    assert "turning points" in page.captions
+    assert {"ratio", "1.25", "branches", "turned back", "Branch", "None."} <= set(page.texts)
+    assert len(page.figures) == 1

@@ -1,0 +1,134 @@
+"""Figures of reports: what Matplotlib draws, as plotly draws it."""
+
+import json
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from packed import numbers
+from stickslip.html.figures import drawn
+from stickslip.html.notation import label
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("slip force $F_d$ [N]", "slip force F<sub>d</sub> [N]"),
+        ("$P/F_d$", "P/F<sub>d</sub>"),
+        (r"$\omega_{max}^2$ & <b>", "ω<sub>max</sub><sup>2</sup> &amp; &lt;b&gt;"),
+        ("5 $ only", "5 $ only"),
+        ("$<x>_<$", "&lt;x&gt;_&lt;"),
+    ],
+)
+def test_labels(text, expected):
+    assert label(text).replace("<sub>&</sub>", "_&") == expected
+
+
+def figure_of(draw):
+    found = drawn(lambda *, ax: draw(ax))
+    return json.loads(found.data) if found.data else found
+
+
+@pytest.mark.slow
+def test_maps_bars_and_histograms_are_drawn():
+    def draw(ax: Axes) -> None:
+        mesh = ax.pcolormesh([0, 1, 3], [0, 2, 3], [[1.0, 2.0], [3.0, np.nan]])
+        ax.figure.colorbar(mesh, ax=ax, label="basin")
+
+    (heat,) = figure_of(draw)["data"]
+    assert heat["type"] == "heatmap"
+    assert numbers(heat["x"]).tolist() == [0, 1, 3]
+    assert heat["colorbar"]["title"]["text"] == "basin"
+    (heat,) = figure_of(lambda ax: ax.imshow([[0, 1], [2, 3]], extent=(0, 4, 0, 2)))["data"]
+    assert numbers(heat["y"]).tolist() == [2, 1, 0]
+    (bars,) = figure_of(lambda ax: ax.hist([1.0, 1.1, 2.0], bins=2, label="share"))["data"]
+    assert (bars["type"], bars["name"]) == ("bar", "share")
+    assert numbers(bars["y"]).tolist() == [2, 1]
+
+
+def test_cases_have_their_own_colours_and_names():
+    def draw(ax: Axes) -> None:
+        cases = ListedColormap(["red", "green", "blue"])
+        norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
+        mesh = ax.pcolormesh([0, 1, 2, 3], [0, 1], [[0.0, 1.0, 2.0]], cmap=cases, norm=norm)
+        bar = ax.figure.colorbar(mesh, ax=ax, ticks=[0, 1, 2])
+        bar.ax.set_yticklabels(["<stuck>", "slips", "lost"])
+
+    (heat,) = figure_of(draw)["data"]
+    assert numbers(heat["z"]).ravel() == pytest.approx([1 / 6, 3 / 6, 5 / 6])
+    assert heat["colorscale"][2:4] == [[1 / 3, "rgba(0,128,0,1)"], [2 / 3, "rgba(0,128,0,1)"]]
+    assert heat["colorbar"]["ticktext"] == ["&lt;stuck&gt;", "slips", "lost"]
+
+
+def test_a_logarithmic_map_tells_its_values():
+    def draw(ax: Axes) -> None:
+        ax.scatter([0, 1, 2], [0, 1, 2], c=[1.0, 10.0, 100.0], norm=LogNorm())
+
+    (cloud,) = figure_of(draw)["data"]
+    assert numbers(cloud["marker"]["color"]) == pytest.approx([0.0, 0.5, 1.0])
+    assert numbers(cloud["customdata"]).tolist() == [1.0, 10.0, 100.0]
+
+
+def test_a_legend_of_its_own_switches_what_looks_like_it():
+    def draw(ax: Axes) -> None:
+        (solid,) = ax.plot([1, 2], [1, 2], "-", color="k")
+        ax.plot([2, 1], [2, 3], "--", color="k")
+        dashed = Line2D([], [], color="k", ls="--")
+        ax.legend([solid, dashed, Patch(color="red")], ["stable", "unstable", "area"])
+
+    stable, unstable, *entries = figure_of(draw)["data"]
+    assert [entry["name"] for entry in entries] == ["stable", "unstable", "area"]
+    assert stable["legendgroup"] == entries[0]["legendgroup"]
+    assert unstable["legendgroup"] == entries[1]["legendgroup"]
+    assert stable["legendgroup"] != unstable["legendgroup"]
+
+
+def test_stable_and_unstable_branches_keep_their_lines():
+    def draw(ax: Axes) -> None:
+        ax.plot([1, 2], [1, 2], "-", label="stable")
+        ax.plot([2, 1], [2, 3], "--", label="unstable")
+        ax.set_yscale("log")
+
+    stable, unstable = figure_of(draw)["data"]
+    assert stable["line"]["dash"] == "solid"
+    assert "px" in unstable["line"]["dash"]
+
+
+def test_a_second_axis_and_levels():
+    def draw(ax: Axes) -> None:
+        ax.plot([0, 10], [1, 2])
+        ax.axvline(5.0)
+        beside = ax.twinx()
+        beside.plot([0, 10], [100, 200])
+        beside.set_ylabel("Hz")
+
+    figure = figure_of(draw)
+    assert [trace["yaxis"] for trace in figure["data"]] == ["y", "y3", "y2"]
+    assert figure["layout"]["yaxis2"]["title"]["text"] == "Hz"
+    assert figure["layout"]["yaxis2"]["side"] == "right"
+
+
+def test_long_histories_keep_their_extremes():
+    time = np.linspace(0.0, 1.0, 100_001)
+    wave = np.sin(2 * np.pi * 5 * time)
+    wave[33_333] = 7.0
+    (line,) = figure_of(lambda ax: ax.plot(time, wave))["data"]
+    assert numbers(line["y"]).size <= 20_002
+    assert numbers(line["y"]).max() == 7.0
+    assert numbers(line["x"])[[0, -1]].tolist() == [0.0, 1.0]
+
+
+@pytest.mark.slow
+def test_what_plotly_cannot_draw_is_a_still_picture():
+    def draw(ax: Axes) -> None:
+        ax.contourf([[1, 2], [3, 4]])
+        ax.set_ylabel("height")
+
+    found = figure_of(draw)
+    assert found.data == ""
+    assert found.still.startswith("data:image/png;base64,")
+    assert found.caption == "height"

@@ -1,0 +1,119 @@
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from stickslip import ModelError
+from stickslip.units import quantity
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "expected"),
+    [
+        (20.3, "N", 20.3),
+        (7, "N", 7.0),
+        (np.float64(1.5), "m", 1.5),
+        ("20.3 N", "N", 20.3),
+        ("20.3N", "N", 20.3),
+        ("  -1.5e1 mN ", "N", -0.015),
+        ("2 kgf", "N", 19.6133),
+        ("1 lbf", "N", 4.4482216152605),
+        ("24 kN/mm", "N/m", 2.4e7),
+        ("1 N/µm", "N/m", 1e6),
+        ("1 N/μm", "N/m", 1e6),
+        ("1 N/um", "N/m", 1e6),
+        ("1 lbf/in", "N/m", 175.12683524647636),
+        ("25 Hz", "rad/s", 50 * math.pi),
+        ("0.025 kHz", "rad/s", 50 * math.pi),
+        ("1500 rpm", "rad/s", 50 * math.pi),
+        ("25 rev/s", "rad/s", 50 * math.pi),
+        ("350 rad/s", "rad/s", 350.0),
+        ("90 deg", "rad", math.pi / 2),
+        ("90°", "rad", math.pi / 2),
+        ("0.5 rad", "rad", 0.5),
+        ("0.5 %", "", 0.005),
+        ("0.5", "", 0.5),
+        ("7.49 1/s", "1/s", 7.49),
+        ("7.49 s^-1", "1/s", 7.49),
+        ("0.026 ms", "s", 2.6e-5),
+        ("10 µm", "m", 1e-5),
+        ("3 N*m", "J", 3.0),
+        ("0.0e-400 N", "N", 0.0),
+        ("5\u00a0N", "N", 5.0),
+        ("1e-300 N", "N", 1e-300),
+    ],
+)
+def test_a_number_or_a_text_with_a_unit_is_read_in_si(value, unit, expected):
+    assert quantity(value, unit, "entry") == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "problem"),
+    [
+        (
+            "20 kg",
+            "N",
+            r"'20 kg' is not a force \[N\]; write for instance '20.3 N' or a number in N",
+        ),
+        ("20", "N", "'20' has no unit"),
+        ("", "N", "'' is not a force"),
+        ("twenty N", "N", "'twenty N' is not a force"),
+        ("nan N", "N", "'nan N' is not a force"),
+        ("1e400 N", "N", "'1e400 N' is not finite"),
+        ("1e-400 N", "N", "'1e-400 N' is too small"),
+        ("-0.02e-400 N", "N", "'-0.02e-400 N' is too small"),
+        ("1e-320 nN", "N", "'1e-320 nN' is too small"),
+        (Fraction(1, 10**400), "N", "is too small"),
+        ("1_0 N", "N", "'1_0 N' has an unknown unit '_0 N'"),
+        ("\u0661\u0662 N", "N", "is not a force"),
+        ("1\u0662 N", "N", "has an unknown unit"),
+        ("1 " + "*".join(["N"] * 3000), "N", "has a unit of 5999 characters"),
+        ("1 " + "(" * 3000 + "N" + ")" * 3000, "N", "has a unit of 6001 characters"),
+        ("1" * 5000 + " N", "N", "is not finite"),
+        ("20,5 N", "N", "'20,5 N' has a decimal comma"),
+        ("20.3 n", "N", "has an unknown unit 'n'"),
+        ("20.3 Newtons!", "N", "has an unknown unit 'Newtons!'"),
+        ("20 N)", "N", r"has an unknown unit 'N\)'"),
+        ("20 N # 3", "N", "has an unknown unit 'N # 3'"),
+        ("20 3 N", "N", "has an unknown unit '3 N'"),
+        ("20 (((N", "N", "has an unknown unit"),
+        ("20 N**9**9**9", "N", r"has an unknown unit 'N\*\*9\*\*9\*\*9'"),
+        ("20 N*9²²²²²²²²²²", "N", "has an unknown unit"),
+        ("20 N**N", "N", "has an unknown unit"),
+        ("20 N..m", "N", "is not a force"),
+        ("25 Hz", "N", r"'25 Hz' is not a force \[N\]"),
+        ("300 1/s", "rad/s", r"'300 1/s' is not a frequency \[rad/s\]; .* '25 Hz'"),
+        ("25 Hz", "1/s", r"'25 Hz' is not a rate \[1/s\]"),
+        ("5 %", "rad", r"'5 %' is not an angle \[rad\]; .* '90 deg'"),
+        ("90 deg", "", "'90 deg' is not a ratio; .* '0.5 %' or a plain number"),
+        ("1 kg", "J", r"is not a quantity \[J\]; .* '1 J'"),
+        (math.nan, "N", "nan is not finite"),
+        (-math.inf, "N", "-inf is not finite"),
+        (10**400, "N", "is too large; write for instance '20.3 N'"),
+        (np.complex128(1), "N", "is not a force"),
+        (True, "N", "True is not a force"),
+        (None, "N", "None is not a force"),
+        ([1.0], "N", r"\[1.0\] is not a force"),
+        (np.array([1.0]), "N", "is not a force"),
+        (1j, "N", "1j is not a force"),
+    ],
+)
+def test_what_is_no_quantity_of_the_unit_is_refused_in_one_line(value, unit, problem):
+    with pytest.raises(ModelError, match=problem) as caught:
+        quantity(value, unit, "force 1: amplitude")
+    message = str(caught.value)
+    assert message.startswith("force 1: amplitude = ")
+    assert "\n" not in message
+
+
+@pytest.mark.slow
+def test_numbers_do_not_load_pint():
+    import subprocess
+    import sys
+
+    code = (
+        "import sys; from stickslip.units import quantity; quantity(1.0, 'N', 'x'); "
+        "sys.exit('pint' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

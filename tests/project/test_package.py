@@ -1,0 +1,63 @@
+"""The package: its exports, and libraries that wait for their use."""
+
+import importlib
+import inspect
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import stickslip as ss
+from stickslip.reference import snecma_beam
+
+# the package
+
+
+def test_everything_exported_is_there():
+    for name in ss.__all__:
+        assert getattr(ss, name) is not None
+        assert name in dir(ss)
+    assert set(ss._HOMES) | set(ss._MODULES) == set(ss.__all__)
+    assert ss.plot.curves is not None
+    assert ss.study.Study is not None
+    assert ss.reference.snecma_beam is snecma_beam
+
+
+def test_unknown_export_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="module 'stickslip' has no attribute 'Jenkin'"):
+        _ = ss.Jenkin
+
+
+def test_heavy_libraries_wait_for_their_use():
+    heavy = ("scipy", "xarray", "matplotlib", "pint", "pydantic", "typer", "rich", "h5netcdf")
+    code = (
+        "import sys, stickslip as ss; "
+        "ss.Model(ss.Structure([[1.0]], [[1.0]]), [], [ss.Force('0', 1.0)]); "
+        f"print([name for name in {heavy} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.slow
+def test_the_stub_has_the_keys_of_the_settings():
+    """What editors read is what `docs/make_stub.py` writes of the signatures at run time."""
+    sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
+    try:
+        make_stub = importlib.import_module("make_stub")
+    finally:
+        del sys.path[0]
+    text = make_stub.stub()
+    assert "max_samples: int = 16384" in text
+    assert make_stub.STUB.read_text("utf-8") == text
+
+
+def test_help_names_every_key():
+    for name in ss.__all__:
+        value = getattr(ss, name)
+        if not hasattr(value, "__settings__"):
+            continue
+        for key in inspect.signature(value).parameters:
+            assert re.search(rf"^(\w+, )*{key}(, \w+)* : ", value.__doc__, re.M), (name, key)
