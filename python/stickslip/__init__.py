@@ -31,8 +31,7 @@ _NAMES = {
     "io": "Frf read_dofs read_frf read_matrix write_frf",
     "model": "Force Jenkins ModalDamping Model ParallelJenkins Rayleigh StructuralDamper Structure "
     "join natural_frequencies slip_configurations",
-    "model.damping": "modal_damping",
-    "model.destabilised": "destabilised",
+    "model.destabilised": "destabilised modal_damping",
     "model.state": "State",
     "results": "ForcedResponse Status",
     "results.basin_map": "BasinMap",

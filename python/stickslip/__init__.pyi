@@ -45,8 +45,8 @@ from stickslip.model import join as join
 from stickslip.model import natural_frequencies as natural_frequencies
 from stickslip.model import slip_configurations as slip_configurations
 from stickslip.model.damping import DampingLaw
-from stickslip.model.damping import modal_damping as modal_damping
 from stickslip.model.destabilised import destabilised as destabilised
+from stickslip.model.destabilised import modal_damping as modal_damping
 from stickslip.model.state import State as State
 from stickslip.results import ForcedResponse as ForcedResponse
 from stickslip.results import Status as Status

@@ -9,7 +9,7 @@ from scipy.linalg import eig, eigh
 import stickslip as ss
 from stickslip import plot
 from stickslip.disk import AerodynamicWaves
-from stickslip.model.damping import law_from_spec
+from stickslip.model.laws import law_from_spec
 from stickslip.reference import beam_pair, beam_ring, snecma_beam
 
 

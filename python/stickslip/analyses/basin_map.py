@@ -121,7 +121,7 @@ def _direction(model: Model, axis: Axis) -> Float:
     if isinstance(axis, str):
         direction: Float = np.eye(len(structure))[structure.index(axis)]
         return direction
-    stiffness = held_stiffness(structure, model.contacts)
+    stiffness = held_stiffness(structure.stiffness, structure, model.contacts)
     _, shapes = eigh(stiffness, structure.mass)
     shape = shapes[:, axis]
     return np.asarray(shape / shape[np.abs(shape).argmax()], dtype=np.float64)

@@ -15,7 +15,7 @@ import numpy as np
 
 from stickslip.checks import Matrix, members, real_number, require_keys, text
 from stickslip.errors import ModelError
-from stickslip.model.structure import Structure
+from stickslip.model.dofs import Dofs
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Contact(ABC):
         """Number of contact points, each of which sticks or slips."""
 
     @abstractmethod
-    def rows(self, structure: Structure) -> Matrix:
+    def rows(self, dofs: Dofs) -> Matrix:
         """Return B of u = B x for a structure of N degrees of freedom, shape (points, N).
 
         One row per contact point: +1 at its degree of freedom, -1 at that of its other end.

@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import Matrix, brief, members, real_number, set_fields
 from stickslip.errors import ModelError
-
-if TYPE_CHECKING:
-    from stickslip.model.contact import Contact
-    from stickslip.model.model import Model
-    from stickslip.model.structure import Structure
+from stickslip.model.dofs import Dofs
 
 _ROUNDING = 1e-13
 # Ratio of stiffness over mass between dofs from which their order decides how many digits slow
 # modes keep.
 _GRADED = 1e6
+
+
+@runtime_checkable
+class Restraint(Protocol):
+    """What holds a structure while it sticks: a contact."""
+
+    @property
+    def stuck_stiffness(self) -> Matrix:
+        """Stiffness while it sticks [N/m], shape (points, points)."""
+
+    def rows(self, dofs: Dofs) -> Matrix:
+        """Return B of u = B x, shape (points, N)."""
+
+    def to_spec(self) -> dict[str, object]:
+        """Return it in plain values."""
 
 
 class _DampingLaw(ABC):
@@ -103,7 +114,7 @@ class ModalDamping(_DampingLaw):
     """
 
     ratio: float | Sequence[float]
-    stuck: Iterable[Contact] = ()
+    stuck: Iterable[Restraint] = ()
 
     def __post_init__(self) -> None:
         given = self.ratio.tolist() if isinstance(self.ratio, np.ndarray) else self.ratio
@@ -132,8 +143,6 @@ class ModalDamping(_DampingLaw):
         """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N)."""
         from scipy.linalg import eigh
 
-        from stickslip.model.structure import Structure
-
         size = len(mass)
         ratios = np.asarray(self.ratio, dtype=np.float64)
         if ratios.ndim == 1 and ratios.size != size:
@@ -142,7 +151,8 @@ class ModalDamping(_DampingLaw):
             )
         held = stiffness
         if self.stuck:
-            held = held_stiffness(Structure(mass, stiffness, dofs=dofs), self.stuck)
+            names = Dofs(map(str, range(size)) if dofs is None else dofs)
+            held = held_stiffness(stiffness, names, self.stuck)
         order = _graded(held, mass)
         squares, modes = eigh(held[np.ix_(order, order)], mass[np.ix_(order, order)])
         modes = modes[np.argsort(order)]
@@ -170,59 +180,18 @@ def _graded(stiffness: Matrix, mass: Matrix) -> NDArray[np.intp]:
     return np.argsort(-rates, kind="stable")
 
 
-def held_stiffness(structure: Structure, contacts: Iterable[Contact]) -> Matrix:
+def held_stiffness(stiffness: Matrix, dofs: Dofs, contacts: Iterable[Restraint]) -> Matrix:
     """Return the stiffness of a structure with contacts stuck, shape (N, N) [N/m]."""
-    held = structure.stiffness
     for contact in contacts:
-        rows = contact.rows(structure)
-        held = held + rows.T @ contact.stuck_stiffness @ rows
-    return held
+        rows = contact.rows(dofs)
+        stiffness = stiffness + rows.T @ contact.stuck_stiffness @ rows
+    return stiffness
 
 
-def modal_damping(
-    ratio: float | Sequence[float], *, stuck: Model | Iterable[Contact] = ()
-) -> ModalDamping:
-    """Damping given by ratios of critical damping, mode by mode.
-
-    C = M Phi diag(2 zeta omega) Phi^T M with mass-normalised modes Phi.
-
-    The aerodynamic input of a flutter analysis: negative ratios of the modes that the flow drives.
-    It serves wherever a damping matrix does: as `damping` of a `Structure`, and as the
-    `negative_damping` that `destabilised` adds.
-
-    Parameters
-    ----------
-    ratio : float or sequence of float, shape (N,)
-        As of `ModalDamping`; 0 leaves a mode alone.
-    stuck : Model or iterable of Contact, optional
-        Whose modes: with these contacts stuck, of a model all of them. Default: none, the modes of
-        the structure by itself, in which all contacts slip without friction. The former are those
-        that flutter sets in with, the latter those of a structure computed without its dampers.
-
-    References
-    ----------
-    Guillen (1999), eq. (5.29), corrected: T^T M T = diag(m) and C = T^-T diag(c) T^-1, of which
-    this is the form with m = 1 and c = 2 zeta omega.
-
-    Examples
-    --------
-    >>> import stickslip as ss
-    >>> beam = ss.reference.snecma_beam()
-    >>> aero = ss.modal_damping([-0.01, 0.0, 0.002], stuck=beam)
-    >>> ss.destabilised(beam, aero, ratio=0.5).structure.damping.shape
-    (3, 3)
-    """
-    from stickslip.model.model import Model
-
-    return ModalDamping(ratio, stuck.contacts if isinstance(stuck, Model) else stuck)
-
-
-def _contacts(stuck: object) -> tuple[Contact, ...]:
-    from stickslip.model.contact import Contact
-
+def _contacts(stuck: object) -> tuple[Restraint, ...]:
     given = members(stuck, "stuck", "stuck=[...]") if isinstance(stuck, Iterable) else (stuck,)
     for contact in given:
-        if not isinstance(contact, Contact):
+        if not isinstance(contact, Restraint):
             raise ModelError(
                 f"stuck: {brief(contact)} is no contact; give a model, or its contacts"
             )
@@ -247,16 +216,3 @@ def makes_blocks(law: DampingLaw | None, blocks: Iterable[tuple[Matrix, Matrix, 
         bool(np.abs(law.matrix(M, K) - C).max() <= _ROUNDING * np.abs(C).max())
         for M, C, K in blocks
     )
-
-
-def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:
-    """Build a damping law from the plain values of its `to_spec`."""
-    from stickslip.model.laws import contact_from_spec
-
-    values = {key: value for key, value in spec.items() if key != "law"}
-    if isinstance(values.get("stuck"), list):
-        values["stuck"] = [contact_from_spec(one) for one in values["stuck"]]
-    laws: dict[object, type[DampingLaw]] = {"rayleigh": Rayleigh, "modal": ModalDamping}
-    if spec.get("law") not in laws:
-        raise ModelError(f"damping: unknown law {brief(spec.get('law'))}; known: {list(laws)}")
-    return laws[spec["law"]](**values)

@@ -1,10 +1,13 @@
-"""A model under negative damping: C(r) = C + r C_neg."""
+"""A model under negative damping, C(r) = C + r C_neg, and damping ratios of its modes."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from stickslip.checks import Matrix, MatrixLike, real_matrix, real_number, require_finite
 from stickslip.errors import ModelError
-from stickslip.model.damping import DampingLaw
+from stickslip.model.contact import Contact
+from stickslip.model.damping import DampingLaw, ModalDamping
 from stickslip.model.model import Model, require_model
 from stickslip.model.structure import Structure
 
@@ -68,3 +71,39 @@ def negative_matrix(damping: MatrixLike | DampingLaw, structure: Structure) -> M
         raise ModelError(f"{reason} modal_damping([...])", study=f"{reason} {{modal = [...]}}")
     require_finite(matrix, "negative_damping")
     return matrix
+
+
+def modal_damping(
+    ratio: float | Sequence[float], *, stuck: Model | Iterable[Contact] = ()
+) -> ModalDamping:
+    """Damping given by ratios of critical damping, mode by mode.
+
+    C = M Phi diag(2 zeta omega) Phi^T M with mass-normalised modes Phi.
+
+    The aerodynamic input of a flutter analysis: negative ratios of the modes that the flow drives.
+    It serves wherever a damping matrix does: as `damping` of a `Structure`, and as the
+    `negative_damping` that `destabilised` adds.
+
+    Parameters
+    ----------
+    ratio : float or sequence of float, shape (N,)
+        As of `ModalDamping`; 0 leaves a mode alone.
+    stuck : Model or iterable of Contact, optional
+        Whose modes: with these contacts stuck, of a model all of them. Default: none, the modes of
+        the structure by itself, in which all contacts slip without friction. The former are those
+        that flutter sets in with, the latter those of a structure computed without its dampers.
+
+    References
+    ----------
+    Guillen (1999), eq. (5.29), corrected: T^T M T = diag(m) and C = T^-T diag(c) T^-1, of which
+    this is the form with m = 1 and c = 2 zeta omega.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> beam = ss.reference.snecma_beam()
+    >>> aero = ss.modal_damping([-0.01, 0.0, 0.002], stuck=beam)
+    >>> ss.destabilised(beam, aero, ratio=0.5).structure.damping.shape
+    (3, 3)
+    """
+    return ModalDamping(ratio, stuck.contacts if isinstance(stuck, Model) else stuck)

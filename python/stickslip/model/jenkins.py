@@ -11,7 +11,7 @@ import numpy as np
 from stickslip.checks import Matrix, brief, real_number, set_fields, text
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact, Sliders, real_numbers
-from stickslip.model.structure import Structure
+from stickslip.model.dofs import Dofs
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,12 @@ class _TwoEnds(Contact):
         """Number of contact points: one."""
         return 1
 
-    def rows(self, structure: Structure) -> Matrix:
+    def rows(self, dofs: Dofs) -> Matrix:
         """Return B of u = B x, shape (1, N): +1 at `dof`, -1 at `other`; see `Contact.rows`."""
-        rows = np.zeros((1, len(structure)))
-        rows[0, structure.index(self.dof)] = 1.0
+        rows = np.zeros((1, len(dofs)))
+        rows[0, dofs.index(self.dof)] = 1.0
         if self.other is not None:
-            rows[0, structure.index(self.other)] = -1.0
+            rows[0, dofs.index(self.other)] = -1.0
         return rows
 
     @property

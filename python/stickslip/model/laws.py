@@ -1,12 +1,14 @@
-"""The registry of friction laws."""
+"""The registries of friction and damping laws."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from stickslip.checks import brief, require_keys, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
+from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
 from stickslip.model.structural import StructuralDamper
 
@@ -40,3 +42,14 @@ def contact_from_spec(spec: Mapping[str, object]) -> Contact:
     if name is not None:
         name = text(name, f"{law} contact: name")
     return LAWS[law].from_parameters(tuple(dofs), parameters, name)
+
+
+def law_from_spec(spec: Mapping[str, Any]) -> DampingLaw:
+    """Build a damping law from the plain values of its `to_spec`."""
+    values = {key: value for key, value in spec.items() if key != "law"}
+    if isinstance(values.get("stuck"), list):
+        values["stuck"] = [contact_from_spec(one) for one in values["stuck"]]
+    laws: dict[object, type[DampingLaw]] = {"rayleigh": Rayleigh, "modal": ModalDamping}
+    if spec.get("law") not in laws:
+        raise ModelError(f"damping: unknown law {brief(spec.get('law'))}; known: {list(laws)}")
+    return laws[spec["law"]](**values)

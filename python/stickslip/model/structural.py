@@ -20,7 +20,7 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.model.contact import Sliders, real_numbers
-from stickslip.model.structure import Structure
+from stickslip.model.dofs import Dofs
 
 _PRINTED = 1e-6
 """Asymmetry, or row sum, relative to the largest stiffness, that printed digits may leave."""
@@ -156,12 +156,12 @@ class StructuralDamper(Sliders):
         worst = float(sums[np.argmax(np.abs(sums))])
         return worst if abs(worst) > _PRINTED * largest else 0.0
 
-    def rows(self, structure: Structure) -> Matrix:
+    def rows(self, dofs: Dofs) -> Matrix:
         """Return B of u = B x; a row of zeros at the ground. See `Contact.rows`."""
-        rows = np.zeros((self.points, len(structure)))
+        rows = np.zeros((self.points, len(dofs)))
         for row, dof in zip(rows, self._dofs, strict=True):
             if dof is not None:
-                row[structure.index(dof)] = 1.0
+                row[dofs.index(dof)] = 1.0
         return rows
 
     def law_parameters(self) -> dict[str, float | list[float]]:

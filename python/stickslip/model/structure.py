@@ -18,10 +18,10 @@ from stickslip.checks import (
     require_square,
     set_fields,
     text,
-    unknown,
 )
 from stickslip.errors import ModelError
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
+from stickslip.model.dofs import Dofs
 
 __all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
 
@@ -31,7 +31,7 @@ _SHOWN = 6
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Structure:
+class Structure(Dofs):
     """A linear structure, M x'' + C x' + K x = forces.
 
     Parameters
@@ -96,9 +96,6 @@ class Structure:
         shown = ", ".join(self.dofs[:_SHOWN]) + (", ..." if len(self) > _SHOWN else "")
         return f"Structure({len(self)} dof{'s' if len(self) > 1 else ''}: {shown})"
 
-    def __len__(self) -> int:
-        return len(self.dofs)
-
     def __reduce__(self) -> tuple[object, ...]:
         # Unpickled arrays would be writeable; going through the constructor makes them constant.
         matrices = self.mass, self.stiffness, self.damping
@@ -124,13 +121,6 @@ class Structure:
             proportional = law.proportional
         set_fields(made, damping_law=law, proportional=made.proportional or bool(proportional))
         return made
-
-    def index(self, name: str) -> int:
-        """Return the position of a degree of freedom, its row in the matrices."""
-        try:
-            return self.dofs.index(name)
-        except ValueError:
-            raise ModelError(unknown("dof", name, self.dofs)) from None
 
 
 def join(structures: Mapping[str, Structure]) -> Structure:

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from stickslip.model import Model
-from stickslip.model.damping import law_from_spec
 from stickslip.model.force import force_from_spec
-from stickslip.model.laws import contact_from_spec
+from stickslip.model.laws import contact_from_spec, law_from_spec
 from stickslip.model.structure import Structure
 from stickslip.results.fields import Float
 
