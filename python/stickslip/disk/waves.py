@@ -6,25 +6,18 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from numbers import Complex
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import Matrix, brief, members, set_fields, text, whole_number
 from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import natural_frequencies
 from stickslip.model.model import AnyMatrix, PointRef
 from stickslip.model.structural import condensed_stiffness
 from stickslip.model.structure import Structure
-
-if TYPE_CHECKING:
-    from typing import Unpack
-
-    from matplotlib.axes import Axes
-
-    from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,11 +124,7 @@ class AerodynamicWaves:
             structure=structure, forces=(), engine_order=wave.diameter, engine_orders=None
         )
 
-    def plot(self, **options: Unpack[Drawing]) -> Axes:
-        """Draw the damping ratio over the nodal diameter; see `stickslip.plot.aerodynamic`."""
-        from stickslip import plot
-
-        return plot.aerodynamic(self, **options)
+    plot = Drawn("aerodynamic")
 
 
 def aerodynamic_waves(
@@ -341,17 +330,8 @@ class NodalDiameters:
     slipping: NDArray[np.float64]
     """(D, N) With the chosen contact points slipping [rad/s]."""
 
-    def plot(self, **options: Unpack[DiameterOptions]) -> Axes:
-        """Draw the frequencies over the nodal diameters; see `stickslip.plot.nodal_diameters`."""
-        from stickslip import plot
-
-        return plot.nodal_diameters(self, **options)
-
-    def plot_safe(self, speed: float, **options: Unpack[SafeOptions]) -> Axes:
-        """Draw them with the excitation at a rotor speed [rad/s]; see `stickslip.plot.safe`."""
-        from stickslip import plot
-
-        return plot.safe(self, speed, **options)
+    plot = Drawn("nodal_diameters")
+    plot_safe = Drawn("safe")
 
 
 def nodal_diameters(disk: BladedDisk, slipping: Iterable[PointRef] | None) -> NodalDiameters:

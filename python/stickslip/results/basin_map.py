@@ -10,23 +10,18 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 import numpy as np
 
 from stickslip.checks import whole_number
+from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int, constant
 from stickslip.results.dataset import labels
-from stickslip.results.drawn import plots
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.result import ColumnResult
 from stickslip.settings.motion import BasinSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
     import xarray as xr
-    from matplotlib.axes import Axes
-
-    from stickslip.plot.options import Frame
 
 
 class Outcome(NamedTuple):
@@ -142,6 +137,4 @@ class BasinMap(ColumnResult):
         motion = labels("start_number", list(self.motion), "class of the motion")
         return {"motion": motion} if derived else {}
 
-    def plot(self, **options: Unpack[Frame]) -> Axes:
-        """Draw the basins over the two axes; see `stickslip.plot.basins`."""
-        return plots.basins(self, **options)
+    plot = Drawn("basins")

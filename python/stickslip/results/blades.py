@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple, Self, TypeAlias
 import numpy as np
 
 from stickslip.checks import brief, text, unknown
+from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
-from stickslip.results.drawn import Drawn, plots
 from stickslip.results.peaks import Peak
 
 if TYPE_CHECKING:
@@ -37,8 +37,8 @@ class Amplification(NamedTuple):
 class BladeMotion(ContactMotion):
     """The part of a result that concerns the sectors of a disk."""
 
-    plot_blades = Drawn(lambda: plots.blade_bars)
-    plot_blade_curves = Drawn(lambda: plots.blade_curves)
+    plot_blades = Drawn("blade_bars")
+    plot_blade_curves = Drawn("blade_curves")
 
     def sector(self, number: int) -> Self:
         """Return the motion of another sector of a tuned disk.

@@ -8,22 +8,17 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
-from stickslip.results.drawn import plots
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
 from stickslip.settings.peaks import DamperSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
     import xarray as xr
-    from matplotlib.axes import Axes
-
-    from stickslip.plot.options import DamperOptions
 
 
 class LeastPeak(NamedTuple):
@@ -149,6 +144,4 @@ class DamperCurve(ColumnResult):
         varied = f"{self.parameter} of the contacts"
         return {"unit": unit, "per_unit": f"/({unit})", "varied": varied}
 
-    def plot(self, **options: Unpack[DamperOptions]) -> Axes:
-        """Draw the damper performance curve; see `stickslip.plot.damper`."""
-        return plots.damper(self, **options)
+    plot = Drawn("damper")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import whole_number
+from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
 from stickslip.model.model import Model, refusal
@@ -25,7 +26,6 @@ from stickslip.results.arrays import (
     amplitude_in,
     constant,
 )
-from stickslip.results.drawn import Drawn, plots
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import KINDS, ContactStates, Events, states_of
 from stickslip.results.fields import Computed, column
@@ -158,8 +158,8 @@ class ExactResponse(ForcedResponse, FloquetStability):
     settings: ExactSettings
     arrays: OrbitArrays
 
-    plot_multipliers = Drawn(lambda: plots.multipliers)
-    plot_events = Drawn(lambda: plots.events)
+    plot_multipliers = Drawn("multipliers")
+    plot_events = Drawn("events")
 
     @cached_property
     def energy(self) -> Energy:

@@ -6,9 +6,9 @@ from collections.abc import Hashable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from stickslip.drawn import Drawn
 from stickslip.results.blades import BladeMotion
 from stickslip.results.certificate import Certificate
-from stickslip.results.drawn import Drawn, plots
 from stickslip.results.energy import Energy, energy_of
 from stickslip.results.sensitivities import Sensitivities
 
@@ -35,10 +35,10 @@ class ForcedResponse(BladeMotion, Sensitivities):
 
     certificate: Certificate | None = None
 
-    plot = Drawn(lambda: plots.curves)
-    plot_waveform = Drawn(lambda: plots.waveform)
-    plot_hysteresis = Drawn(lambda: plots.hysteresis)
-    plot_slip = Drawn(lambda: plots.slip)
+    plot = Drawn("curves")
+    plot_waveform = Drawn("waveform")
+    plot_hysteresis = Drawn("hysteresis")
+    plot_slip = Drawn("slip")
 
     def __repr__(self) -> str:
         omega = self.omega

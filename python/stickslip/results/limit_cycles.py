@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, get_args
+from typing import Any, ClassVar, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import choice, whole_number
+from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
@@ -24,15 +25,11 @@ from stickslip.results.arrays import (
     amplitude_of,
     constant,
 )
-from stickslip.results.drawn import Drawn, plots
 from stickslip.results.fields import Columns, Numbers, Shown, column
 from stickslip.results.periodic import PeriodicMotions
 from stickslip.results.result import ColumnResult
 from stickslip.results.stability import FloquetStability, stability_counts
 from stickslip.settings.cycles import CycleSettings, MapSettings
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 class Limit(NamedTuple):
@@ -143,8 +140,8 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     omega = Shown[Float]()
     negative_damping = Shown[Numbers]()
 
-    plot = Drawn(lambda: plots.limit_cycles)
-    plot_multipliers = Drawn(lambda: plots.cycle_multipliers)
+    plot = Drawn("limit_cycles")
+    plot_multipliers = Drawn("cycle_multipliers")
 
     @cached_property
     def branch(self) -> NDArray[np.str_]:
@@ -282,6 +279,4 @@ class StabilityMap(ColumnResult):
         variation = self.settings.variation
         return {"unit": variation.unit, "parameter": variation.parameter}
 
-    def plot(self, *, ax: Axes | None = None) -> Axes:
-        """Draw the map; see `stickslip.plot.stability_map`."""
-        return plots.stability_map(self, ax=ax)
+    plot = Drawn("stability_map")

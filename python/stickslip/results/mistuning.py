@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import choice, real_number, unknown
+from stickslip.drawn import Drawn, plots
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
 from stickslip.results.blades import SectorDof
-from stickslip.results.drawn import Drawn, plots
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
@@ -21,11 +21,8 @@ from stickslip.results.weibull import Percentile, WeibullFit, empirical_percenti
 from stickslip.settings.peaks import MistuningSettings
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
     from matplotlib.axes import Axes
 
-    from stickslip.plot.options import TrendOptions
 
 ALL = "deviation coupling_stiffness pattern dof"
 _TUNED = "coupling_stiffness dof"
@@ -112,7 +109,7 @@ class MistuningStudy(ColumnResult):
     coupling_stiffness = Shown[Float]("coupling")
     patterns = Shown[Float]()
 
-    plot_distribution = Drawn(lambda: plots.distribution)
+    plot_distribution = Drawn("distribution")
 
     @cached_property
     def status(self) -> NDArray[np.object_]:
@@ -214,11 +211,11 @@ class MistuningStudy(ColumnResult):
         fit = self.weibull(dof, deviation=deviation, coupling=coupling, confidence=confidence)
         return fit.percentile(q)
 
-    def plot_deviation(self, dof: SectorDof, **options: Unpack[TrendOptions]) -> Axes:
+    def plot_deviation(self, dof: SectorDof, **options: Any) -> Axes:
         """Draw factors against the deviation; see `stickslip.plot.amplification`."""
         return plots.amplification(self, dof, "deviation", **options)
 
-    def plot_coupling(self, dof: SectorDof, **options: Unpack[TrendOptions]) -> Axes:
+    def plot_coupling(self, dof: SectorDof, **options: Any) -> Axes:
         """Draw factors against the stiffness of couplings; see `stickslip.plot.amplification`."""
         return plots.amplification(self, dof, "coupling", **options)
 

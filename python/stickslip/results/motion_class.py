@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 import numpy as np
 
 from stickslip.checks import real_number, whole_number
+from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model.state import State
-from stickslip.results.drawn import Drawn, plots
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.fields import Float, Shown, column
 from stickslip.results.result import Attributes, ColumnResult
@@ -65,7 +65,7 @@ class MotionClass(ColumnResult):
 
     tail = Shown[Float]()
 
-    plot = Drawn(lambda: plots.lines)
+    plot = Drawn("lines")
 
     def __repr__(self) -> str:
         where = "" if self.mode is None else f" on mode {self.mode}"

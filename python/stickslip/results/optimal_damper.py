@@ -16,12 +16,8 @@ from stickslip.results.status import Status
 from stickslip.results.stored_model import part_variables, parts_of
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
     import xarray as xr
     from matplotlib.axes import Axes
-
-    from stickslip.plot.options import DamperOptions
 
 
 class _Minima(Columns):
@@ -173,6 +169,6 @@ class OptimalDamper(Result):
             curve=curve,
         )
 
-    def plot(self, **options: Unpack[DamperOptions]) -> Axes:
+    def plot(self, **options: object) -> Axes:
         """Draw the damper performance curve with its least peak; see `stickslip.plot.damper`."""
         return self.curve.plot(**options)

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 import numpy as np
 
 from stickslip.checks import choice, text, whole_number
+from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
 from stickslip.model.state import State
 from stickslip.results.arrays import Measure, amplitude_in
-from stickslip.results.drawn import Drawn, plots
 from stickslip.results.events import KINDS, Events
 from stickslip.results.fields import Code, Columns, Float, Int, Shown, column
 from stickslip.results.result import Attributes, ColumnResult
@@ -103,11 +103,11 @@ class Transient(ColumnResult):
     time = Shown[Float]()
     change = Shown[Float]()
 
-    plot = Drawn(lambda: plots.history)
-    plot_contact_force = Drawn(lambda: plots.contact_history)
-    plot_phase = Drawn(lambda: plots.phase)
-    plot_poincare = Drawn(lambda: plots.poincare)
-    plot_spectrum = Drawn(lambda: plots.spectrum)
+    plot = Drawn("history")
+    plot_contact_force = Drawn("contact_history")
+    plot_phase = Drawn("phase")
+    plot_poincare = Drawn("poincare")
+    plot_spectrum = Drawn("spectrum")
 
     @property
     def status(self) -> TransientStatus:

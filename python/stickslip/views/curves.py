@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.drawn import plots
 from stickslip.results.certificate import Certificate
-from stickslip.results.drawn import plots
 from stickslip.results.exact_response import ExactResponse
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.results.drawn import plots
+from stickslip.drawn import plots
 from stickslip.results.limit_cycles import LimitCycles, StabilityMap
 from stickslip.results.stability import STATES, stability_counts
 from stickslip.views.kinds import Dofs, Rows, View

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from stickslip.drawn import plots
 from stickslip.results.damper_curve import DamperCurve
-from stickslip.results.drawn import plots
 from stickslip.results.optimal_damper import OptimalDamper
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.tables import Row, assumed, counted

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.drawn import plots
 from stickslip.errors import ModelError
-from stickslip.results.drawn import plots
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import fit_weibull
 from stickslip.views.kinds import Dofs, Rows, View

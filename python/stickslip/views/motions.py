@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.drawn import plots
 from stickslip.errors import ModelError
 from stickslip.results.basin_map import BasinMap
-from stickslip.results.drawn import plots
 from stickslip.results.fate_arrays import Motion
 from stickslip.results.motion_class import MotionClass
 from stickslip.views.kinds import Dofs, Rows, View

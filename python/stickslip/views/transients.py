@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from stickslip.results.drawn import plots
+from stickslip.drawn import plots
 from stickslip.results.transient import Transient
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.tables import Row

@@ -1,0 +1,40 @@
+"""Functions that draw, as methods of what they draw.
+
+`stickslip.plot` stands above the results and needs Matplotlib: it is loaded when something is
+drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from types import MethodType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class _Plots:
+    """The functions of `stickslip.plot`."""
+
+    def __getattr__(self, name: str) -> Callable[..., Axes]:
+        function: Callable[..., Axes] = getattr(import_module("stickslip.plot"), name)
+        return function
+
+
+plots = _Plots()
+
+
+class Drawn:
+    """A function of `stickslip.plot` as a method: ``plot = Drawn("curves")``.
+
+    It has the signature and the documentation of the function.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def __get__(self, drawn: object, owner: object) -> Callable[..., Axes]:
+        function = getattr(plots, self.name)
+        return function if drawn is None else MethodType(function, drawn)
