@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.checks import listed, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
-from stickslip.results.arrays import Float, Measure, constant
+from stickslip.results.arrays import Arrays, Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
 from stickslip.results.periodic import key_of
 
@@ -79,7 +79,7 @@ class Sensitivities(ContactMotion):
             ((contact name, point), parameter). Not-a-number at points that were not solved.
         """
         causes = _causes(self.model, contact, parameter)
-        slopes = self._slopes(dof, list(causes.values()), measure)
+        slopes = self._slopes(self.arrays, dof, list(causes.values()), measure)
         if parameter is None:
             names = causes.keys()
             return {name: constant(slopes[:, i].copy()) for i, name in enumerate(names)}
@@ -125,8 +125,7 @@ class Sensitivities(ContactMotion):
         float or dict
             As `sensitivity`, one number each.
         """
-        from stickslip.analyses.forced_response import forced_response
-        from stickslip.settings.balance import BalanceSettings
+        from stickslip import _core
 
         self._require_balance()
         if parameter == "omega":
@@ -136,13 +135,15 @@ class Sensitivities(ContactMotion):
             )
         causes = _causes(self.model, contact, parameter)
         peak = self.peak(dof, measure)
-        there = forced_response(
-            self.model,
-            [peak.omega],
-            observe=[dof],
-            **self.settings.part(BalanceSettings),
+        there = _core.forced_response(
+            self.model.problem,
+            np.array([peak.omega]),
+            np.array([self.model.structure.index(key_of(dof, measure)[0])]),
+            np.array([], dtype=np.int64),
+            self.settings,
+            None,
         )
-        slopes = there._slopes(dof, list(causes.values()), measure)[0]
+        slopes = self._slopes(Arrays.of(there), dof, list(causes.values()), measure)[0]
         if parameter is None:
             return {name: float(slope) for name, slope in zip(causes, slopes, strict=True)}
         return float(slopes.sum())
@@ -154,13 +155,12 @@ class Sensitivities(ContactMotion):
                 "forced_response solves"
             )
 
-    def _slopes(self, dof: str, causes: list[Cause], measure: Measure) -> Float:
+    def _slopes(self, arrays: Arrays, dof: str, causes: list[Cause], measure: Measure) -> Float:
         """Return the derivatives of an amplitude, shape (n, causes)."""
         from stickslip import _core
 
         self._require_balance()
         position = self.model.structure.index(key_of(dof, measure)[0])
-        arrays = self.arrays
         solved = arrays.solved
         slopes = np.full((arrays.omega.size, len(causes)), np.nan)
         if solved.any():
