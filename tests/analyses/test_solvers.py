@@ -1,13 +1,12 @@
 """The dissertation's solvers: Broyden's method and the marched evaluation."""
 
-import sys
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
+from stickslip import _core
 from stickslip.reference import SNECMA_LOADS, beam_pair, snecma_beam
 from stickslip.study import Study
 from stickslip.views.curves import CurveView
@@ -69,17 +68,15 @@ def test_broyden_with_several_contacts_a_range_and_automatic_harmonics():
 
 
 def test_the_sensitivity_of_a_peak_is_solved_with_the_settings_of_its_curve(monkeypatch):
-    module = sys.modules["stickslip.analyses.forced_response"]
-    solve, methods = module.forced_response, []
+    curve = beam(method="broyden", jacobian="differences")
+    solve, methods = _core.forced_response, []
 
-    def spy(*arguments, **options):
-        methods.append((options["method"], options["jacobian"]))
-        return solve(*arguments, **options)
+    def spy(problem, omega, observe, driving, settings, progress):
+        methods.append((settings.method, settings.jacobian))
+        return solve(problem, omega, observe, driving, settings, progress)
 
-    monkeypatch.setattr(module, "forced_response", spy)
-    slope = beam(method="broyden", jacobian="differences").peak_sensitivity(
-        "tip", parameter="level"
-    )
+    monkeypatch.setattr(_core, "forced_response", spy)
+    slope = curve.peak_sensitivity("tip", parameter="level")
     assert methods == [("broyden", "differences")]
     assert slope == pytest.approx(beam().peak_sensitivity("tip", parameter="level"), rel=1e-6)
 

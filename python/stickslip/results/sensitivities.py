@@ -12,6 +12,7 @@ from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Arrays, Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
 from stickslip.results.periodic import key_of
+from stickslip.settings.balance import BalanceSettings
 
 COMMON = {"level": "m", "omega": "m s/rad"}
 """What belongs to no contact: a factor on all forces, and the excitation frequency."""
@@ -140,7 +141,7 @@ class Sensitivities(ContactMotion):
             np.array([peak.omega]),
             np.array([self.model.structure.index(key_of(dof, measure)[0])]),
             np.array([], dtype=np.int64),
-            self.settings,
+            BalanceSettings.of(**self.settings.part(BalanceSettings)),
             None,
         )
         slopes = self._slopes(Arrays.of(there), dof, list(causes.values()), measure)[0]
