@@ -19,7 +19,7 @@ class _Plots:
     """The functions of `stickslip.plot`."""
 
     def __getattr__(self, name: str) -> Callable[..., Axes]:
-        function: Callable[..., Axes] = getattr(import_module(".plot", __package__), name)
+        function: Callable[..., Axes] = getattr(import_module(__package__).plot, name)
         return function
 
 
