@@ -8,7 +8,8 @@ use common::coupled::Coupled;
 use common::snecma_beam;
 use faer::{mat, Mat};
 use stickslip_core::balance::{
-    refine_peak, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus, Settings, Solution,
+    refine_peak, single_harmonic, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus,
+    Settings, Solution,
 };
 use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
@@ -105,6 +106,9 @@ fn a_law_without_closed_form_runs_through_the_whole_balance() {
     assert!(apart(&run(&alone), &run(&build(false))) < 1e-4);
     let refused = ModalSystem::new(&alone).unwrap_err().to_string();
     assert!(refused.contains("contact 1: the law coupled has no events"), "{refused}");
+    let balance = ForcedBalance::new(&alone, fixed, &[0]).unwrap();
+    let refused = single_harmonic(balance, &omega, false).unwrap_err().to_string();
+    assert!(refused.contains("contact 1: expected a law with a describing function, got coupled"));
     assert!(two.points.iter().any(|p| p.contacts.iter().all(|c| c.slip_fraction > 0.0)));
     assert!(one.points.iter().all(|p| p.status == PointStatus::Converged));
     assert!(apart(&one, &two) < 1e-9);

@@ -40,7 +40,7 @@ pub fn single_harmonic(
             Error::shape(
                 &format!("contact {}", index + 1),
                 "a law with a describing function",
-                "one without; balance several harmonics instead",
+                format!("{}, which has none; balance several harmonics instead", law.name()),
             )
         })?;
         laws.push(Box::new(described));

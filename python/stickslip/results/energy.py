@@ -10,7 +10,7 @@ from stickslip.errors import ModelError
 from stickslip.results.arrays import Float, constant
 
 if TYPE_CHECKING:
-    from stickslip.results.forced_response import ForcedResponse
+    from stickslip.results.periodic import Sweep
 
 
 class Energy(NamedTuple):
@@ -36,7 +36,7 @@ class Energy(NamedTuple):
         return constant((self.work - self.viscous - self.friction) / scale)
 
 
-def energy_of(result: ForcedResponse) -> Energy:
+def energy_of(result: Sweep) -> Energy:
     """Return the energy balance of a harmonic series, for which all dofs must be observed.
 
     Over one period the force P_k does the work pi k Im(P_k^T conj(X_k)), and the damping matrix
@@ -71,7 +71,7 @@ def energy_of(result: ForcedResponse) -> Energy:
     return Energy(work, viscous, friction, apparent_work(result))
 
 
-def apparent_work(result: ForcedResponse) -> Float:
+def apparent_work(result: Sweep) -> Float:
     """Return the work that the forces at observed dofs would do in phase with the velocity.
 
     A static load does none, but it is a scale of rounding, and is counted as if of harmonic 1.
