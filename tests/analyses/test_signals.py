@@ -331,7 +331,7 @@ print(json.dumps([max(needed), status("VmHWM") - before]))
 
 
 def test_a_grid_beyond_the_memory_is_refused_in_one_line(monkeypatch):
-    monkeypatch.setattr("stickslip.analyses.memory.physical_memory", lambda: 10**9)
+    monkeypatch.setattr("stickslip.memory.physical_memory", lambda: 10**9)
     ring = beam_ring(36, 7e3, 3).mistuned(np.zeros(36))
     with pytest.raises(ss.ModelError, match=r"^omega: the result of 200000 points") as refused:
         ss.forced_response(ring, np.linspace(150, 260, 200_000), 7)

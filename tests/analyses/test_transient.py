@@ -299,7 +299,7 @@ def test_bad_input_is_refused_in_one_line(arguments, options, message):
 
 
 def test_a_result_beyond_the_memory_is_refused_before_it_is_computed(monkeypatch):
-    monkeypatch.setattr("stickslip.analyses.memory.physical_memory", lambda: 10**6)
+    monkeypatch.setattr("stickslip.memory.physical_memory", lambda: 10**6)
     with pytest.raises(ss.ModelError, match=r"needs .* keep fewer periods with keep=\.\.\."):
         ss.transient(snecma_beam(), 170.0, 1000)
     assert ss.transient(snecma_beam(), 170.0, 1000, keep=1).periods == 1000

@@ -139,12 +139,12 @@ def test_a_range_chooses_its_points():
 
 
 def test_a_result_beyond_the_memory_is_refused_before_it_is_computed(monkeypatch):
-    monkeypatch.setattr("stickslip.analyses.memory.physical_memory", lambda: 10**6)
+    monkeypatch.setattr("stickslip.memory.physical_memory", lambda: 10**6)
     message = r"^omega: the result of 6000 points, .* needs .* GB of the 0.001 GB of memory"
     with pytest.raises(ss.ModelError, match=message):
         ss.forced_response(snecma_beam(), np.linspace(150, 250, 6000), 9)
     with pytest.raises(ss.ModelError, match="give fewer points"):
         ss.forced_response(snecma_beam(), np.linspace(150, 250, 6000))
     assert ss.forced_response(snecma_beam(), GRID[:3], 9).converged.all()
-    monkeypatch.setattr("stickslip.analyses.memory.physical_memory", lambda: None)
+    monkeypatch.setattr("stickslip.memory.physical_memory", lambda: None)
     assert ss.forced_response(snecma_beam(), GRID[:3], 9).converged.all()

@@ -10,10 +10,10 @@ import numpy as np
 from stickslip.analyses.arguments import columns_of, observed_dofs, state_of
 from stickslip.analyses.assumptions import free_assumptions
 from stickslip.analyses.classify import fates_of, free
-from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.run import Progress, Run
 from stickslip.checks import members, unknown, whole_number
 from stickslip.errors import ModelError
+from stickslip.memory import require_numbers
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float

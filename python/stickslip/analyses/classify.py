@@ -16,9 +16,9 @@ from stickslip.analyses.arguments import (
     state_of,
 )
 from stickslip.analyses.assumptions import free_assumptions
-from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.errors import Interrupted, ModelError
+from stickslip.memory import require_numbers
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int

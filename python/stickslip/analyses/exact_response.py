@@ -6,10 +6,10 @@ from stickslip import _core
 from stickslip.analyses.arguments import columns_of, observed_dofs, points_of, require_held
 from stickslip.analyses.assumptions import orbit_assumptions
 from stickslip.analyses.forced_response import forced_response
-from stickslip.analyses.memory import require_memory
 from stickslip.analyses.run import Progress, Run, refusals, share
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import Interrupted
+from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.exact_response import ExactResponse, OrbitArrays

@@ -17,8 +17,8 @@ from stickslip.analyses.arguments import (
     require_held,
 )
 from stickslip.analyses.assumptions import balance_assumptions
-from stickslip.analyses.memory import require_memory
 from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Arrays

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 
 from stickslip import _core
 from stickslip.analyses.arguments import columns_of, known_dofs, require_forced, require_held
-from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.mistuning_run import Series, Work
 from stickslip.analyses.pattern_store import Identity, PatternStore, Row, digest
 from stickslip.analyses.run import Progress, Run, refusals
@@ -22,6 +21,7 @@ from stickslip.disk.bladed_disk import NEXT, BladedDisk
 from stickslip.disk.coupling import Coupling
 from stickslip.disk.pattern import drawn_patterns
 from stickslip.errors import ModelError
+from stickslip.memory import require_numbers
 from stickslip.model import Model
 from stickslip.results.arrays import Float
 from stickslip.results.mistuning import MistuningStudy

@@ -13,9 +13,9 @@ from stickslip.analyses.arguments import (
     state_of,
 )
 from stickslip.analyses.assumptions import transient_assumptions, turn_per_step
-from stickslip.analyses.memory import require_numbers
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.errors import ModelError
+from stickslip.memory import require_numbers
 from stickslip.model import Model
 from stickslip.results.transient import Transient, TransientArrays
 from stickslip.settings.motion import TransientKeys, TransientSettings

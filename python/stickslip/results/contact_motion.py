@@ -12,13 +12,13 @@ from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
 from stickslip.results.arrays import Complex, Float, amplitude_of, constant, mean_forces
 from stickslip.results.events import ContactStates
-from stickslip.results.periodic import Sweep
+from stickslip.results.peaks import Peaks
 
 if TYPE_CHECKING:
     from stickslip import _core
 
 
-class ContactMotion(Sweep):
+class ContactMotion(Peaks):
     """The part of a result that concerns the contacts."""
 
     def contact_force(self, contact: PointRef, index: int, samples: int = 512) -> Float:

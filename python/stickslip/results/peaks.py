@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
@@ -13,11 +14,11 @@ from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.model.model import refusal
 from stickslip.results.arrays import Bool, Float, Int, Measure
+from stickslip.results.periodic import Sweep, key_of
 from stickslip.results.status import Status
 
 if TYPE_CHECKING:
     from stickslip import _core
-    from stickslip.results.periodic import Sweep
 
 RIVAL = 0.9
 """Local maxima from this share of the largest may be the true peak once they are refined."""
@@ -27,7 +28,7 @@ SAME = 1e-10
 
 Bracket: TypeAlias = tuple[float, float, float]
 """Lowest and highest frequency, and a guess between them [rad/s]."""
-Refine: TypeAlias = "Callable[[Sweep, str, Measure, Bracket], tuple[float, float]]"
+Refine: TypeAlias = "Callable[[Peaks, str, Measure, Bracket], tuple[float, float]]"
 """Returns the frequency and the amplitude of the maximum inside a bracket."""
 
 
@@ -63,7 +64,61 @@ class Summary(NamedTuple):
     """Whether a point beside the peak is not solved."""
 
 
-def highest(result: Sweep, dof: str, measure: Measure, refine: Refine) -> Peak:
+class Peaks(Sweep):
+    """The part of a sweep that concerns its highest points."""
+
+    @cached_property
+    def _peaks(self) -> dict[tuple[str, Measure], Peak]:
+        return {}
+
+    def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
+        """Return the highest point of the response curve, between the computed points.
+
+        The balance equations are solved anew over the range of the computed points: at every
+        resonance that may be the highest, in whatever state of the contacts, and wherever the curve
+        between two points may be higher.
+
+        `omega`, `amplitude` (not below any computed point, infinite where neither damping nor
+        friction bounds it), `at_edge` and `beside_gap`.
+
+        Raises ModelError if no point is solved.
+
+        Warns
+        -----
+        UserWarning
+            If a point beside the maximum is not solved, or nothing bounds the response.
+        """
+        key_of(dof, measure)
+        return self._peaks_of([dof], measure)[0]
+
+    def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
+        """Return the peaks of several degrees of freedom, found together."""
+        groups = [[dof] for dof in dofs if (dof, measure) not in self._peaks]
+        found = summits(self, groups, measure) if groups else []
+        for (dof,), (_, peak) in zip(groups, found, strict=True):
+            self._peaks[dof, measure] = peak
+        return [self._peaks[dof, measure] for dof in dofs]
+
+    def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
+        """Return which of some degrees of freedom has the highest peak, and the peak."""
+        return summits(self, [dofs], measure)[0]
+
+    def summary(self, dofs: Iterable[str] | str | None = None) -> list[Summary]:
+        """Return the peaks of degrees of freedom, one row each.
+
+        Empty if no point is solved.
+
+        Raises ModelError if there is no such degree of freedom, or it was not observed.
+
+        Parameters
+        ----------
+        dofs : iterable of str, optional
+            Observed degrees of freedom. Default: all.
+        """
+        return rows(self, self.dofs if dofs is None else dofs)
+
+
+def highest(result: Peaks, dof: str, measure: Measure, refine: Refine) -> Peak:
     """Refine every local maximum that may be the highest, and return the highest.
 
     Points that are not solved are passed over, and warned of where they lie beside the peak.
@@ -82,7 +137,7 @@ def highest(result: Sweep, dof: str, measure: Measure, refine: Refine) -> Peak:
 
 
 def summits(
-    result: Sweep, groups: Sequence[Sequence[str]], measure: Measure
+    result: Peaks, groups: Sequence[Sequence[str]], measure: Measure
 ) -> list[tuple[int, Peak]]:
     """Return the highest point of each group of degrees of freedom, by harmonic balance.
 
@@ -109,7 +164,7 @@ def summits(
 
 
 def _summit(
-    result: Sweep, dofs: Sequence[str], measure: Measure, row: _core.Summit | None
+    result: Peaks, dofs: Sequence[str], measure: Measure, row: _core.Summit | None
 ) -> tuple[int, Peak]:
     """Return the higher of what was computed and what was found between."""
     curves = [_curve(result, dof, measure) for dof in dofs]
@@ -129,7 +184,7 @@ def _summit(
 
 
 def _told(
-    result: Sweep, dof: str, omega: Float, peak: tuple[float, float], beside_gap: bool
+    result: Peaks, dof: str, omega: Float, peak: tuple[float, float], beside_gap: bool
 ) -> Peak:
     """Return a peak, and warn of what it may have missed."""
     # The maximisation resolves frequencies to 1e-8.
@@ -167,7 +222,7 @@ def _outside() -> int:
     return level
 
 
-def rows(result: Sweep, dofs: Iterable[str] | str) -> list[Summary]:
+def rows(result: Peaks, dofs: Iterable[str] | str) -> list[Summary]:
     """Return the peaks of degrees of freedom with the numbers of the nearest solved points."""
     if not isinstance(dofs, Iterable):
         raise ModelError(f"dofs: {brief(dofs)} is not a list of names; leave it out for all")
@@ -180,7 +235,7 @@ def rows(result: Sweep, dofs: Iterable[str] | str) -> list[Summary]:
     return [_row(result, dof, peak) for dof, peak in zip(names, peaks, strict=True)]
 
 
-def _row(result: Sweep, dof: str, peak: Peak) -> Summary:
+def _row(result: Peaks, dof: str, peak: Peak) -> Summary:
     solved = np.flatnonzero(result.arrays.solved)
     near = int(solved[np.abs(result.omega[solved] - peak.omega).argmin()])
     return Summary(
@@ -194,7 +249,7 @@ def _row(result: Sweep, dof: str, peak: Peak) -> Summary:
     )
 
 
-def _curve(result: Sweep, dof: str, measure: Measure) -> tuple[Float, Float, Bool]:
+def _curve(result: Peaks, dof: str, measure: Measure) -> tuple[Float, Float, Bool]:
     """Sort the solved points by frequency, and tell which of them have an unsolved neighbour.
 
     Of equal frequencies the larger amplitude is kept.
@@ -219,7 +274,7 @@ def _rivals(amplitude: Float) -> Int:
     return np.flatnonzero(top)
 
 
-def of_orbits(result: Sweep, dof: str, measure: Measure, bracket: Bracket) -> tuple[float, float]:
+def of_orbits(result: Peaks, dof: str, measure: Measure, bracket: Bracket) -> tuple[float, float]:
     """Return frequency and amplitude of the maximum inside a bracket, by exact orbits."""
     from stickslip import _core
     from stickslip.disk.wave_ring import moving

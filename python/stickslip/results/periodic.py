@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable
 from functools import cached_property
 from numbers import Integral
 from typing import Any, ClassVar, get_args
@@ -25,7 +25,6 @@ from stickslip.results.arrays import (
     constant,
 )
 from stickslip.results.fields import Shown
-from stickslip.results.peaks import Peak, Summary, rows, summits
 from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
@@ -153,10 +152,6 @@ class Sweep(PeriodicMotions):
     def _amplitudes(self) -> dict[tuple[str, Measure], Float]:
         return {}
 
-    @cached_property
-    def _peaks(self) -> dict[tuple[str, Measure], Peak]:
-        return {}
-
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
         """Return the amplitude of a displacement over frequency, shape (n,) [m].
 
@@ -183,52 +178,6 @@ class Sweep(PeriodicMotions):
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
         """Return one period of a displacement, shape (samples,) [m]."""
         return self._period(self.coefficients(dof), index, samples)
-
-    def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
-        """Return the highest point of the response curve, between the computed points.
-
-        The balance equations are solved anew over the range of the computed points: at every
-        resonance that may be the highest, in whatever state of the contacts, and wherever the curve
-        between two points may be higher.
-
-        `omega`, `amplitude` (not below any computed point, infinite where neither damping nor
-        friction bounds it), `at_edge` and `beside_gap`.
-
-        Raises ModelError if no point is solved.
-
-        Warns
-        -----
-        UserWarning
-            If a point beside the maximum is not solved, or nothing bounds the response.
-        """
-        key_of(dof, measure)
-        return self._peaks_of([dof], measure)[0]
-
-    def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
-        """Return the peaks of several degrees of freedom, found together."""
-        groups = [[dof] for dof in dofs if (dof, measure) not in self._peaks]
-        found = summits(self, groups, measure) if groups else []
-        for (dof,), (_, peak) in zip(groups, found, strict=True):
-            self._peaks[dof, measure] = peak
-        return [self._peaks[dof, measure] for dof in dofs]
-
-    def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
-        """Return which of some degrees of freedom has the highest peak, and the peak."""
-        return summits(self, [dofs], measure)[0]
-
-    def summary(self, dofs: Iterable[str] | str | None = None) -> list[Summary]:
-        """Return the peaks of degrees of freedom, one row each.
-
-        Empty if no point is solved.
-
-        Raises ModelError if there is no such degree of freedom, or it was not observed.
-
-        Parameters
-        ----------
-        dofs : iterable of str, optional
-            Observed degrees of freedom. Default: all.
-        """
-        return rows(self, self.dofs if dofs is None else dofs)
 
     def _period(self, series: Complex, index: int, samples: int) -> Float:
         position = self.position(index)

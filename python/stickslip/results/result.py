@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import fields
 from functools import partial
 from os import PathLike
@@ -19,13 +19,12 @@ from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.results.dataset import (
-    attributes,
-    coordinates,
+    labels,
+    point_names,
     require_fit,
-    settings_of,
     state_names,
 )
-from stickslip.results.diagnostic import Diagnostic, from_attributes
+from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.documented import Frozen
 from stickslip.results.fields import Columns, Shown
 from stickslip.settings.settings import Settings
@@ -36,6 +35,13 @@ if TYPE_CHECKING:
 Kind = TypeVar("Kind", bound=np.generic)
 Attributes: TypeAlias = Mapping[str, Callable[[Any], object]]
 """Attributes of a result that are attributes of its dataset, with their types."""
+
+
+_NUMBERED = {"harmonic": "multiple of omega", "pattern": "number of the pattern"}
+"""Dimensions along which positions are counted, with the meaning of the number."""
+
+_LABELLED = {"side": "end of the range", "turn_entry": "entry of the place"}
+"""Dimensions that have `Columns.labels`, with the meaning of a label."""
 
 
 class Result(Frozen, ABC):
@@ -129,7 +135,7 @@ class Result(Frozen, ABC):
         """
         from stickslip.results.store import save
 
-        save(self, path)
+        save(path, self.kind, self.to_dataset(derived=False), self.model)
 
     def locate(self, contact: PointRef) -> tuple[int, int | None]:
         """Return the position of a contact, and of its point if one is meant.
@@ -215,11 +221,11 @@ class ColumnResult(Result):
 
         dataset = xr.Dataset(
             self.arrays.variables(self._words()) | self._further_variables(derived=derived),
-            attrs=attributes(self),
+            attrs=_attributes(self),
         )
         half_wave = bool(getattr(self, "half_wave", False))
         states = self._states(self.model, half_wave=half_wave)
-        return dataset.assign_coords(coordinates(self, dataset.sizes, states))
+        return dataset.assign_coords(_coordinates(self, dataset.sizes, states))
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
@@ -231,7 +237,7 @@ class ColumnResult(Result):
             model=model,
             arrays=cls.columns.read(dataset),
             dofs=require_fit(dataset, model, states),
-            settings=settings_of(cls, dataset),
+            settings=_settings_of(cls, dataset),
             timings=json.loads(told["timings"]),
             counters=json.loads(told["counters"]),
             diagnostics=from_attributes(told),
@@ -256,3 +262,57 @@ class ColumnResult(Result):
     def _further_arguments(cls, dataset: xr.Dataset) -> dict[str, Any]:
         """Return what `_further_variables` wrote and cannot be derived."""
         return {}
+
+
+def _attributes(result: ColumnResult) -> dict[str, object]:
+    """Return what every dataset says of its result, tables as JSON texts."""
+    from stickslip._core import __version__
+
+    return {
+        "title": result.title,
+        "Conventions": "CF-1.11",
+        "stickslip_version": __version__,
+        "settings": json.dumps(result.settings.model_dump()),
+        "diagnostics": to_json(result.diagnostics),
+        "timings": json.dumps(dict(result.timings)),
+        "counters": json.dumps(dict(result.counters)),
+        # NetCDF has no truth values.
+        **{name: 1 * getattr(result, name) for name in result.attributes},
+    }
+
+
+def _settings_of(kind: type[ColumnResult], dataset: xr.Dataset) -> Settings:
+    """Return the settings that `attributes` wrote."""
+    values = json.loads(dataset.attrs["settings"])
+    if values.get("samples", 0) is None:
+        # The first files had no name for what is automatic.
+        values["samples"] = "auto"
+    if "span" in set(kind.settings_class.model_fields) - set(values):
+        # No default stands for the frequencies of a result.
+        raise KeyError("span")
+    return kind.settings_class.stored(values)
+
+
+def _coordinates(
+    result: ColumnResult, sizes: Mapping[Hashable, int], states: Sequence[str]
+) -> dict[str, Any]:
+    """Return the names along the dimensions of a dataset."""
+    model = result.model
+    made: dict[str, Any] = {"dof": labels("dof", result.dofs, "observed degree of freedom")}
+    for dimension, meaning in _NUMBERED.items():
+        if dimension in sizes:
+            about = {"units": "1", "long_name": meaning}
+            made[dimension] = (dimension, np.arange(sizes[dimension]), about)
+    if "point" in sizes:
+        owners = [
+            name
+            for name, contact in zip(model.contact_names, model.contacts, strict=True)
+            for _ in range(contact.points)
+        ]
+        made["point"] = labels("point", point_names(model), "contact point")
+        made["contact"] = labels("point", owners, "contact of the point")
+    if "state_entry" in sizes:
+        made["state_entry"] = labels("state_entry", states, "entry of the state")
+    for dimension, names in result.arrays.labels.items():
+        made[dimension] = labels(dimension, names, _LABELLED[dimension])
+    return made

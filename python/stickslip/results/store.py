@@ -7,7 +7,7 @@ import os
 from collections.abc import Hashable, Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from stickslip.results.stored_model import model_of, model_variables
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.results.result import Result
+    from stickslip.model import Model
 
 KINDS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.results.forced_response", "ForcedResponse"),
@@ -44,8 +44,8 @@ FORMAT = 2
 """Version of the layout of the file; it rises when an older reader could not read it."""
 
 
-def save(result: Result, path: str | os.PathLike[str]) -> None:
-    """Write a result, also a partial one, with its model to a NetCDF 4 file; see `Result.save`.
+def save(path: str | os.PathLike[str], kind: str, dataset: xr.Dataset, model: Model) -> None:
+    """Write the dataset of a result, also a partial one, with its model; see `Result.save`.
 
     Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
     reader opens the file; what follows from other variables is left out. Contacts and forces are
@@ -54,9 +54,8 @@ def save(result: Result, path: str | os.PathLike[str]) -> None:
     """
     target = file_path(path, "path")
     require_place(target)
-    dataset = _split(result.to_dataset(derived=False).assign(model_variables(result.model)))
-    dataset = dataset.assign(seal_variable())
-    dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": result.kind}
+    dataset = _split(dataset.assign(model_variables(model))).assign(seal_variable())
+    dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": kind}
     write(target, sealed(_netcdf(dataset)))
 
 
@@ -107,7 +106,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 
 def content_of(source: Path) -> bytes:
     """Return the bytes of a result file, or refuse one that is larger than the memory."""
-    from stickslip.analyses.memory import SHARE, physical_memory
+    from stickslip.memory import SHARE, physical_memory
 
     try:
         size, memory = os.stat(source).st_size, physical_memory()
@@ -156,7 +155,7 @@ def _changed(source: Path) -> ModelError:
     )
 
 
-def _required_kind(dataset: xr.Dataset, source: Path) -> type[Result]:
+def _required_kind(dataset: xr.Dataset, source: Path) -> Any:
     """Return the class of the result in a file, or refuse a file of which this version has none."""
     kind, version = (dataset.attrs.get(f"stickslip_{key}") for key in ("kind", "format"))
     if kind is None or version is None:
@@ -173,7 +172,7 @@ def _required_kind(dataset: xr.Dataset, source: Path) -> type[Result]:
             f"version reads format 1 to {FORMAT}; upgrade stickslip"
         )
     module, name = KINDS[kind]
-    return cast("type[Result]", getattr(import_module(module), name))
+    return getattr(import_module(module), name)
 
 
 def _split(dataset: xr.Dataset) -> xr.Dataset:
