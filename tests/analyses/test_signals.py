@@ -284,9 +284,9 @@ def test_ctrl_c_while_a_file_is_saved_finishes_it(tmp_path, monkeypatch, ctrl_c)
     monkeypatch.chdir(tmp_path)
     save = store.save
 
-    def saving(result, path):
+    def saving(*arguments):
         os.kill(os.getpid(), signal.SIGINT)
-        save(result, path)
+        save(*arguments)
 
     monkeypatch.setattr(store, "save", saving)
     done = CliRunner().invoke(app, ["run", "study.toml", "--no-plot"])
@@ -306,7 +306,7 @@ def test_ctrl_c_while_a_file_is_saved_finishes_it(tmp_path, monkeypatch, ctrl_c)
 )
 def test_the_memory_that_is_reckoned_is_what_is_taken(call, tmp_path):
     code = f"""
-from stickslip.analyses import memory
+from stickslip import memory
 def status(name):
     (line,) = [line for line in open("/proc/self/status") if line.startswith(name)]
     return 1024 * int(line.split()[1])
