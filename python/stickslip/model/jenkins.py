@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
@@ -34,9 +35,9 @@ class _TwoEnds(Contact):
             )
 
     @property
+    @abstractmethod
     def _elements(self) -> Iterable[tuple[float, float]]:
         """Stiffness [N/m] and slip force [N] of each element."""
-        raise NotImplementedError
 
     @property
     def dofs(self) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from typing import Annotated, ClassVar, Literal, Self
 
@@ -67,9 +68,9 @@ class LawTable(Table):
         return self.touched
 
     @property
+    @abstractmethod
     def touched(self) -> tuple[str, ...]:
         """The DOFs it acts on."""
-        raise NotImplementedError
 
     def build(self) -> Contact:
         """Return the contact."""
