@@ -3,9 +3,11 @@
 mod active_set;
 mod aft;
 mod aft_march;
+mod coulomb;
 mod derivative;
 mod described;
 mod describing;
+mod dual;
 mod elastic;
 mod increment;
 mod jenkins;
@@ -27,6 +29,7 @@ mod structural_parameters;
 mod transitions;
 
 pub use aft::Aft;
+pub use coulomb::{Closure, Coulomb};
 pub(crate) use described::Described;
 pub use describing::Describing;
 pub use elastic::Elastic;

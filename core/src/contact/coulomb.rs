@@ -1,0 +1,407 @@
+//! The elastic Coulomb contact of one node: friction in one or two directions under a normal load
+//! that may vary and vanish.
+//!
+//! With the relative displacements u (tangential) and v (normal, closing positive)
+//!
+//! | | |
+//! |---|---|
+//! | normal | `N = max(N₀ + k_n v, 0)` under a preload, `max(k_n (v − g), 0)` behind a gap |
+//! | tangential | `t = k_t (u − w)`, `|t| ≤ μN`, and the slider w moves along t while `|t| = μN` |
+//! | open | `t = 0`, the slider follows: `w = u` |
+//!
+//! (Yang, Chu and Menq 1998; Petrov and Ewins 2003.) A preload is in equilibrium without motion: the
+//! structure feels N − N₀. Behind a gap it feels all of N.
+//!
+//! One step of the return map takes the displacements along a straight line and is exact there. The
+//! slider lets go where |t| = μN, a quadratic equation; from there on the traction turns towards the
+//! line of motion, `tan(φ/2) ∝ exp(−∫ k_t |du|/(μN))` with φ the angle between the two. So the only
+//! error of a sampled evaluation is that of the straight lines, of second order in their length.
+
+use super::dual::{Dual, Real};
+use super::law::ReturnMapJacobian;
+use super::parameter::numbers;
+use super::{ContactLaw, Parameter, Parameters};
+use crate::Error;
+use faer::Mat;
+
+/// Numbers that a step depends on: traction before (2), tangential change (2), N before and after.
+const INPUTS: usize = 6;
+/// Distance from the cone, relative to it, that is none.
+const ON_CONE: f64 = 1e-12;
+
+/// What presses the bodies together without motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Closure {
+    /// A normal force N₀ \[N\], in equilibrium with what the structure has without motion.
+    Preload(f64),
+    /// A distance g \[m\], negative for an interference: the structure feels all of N.
+    Gap(f64),
+}
+
+/// A Coulomb contact with elastic stiffness: μ, k_t, k_n and what presses it together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coulomb {
+    /// Number of tangential directions, 1 or 2.
+    pub(super) directions: usize,
+    /// μ.
+    pub(super) friction: f64,
+    /// k_t [N/m].
+    pub(super) tangential_stiffness: f64,
+    /// k_n [N/m]; none where the normal load is constant and there is no normal displacement.
+    pub(super) normal_stiffness: Option<f64>,
+    /// What presses it together.
+    pub(super) closure: Closure,
+    /// Slider positions w from which friction has its history \[m\].
+    pub(super) slider: [f64; 2],
+}
+
+/// How a step went.
+struct Passage<T> {
+    traction: [T; 2],
+    /// Shares of the step in which the contact is open, and slips.
+    open: f64,
+    slipping: f64,
+}
+
+impl Coulomb {
+    /// A contact with `directions` tangential displacements and, if it has a normal stiffness, a
+    /// normal one behind them.
+    ///
+    /// # Errors
+    /// Parameters that are negative or not finite; a gap without normal displacement.
+    pub fn new(
+        directions: usize,
+        friction: f64,
+        tangential_stiffness: f64,
+        normal_stiffness: Option<f64>,
+        closure: Closure,
+    ) -> Result<Self, Error> {
+        if !(1..=2).contains(&directions) {
+            return Err(Error::shape("coulomb", "one or two tangential directions", directions));
+        }
+        let preload = match closure {
+            Closure::Preload(force) => force,
+            Closure::Gap(_) if normal_stiffness.is_none() => {
+                return Err(Error::shape("coulomb: gap", "a normal displacement", "none"));
+            }
+            Closure::Gap(_) => 0.0,
+        };
+        for (entry, value) in [
+            ("coulomb: friction", friction),
+            ("coulomb: tangential_stiffness", tangential_stiffness),
+            ("coulomb: normal_stiffness", normal_stiffness.unwrap_or(0.0)),
+            ("coulomb: preload", preload),
+        ] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(Error::value(entry, value, "must be finite and not negative"));
+            }
+        }
+        if let Closure::Gap(gap) = closure {
+            if !gap.is_finite() {
+                return Err(Error::value("coulomb: gap", gap, "must be finite, in m"));
+            }
+        }
+        Ok(Self {
+            directions,
+            friction,
+            tangential_stiffness,
+            normal_stiffness,
+            closure,
+            slider: [0.0; 2],
+        })
+    }
+
+    pub(super) fn from_parameters(parameters: &Parameters) -> Result<Self, Error> {
+        let one = |name: &str| match numbers("coulomb", parameters, name)? {
+            [value] => Ok(*value),
+            several => Err(Error::shape(&format!("coulomb: {name}"), "one number", several.len())),
+        };
+        let given = |name: &str| parameters.contains_key(name);
+        let closure = if given("gap") {
+            Closure::Gap(one("gap")?)
+        } else {
+            Closure::Preload(one("preload")?)
+        };
+        let normal = if given("normal_stiffness") { Some(one("normal_stiffness")?) } else { None };
+        let directions = one("directions")? as usize;
+        Self::new(directions, one("friction")?, one("tangential_stiffness")?, normal, closure)
+    }
+
+    /// N₀: the normal force without displacement, negative behind an open gap \[N\].
+    pub(super) fn normal_at_rest(&self) -> f64 {
+        match self.closure {
+            Closure::Preload(force) => force,
+            Closure::Gap(gap) => -self.normal_stiffness.unwrap_or(0.0) * gap,
+        }
+    }
+
+    /// Part of N that the structure does not feel \[N\].
+    pub(super) fn balanced(&self) -> f64 {
+        match self.closure {
+            Closure::Preload(force) => force,
+            Closure::Gap(_) => 0.0,
+        }
+    }
+
+    /// `N₀ + k_n v` at the displacements of the contact: negative while it is open \[N\].
+    pub(super) fn pressing(&self, displacement: &[f64]) -> f64 {
+        let moved = self.normal_stiffness.map_or(0.0, |k| k * displacement[self.directions]);
+        self.normal_at_rest() + moved
+    }
+
+    /// Takes the traction along a straight step: see the head of this file.
+    fn step<T: Real>(&self, traction: [T; 2], du: [T; 2], before: T, after: T) -> Passage<T> {
+        let (mu, k) = (T::from(self.friction), T::from(self.tangential_stiffness));
+        let zero = T::from(0.0);
+        if after.value() <= 0.0 {
+            let closed = before.value().max(0.0) / (before.value() - after.value());
+            let open = if closed.is_finite() { 1.0 - closed } else { 1.0 };
+            return Passage { traction: [zero; 2], open, slipping: 0.0 };
+        }
+        let stuck =
+            |start: [T; 2], share: T| [start[0] + k * du[0] * share, start[1] + k * du[1] * share];
+        let limit = mu * after;
+        if before.value() <= 0.0 {
+            // It closes within the step. The slider has followed until then: the contact sticks as
+            // long as |k_t u'| < μ k_n v', or slips along u'.
+            let closed = after / (after - before);
+            let trial = stuck([zero; 2], closed);
+            let size = squared(trial);
+            let open = 1.0 - closed.value();
+            if size.value() <= limit.value().powi(2) {
+                return Passage { traction: trial, open, slipping: 0.0 };
+            }
+            let by = limit / size.sqrt();
+            let slipping = closed.value();
+            return Passage { traction: [by * trial[0], by * trial[1]], open, slipping };
+        }
+        let trial = stuck(traction, T::from(1.0));
+        // The distance from the cone is convex along the line: outside at its end alone.
+        if squared(trial).value() <= limit.value().powi(2) {
+            return Passage { traction: trial, open: 0.0, slipping: 0.0 };
+        }
+        let at_start = mu * before;
+        let growth = mu * (after - before);
+        let rate = [k * du[0], k * du[1]];
+        let c = squared(traction) - at_start * at_start;
+        let b = traction[0] * rate[0] + traction[1] * rate[1] - at_start * growth;
+        let a = squared(rate) - growth * growth;
+        let on_cone = c.value() >= -ON_CONE * at_start.value().powi(2);
+        let stick = if on_cone && b.value() >= 0.0 {
+            zero
+        } else {
+            let c = if on_cone { zero } else { c };
+            let root = (b * b - a * c).sqrt();
+            if b.value() > 0.0 {
+                -c / (b + root)
+            } else {
+                (root - b) / a
+            }
+        };
+        let share = stick.value().clamp(0.0, 1.0);
+        let from = stuck(traction, stick);
+        let size = squared(from);
+        let way = squared(du);
+        let rest = T::from(1.0) - stick;
+        let turned = if way.value() == 0.0 || size.value() == 0.0 {
+            let by = if size.value() > 0.0 { limit / size.sqrt() } else { zero };
+            [by * from[0], by * from[1]]
+        } else {
+            let (way, size) = (way.sqrt(), size.sqrt());
+            let along = [du[0] / way, du[1] / way];
+            let cos = (from[0] * along[0] + from[1] * along[1]) / size;
+            let sin = (from[1] * along[0] - from[0] * along[1]) / size;
+            let begun = before + stick * (after - before);
+            // ∫ ds/N along the rest of the line.
+            let inverse = ((after - begun) / begun).log_ratio() / begun;
+            let fade = (-(k * way * rest * inverse / mu)).exp();
+            // The half angle φ/2 as a vector, without loss where φ is near 0 or π.
+            let (x, y) = if cos.value() >= 0.0 {
+                (T::from(1.0) + cos, sin * fade)
+            } else if sin.value() >= 0.0 {
+                (sin, (T::from(1.0) - cos) * fade)
+            } else {
+                (-sin, (cos - T::from(1.0)) * fade)
+            };
+            let norm = x * x + y * y;
+            let (cos, sin) = ((x * x - y * y) / norm, T::from(2.0) * x * y / norm);
+            [limit * (cos * along[0] - sin * along[1]), limit * (cos * along[1] + sin * along[0])]
+        };
+        Passage { traction: turned, open: 0.0, slipping: 1.0 - share }
+    }
+
+    /// The traction as two numbers, in whatever number of directions.
+    fn pair<T: Real>(&self, of: impl Fn(usize) -> T) -> [T; 2] {
+        [of(0), if self.directions == 2 { of(1) } else { T::from(0.0) }]
+    }
+
+    fn with(&self, change: impl FnOnce(&mut Self)) -> Result<Self, Error> {
+        let mut changed = *self;
+        change(&mut changed);
+        let Self { directions, friction, tangential_stiffness, normal_stiffness, closure, slider } =
+            changed;
+        let law = Self::new(directions, friction, tangential_stiffness, normal_stiffness, closure)?;
+        Ok(Self { slider, ..law })
+    }
+}
+
+fn squared<T: Real>(vector: [T; 2]) -> T {
+    vector[0] * vector[0] + vector[1] * vector[1]
+}
+
+impl ContactLaw for Coulomb {
+    fn name(&self) -> &'static str {
+        "coulomb"
+    }
+
+    fn displacements(&self) -> usize {
+        self.directions + usize::from(self.normal_stiffness.is_some())
+    }
+
+    fn state_size(&self) -> usize {
+        self.directions
+    }
+
+    fn stiffness(&self) -> Mat<f64> {
+        let normal = self.normal_stiffness.unwrap_or(0.0);
+        let size = self.displacements();
+        Mat::from_fn(size, size, |i, j| match (i == j, i < self.directions) {
+            (true, true) => self.tangential_stiffness,
+            (true, false) => normal,
+            (false, _) => 0.0,
+        })
+    }
+
+    fn state_stiffness(&self) -> Mat<f64> {
+        Mat::from_fn(self.directions, self.displacements(), |i, j| {
+            if i == j {
+                self.tangential_stiffness
+            } else {
+                0.0
+            }
+        })
+    }
+
+    fn is_odd(&self) -> bool {
+        self.normal_stiffness.is_none_or(|k| k == 0.0)
+    }
+
+    fn is_monotone(&self) -> bool {
+        self.is_odd()
+    }
+
+    /// Of a contact whose normal load varies, at the load without motion.
+    fn limits(&self) -> Vec<f64> {
+        let at_rest = self.normal_at_rest();
+        // Behind a gap nothing is known before the motion is.
+        let normal =
+            if at_rest > 0.0 || self.normal_stiffness.is_none() { at_rest } else { f64::MAX };
+        let tangential = match self.friction * self.tangential_stiffness {
+            0.0 => 0.0,
+            _ if normal == f64::MAX => f64::MAX,
+            _ => self.friction * normal,
+        };
+        let normal = if self.is_odd() { f64::INFINITY } else { normal };
+        (0..self.displacements())
+            .map(|i| if i < self.directions { tangential } else { normal })
+            .collect()
+    }
+
+    fn return_map(
+        &self,
+        before: &[f64],
+        after: &[f64],
+        state: &mut [f64],
+        force: &mut [f64],
+        jacobian: Option<&mut ReturnMapJacobian>,
+    ) {
+        let (count, directions) = (self.displacements(), self.directions);
+        let du = |i: usize| after[i] - before[i];
+        let (from, to) = (self.pressing(before), self.pressing(after));
+        if let Some(normal) = force.get_mut(directions) {
+            *normal = to.max(0.0) - self.balanced();
+        }
+        let Some(jacobian) = jacobian else {
+            let passage = self.step(self.pair(|i| state[i]), self.pair(du), from, to);
+            state.copy_from_slice(&passage.traction[..directions]);
+            force[..directions].copy_from_slice(state);
+            return;
+        };
+        jacobian.reset(count, directions);
+        let input = |value: f64, index: usize| Dual::<INPUTS>::variable(value, index);
+        let passage = self.step(
+            self.pair(|i| input(state[i], i)),
+            self.pair(|i| input(du(i), 2 + i)),
+            input(from, 4),
+            input(to, 5),
+        );
+        let normal = self.normal_stiffness.unwrap_or(0.0);
+        for (i, traction) in passage.traction[..directions].iter().enumerate() {
+            let slopes = &traction.slopes;
+            (state[i], force[i]) = (traction.value(), traction.value());
+            for j in 0..directions {
+                jacobian.by_state[i * directions + j] = slopes[j];
+                jacobian.by_after[i * count + j] = slopes[2 + j];
+                jacobian.by_before[i * count + j] = -slopes[2 + j];
+            }
+            if count > directions {
+                jacobian.by_before[i * count + directions] = normal * slopes[4];
+                jacobian.by_after[i * count + directions] = normal * slopes[5];
+            }
+            jacobian.force_by_state[i * directions + i] = 1.0;
+            jacobian.slipping[i] = passage.slipping;
+        }
+        if count > directions {
+            jacobian.slipping[directions] = passage.open;
+            if to > 0.0 {
+                jacobian.force_by_after[directions * count + directions] = normal;
+            }
+        }
+    }
+
+    fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
+        Box::new(Self {
+            tangential_stiffness: share * self.tangential_stiffness,
+            normal_stiffness: self.normal_stiffness.map(|k| share * k),
+            ..*self
+        })
+    }
+
+    fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
+        let closure = match self.closure {
+            Closure::Preload(force) => Closure::Preload(factor * force),
+            Closure::Gap(gap) => Closure::Gap(factor * gap),
+        };
+        Box::new(Self { closure, slider: self.slider.map(|w| factor * w), ..*self })
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let number = |name, value| Parameter { name, point: None, value, factor: false };
+        let closure = match self.closure {
+            Closure::Preload(force) => number("preload", force),
+            Closure::Gap(gap) => number("gap", gap),
+        };
+        let mut parameters = vec![
+            number("friction", self.friction),
+            number("tangential_stiffness", self.tangential_stiffness),
+            closure,
+        ];
+        parameters.extend(self.normal_stiffness.map(|k| number("normal_stiffness", k)));
+        parameters
+    }
+
+    fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn ContactLaw>, Error> {
+        let changed = self.with(|law| match index {
+            0 => law.friction = value,
+            1 => law.tangential_stiffness = value,
+            2 => {
+                law.closure = match law.closure {
+                    Closure::Preload(_) => Closure::Preload(value),
+                    Closure::Gap(_) => Closure::Gap(value),
+                }
+            }
+            _ => law.normal_stiffness = Some(value),
+        })?;
+        Ok(Box::new(changed))
+    }
+}
