@@ -21,6 +21,8 @@ const FEWEST: usize = 8;
 const MOST: usize = 1 << 20;
 /// Samples per period where nothing controls their error.
 const UNCONTROLLED: usize = 1024;
+/// Difference of two forces, relative to them, that counts as none.
+const ROUNDING: f64 = 1e-12;
 /// Step of differences in a parameter, relative to it.
 const DIFFERENCE: f64 = 1e-5;
 
@@ -78,17 +80,27 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             return;
         }
         let round = self.march(&samples, false);
+        let stiffness = self.law.stiffness();
+        let lost = |n: usize, i: usize| {
+            let u = samples.at(n);
+            let stuck: f64 = (0..count).map(|j| stiffness[(i, j)] * u[j]).sum();
+            (stuck - round.force[n * count + i], stuck)
+        };
         if !round.slipped {
+            // What a law holds without displacement, as behind a gap, is all there is.
+            for i in (0..count).filter(|_| harmonics.has_mean()) {
+                let (q, stuck) = lost(0, i);
+                if q.abs() > ROUNDING * stuck.abs() {
+                    out.value[i * slots] = q;
+                }
+            }
             return;
         }
         out.active = true;
-        let stiffness = self.law.stiffness();
         let weight = 2.0 / samples.count as f64;
         for n in 0..samples.count {
-            let u = samples.at(n);
             for (i, series) in out.value.chunks_exact_mut(slots).enumerate() {
-                let stuck: f64 = (0..count).map(|j| stiffness[(i, j)] * u[j]).sum();
-                let q = weight * (stuck - round.force[n * count + i]);
+                let q = weight * lost(n, i).0;
                 series.iter_mut().zip(basis(n)).for_each(|(value, b)| *value += q * b);
             }
         }

@@ -231,7 +231,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let (slots, count) = (harmonics.slots(), self.law.displacements());
         let size = self.law.state_size();
         let grid = Samples::of(motion, self.samples);
-        let stuck = self.stuck(&grid, motion.residual).filter(|_| size == 1);
+        let stuck = self.stuck(&grid, motion.residual);
         let round = self.march(&grid, false);
         let (mut states, mut forces) = (Vec::new(), Vec::new());
         for m in 0..samples {
@@ -241,19 +241,19 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                 .chunks_exact(slots)
                 .map(|series| harmonics.jet(series, theta)[0])
                 .collect();
-            if let Some((load, _)) = stuck {
-                let mean = if harmonics.has_mean() { load } else { 0.0 };
-                let force = self.law.stiffness()[(0, 0)] * u[0] - mean;
-                states.push(force);
-                forces.push(force);
-                continue;
-            }
             let instant = (m * self.samples / samples) % self.samples;
             let n = instant % grid.count;
             let sign = if instant < grid.count { 1.0 } else { grid.sign };
             let mut state = round.state[n * size..(n + 1) * size].to_vec();
             let mut force = vec![0.0; count];
             self.law.return_map(grid.at(n), &scaled(&u, sign), &mut state, &mut force, None);
+            if let Some((load, _)) = stuck {
+                let mean = if harmonics.has_mean() { load } else { 0.0 };
+                force[0] = sign * (self.law.stiffness()[(0, 0)] * u[0] - mean);
+                if size == 1 {
+                    state[0] = force[0];
+                }
+            }
             states.extend(scaled(&state, sign));
             forces.extend(scaled(&force, sign));
         }
