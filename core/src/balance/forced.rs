@@ -56,6 +56,7 @@ impl<'a> ForcedBalance<'a> {
     /// rigid-body motion leaves undefined.
     pub fn new(model: &'a Model, settings: Settings, observe: &'a [usize]) -> Result<Self, Error> {
         let forced = model.compliance().forced_harmonics();
+        let settings = settings.suited(model);
         settings.check(&forced)?;
         settings.check_resolution(model.resolves())?;
         Error::check_dofs(observe, model.compliance().dofs())?;

@@ -1,6 +1,7 @@
 //! Settings of a forced response, each with its default.
 
 use crate::contact::Residual;
+use crate::model::Model;
 use crate::solve::{FirstJacobian, NewtonSettings};
 use crate::Error;
 
@@ -152,6 +153,17 @@ impl Settings {
             return Err(Error::value("max_iterations", 0.0, "must be at least 1"));
         }
         self.residual.check()
+    }
+
+    /// The same settings for a model: laws that have no form of their own are marched, through as many
+    /// samples as the tolerance demands.
+    #[must_use]
+    pub(super) fn suited(self, model: &Model) -> Self {
+        let formless = model.laws().iter().any(|law| law.closed_form().is_none());
+        if formless && self.evaluation == Evaluation::Direct {
+            return Self { evaluation: Evaluation::Marched(SampleChoice::Auto), ..self };
+        }
+        self
     }
 
     /// The same settings with what is chosen automatically fixed.
