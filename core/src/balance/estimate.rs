@@ -52,7 +52,7 @@ impl ForcedBalance<'_> {
         let climb = self.control.samples_climb();
         let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
         let observed = self.observe.len();
-        let extension = Extension::new(harmonics, point.omega, self.model, slipping, observed);
+        let extension = Extension::new(harmonics, point.omega, &self.model, slipping, observed);
         let extension = extension.within(resolved);
         let order = extension.highest;
         let least = if climb { (8 * (order + 1)).next_power_of_two() } else { 0 };

@@ -35,12 +35,12 @@ impl Deref for Evaluated<'_> {
 /// A model with its laws marched through every number of samples that has been asked for. All of
 /// them share one decomposition.
 pub(super) struct Evaluations<'a> {
-    model: &'a Model,
+    model: Evaluated<'a>,
     marched: BTreeMap<usize, Arc<Model>>,
 }
 
 impl<'a> Evaluations<'a> {
-    pub(super) fn new(model: &'a Model) -> Self {
+    pub(super) fn new(model: Evaluated<'a>) -> Self {
         Self { model, marched: BTreeMap::new() }
     }
 
@@ -49,7 +49,7 @@ impl<'a> Evaluations<'a> {
     /// # Errors
     /// An odd or too small number of samples.
     pub(super) fn with(&mut self, samples: Option<usize>) -> Result<Evaluated<'a>, Error> {
-        let Some(samples) = samples else { return Ok(Evaluated::Given(self.model)) };
+        let Some(samples) = samples else { return Ok(self.model.clone()) };
         if let Some(known) = self.marched.get(&samples) {
             return Ok(Evaluated::Made(Arc::clone(known)));
         }

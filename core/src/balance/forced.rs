@@ -6,8 +6,10 @@ use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
 use super::settings::{Method, Resolution, Settings};
 use super::solution::{Point, PointStatus};
+use super::statics::with_history;
 use super::unknowns::Unknowns;
 use super::{ExactOrbits, Kept, Progress};
+use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{broyden, homotopy, newton, norm, Outcome, Report, System as _};
@@ -22,7 +24,7 @@ const UNBOUNDED: f64 = 1e12;
 
 /// The harmonic balance of a model under its loads, from point to point.
 pub struct ForcedBalance<'a> {
-    pub(super) model: &'a Model,
+    pub(super) model: Evaluated<'a>,
     pub(super) settings: Settings,
     pub(super) observe: &'a [usize],
     half_wave: bool,
@@ -60,20 +62,25 @@ impl<'a> ForcedBalance<'a> {
         settings.check(&forced)?;
         settings.check_resolution(model.resolves())?;
         Error::check_dofs(observe, model.compliance().dofs())?;
+        let model = match settings.residual {
+            Residual::FromRest => with_history(model)?.map(Arc::new).map(Evaluated::Made),
+            Residual::Centred | Residual::Value(_) => None,
+        }
+        .unwrap_or(Evaluated::Given(model));
         let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
         if !half_wave {
             let mut receptance = crate::structure::Receptance::default();
             model.compliance().receptance(0, 0.0, &mut receptance)?;
         }
         Ok(Self {
-            model,
             settings,
             observe,
             half_wave,
             control: ResolutionControl::new(settings, &forced),
             forced,
             tables: BTreeMap::new(),
-            evaluations: Evaluations::new(model),
+            evaluations: Evaluations::new(model.clone()),
+            model,
             scale: Scale::default(),
             progress: &|_| true,
             kept: None,

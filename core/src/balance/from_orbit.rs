@@ -59,7 +59,7 @@ impl ForcedBalance<'_> {
 
     fn price(&self, slipping: usize) -> Price<'_> {
         let lowest = self.control.lowest_order();
-        Price { model: self.model, half_wave: self.half_wave(), slipping, lowest }
+        Price { model: &self.model, half_wave: self.half_wave(), slipping, lowest }
     }
 
     /// The exact orbit, if it costs less than `most` operations with the events of a solution.

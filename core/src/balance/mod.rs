@@ -26,6 +26,7 @@ mod scale;
 mod settings;
 mod single_harmonic;
 mod solution;
+mod statics;
 mod sweep;
 mod unknowns;
 
@@ -42,6 +43,7 @@ pub use settings::{
 };
 pub use single_harmonic::single_harmonic;
 pub use solution::{Point, PointStatus, Solution};
+pub use statics::{static_response, AtRest, RestStatus};
 pub use sweep::sweep;
 pub(crate) use sweep::{check_bracket, check_frequency, over_frequencies};
 pub use unknowns::Unknowns;

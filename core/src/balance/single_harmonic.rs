@@ -29,7 +29,7 @@ pub fn single_harmonic(
     omega: &[f64],
     estimate: bool,
 ) -> Result<Solution, Error> {
-    let model = balance.model;
+    let model = balance.model.clone();
     if let Some(other) = model.compliance().forced_harmonics().into_iter().find(|&k| k != 1) {
         let remedy = "the single-harmonic method takes forces of harmonic 1 alone; balance several harmonics instead";
         return Err(Error::value("force: harmonic", other as f64, remedy));

@@ -200,6 +200,7 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         is_monotone() -> bool;
         limits() -> Vec<f64>;
         onsets() -> Vec<f64>;
+        beginning() -> (Vec<f64>, Vec<f64>);
         return_map(before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64],
             jacobian: Option<&mut ReturnMapJacobian>);
         stuck_load(residual: Residual, low: f64, high: f64) -> Option<[f64; 3]>;

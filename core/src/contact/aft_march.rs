@@ -77,15 +77,15 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
 
     /// The first instant, reached without any slip as far as the law admits it.
     pub(super) fn start(&self, samples: &Samples) -> Step {
-        let (count, size) = (self.law.displacements(), self.law.state_size());
+        let (before, state) = self.law.beginning();
         let mut step = Step {
-            state: vec![0.0; size],
-            force: vec![0.0; count],
+            state,
+            force: vec![0.0; before.len()],
             jacobian: ReturnMapJacobian::default(),
             after: samples.at(0).to_vec(),
         };
         let Step { state, force, jacobian, after } = &mut step;
-        self.law.return_map(&vec![0.0; count], after, state, force, Some(jacobian));
+        self.law.return_map(&before, after, state, force, Some(jacobian));
         step
     }
 

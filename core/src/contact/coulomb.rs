@@ -29,6 +29,9 @@ const INPUTS: usize = 6;
 /// Distance from the cone, relative to it, that is none.
 const ON_CONE: f64 = 1e-12;
 
+/// Least share of an angle that is told from none.
+const FADED: f64 = 1e-100;
+
 /// What presses the bodies together without motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Closure {
@@ -51,8 +54,8 @@ pub struct Coulomb {
     pub(super) normal_stiffness: Option<f64>,
     /// What presses it together.
     pub(super) closure: Closure,
-    /// Slider positions w from which friction has its history \[m\].
-    pub(super) slider: [f64; 2],
+    /// Displacements and traction from which motions from rest begin.
+    pub(super) beginning: ([f64; 3], [f64; 2]),
 }
 
 /// How a step went.
@@ -107,7 +110,7 @@ impl Coulomb {
             tangential_stiffness,
             normal_stiffness,
             closure,
-            slider: [0.0; 2],
+            beginning: ([0.0; 3], [0.0; 2]),
         })
     }
 
@@ -192,6 +195,7 @@ impl Coulomb {
         } else {
             let c = if on_cone { zero } else { c };
             let root = (b * b - a * c).sqrt();
+
             if b.value() > 0.0 {
                 -c / (b + root)
             } else {
@@ -215,6 +219,8 @@ impl Coulomb {
             // ∫ ds/N along the rest of the line.
             let inverse = ((after - begun) / begun).log_ratio() / begun;
             let fade = (-(k * way * rest * inverse / mu)).exp();
+            // A traction straight against the motion stays there, however small this becomes.
+            let fade = if fade.value() > FADED { fade } else { T::from(FADED) };
             // The half angle φ/2 as a vector, without loss where φ is near 0 or π.
             let (x, y) = if cos.value() >= 0.0 {
                 (T::from(1.0) + cos, sin * fade)
@@ -238,10 +244,10 @@ impl Coulomb {
     fn with(&self, change: impl FnOnce(&mut Self)) -> Result<Self, Error> {
         let mut changed = *self;
         change(&mut changed);
-        let Self { directions, friction, tangential_stiffness, normal_stiffness, closure, slider } =
+        let Self { directions, friction, tangential_stiffness, normal_stiffness, closure, .. } =
             changed;
         let law = Self::new(directions, friction, tangential_stiffness, normal_stiffness, closure)?;
-        Ok(Self { slider, ..law })
+        Ok(Self { beginning: self.beginning, ..law })
     }
 }
 
@@ -359,6 +365,18 @@ impl ContactLaw for Coulomb {
         }
     }
 
+    fn beginning(&self) -> (Vec<f64>, Vec<f64>) {
+        let (displacement, traction) = &self.beginning;
+        (displacement[..self.displacements()].to_vec(), traction[..self.directions].to_vec())
+    }
+
+    fn with_history(&self, displacement: &[f64], state: &[f64]) -> Option<Box<dyn ContactLaw>> {
+        let mut beginning = ([0.0; 3], [0.0; 2]);
+        beginning.0[..displacement.len()].copy_from_slice(displacement);
+        beginning.1[..state.len()].copy_from_slice(state);
+        Some(Box::new(Self { beginning, ..*self }))
+    }
+
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
         Box::new(Self {
             tangential_stiffness: share * self.tangential_stiffness,
@@ -372,7 +390,9 @@ impl ContactLaw for Coulomb {
             Closure::Preload(force) => Closure::Preload(factor * force),
             Closure::Gap(gap) => Closure::Gap(factor * gap),
         };
-        Box::new(Self { closure, slider: self.slider.map(|w| factor * w), ..*self })
+        let (displacement, traction) = self.beginning;
+        let beginning = (displacement.map(|u| factor * u), traction.map(|t| factor * t));
+        Box::new(Self { closure, beginning, ..*self })
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -261,6 +261,18 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
         jacobian: Option<&mut ReturnMapJacobian>,
     );
 
+    /// The displacements and the state from which a motion begins that has no history but its loads':
+    /// all zero unless the law says otherwise.
+    fn beginning(&self) -> (Vec<f64>, Vec<f64>) {
+        (vec![0.0; self.displacements()], vec![0.0; self.state_size()])
+    }
+
+    /// The same law with motions that begin elsewhere, as under static loads; nothing of a law whose
+    /// friction does not depend on it beyond its residual force.
+    fn with_history(&self, _displacement: &[f64], _state: &[f64]) -> Option<Box<dyn ContactLaw>> {
+        None
+    }
+
     /// Slip load of a contact of one displacement that stays between `low` and `high` without slip,
     /// with its derivatives in the two; `None` if it slips. Laws of several displacements have no
     /// such rule: a march of them starts without slip.

@@ -1,0 +1,311 @@
+//! The structure under its static loads, raised slowly from rest with the history that friction
+//! keeps.
+//!
+//! Between two load levels every law takes one step of its return map along the straight line from
+//! displacement to displacement. A law whose contacts go on as they are from level to level is exact
+//! in it; where one changes its state, or where sliding turns, the path bends, and two halves of the
+//! step differ from the whole. Steps follow that difference.
+
+use crate::contact::{ContactLaw, ReturnMapJacobian};
+use crate::model::Model;
+use crate::solve::norm;
+use crate::structure::{Quantity, Receptance, Request};
+use crate::Error;
+use faer::linalg::solvers::Solve as _;
+use faer::{c64, Mat};
+
+/// Difference between a step and its two halves, relative to the displacements.
+const ACCURACY: f64 = 1e-10;
+/// Shortest step, as a share of the load.
+const SHORTEST: f64 = 1e-9;
+/// Most steps: a loading that needs more does not end.
+const MOST_STEPS: usize = 20_000;
+/// Newton iterations per step.
+const ITERATIONS: usize = 40;
+/// Change of the displacements, relative to them, at which a step is solved.
+const SOLVED: f64 = 1e-13;
+/// Displacements over those of the stuck structure beyond which nothing holds it.
+const FREE: f64 = 1e9;
+
+/// How raising the static loads has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RestStatus {
+    /// The structure carries its loads.
+    Converged,
+    /// Contacts have let go of a body that nothing else holds.
+    Free,
+    /// No state in equilibrium follows from the one before: contacts jam or let go at once.
+    Stalled,
+    /// The caller has ended the analysis.
+    NotComputed,
+}
+
+/// A structure under its static loads.
+#[derive(Debug, Clone)]
+pub struct AtRest {
+    /// How it was reached; other than converged, the rest holds the last state in equilibrium.
+    pub status: RestStatus,
+    /// Share of the loads that it carries.
+    pub share: f64,
+    /// Displacements of the observed DOFs \[m\].
+    pub displacement: Vec<f64>,
+    /// Relative displacements at the contacts \[m\].
+    pub contact_displacement: Vec<f64>,
+    /// Contact forces as the laws give them \[N\].
+    pub contact_force: Vec<f64>,
+    /// What each law remembers.
+    pub states: Vec<Vec<f64>>,
+    /// Load steps taken.
+    pub steps: usize,
+}
+
+/// A state on the loading path.
+#[derive(Clone)]
+struct Level {
+    share: f64,
+    u: Vec<f64>,
+    states: Vec<Vec<f64>>,
+    force: Vec<f64>,
+}
+
+/// Raises the static loads of a model; displacements are recovered at the DOFs `observe`.
+///
+/// # Errors
+/// A DOF that does not exist; a rigid-body motion that remains with all contacts stuck.
+pub fn static_response(
+    model: &Model,
+    observe: &[usize],
+    go_on: &dyn Fn(f64) -> bool,
+) -> Result<AtRest, Error> {
+    Error::check_dofs(observe, model.compliance().dofs())?;
+    let mut loading = Loading::new(model)?;
+    let status = loading.raise(go_on);
+    let Loading { level, steps, .. } = loading;
+    let displaced = |quantity, contact: &[c64], slip_load: &[c64]| {
+        let mut out = vec![c64::new(0.0, 0.0); observe.len()];
+        let request = Request { harmonic: 0, omega: 0.0, quantity, contact, slip_load, observe };
+        model.compliance().displacement(&request, &mut out).map(|()| out)
+    };
+    let none = complex(&vec![0.0; level.u.len()]);
+    let loaded = displaced(Quantity::Whole, &none, &none)?;
+    let of_slip = complex(&slip_load(model, &level));
+    let slipped = displaced(Quantity::OfSlip, &complex(&level.u), &of_slip)?;
+    let displacement =
+        loaded.iter().zip(&slipped).map(|(load, slip)| level.share * load.re + slip.re);
+    Ok(AtRest {
+        status,
+        share: level.share,
+        displacement: displacement.collect(),
+        contact_displacement: level.u,
+        contact_force: level.force,
+        states: level.states,
+        steps,
+    })
+}
+
+/// The model with friction that has its history from its static loads; nothing if it has no such
+/// loads, no law that keeps it, or no equilibrium under them.
+///
+/// # Errors
+/// As [`static_response`].
+pub(crate) fn with_history(model: &Model) -> Result<Option<Model>, Error> {
+    let loaded = model.compliance().forced_harmonics().contains(&0);
+    let keeps =
+        |law: &dyn ContactLaw| law.with_history(&law.beginning().0, &law.beginning().1).is_some();
+    if !loaded || !model.laws().iter().any(|law| keeps(law.as_ref())) {
+        return Ok(None);
+    }
+    let at_rest = static_response(model, &[], &|_| true)?;
+    if at_rest.status != RestStatus::Converged {
+        return Ok(None);
+    }
+    let laws = model.laws().iter().zip(model.points()).zip(&at_rest.states);
+    let laws = laws.map(|((law, points), state)| {
+        let displacement = &at_rest.contact_displacement[points.clone()];
+        law.with_history(displacement, state).unwrap_or_else(|| law.with_scaled_forces(1.0))
+    });
+    model.with_laws(laws.collect()).map(Some)
+}
+
+/// The loading of a model from rest.
+struct Loading<'a> {
+    model: &'a Model,
+    receptance: Mat<f64>,
+    stuck: Vec<f64>,
+    level: Level,
+    steps: usize,
+}
+
+impl<'a> Loading<'a> {
+    fn new(model: &'a Model) -> Result<Self, Error> {
+        let mut receptance = Receptance::default();
+        model.compliance().receptance(0, 0.0, &mut receptance)?;
+        let size = model.compliance().contacts();
+        let states = model.laws().iter().map(|law| vec![0.0; law.state_size()]).collect();
+        Ok(Self {
+            model,
+            receptance: Mat::from_fn(size, size, |i, j| receptance.contact[j * size + i].re),
+            stuck: receptance.stuck.iter().map(|u| u.re).collect(),
+            level: Level { share: 0.0, u: vec![0.0; size], states, force: vec![0.0; size] },
+            steps: 0,
+        })
+    }
+
+    /// Goes from no load to the whole one.
+    fn raise(&mut self, go_on: &dyn Fn(f64) -> bool) -> RestStatus {
+        // What presses without load, as an interference does, comes first.
+        let Some(unloaded) = self.solve(&self.level, 0.0) else { return self.failure() };
+        self.level = unloaded;
+        let mut step: f64 = 1.0;
+        while self.level.share < 1.0 {
+            if !go_on(self.level.share) {
+                return RestStatus::NotComputed;
+            }
+            if self.steps == MOST_STEPS {
+                return RestStatus::Stalled;
+            }
+            step = step.min(1.0 - self.level.share);
+            let to = if step >= 1.0 - self.level.share { 1.0 } else { self.level.share + step };
+            match self.halves(to) {
+                Some((level, error)) if error <= ACCURACY || step <= SHORTEST => {
+                    self.level = level;
+                    self.steps += 1;
+                    step *= if error <= 0.1 * ACCURACY { 4.0 } else { 1.2 };
+                }
+                None if step <= SHORTEST => return self.failure(),
+                _ => step *= 0.3,
+            }
+        }
+        RestStatus::Converged
+    }
+
+    /// The level at a share of the load by two steps, and how far it is from that by one.
+    fn halves(&self, to: f64) -> Option<(Level, f64)> {
+        let whole = self.solve(&self.level, to)?;
+        let middle = self.solve(&self.level, 0.5 * (self.level.share + to))?;
+        let level = self.solve(&middle, to)?;
+        let apart: Vec<f64> = whole.u.iter().zip(&level.u).map(|(a, b)| a - b).collect();
+        let error = norm(&apart) / norm(&level.u).max(f64::MIN_POSITIVE);
+        let (one, two) = (slip_load(self.model, &whole), slip_load(self.model, &level));
+        let apart: Vec<f64> = one.iter().zip(&two).map(|(a, b)| a - b).collect();
+        let elastic: Vec<f64> =
+            two.iter().zip(&level.force).map(|(q, f)| q.abs() + f.abs()).collect();
+        let of_forces = norm(&apart) / norm(&elastic).max(f64::MIN_POSITIVE);
+        Some((level, error.max(of_forces)))
+    }
+
+    /// The equilibrium at a share of the load, by one step from another: Newton's method from where
+    /// all contacts stick on, damped.
+    fn solve(&self, from: &Level, share: f64) -> Option<Level> {
+        let size = from.u.len();
+        let mut level = Level { share, ..from.clone() };
+        let added = (share - from.share).max(0.0);
+        level.u.iter_mut().zip(&self.stuck).for_each(|(u, stuck)| *u += added * stuck);
+        let mut residual = vec![0.0; size];
+        let mut matrix = Mat::<f64>::zeros(size, size);
+        self.evaluate(from, &mut level, &mut residual, Some(&mut matrix));
+        let mut before = norm(&residual);
+        for _ in 0..ITERATIONS {
+            let mut newton = Mat::from_fn(size, 1, |i, _| -residual[i]);
+            matrix.partial_piv_lu().solve_in_place(&mut newton);
+            let length = newton.norm_l2();
+            let scale = norm(&level.u) + norm(&self.stuck) + norm(&residual);
+            if !length.is_finite() || length > FREE * scale {
+                return None;
+            }
+            let start = level.u.clone();
+            let mut damping = 1.0;
+            loop {
+                for (i, u) in level.u.iter_mut().enumerate() {
+                    *u = start[i] + damping * newton[(i, 0)];
+                }
+                self.evaluate(from, &mut level, &mut residual, Some(&mut matrix));
+                let after = norm(&residual);
+                let solved = damping == 1.0 && length <= SOLVED * norm(&level.u);
+                if solved || size == 0 {
+                    return Some(level);
+                }
+                if after < before || after <= SOLVED * norm(&level.u) || damping < 1e-3 {
+                    before = after;
+                    break;
+                }
+                damping *= 0.5;
+            }
+        }
+        (before <= 1e3 * SOLVED * norm(&level.u)).then_some(level)
+    }
+
+    /// `R(U) = U − s U^stuck − G Q(U)` of one step from a level, its Jacobian, and the states there.
+    fn evaluate(
+        &self,
+        from: &Level,
+        level: &mut Level,
+        residual: &mut [f64],
+        matrix: Option<&mut Mat<f64>>,
+    ) {
+        let size = residual.len();
+        let stiffness = self.model.contact_stiffness();
+        let mut slopes = Mat::<f64>::zeros(size, size);
+        let mut jacobian = ReturnMapJacobian::default();
+        let laws = self.model.laws().iter().zip(self.model.points());
+        for (index, (law, points)) in laws.enumerate() {
+            let (before, after) = (&from.u[points.clone()], &level.u[points.clone()]);
+            level.states[index].clone_from(&from.states[index]);
+            let force = &mut level.force[points.clone()];
+            law.return_map(before, after, &mut level.states[index], force, Some(&mut jacobian));
+            let (count, states) = (points.len(), law.state_size());
+            for i in 0..count {
+                for j in 0..count {
+                    let through: f64 = (0..states)
+                        .map(|z| {
+                            jacobian.force_by_state[i * states + z]
+                                * jacobian.by_after[z * count + j]
+                        })
+                        .sum();
+                    let (row, column) = (points.start + i, points.start + j);
+                    slopes[(row, column)] =
+                        stiffness[(row, column)] - through - jacobian.force_by_after[i * count + j];
+                }
+            }
+        }
+        let q = slip_load(self.model, level);
+        for i in 0..size {
+            let response: f64 = (0..size).map(|j| self.receptance[(i, j)] * q[j]).sum();
+            residual[i] = level.u[i] - level.share * self.stuck[i] - response;
+        }
+        if let Some(matrix) = matrix {
+            *matrix = Mat::<f64>::identity(size, size) - &self.receptance * slopes;
+        }
+    }
+
+    /// Why no level follows: a body that has come free leaves the equations without a solution, and
+    /// the softest direction of them without stiffness.
+    fn failure(&self) -> RestStatus {
+        let size = self.level.u.len();
+        let (mut level, mut residual) = (self.level.clone(), vec![0.0; size]);
+        let mut matrix = Mat::<f64>::zeros(size, size);
+        let ahead: Vec<f64> = self.stuck.iter().map(|u| SHORTEST * u).collect();
+        level.u.iter_mut().zip(&ahead).for_each(|(u, by)| *u += by);
+        self.evaluate(&self.level, &mut level, &mut residual, Some(&mut matrix));
+        let singular = matrix.svd().is_ok_and(|svd| {
+            let values = svd.S().column_vector();
+            (0..size).any(|i| values[i] <= 1e-10 * values[0])
+        });
+        if singular {
+            RestStatus::Free
+        } else {
+            RestStatus::Stalled
+        }
+    }
+}
+
+/// `q = D u − f` at a level.
+fn slip_load(model: &Model, level: &Level) -> Vec<f64> {
+    let (stiffness, size) = (model.contact_stiffness(), level.u.len());
+    let stuck = |i: usize| (0..size).map(|j| stiffness[(i, j)] * level.u[j]).sum::<f64>();
+    (0..size).map(|i| stuck(i) - level.force[i]).collect()
+}
+
+fn complex(values: &[f64]) -> Vec<c64> {
+    values.iter().map(|value| c64::new(*value, 0.0)).collect()
+}
