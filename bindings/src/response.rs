@@ -1,7 +1,7 @@
 //! Forced response: settings in, curves out, progress and Ctrl-C in between.
 
 use crate::arrays::{is_half_wave, series, Array1, Array2};
-use crate::columns::Columns;
+use crate::columns::{stability_code, Columns};
 use crate::problem::Problem;
 use crate::settings::{balance as balance_settings, get, measure};
 use crate::watch::{given_up, watched};
@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, sweep, sweep_range, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress,
-    Settings, HIGHEST_ORDER,
+    self, sweep, sweep_range, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus,
+    Progress, Settings, HIGHEST_ORDER,
 };
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::orbit::OrbitInitialGuess;
@@ -71,13 +71,25 @@ fn swept<'py>(
         |points: Vec<Arc<Point>>| {
             let half_wave = points.first()?.unknowns()?.harmonics().half_wave();
             let profile = Profile::default();
-            Some(balance::Solution { points, half_wave, interrupted: true, profile })
+            let end = CurveEnd::Interrupted;
+            Some(balance::Solution { points, half_wave, interrupted: true, end, profile })
         },
     )?;
     let points = found.points.iter().map(AsRef::as_ref);
     let columns = Columns::new(py);
     columns.responses(points.clone(), observed, model.compliance().contacts())?;
+    columns.tell("end", end_name(found.end))?;
     curve(columns, points, found.half_wave, found.interrupted, &found.profile)
+}
+
+/// How a curve ended, as Python knows it.
+fn end_name(end: CurveEnd) -> &'static str {
+    match end {
+        CurveEnd::Range | CurveEnd::Interrupted => "range",
+        CurveEnd::Returned => "returned",
+        CurveEnd::Stalled => "stalled",
+        CurveEnd::Points => "points",
+    }
 }
 
 /// A curve of some points, whose columns are written.
@@ -89,6 +101,9 @@ pub fn curve<'a, 'py>(
     profile: &Profile,
 ) -> PyResult<Bound<'py, PyAny>> {
     let computed = points.clone().filter(|point| point.status != PointStatus::NotComputed);
+    columns.one("fold", points.clone().map(|point| point.fold))?;
+    columns.one("jump", points.clone().map(|point| point.jump))?;
+    columns.one("stability", points.clone().map(|point| stability_code(point.stable)))?;
     columns.tell("half_wave", half_wave)?;
     columns.tell("computed", computed.count())?;
     columns.tell("interrupted", interrupted)?;

@@ -3,6 +3,7 @@
 mod active_set;
 mod aft;
 mod aft_march;
+mod cubic;
 mod derivative;
 mod described;
 mod describing;
@@ -21,12 +22,14 @@ mod slider_integrals;
 mod slider_parameters;
 mod slip_series;
 mod stick_slip;
+mod stop;
 mod structural;
 mod structural_law;
 mod structural_parameters;
 mod transitions;
 
 pub use aft::Aft;
+pub use cubic::Cubic;
 pub(crate) use described::Described;
 pub use describing::Describing;
 pub use elastic::Elastic;
@@ -38,4 +41,5 @@ pub use law::{
 pub use parameter::{Parameter, Parameters};
 pub use registry::law;
 pub use slider::Slider;
+pub use stop::Stop;
 pub use structural::StructuralDamper;

@@ -1,0 +1,116 @@
+"""Nonlinear springs without friction: the stop behind a gap, and the cubic spring."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from stickslip.checks import Matrix, brief, real_number, set_fields
+from stickslip.errors import ModelError
+from stickslip.model.contact import Contact
+from stickslip.model.ends import TwoEnds
+
+
+@dataclass(frozen=True)
+class _Spring(TwoEnds):
+    """A spring whose force is that of its displacement alone: it remembers nothing."""
+
+    slips: ClassVar[bool] = False
+
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Largest force of each contact point [N]: none."""
+        return (float("inf"),)
+
+    @property
+    def stuck_stiffness(self) -> Matrix:
+        """Stiffness while every point sticks [N/m], shape (points, points)."""
+        raise self._without_limits()
+
+    def linear_limit(self, *, stuck: bool) -> Contact | None:
+        """Return what is left of the contact in a linear limit; a nonlinear spring has none."""
+        raise self._without_limits()
+
+
+@dataclass(frozen=True)
+class Stop(_Spring):
+    """An elastic stop: a spring that works once a gap has closed.
+
+    Its force is f = k max(u - gap, 0) with the displacement u = x_dof - x_other.
+
+    Parameters
+    ----------
+    dof : str
+        Degree of freedom that hits it when it moves in positive direction.
+    other : str, optional
+        Degree of freedom at its other end. Default: the ground.
+    stiffness : float
+        Stiffness k of the closed stop [N/m].
+    gap : float
+        Gap at rest [m]; a negative one is an interference, and 0 is touch without force.
+    name : str, optional
+        By which results and settings refer to it.
+
+    Raises
+    ------
+    ModelError
+        If the stiffness is negative, a number is not finite, or both ends are the same degree of
+        freedom.
+
+    Notes
+    -----
+    Solutions need not be unique: `stickslip.forced_response` over a range follows the curve around
+    its folds, and says of every point whether it is stable.
+    """
+
+    law: ClassVar[str] = "stop"
+    keys: ClassVar[tuple[str, ...]] = ("stiffness", "gap")
+
+    stiffness: float = field(kw_only=True)
+    gap: float = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        entry = f"stop at {brief(self.dof)}"
+        stiffness = real_number(self.stiffness, f"{entry}: stiffness")
+        if stiffness < 0.0:
+            raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
+        set_fields(self, stiffness=stiffness, gap=real_number(self.gap, f"{entry}: gap"))
+
+
+@dataclass(frozen=True)
+class Cubic(_Spring):
+    """A cubic spring, f = k u^3: the nonlinearity of Duffing's oscillator.
+
+    Parameters
+    ----------
+    dof : str
+        Degree of freedom it is attached to.
+    other : str, optional
+        Degree of freedom at its other end; the displacement is u = x_dof - x_other. Default: the
+        ground.
+    stiffness : float
+        Coefficient k [N/m^3]; a negative one softens.
+    name : str, optional
+        By which results and settings refer to it.
+
+    Raises
+    ------
+    ModelError
+        If the coefficient is not a finite number, or both ends are the same degree of freedom.
+
+    Notes
+    -----
+    Solutions need not be unique; see `Stop`. With a softening spring they need not exist either:
+    beyond the force that it can hold at most the motion grows without bound.
+    """
+
+    law: ClassVar[str] = "cubic"
+    keys: ClassVar[tuple[str, ...]] = ("stiffness",)
+
+    stiffness: float = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        entry = f"cubic spring at {brief(self.dof)}: stiffness"
+        set_fields(self, stiffness=real_number(self.stiffness, entry))
