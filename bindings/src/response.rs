@@ -15,7 +15,7 @@ use stickslip_core::balance::{
     Progress, Settings, HIGHEST_ORDER,
 };
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
-use stickslip_core::orbit::OrbitInitialGuess;
+use stickslip_core::orbit::{decide_stability, OrbitInitialGuess};
 use stickslip_core::solve::NewtonSettings;
 use stickslip_core::timing::Profile;
 use stickslip_core::{Error, Model};
@@ -119,9 +119,11 @@ pub fn forced_response<'py>(
     #[pyo3(from_py_with = frequencies)] omega: Frequencies,
     observe: Vec<usize>,
     driving: Vec<usize>,
-    #[pyo3(from_py_with = balance_settings)] settings: Settings,
+    settings: &Bound<'_, PyAny>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let stability: bool = get(settings, "stability")?;
+    let settings = balance_settings(settings)?;
     swept(py, progress, observe.len(), &problem.model, move |model, kept, look| {
         let orbits = OrbitInitialGuess::new(model, settings.residual, &observe, look);
         let balance = ForcedBalance::new(model, settings, &observe)?
@@ -129,10 +131,14 @@ pub fn forced_response<'py>(
             .rescued(&orbits)
             .driven_by(&driving)
             .keeping(kept);
-        match omega {
+        let mut found = match omega {
             Frequencies::Range((from, to)) => sweep_range(balance, from, to),
             Frequencies::Grid(grid) => sweep(balance, &grid),
+        }?;
+        if stability && !model.is_monotone() {
+            decide_stability(model, &mut found, look)?;
         }
+        Ok(found)
     })
 }
 

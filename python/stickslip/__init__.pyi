@@ -131,6 +131,7 @@ def forced_response(
     harmonics: int | Literal["auto"] = "auto",
     *,
     observe: Iterable[str] | str | None = None,
+    stability: bool = True,
     max_iterations: int = 100,
     residual: Literal["centred", "from_rest"] | float = "centred",
     tolerance: float = 0.001,

@@ -15,7 +15,7 @@ pub fn law(name: &str, parameters: &Parameters) -> Result<Box<dyn ContactLaw>, E
         "structural" => Ok(Box::new(StructuralDamper::from_parameters(parameters)?)),
         other => Err(Error::UnknownLaw {
             name: other.to_owned(),
-            known: "cubic, jenkins, parallel-jenkins, stop, structural".to_owned(),
+            known: "jenkins, parallel-jenkins, structural, stop, cubic".to_owned(),
         }),
     }
 }

@@ -14,7 +14,7 @@ from stickslip.model.springs import Cubic, Stop
 from stickslip.model.structural import StructuralDamper
 
 LAWS: Mapping[str, type[Contact]] = {
-    law.law: law for law in (Cubic, Jenkins, ParallelJenkins, Stop, StructuralDamper)
+    law.law: law for law in (Jenkins, ParallelJenkins, StructuralDamper, Stop, Cubic)
 }
 """Every law by its name."""
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+import numpy as np
+
 from stickslip.checks import Matrix, brief, real_number, set_fields
 from stickslip.errors import ModelError
-from stickslip.model.contact import Contact
 from stickslip.model.ends import TwoEnds
+from stickslip.model.jenkins import Jenkins
 
 
 @dataclass(frozen=True)
@@ -23,13 +26,22 @@ class _Spring(TwoEnds):
         return (float("inf"),)
 
     @property
-    def stuck_stiffness(self) -> Matrix:
-        """Stiffness while every point sticks [N/m], shape (points, points)."""
-        raise self._without_limits()
+    @abstractmethod
+    def _at_rest(self) -> float:
+        """Stiffness at rest [N/m]."""
 
-    def linear_limit(self, *, stuck: bool) -> Contact | None:
-        """Return what is left of the contact in a linear limit; a nonlinear spring has none."""
-        raise self._without_limits()
+    @property
+    def stuck_stiffness(self) -> Matrix:
+        """Stiffness at rest [N/m], shape (1, 1)."""
+        return np.array([[self._at_rest]])
+
+    def linear_limit(self, *, stuck: bool) -> Jenkins | None:
+        """Return the linear spring that it is at rest; None if it has no stiffness there."""
+        if not self._at_rest:
+            return None
+        return Jenkins(
+            self.dof, self.other, stiffness=self._at_rest, slip_force=np.inf, name=self.name
+        )
 
 
 @dataclass(frozen=True)
@@ -77,6 +89,10 @@ class Stop(_Spring):
             raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
         set_fields(self, stiffness=stiffness, gap=real_number(self.gap, f"{entry}: gap"))
 
+    @property
+    def _at_rest(self) -> float:
+        return self.stiffness if self.gap <= 0.0 else 0.0
+
 
 @dataclass(frozen=True)
 class Cubic(_Spring):
@@ -114,3 +130,7 @@ class Cubic(_Spring):
         super().__post_init__()
         entry = f"cubic spring at {brief(self.dof)}: stiffness"
         set_fields(self, stiffness=real_number(self.stiffness, entry))
+
+    @property
+    def _at_rest(self) -> float:
+        return 0.0
