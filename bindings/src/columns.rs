@@ -194,6 +194,15 @@ fn filled<T: Clone, R: IntoIterator<Item = T>>(
     (count, values)
 }
 
+/// Number of what is known of the stability of a motion, as Python knows it.
+pub fn stability_code(stable: Option<bool>) -> u8 {
+    match stable {
+        Some(false) => 0,
+        Some(true) => 1,
+        None => 2,
+    }
+}
+
 /// Number of a status, as Python knows it.
 pub fn status_code(status: PointStatus) -> u8 {
     match status {

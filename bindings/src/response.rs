@@ -1,7 +1,7 @@
 //! Forced response: settings in, curves out, progress and Ctrl-C in between.
 
 use crate::arrays::{is_half_wave, series, Array1, Array2};
-use crate::columns::Columns;
+use crate::columns::{stability_code, Columns};
 use crate::problem::Problem;
 use crate::settings::{balance as balance_settings, get, measure};
 use crate::watch::{given_up, watched};
@@ -11,11 +11,11 @@ use pyo3::prelude::*;
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, sweep, sweep_range, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress,
-    Settings, HIGHEST_ORDER,
+    self, sweep, sweep_range, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus,
+    Progress, Settings, HIGHEST_ORDER,
 };
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
-use stickslip_core::orbit::OrbitInitialGuess;
+use stickslip_core::orbit::{decide_stability, OrbitInitialGuess};
 use stickslip_core::solve::NewtonSettings;
 use stickslip_core::timing::Profile;
 use stickslip_core::{Error, Model};
@@ -71,13 +71,25 @@ fn swept<'py>(
         |points: Vec<Arc<Point>>| {
             let half_wave = points.first()?.unknowns()?.harmonics().half_wave();
             let profile = Profile::default();
-            Some(balance::Solution { points, half_wave, interrupted: true, profile })
+            let end = CurveEnd::Interrupted;
+            Some(balance::Solution { points, half_wave, interrupted: true, end, profile })
         },
     )?;
     let points = found.points.iter().map(AsRef::as_ref);
     let columns = Columns::new(py);
     columns.responses(points.clone(), observed, model.compliance().contacts())?;
+    columns.tell("end", end_name(found.end))?;
     curve(columns, points, found.half_wave, found.interrupted, &found.profile)
+}
+
+/// How a curve ended, as Python knows it.
+fn end_name(end: CurveEnd) -> &'static str {
+    match end {
+        CurveEnd::Range | CurveEnd::Interrupted => "range",
+        CurveEnd::Returned => "returned",
+        CurveEnd::Stalled => "stalled",
+        CurveEnd::Points => "points",
+    }
 }
 
 /// A curve of some points, whose columns are written.
@@ -89,6 +101,9 @@ pub fn curve<'a, 'py>(
     profile: &Profile,
 ) -> PyResult<Bound<'py, PyAny>> {
     let computed = points.clone().filter(|point| point.status != PointStatus::NotComputed);
+    columns.one("fold", points.clone().map(|point| point.fold))?;
+    columns.one("jump", points.clone().map(|point| point.jump))?;
+    columns.one("stability", points.clone().map(|point| stability_code(point.stable)))?;
     columns.tell("half_wave", half_wave)?;
     columns.tell("computed", computed.count())?;
     columns.tell("interrupted", interrupted)?;
@@ -104,9 +119,11 @@ pub fn forced_response<'py>(
     #[pyo3(from_py_with = frequencies)] omega: Frequencies,
     observe: Vec<usize>,
     driving: Vec<usize>,
-    #[pyo3(from_py_with = balance_settings)] settings: Settings,
+    settings: &Bound<'_, PyAny>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let stability: bool = get(settings, "stability")?;
+    let settings = balance_settings(settings)?;
     swept(py, progress, observe.len(), &problem.model, move |model, kept, look| {
         let orbits = OrbitInitialGuess::new(model, settings.residual, &observe, look);
         let balance = ForcedBalance::new(model, settings, &observe)?
@@ -114,10 +131,14 @@ pub fn forced_response<'py>(
             .rescued(&orbits)
             .driven_by(&driving)
             .keeping(kept);
-        match omega {
+        let mut found = match omega {
             Frequencies::Range((from, to)) => sweep_range(balance, from, to),
             Frequencies::Grid(grid) => sweep(balance, &grid),
+        }?;
+        if stability && !model.is_monotone() {
+            decide_stability(model, &mut found, look)?;
         }
+        Ok(found)
     })
 }
 

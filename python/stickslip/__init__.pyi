@@ -33,12 +33,14 @@ from stickslip.io import read_dofs as read_dofs
 from stickslip.io import read_frf as read_frf
 from stickslip.io import read_matrix as read_matrix
 from stickslip.io import write_frf as write_frf
+from stickslip.model import Cubic as Cubic
 from stickslip.model import Force as Force
 from stickslip.model import Jenkins as Jenkins
 from stickslip.model import ModalDamping as ModalDamping
 from stickslip.model import Model as Model
 from stickslip.model import ParallelJenkins as ParallelJenkins
 from stickslip.model import Rayleigh as Rayleigh
+from stickslip.model import Stop as Stop
 from stickslip.model import StructuralDamper as StructuralDamper
 from stickslip.model import Structure as Structure
 from stickslip.model import join as join
@@ -129,6 +131,7 @@ def forced_response(
     harmonics: int | Literal["auto"] = "auto",
     *,
     observe: Iterable[str] | str | None = None,
+    stability: bool = True,
     max_iterations: int = 100,
     residual: Literal["centred", "from_rest"] | float = "centred",
     tolerance: float = 0.001,

@@ -72,6 +72,7 @@ class Solution:
     half_wave: bool
     computed: int
     interrupted: bool
+    end: str
     timings: dict[str, float]
     counters: dict[str, int]
 

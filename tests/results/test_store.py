@@ -92,6 +92,9 @@ def test_dataset(frf):
         "harmonics_kept": "1",
         "samples": "1",
         "status": "1",
+        "fold": "1",
+        "jump": "1",
+        "stability": "1",
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs

@@ -1,5 +1,6 @@
 //! A curve over a range of frequencies, with steps chosen to the tolerance.
 
+use super::branch_sweep::sweep_branch;
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::keep;
@@ -15,7 +16,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// Longest step as a share of the range: a curve needs points to be looked at.
-const LONGEST: f64 = 1.0 / 60.0;
+pub(super) const LONGEST: f64 = 1.0 / 60.0;
 /// Shortest step relative to the frequency.
 const SHORTEST: f64 = 1e-7;
 /// Resonances closer than this share of their bandwidths are one stop.
@@ -30,6 +31,9 @@ const ASIDE: f64 = 1e-8;
 /// could hide; so each resonance in the range, in whatever state of the contacts, is a point, and
 /// steps behind it start at its bandwidth.
 ///
+/// Where contact laws are not monotone the curve is followed by arclength, and its frequency may turn
+/// back.
+///
 /// # Errors
 /// As for a sweep over given frequencies; a range of no length.
 pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result<Solution, Error> {
@@ -41,7 +45,11 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
     }
     let direction = (to - from).signum();
     let longest = LONGEST * (to - from).abs();
-    let mut points = vec![Arc::new(balance.solve(from, None)?)];
+    let first = balance.solve(from, None)?;
+    if first.is_solved() && !balance.model.is_monotone() {
+        return sweep_branch(balance, first, (from, to));
+    }
+    let mut points = vec![Arc::new(first)];
     balance.scale.include(&points[0]);
     keep(balance.kept, &points[0]);
     // What lies outside the range may be narrow, too.
@@ -100,7 +108,7 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
 /// Resonances inside the range, each with its bandwidth, and the end, in the order of the sweep.
 /// Those of harmonics that no force excites count where friction can make them as high as the
 /// response is at the start.
-fn stops(
+pub(super) fn stops(
     balance: &mut ForcedBalance<'_>,
     first: &Point,
     from: f64,

@@ -101,7 +101,7 @@ impl ForcedBalance<'_> {
     }
 
     /// What the errors of a solution ask for.
-    fn judge(&mut self, point: &Point) -> Decision {
+    pub(super) fn judge(&mut self, point: &Point) -> Decision {
         self.scale.include(point);
         let scale = &self.scale;
         let of_samples = scale.relative(point, OF_HARMONICS, point.sampling_error.iter().copied());

@@ -12,6 +12,16 @@ use crate::solve::System as _;
 use crate::Error;
 
 impl ForcedBalance<'_> {
+    /// Number of points that slip, or whose law may depart from a spring without slip.
+    pub(super) fn nonlinear_points(&self, point: &Point) -> usize {
+        let laws = self.model.laws().iter().zip(self.model.points());
+        let counted = laws.map(|(law, points)| {
+            let own = &point.contacts[points.clone()];
+            own.iter().filter(|one| one.slip_fraction > 0.0 || !law.is_monotone()).count()
+        });
+        counted.sum()
+    }
+
     /// Writes the error estimate of a solution `x` of these equations; `false` if the analysis is to
     /// end.
     pub(super) fn estimate(
@@ -44,7 +54,7 @@ impl ForcedBalance<'_> {
     ) -> Result<bool, Error> {
         point.error_estimate = vec![0.0; self.observe.len()];
         point.sampling_error = vec![0.0; self.observe.len()];
-        let slipping = point.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
+        let slipping = self.nonlinear_points(point);
         if slipping == 0 {
             return Ok(true);
         }

@@ -18,7 +18,7 @@ impl ForcedBalance<'_> {
     /// The point that ends the climb at a solution for which `more` harmonics would be too dear:
     /// the exact orbit, or the solution as it is.
     pub(super) fn instead_of(&mut self, more: Resolution, solved: &Point) -> Option<Point> {
-        let slipping = solved.contacts.iter().filter(|c| c.slip_fraction > 0.0).count();
+        let slipping = self.nonlinear_points(solved);
         let price = self.price(slipping);
         let (balance, affordable) = (price.of(more.harmonics), price.affordable());
         if more.harmonics <= solved.harmonics || balance <= TRIFLE {

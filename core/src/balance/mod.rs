@@ -3,13 +3,16 @@
 
 mod accuracy;
 mod adaptive;
+mod branch_sweep;
 mod condensed;
+mod continuity;
 mod cycle_point;
 mod cycle_start;
 mod enough;
 mod estimate;
 mod evaluation;
 mod forced;
+mod forced_curve;
 mod from_orbit;
 mod jacobian;
 mod limit_cycle;
@@ -31,6 +34,7 @@ mod sweep;
 mod unknowns;
 
 pub use adaptive::sweep_range;
+pub use branch_sweep::CurveEnd;
 pub use cycle_start::Onset;
 pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;

@@ -1,5 +1,6 @@
 //! What a forced response returns.
 
+use super::branch_sweep::CurveEnd;
 use super::settings::Resolution;
 use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
@@ -64,6 +65,12 @@ pub struct Point {
     pub sampling_error: Vec<f64>,
     /// Slip share and friction work per contact point.
     pub contacts: Vec<PointSummary>,
+    /// Whether the curve turns back in frequency here.
+    pub fold: bool,
+    /// Whether the sweep has come here from another branch.
+    pub jump: bool,
+    /// Whether the motion is stable, if that is decided.
+    pub stable: Option<bool>,
     pub(super) unknowns: Option<Unknowns>,
 }
 
@@ -113,6 +120,9 @@ impl Point {
                 PointSummary { slip_fraction: f64::NAN, dissipation: f64::NAN };
                 contacts
             ],
+            fold: false,
+            jump: false,
+            stable: None,
             unknowns: None,
         }
     }
@@ -128,6 +138,8 @@ pub struct Solution {
     pub half_wave: bool,
     /// Whether the analysis was ended before its last point.
     pub interrupted: bool,
+    /// How a curve over a range ended.
+    pub end: CurveEnd,
     /// Where the time went.
     pub profile: Profile,
 }

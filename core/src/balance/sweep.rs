@@ -1,5 +1,6 @@
 //! A curve over given frequencies.
 
+use super::branch_sweep::CurveEnd;
 use super::forced::ForcedBalance;
 use super::solution::{Point, PointStatus, Solution};
 use super::unknowns::Unknowns;
@@ -33,7 +34,10 @@ pub(super) fn sweep_with<'a>(
         ForcedBalance::report,
         |balance, points, frequency| {
             let guess = predict(points, frequency);
-            let point = solve(balance, frequency, guess.as_ref())?;
+            let mut point = solve(balance, frequency, guess.as_ref())?;
+            if let Some(last) = points.last().filter(|_| follows_branches(balance)) {
+                balance.stay_on_branch(last, &mut point)?;
+            }
             Ok(Some(point).filter(|point| point.status != PointStatus::NotComputed))
         },
     )?;
@@ -87,6 +91,11 @@ pub(crate) fn check_bracket([low, guess, high]: [f64; 3]) -> Result<(), Error> {
     Err(Error::value("peak: guess", guess, "must lie between its bounds"))
 }
 
+/// Whether points may lie on several branches, from one of which to another a sweep may jump.
+fn follows_branches(balance: &ForcedBalance<'_>) -> bool {
+    !balance.model.is_monotone()
+}
+
 pub(super) fn finish(
     balance: ForcedBalance<'_>,
     points: Vec<Arc<Point>>,
@@ -97,6 +106,7 @@ pub(super) fn finish(
         points,
         half_wave: balance.half_wave(),
         interrupted,
+        end: if interrupted { CurveEnd::Interrupted } else { CurveEnd::Range },
         profile: Profile { total: start.elapsed(), ..balance.profile },
     }
 }

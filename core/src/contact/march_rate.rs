@@ -71,6 +71,9 @@ impl Rate {
     /// Adds the outer product with the summed basis to a tangent, and clears the sum.
     pub(super) fn add_to(&self, force_by_state: &[f64], sum: &mut [f64], out: &mut [f64]) {
         let (states, size) = (self.state_stiffness.nrows(), self.stiffness.nrows() * self.slots);
+        if states == 0 {
+            return sum.fill(0.0);
+        }
         let mut force = vec![0.0; size];
         for (rows, by_state) in
             out.chunks_exact_mut(self.slots * size).zip(force_by_state.chunks_exact(states))

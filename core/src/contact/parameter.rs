@@ -25,6 +25,11 @@ impl Parameter {
         Self { name: Self::SLIP_FORCE, point: Some(point), value, factor: false }
     }
 
+    /// Gap of the whole contact \[m\].
+    pub(super) fn gap(value: f64) -> Self {
+        Self { name: "gap", point: None, value, factor: false }
+    }
+
     /// Stiffness of the whole contact [N/m].
     pub(super) fn stiffness(value: f64) -> Self {
         Self { name: "stiffness", point: None, value, factor: false }
@@ -33,6 +38,14 @@ impl Parameter {
 
 /// Parameters of a law by name.
 pub type Parameters = BTreeMap<String, Vec<f64>>;
+
+/// The number a law expects under `name`.
+pub(super) fn number(law: &str, parameters: &Parameters, name: &str) -> Result<f64, Error> {
+    match numbers(law, parameters, name)? {
+        [one] => Ok(*one),
+        several => Err(Error::shape(&format!("{law}: {name}"), "one number", several.len())),
+    }
+}
 
 /// The numbers a law expects under `name`.
 pub(super) fn numbers<'a>(

@@ -1,20 +1,30 @@
 //! The registry: laws by the names that study files and Python give them.
 
-use super::{ContactLaw, Coulomb, Jenkins, Parameters, StructuralDamper};
+use super::{ContactLaw, Coulomb, Cubic, Jenkins, Parameters, Stop, StructuralDamper};
 use crate::Error;
+
+type Maker = fn(&Parameters) -> Result<Box<dyn ContactLaw>, Error>;
+
+/// Every law by its name.
+const LAWS: [(&str, Maker); 6] = [
+    ("coulomb", |given| Ok(Box::new(Coulomb::from_parameters(given)?))),
+    ("cubic", |given| Ok(Box::new(Cubic::from_parameters(given)?))),
+    ("jenkins", |given| Ok(Box::new(Jenkins::from_parameters(given)?))),
+    ("parallel-jenkins", |given| Ok(Box::new(Jenkins::from_parameters(given)?))),
+    ("stop", |given| Ok(Box::new(Stop::from_parameters(given)?))),
+    ("structural", |given| Ok(Box::new(StructuralDamper::from_parameters(given)?))),
+];
 
 /// The registry: a law from its name and parameters.
 ///
 /// # Errors
 /// Unknown name, or parameters the law refuses.
 pub fn law(name: &str, parameters: &Parameters) -> Result<Box<dyn ContactLaw>, Error> {
-    match name {
-        "jenkins" | "parallel-jenkins" => Ok(Box::new(Jenkins::from_parameters(parameters)?)),
-        "coulomb" => Ok(Box::new(Coulomb::from_parameters(parameters)?)),
-        "structural" => Ok(Box::new(StructuralDamper::from_parameters(parameters)?)),
-        other => Err(Error::UnknownLaw {
-            name: other.to_owned(),
-            known: "coulomb, jenkins, parallel-jenkins, structural".to_owned(),
+    match LAWS.iter().find(|(known, _)| *known == name) {
+        Some((_, make)) => make(parameters),
+        None => Err(Error::UnknownLaw {
+            name: name.to_owned(),
+            known: LAWS.map(|(known, _)| known).join(", "),
         }),
     }
 }

@@ -52,6 +52,17 @@ impl IntervalSums {
         }
     }
 
+    /// Adds an instant, with its weight: a sum over samples in place of an integral.
+    pub fn add_instant(&mut self, theta: f64, weight: f64) {
+        let (sin_step, cos_step) = (self.step as f64 * theta).sin_cos();
+        let (mut cos, mut sin) = (1.0, 0.0);
+        for order in (0..self.cos.len()).step_by(self.step) {
+            self.cos[order] += weight * cos;
+            self.sin[order] += weight * sin;
+            (cos, sin) = (cos * cos_step - sin * sin_step, sin * cos_step + cos * sin_step);
+        }
+    }
+
     /// `Σ ∫ basis_row basis_column dθ` times a factor, handed to `store(row, column, value)`.
     pub fn products(
         &self,

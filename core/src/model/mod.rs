@@ -272,6 +272,13 @@ impl Model {
         self.compliance.receptance(0, 0.0, &mut receptance).is_err()
     }
 
+    /// Whether all contact laws are monotone operators: with positive damping there is one steady
+    /// motion.
+    #[must_use]
+    pub fn is_monotone(&self) -> bool {
+        self.laws.iter().all(|law| law.is_monotone())
+    }
+
     /// Whether the motion has half-wave symmetry: odd laws under odd harmonics alone.
     #[must_use]
     pub fn is_symmetric(&self) -> bool {

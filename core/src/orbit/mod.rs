@@ -4,7 +4,9 @@
 mod cycle_branch;
 mod cycles;
 mod limit_cycle;
+mod linear_path;
 mod orbit_postprocess;
+mod period_map;
 mod periodic;
 mod price;
 mod quadrature;
@@ -23,6 +25,7 @@ mod sweep;
 pub use cycle_branch::limit_cycles;
 pub use cycles::{Change, ChangeKind, Cycle, CycleSettings, LimitCycles, Turn};
 pub use limit_cycle::{CycleOrbits, OrbitCurve};
+pub use period_map::{decide_stability, Multipliers, PeriodMap};
 pub use periodic::{Orbit, PeriodicOrbits};
 pub use rescue::OrbitInitialGuess;
 pub use rotation::Rotation;

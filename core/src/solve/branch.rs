@@ -118,7 +118,7 @@ impl Branch {
         if let [.., before, last] = &self.points[..] {
             let [a, b, c] = [before, last, &point].map(|z| parameter(curve, z));
             if (b - a) * (c - b) < 0.0 && self.folds.last() != Some(&(self.points.len() - 1)) {
-                if let Some(fold) = self.turn(curve, before, last, &point) {
+                if let Some(fold) = Self::turn(curve, before, last, &point) {
                     let nearer = distance(curve, &fold, before) < distance(curve, last, before);
                     let at = self.points.len() - usize::from(nearer);
                     self.points.insert(at, fold);
@@ -160,8 +160,7 @@ impl Branch {
     }
 
     /// The point between two others at which the parameter is largest or least: smooth or a corner.
-    fn turn(
-        &self,
+    pub(crate) fn turn(
         curve: &mut dyn Curve,
         before: &[f64],
         middle: &[f64],
@@ -277,7 +276,12 @@ fn resampled(curve: &mut dyn Curve, mut point: Vec<f64>) -> Vec<f64> {
 }
 
 /// The point with the parameter at `value` between two others.
-fn between(curve: &mut dyn Curve, a: &[f64], b: &[f64], value: f64) -> Option<(Vec<f64>, usize)> {
+pub(crate) fn between(
+    curve: &mut dyn Curve,
+    a: &[f64],
+    b: &[f64],
+    value: f64,
+) -> Option<(Vec<f64>, usize)> {
     let [from, to] = [a, b].map(|z| parameter(curve, z));
     let share = (value - from) / (to - from);
     let mixed =

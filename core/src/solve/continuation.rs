@@ -102,13 +102,18 @@ impl Continuation {
     }
 
     /// Goes on from the last two points, given in other unknowns.
-    pub(super) fn restart(&mut self, curve: &mut dyn Curve, before: &[f64], point: &[f64]) {
+    pub(crate) fn restart(&mut self, curve: &mut dyn Curve, before: &[f64], point: &[f64]) {
         self.point = before.to_vec();
         self.move_to(curve, point.to_vec());
         let weights = curve.weights(point);
         if let Some((_, orientation)) = oriented(curve, point, &weights, &self.direction.clone()) {
             self.orientation = orientation;
         }
+    }
+
+    /// Has the next step be no longer than this.
+    pub(crate) fn limit_step(&mut self, longest: f64) {
+        self.step = self.step.min(longest);
     }
 
     /// Takes one step.

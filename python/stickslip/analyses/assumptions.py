@@ -142,7 +142,8 @@ def _static_traction(
     model: Model, settings: ForcedSettings | ExactSettings, arrays: Arrays
 ) -> Diagnostic | None:
     """Say what contacts that never slip were taken to hold."""
-    stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
+    slips = [contact.slips for contact in model.contacts for _ in range(contact.points)]
+    stuck = (arrays.slip_fraction[arrays.solved][:, slips] == 0.0).any(axis=1)
     if all(contact.points > 1 for contact in model.contacts) or not stuck.any():
         return None
     held = {

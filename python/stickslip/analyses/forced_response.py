@@ -17,12 +17,13 @@ from stickslip.analyses.arguments import (
     require_held,
 )
 from stickslip.analyses.assumptions import balance_assumptions
+from stickslip.analyses.branch_assumptions import branch_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.uniqueness import arrays_of
 from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
-from stickslip.results.arrays import Arrays
-from stickslip.settings.balance import BalanceKeys, BalanceSettings, ForcedSettings
+from stickslip.settings.balance import BalanceKeys, BalanceSettings, ForcedSettings, StabilityKey
 from stickslip.settings.settings import configured
 
 
@@ -38,6 +39,11 @@ def forced_response(
 
     The relative displacements at the contacts are solved for, on the structure with all contacts
     stuck; everything else follows from them linearly.
+
+    Where contact laws leave open whether a solution is the only one (`Stop`, `Cubic`), a range is
+    followed by arclength, around its folds: `omega` of the result may turn back, unstable motions
+    are part of it, and the curve ends where it leaves the range. Over given frequencies the sweep
+    stays on its branch as long as there is one, and a diagnostic names its jumps.
 
     Parameters
     ----------
@@ -64,7 +70,8 @@ def forced_response(
     """
     grid = settings.omega
     span = grid if isinstance(grid, tuple) else None
-    kept = ForcedSettings.of(**settings.part(BalanceSettings), span=span)
+    own = settings.part(BalanceSettings) | settings.part(StabilityKey)
+    kept = ForcedSettings.of(**own, span=span)
     dofs = observed_dofs(settings, model)
     driving = driving_dofs(model, dofs, outputs, named=settings.observe is not None)
     asked = grid.size if isinstance(grid, np.ndarray) else None
@@ -78,14 +85,17 @@ def forced_response(
             solution = _core.forced_response(
                 model.problem, grid, columns_of(dofs, model), driving, kept, run
             )
-        arrays = Arrays.of(solution)
+        arrays = arrays_of(solution, model)
         result = ForcedResponse.of(
             solution,
             model=model,
             settings=kept,
             dofs=dofs,
             arrays=arrays,
-            diagnostics=balance_assumptions(model, kept, dofs, arrays, solution, asked),
+            diagnostics=(
+                *balance_assumptions(model, kept, dofs, arrays, solution, asked),
+                *branch_assumptions(model, arrays, solution),
+            ),
         )
         of_all = "" if asked is None else f" of {asked}"
         return run.ended(result, f"{solution.computed}{of_all} points")

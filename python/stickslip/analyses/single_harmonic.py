@@ -9,11 +9,11 @@ from stickslip.analyses.arguments import columns_of, observed_dofs, points_of
 from stickslip.analyses.assumptions import balance_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.texts import told
+from stickslip.analyses.uniqueness import arrays_of
 from stickslip.errors import ModelError
 from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
-from stickslip.results.arrays import Arrays
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
 from stickslip.settings.orbits import SingleHarmonicKeys
@@ -72,7 +72,7 @@ def single_harmonic(
             solution = _core.single_harmonic(
                 model.problem, grid, columns_of(dofs, model), settings, run
             )
-        arrays = Arrays.of(solution)
+        arrays = arrays_of(solution, model)
         diagnostics = balance_assumptions(
             model, kept, dofs, arrays, solution, grid.size, single=True
         )

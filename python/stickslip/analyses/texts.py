@@ -106,6 +106,18 @@ TEXTS = {
     "deviation with seed {seed}; those of a single disk have others.",
     "patterns/given": "The patterns were given, in units of the standard deviation.",
     "deviations": "The stiffness of whole sectors deviates; couplings, contacts and forces do not.",
+    # several solutions
+    "folds": "The curve turns back in frequency at {count} folds: between them a frequency has "
+    "several motions.",
+    "unstable": "{points} of {_solved} motions are unstable: a disturbance leads away from them.",
+    "jump": "The {_direction} sweep jumps to another branch between omega = {low:.6g} and "
+    "{high:.6g} rad/s{_more}; a range, omega=(from, to), follows the branch around its fold.",
+    "branch-end/returned": "The branch that begins at omega = {_start:.6g} rad/s comes back to "
+    "that end of the range: the motions at the other end lie on another branch; begin there.",
+    "branch-end/stalled": "Stalled: no way ahead of the branch was found at omega = {omega:.6g} "
+    "rad/s; the rest of the range is missing.",
+    "branch-end/points": "The branch ends at omega = {omega:.6g} rad/s after {points} points; "
+    "compute a shorter range.",
     # limit cycles
     "onset": "Mode {mode}, stuck at {omega:.6g} rad/s, loses its damping at r = {ratio:.6g} with "
     "all contacts stuck: its limit cycles begin there.",
@@ -116,6 +128,7 @@ TEXTS = {
     "its own.",
     "stability-undecided/left out": "Stability is not decided: it was left out.",
     "stability-undecided": "{points} points have no multipliers: their stability is not decided.",
+    "stability-undecided/points": "The stability of {points} points is not decided.",
     "stability-unknown": "The stability of {count} values is not decided.",
     "multipliers": "{points} points have no exact orbit nearby at their {_followed}: their "
     "multipliers are those of the exact flow along the harmonic balance.",

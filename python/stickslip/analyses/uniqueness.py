@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import listed
 from stickslip.model import Model
+from stickslip.results.arrays import STABILITY, Arrays
 from stickslip.results.diagnostic import Diagnostic, diagnostic
+
+if TYPE_CHECKING:
+    from stickslip import _core
 
 
 def uniqueness(model: Model) -> Diagnostic | None:
@@ -43,6 +50,15 @@ def uniqueness(model: Model) -> Diagnostic | None:
         "The damping is negative for some motion: the solution may be unstable or not the only "
         "one.",
     )
+
+
+def arrays_of(solution: _core.Solution, model: Model) -> Arrays:
+    """Return the numbers of a curve; a motion that is the only one is stable."""
+    arrays = Arrays.of(solution)
+    if uniqueness(model) is not None:
+        return arrays
+    states = np.where(arrays.solved, STABILITY.index("stable"), STABILITY.index("not decided"))
+    return replace(arrays, stability=states.astype(np.uint8))
 
 
 def _is_positive(matrix: NDArray[np.float64]) -> bool:

@@ -10,12 +10,14 @@ from stickslip.model.contact import Contact
 from stickslip.model.force import Force
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
 from stickslip.model.model import ContactRef, Model, PointRef
+from stickslip.model.springs import Cubic, Stop
 from stickslip.model.structural import StructuralDamper
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 __all__ = [
     "Contact",
     "ContactRef",
+    "Cubic",
     "Force",
     "Jenkins",
     "ModalDamping",
@@ -24,6 +26,7 @@ __all__ = [
     "PointRef",
     "Rayleigh",
     "SlipConfigurations",
+    "Stop",
     "StructuralDamper",
     "Structure",
     "join",

@@ -38,6 +38,9 @@ class Contact(ABC):
     factors: ClassVar[frozenset[str]] = frozenset()
     """Adjustable parameters that are factors on what the contact was given: they take no value."""
 
+    slips: ClassVar[bool] = True
+    """Whether its points stick and slip; a spring without friction remembers no force."""
+
     name: str | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:

@@ -5,57 +5,24 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from stickslip.checks import Matrix, brief, real_number, set_fields, text
+from stickslip.checks import Matrix, brief, real_number, set_fields
 from stickslip.errors import ModelError
-from stickslip.model.contact import Contact, Sliders, real_numbers
-from stickslip.model.dofs import Dofs
+from stickslip.model.contact import Sliders, real_numbers
+from stickslip.model.ends import TwoEnds
 
 
 @dataclass(frozen=True)
-class _TwoEnds(Contact):
-    """A contact of one point, between two degrees of freedom or one and the ground."""
-
-    dof: str
-    other: str | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        entry = f"{self.law} contact"
-        text(self.dof, f"{entry}: dof")
-        if self.other is not None:
-            text(self.other, f"{entry}: other")
-        if self.dof == self.other:
-            raise ModelError(
-                f"{entry}: both ends at dof {brief(self.dof)}; name another dof, or leave `other` "
-                "out for the ground"
-            )
+class _Elements(TwoEnds):
+    """Elements of a spring and a slider each, on one displacement."""
 
     @property
     @abstractmethod
     def _elements(self) -> Iterable[tuple[float, float]]:
         """Stiffness [N/m] and slip force [N] of each element."""
-
-    @property
-    def dofs(self) -> tuple[str, ...]:
-        """Names of the degrees of freedom it acts on, one (to ground) or two."""
-        return (self.dof,) if self.other is None else (self.dof, self.other)
-
-    @property
-    def points(self) -> int:
-        """Number of contact points: one."""
-        return 1
-
-    def rows(self, dofs: Dofs) -> Matrix:
-        """Return B of u = B x, shape (1, N): +1 at `dof`, -1 at `other`; see `Contact.rows`."""
-        rows = np.zeros((1, len(dofs)))
-        rows[0, dofs.index(self.dof)] = 1.0
-        if self.other is not None:
-            rows[0, dofs.index(self.other)] = -1.0
-        return rows
 
     @property
     def stuck_stiffness(self) -> Matrix:
@@ -69,15 +36,9 @@ class _TwoEnds(Contact):
             return None
         return Jenkins(self.dof, self.other, stiffness=sum(left), slip_force=np.inf, name=self.name)
 
-    @classmethod
-    def _placed(cls, dofs: tuple[str | None, ...]) -> tuple[Any, ...]:
-        if not 1 <= len(dofs) <= 2:
-            raise ModelError(f"{cls.law} contact: {len(dofs)} dofs; give one (to ground) or two")
-        return dofs
-
 
 @dataclass(frozen=True)
-class Jenkins(_TwoEnds):
+class Jenkins(_Elements):
     """A spring in series with a Coulomb slider: the elastic dry-friction element.
 
     The force follows f = clip(f + k_d du, -F_d, F_d) along the motion.
@@ -137,7 +98,7 @@ class Jenkins(_TwoEnds):
 
 
 @dataclass(frozen=True)
-class ParallelJenkins(_TwoEnds, Sliders):
+class ParallelJenkins(_Elements, Sliders):
     """Jenkins elements in parallel: a contact that begins to slip little by little.
 
     All elements share one displacement, so that the contact has one unknown per harmonic, however

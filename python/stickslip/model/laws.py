@@ -10,10 +10,11 @@ from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
+from stickslip.model.springs import Cubic, Stop
 from stickslip.model.structural import StructuralDamper
 
 LAWS: Mapping[str, type[Contact]] = {
-    law.law: law for law in (Jenkins, ParallelJenkins, StructuralDamper)
+    law.law: law for law in (Jenkins, ParallelJenkins, StructuralDamper, Stop, Cubic)
 }
 """Every law by its name."""
 

@@ -115,14 +115,15 @@ class _View:
     def draw(self, result: ForcedResponse, colour: Colour, label: str) -> None:
         """Draw the curve, and crosses on the axis where there is no solution.
 
-        Exact orbits that are unstable or undecided are dashed or dotted, and named in the legend.
+        Motions that are unstable or undecided are dashed or dotted, and named in the legend, unless
+        nothing is known of any. Squares mark folds.
         """
         omega = self.omega.factor * result.omega
         height = self._factor(result.model) * result.amplitude(self.dof, self.measure)
         looks: Looks = {"color": colour, "lw": 1.6, "marker": "." if omega.size == 1 else ""}
         solved = result.arrays.solved
         states = np.full(omega.size, "stable")
-        if isinstance(result, ExactResponse):
+        if (result.stability != "not decided").any():
             states = np.where(solved, result.stability, "stable")
         for number, (piece, state) in enumerate(style.pieces(states)):
             named: Looks = {
@@ -133,6 +134,9 @@ class _View:
             self.ax.plot(omega[piece], height[piece], **looks, **named)
         if not (states == "stable").all():
             style.name_states(self.ax, [states])
+        if result.folds.size:
+            looks = style.mark("s", 4, colour) | {"zorder": 2.6, "label": "folds"}
+            self.ax.plot(omega[result.folds], height[result.folds], **looks)
         if not solved.all():
             self.ax.plot(
                 omega[~solved],
@@ -145,7 +149,9 @@ class _View:
                 ms=5,
             )
 
-    def draw_limit(self, model: Model, span: tuple[float, float], at: str, *, stuck: bool) -> None:
+    def draw_limit(
+        self, model: Model, span: tuple[float, float], at: str, *, stuck: bool, name: str = ""
+    ) -> None:
         """Draw the linear response with all contacts stuck, or with none."""
         omega, amplitude = limit_curve(model, self.dof, span, self.measure, stuck=stuck)
         self.ax.plot(
@@ -154,7 +160,7 @@ class _View:
             color=style.GREY,
             lw=1.1,
             ls=style.STUCK if stuck else style.FREE,
-            label=f"{'stuck' if stuck else 'free'} (linear{at})",
+            label=f"{name or ('stuck' if stuck else 'free')} (linear{at})",
             zorder=1.5,
             gid=style.LIMIT,
         )
@@ -218,6 +224,11 @@ def _draw_limits(
     if not model.contacts or low == high or not max(levels):
         return
     at = "" if view.per_force or len(set(levels)) == 1 else f", {max(levels):.5g} N"
+    if not any(contact.slips for contact in model.contacts):
+        # Springs without friction have one linear limit, that at rest.
+        if free or stuck:
+            view.draw_limit(model, (low, high), at, stuck=True, name="at rest")
+        return
     for is_stuck, wanted in ((True, stuck), (False, free)):
         if wanted:
             view.draw_limit(model, (low, high), at, stuck=is_stuck)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SHARE",
+    "STABILITY",
     "Arrays",
     "Bool",
     "Code",
@@ -37,6 +38,9 @@ Kind = TypeVar("Kind", bound=np.generic)
 Measure: TypeAlias = Literal["half_range", "max", "fundamental"]
 """Half the peak-to-peak range over a period, the largest |x|, or |X_1|."""
 
+STABILITY = ("unstable", "stable", "not decided")
+"""What is known of the stability of a motion."""
+
 SHARE = 1.0 + 1e-6
 """Largest share of a period: sums of times are rounded."""
 
@@ -52,6 +56,14 @@ def _samples(dataset: xr.Dataset) -> Int:
 
 def _unknown(dataset: xr.Dataset) -> Float:
     return np.full_like(dataset["error_estimate"].values, np.nan)
+
+
+def _nowhere(dataset: xr.Dataset) -> Bool:
+    return np.zeros(dataset.sizes["omega"], np.bool_)
+
+
+def _undecided(dataset: xr.Dataset) -> Code:
+    return np.full(dataset.sizes["omega"], STABILITY.index("not decided"), np.uint8)
 
 
 class PeriodicArrays(Columns):
@@ -134,6 +146,15 @@ class Arrays(PeriodicArrays):
     )
     residual: Float = column("*", "1", "relative residual of the balance equations", least=0.0)
     iterations: Int = column("*", "1", "iterations of the solver", least=0)
+    fold: Bool = column(
+        "*", "1", "whether the curve turns back in frequency at the point", absent=_nowhere
+    )
+    jump: Bool = column(
+        "*", "1", "whether the sweep has come to the point from another branch", absent=_nowhere
+    )
+    stability: Code = column(
+        "*", "1", "whether the motion is stable", codes=STABILITY, absent=_undecided
+    )
     sampling_error: Float = column(
         "* dof",
         "m",

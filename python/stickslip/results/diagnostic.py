@@ -32,15 +32,15 @@ _CODES = {
         exact-orbits frequencies observed-dofs tolerances-missed static-traction start-of-march
         start time-steps kept-periods criterion modes peak-range varied-together rigid-limit
         coarse-search patterns deviations onset forces-ignored stability-undecided multipliers
-        unbounded-branch text
+        unbounded-branch folds unstable text
     """,
     Severity.CAUTION: """
         truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps
         no-tolerance forces-left-out peak-at-edge optimum-at-bound points-limit no-turn branch-jumps
-        stability-unknown
+        stability-unknown jump
     """,
     Severity.FAILURE: """
-        branch-stalled branch-turned-back no-limit
+        branch-stalled branch-turned-back branch-end no-limit
     """,
 }
 SEVERITIES: Mapping[str, Severity] = MappingProxyType(

@@ -17,6 +17,7 @@ from stickslip.model import ContactRef, PointRef
 from stickslip.model.model import Model, refusal
 from stickslip.model.state import State
 from stickslip.results.arrays import (
+    STABILITY,
     Arrays,
     Code,
     ExactColumns,
@@ -32,7 +33,7 @@ from stickslip.results.fields import Computed, column
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
 from stickslip.results.periodic import key_of
-from stickslip.results.stability import FloquetStability
+from stickslip.results.stability import FloquetStability, stability_of
 from stickslip.results.status import Status
 from stickslip.settings.orbits import ExactSettings
 
@@ -87,7 +88,10 @@ class OrbitArrays(Arrays, ExactColumns):
             if entry.dims[0] == cls.along and kind in "fc" and name not in told:
                 values[name][~solved] = complex(np.nan, np.nan) if kind == "c" else np.nan
         values["neutral"][~solved] = 0
-        return cls(**{name: values[name] for name in cls.table()})
+        made = cls(**{name: values[name] for name in cls.table()})
+        states = stability_of(made.multipliers, made.neutral, made.known)
+        codes = [STABILITY.index(state) for state in states.tolist()]
+        return replace(made, stability=np.array(codes, np.uint8))
 
     @classmethod
     def read(cls, dataset: xr.Dataset, **more: Any) -> Self:
@@ -143,7 +147,7 @@ class OrbitArrays(Arrays, ExactColumns):
         )
 
 
-class ExactResponse(ForcedResponse, FloquetStability):
+class ExactResponse(FloquetStability, ForcedResponse):
     """Exact periodic orbits over the excitation frequency.
 
     A `ForcedResponse` without truncation: amplitudes are the exact extrema of the orbits, waveforms

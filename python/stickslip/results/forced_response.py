@@ -6,11 +6,16 @@ from collections.abc import Hashable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from stickslip.drawn import Drawn
+from stickslip.results.arrays import STABILITY, Int, constant
 from stickslip.results.blades import BladeMotion
 from stickslip.results.certificate import Certificate
 from stickslip.results.energy import Energy, energy_of
 from stickslip.results.sensitivities import Sensitivities
+from stickslip.results.stability import States, truths
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,6 +39,43 @@ class ForcedResponse(BladeMotion, Sensitivities):
     title = "Forced response of a structure with dry friction, by harmonic balance"
 
     certificate: Certificate | None = None
+
+    @cached_property
+    def folds(self) -> Int:
+        """Positions of the points at which the curve turns back in frequency, in its order.
+
+        Located to about 1e-7 along the curve, and the frequency to the square of it. Empty of
+        curves over given frequencies.
+        """
+        return constant(np.flatnonzero(self.arrays.fold))
+
+    @cached_property
+    def jumps(self) -> Int:
+        """Positions of the points to which the sweep has jumped from another branch.
+
+        The branch of the point before turns back between the two frequencies. Empty of curves over
+        a range, which are followed around their folds.
+        """
+        return constant(np.flatnonzero(self.arrays.jump))
+
+    @cached_property
+    def stability(self) -> States:
+        """State of each motion, "stable", "unstable" or "not decided".
+
+        Where laws and damping leave one motion alone it is stable. Else Floquet multipliers of the
+        linearised equations decide, unless the largest is nearer to 1 than its error, the motion is
+        a travelling wave, or ``stability=False``.
+        """
+        return constant(np.array(STABILITY)[self.arrays.stability])
+
+    @cached_property
+    def stable(self) -> NDArray[np.object_]:
+        """`stability` as True, False or None (not decided) per point.
+
+        Of Python's objects: write ``result.stable == True`` or ``result.stability == "stable"`` to
+        choose points.
+        """
+        return truths(self.stability)
 
     plot = Drawn("curves")
     plot_waveform = Drawn("waveform")

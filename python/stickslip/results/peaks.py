@@ -76,7 +76,8 @@ class Peaks(Sweep):
 
         The balance equations are solved anew over the range of the computed points: at every
         resonance that may be the highest, in whatever state of the contacts, and wherever the curve
-        between two points may be higher.
+        between two points may be higher. Where solutions need not be unique the peak is that of the
+        computed branch instead: of the parabola along it through the three highest points.
 
         `omega`, `amplitude` (not below any computed point, infinite where neither damping nor
         friction bounds it), `at_edge` and `beside_gap`.
@@ -93,6 +94,8 @@ class Peaks(Sweep):
 
     def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
         """Return the peaks of several degrees of freedom, found together."""
+        if self.model.problem.laws_not_monotone:
+            return [along(self, dof, measure) for dof in dofs]
         groups = [[dof] for dof in dofs if (dof, measure) not in self._peaks]
         found = summits(self, groups, measure) if groups else []
         for (dof,), (_, peak) in zip(groups, found, strict=True):
@@ -101,6 +104,9 @@ class Peaks(Sweep):
 
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
         """Return which of some degrees of freedom has the highest peak, and the peak."""
+        if self.model.problem.laws_not_monotone:
+            peaks = [along(self, dof, measure) for dof in dofs]
+            return max(enumerate(peaks), key=lambda one: one[1].amplitude)
         return summits(self, [dofs], measure)[0]
 
     def summary(self, dofs: Iterable[str] | str | None = None) -> list[Summary]:
@@ -134,6 +140,45 @@ def highest(result: Peaks, dof: str, measure: Measure, refine: Refine) -> Peak:
             found = refine(result, dof, measure, (float(low), float(high), float(omega[top])))
             peak = max(peak, found, key=lambda point: point[1])
     return _told(result, dof, omega, peak, beside_gap)
+
+
+def along(result: Peaks, dof: str, measure: Measure) -> Peak:
+    """Return the highest point of a branch, by the parabola along it through its highest points.
+
+    Along the branch and not over frequency, in which it may turn back.
+    """
+    omega, amplitude = result.omega, result.amplitude(dof, measure)
+    if not np.isfinite(amplitude).any():
+        raise ModelError(f"peak of {dof!r}: none of the {omega.size} points is solved; see status")
+    best, last = int(np.nanargmax(amplitude)), omega.size - 1
+    top = (float(omega[best]), float(amplitude[best]))
+    if best in (0, last):
+        return Peak(*top, at_edge=True)
+    around = slice(best - 1, best + 2)
+    if not np.isfinite(amplitude[around]).all():
+        return _told(result, dof, omega, top, beside_gap=True)
+    if result.arrays.jump[best : best + 2].any():
+        return Peak(*top, at_edge=False)
+    x, y = omega[around] / top[0] - 1.0, amplitude[around] / top[1] - 1.0
+    before, after = np.hypot(np.diff(x), np.diff(y))
+    if not (before and after):
+        return Peak(*top, at_edge=False)
+    # Parabolas through the points at -before, 0 and after.
+    rise, bend = _parabola(y, before, after)
+    at = 0.0 if bend >= 0.0 else min(max(-0.5 * rise / bend, -before), after)
+    drift, turn = _parabola(x, before, after)
+    return Peak(
+        top[0] * (1.0 + at * (drift + at * turn)),
+        max(top[1] * (1.0 + at * (rise + at * bend)), top[1]),
+        at_edge=False,
+    )
+
+
+def _parabola(values: Float, before: float, after: float) -> tuple[float, float]:
+    """Return slope and half the curvature at the middle of three points, which is zero."""
+    left, right = -values[0] / before, values[2] / after
+    bend = (right - left) / (before + after)
+    return float(left + before * bend), float(bend)
 
 
 def summits(

@@ -49,6 +49,13 @@ def stability_of(multipliers: Complex, neutral: Int, known: Bool) -> States:
     return constant(np.where(decided, np.where(largest < 1.0, "stable", "unstable"), "not decided"))
 
 
+def truths(states: States) -> NDArray[np.object_]:
+    """Return states as True, False or None."""
+    values = np.empty(states.shape, dtype=object)
+    values[:] = [STATES[name].truth for name in states.tolist()]
+    return constant(values)
+
+
 class FloquetStability:
     """The part of a result that concerns the stability of its motions."""
 
@@ -92,9 +99,7 @@ class FloquetStability:
         Of Python's objects: write ``result.stable == True`` or ``result.stability == "stable"`` to
         choose motions.
         """
-        values = np.empty(self.stability.shape, dtype=object)
-        values[:] = [STATES[name].truth for name in self.stability.tolist()]
-        return constant(values)
+        return truths(self.stability)
 
     def _stable(self, dimension: str) -> dict[Hashable, Any]:
         """Return the states as a variable of a dataset, with the flags of the CF conventions."""

@@ -10,6 +10,7 @@ from stickslip.errors import ModelError
 from stickslip.settings.entries import (
     ONE_OF,
     Count,
+    Flag,
     Harmonics,
     Residual,
     Span,
@@ -165,7 +166,17 @@ class BalanceSettings(HarmonicSettings):
         return None if self.evaluation == "exact" else self.samples
 
 
-class ForcedSettings(BalanceSettings):
+class StabilityKey(Settings):
+    """Whether the stability of motions is asked for."""
+
+    stability: Flag = Field(
+        default=True,
+        description="Whether Floquet multipliers decide which motions are stable where contact "
+        "laws do not say it. A point then takes some hundred steps of the linearised equations.",
+    )
+
+
+class ForcedSettings(BalanceSettings, StabilityKey):
     """How a forced response was computed."""
 
     span: Span | None = Field(
@@ -174,5 +185,5 @@ class ForcedSettings(BalanceSettings):
     )
 
 
-class BalanceKeys(BalanceSettings, CurveKeys):
+class BalanceKeys(BalanceSettings, StabilityKey, CurveKeys):
     """What a forced response is computed of, and how."""

@@ -121,6 +121,7 @@ SlipForce = Annotated[
 StiffnessValue = Annotated[
     float, quantity_of("N/m", "not be negative"), _quantity_schema("24 kN/mm", "1e6 N/m")
 ]
+CubicStiffness = Annotated[float, quantity_of("N/m^3"), _quantity_schema("1e9 N/m^3", "-2 N/mm^3")]
 Length = Annotated[float, quantity_of("m"), _quantity_schema("1 mm", "1e-3 m")]
 Angle = Annotated[float, quantity_of("rad"), _quantity_schema("90 deg", "1.57 rad")]
 Omega = Annotated[

@@ -16,13 +16,15 @@ from pydantic import (
 
 from stickslip.checks import brief
 from stickslip.errors import EntryError, ModelError
-from stickslip.model import Force, Jenkins, ParallelJenkins, StructuralDamper
+from stickslip.model import Cubic, Force, Jenkins, ParallelJenkins, Stop, StructuralDamper
 from stickslip.model.contact import Contact
 from stickslip.settings.entries import (
     ONE_OF,
     Angle,
+    CubicStiffness,
     Dof,
     Index,
+    Length,
     Many,
     Newtons,
     SlipForce,
@@ -131,6 +133,27 @@ class ParallelJenkinsTable(EndsTable):
     )
 
 
+class StopTable(EndsTable):
+    """An elastic stop: a spring that works once a gap has closed."""
+
+    makes = Stop
+    law: Literal["stop"] = Field(description="Contact law.")
+    stiffness: StiffnessValue = Field(description="Stiffness k of the closed stop.")
+    gap: Length = Field(
+        description="Gap at rest; a negative one is an interference.", examples=["0.2 mm", 1e-3]
+    )
+
+
+class CubicTable(EndsTable):
+    """A cubic spring, f = k u^3."""
+
+    makes = Cubic
+    law: Literal["cubic"] = Field(description="Contact law.")
+    stiffness: CubicStiffness = Field(
+        description="Coefficient k; a negative one softens.", examples=["1e9 N/m^3", -2e5]
+    )
+
+
 _GROUND = "ground"
 """What a file calls the ground: it has no empty entries."""
 
@@ -185,8 +208,10 @@ class ForceTable(Table):
 ContactTable = Annotated[
     Annotated[JenkinsTable, Tag("<jenkins>")]
     | Annotated[ParallelJenkinsTable, Tag("<parallel-jenkins>")]
-    | Annotated[StructuralTable, Tag("<structural>")],
-    chosen_by("law", "jenkins", "parallel-jenkins", "structural"),
+    | Annotated[StructuralTable, Tag("<structural>")]
+    | Annotated[StopTable, Tag("<stop>")]
+    | Annotated[CubicTable, Tag("<cubic>")],
+    chosen_by("law", "jenkins", "parallel-jenkins", "structural", "stop", "cubic"),
 ]
 """Each further friction law joins this union with a table of its own."""
 

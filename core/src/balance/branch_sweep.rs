@@ -1,0 +1,366 @@
+//! A curve over a range of frequencies where solutions may not be unique: followed by arclength, around
+//! its folds, with steps chosen to the tolerance.
+//!
+//! What is followed is the branch that begins at the first end of the range. The frequency may turn
+//! back on the way; the curve ends where it leaves the range, at either end.
+
+use super::adaptive::{stops, LONGEST};
+use super::forced::ForcedBalance;
+use super::forced_curve::ForcedCurve;
+use super::keep;
+use super::resolution_control::Decision;
+use super::scale::OF_STEPS;
+use super::settings::Resolution;
+use super::solution::{Point, PointStatus, Solution};
+use super::sweep::finish;
+use crate::solve::{across, between, Advance, Branch, Continuation, Curve as _, Steps};
+use crate::Error;
+use faer::c64;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Most points of a curve.
+const MOST: usize = 5000;
+/// Steps, relative to the motion and to the frequency. At first touch of a stop the curve bends within
+/// thousandths of the gap.
+pub(super) const STEPS: Steps =
+    Steps { first: 1e-2, shortest: 1e-7, longest: 0.15, max_iterations: 12 };
+/// A step goes at most by this share of its distance to the next resonance, or by its bandwidth: what
+/// is narrow must not be stepped over.
+const NEAR: f64 = 0.5;
+/// Shortest step, as a share of the longest, that is refused for the bend of the curve.
+const SHORT: f64 = 1e-4;
+
+/// Distance of points of a curve that are the same.
+const SAME: f64 = 1e-9;
+
+/// How a curve over a range ended.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum CurveEnd {
+    /// At the far end of the range.
+    #[default]
+    Range,
+    /// At the end of the range where it began.
+    Returned,
+    /// No point ahead was found.
+    Stalled,
+    /// As many points as allowed.
+    Points,
+    /// The caller ended the analysis.
+    Interrupted,
+}
+
+/// A curve on its way.
+struct Walk<'a, 'b> {
+    balance: &'b mut ForcedBalance<'a>,
+    points: Vec<Arc<Point>>,
+    /// Resonances with their bandwidths.
+    stops: Vec<(f64, f64)>,
+    bounds: (f64, f64),
+    longest: f64,
+}
+
+/// Follows the curve from `from` to `to` [rad/s].
+pub(super) fn sweep_branch(
+    mut balance: ForcedBalance<'_>,
+    first: Point,
+    (from, to): (f64, f64),
+) -> Result<Solution, Error> {
+    let start = Instant::now();
+    let stops = stops(&mut balance, &first, from, to)?;
+    balance.scale.include(&first);
+    let first = Arc::new(first);
+    keep(balance.kept, &first);
+    let bounds = (from.min(to), from.max(to));
+    let longest = LONGEST * (to - from).abs();
+    let balance_of_walk = &mut balance;
+    let mut walk = Walk { balance: balance_of_walk, points: vec![first], stops, bounds, longest };
+    let end = walk.follow(from, to)?;
+    let points = walk.points;
+    let interrupted = end == CurveEnd::Interrupted;
+    Ok(Solution { end, ..finish(balance, points, interrupted, start) })
+}
+
+impl Walk<'_, '_> {
+    fn follow(&mut self, from: f64, to: f64) -> Result<CurveEnd, Error> {
+        let mut resolution = self.points[0].resolution();
+        let mut walk: Option<Continuation> = None;
+        let ask = self.balance.interruption();
+        // Each round at one resolution.
+        loop {
+            let table = self.balance.table(resolution.harmonics);
+            let model = self.balance.evaluated(resolution.samples)?;
+            let residual = self.balance.settings.residual;
+            let mut curve = ForcedCurve::new(model, &table, residual, &ask);
+            let last = &self.points[self.points.len() - 1];
+            let Some(unknowns) = &last.unknowns else { return Ok(CurveEnd::Stalled) };
+            let here = curve.point(unknowns, last.omega);
+            let ahead = match walk.take() {
+                None => Continuation::new(&mut curve, here, (to - from).signum(), STEPS),
+                Some(mut walk) => {
+                    let before = self.points.iter().rev().nth(1);
+                    if let Some((before, known)) = before.and_then(|p| Some((p, p.unknowns()?))) {
+                        let before = curve.point(known, before.omega);
+                        walk.restart(&mut curve, &before, &here);
+                    }
+                    Some(walk)
+                }
+            };
+            let Some(mut ahead) = ahead else { return Ok(CurveEnd::Stalled) };
+            let change = self.stretch(&mut curve, &mut ahead, resolution, (from, to))?;
+            let profile = curve.profile;
+            self.balance.add_profile(&profile);
+            match change {
+                Change::Ends(end) => return Ok(end),
+                Change::Resolution(next) => resolution = next,
+            }
+            walk = Some(ahead);
+        }
+    }
+
+    /// Goes on at one resolution.
+    fn stretch(
+        &mut self,
+        curve: &mut ForcedCurve<'_>,
+        walk: &mut Continuation,
+        resolution: Resolution,
+        (from, to): (f64, f64),
+    ) -> Result<Change, Error> {
+        loop {
+            let share = ((self.last().omega - from) / (to - from)).clamp(0.0, 1.0);
+            if !self.balance.report(share) {
+                return Ok(Change::Ends(CurveEnd::Interrupted));
+            }
+            if self.points.len() >= MOST {
+                return Ok(Change::Ends(CurveEnd::Points));
+            }
+            let before = walk.clone();
+            match walk.advance(curve) {
+                Advance::Stalled => return Ok(Change::Ends(CurveEnd::Stalled)),
+                Advance::Interrupted => return Ok(Change::Ends(CurveEnd::Interrupted)),
+                Advance::Point => {}
+            }
+            let (known, mut z) = (before.point.clone(), walk.point.clone());
+            let omega = z[z.len() - 1];
+            let length = distance(&known, &z);
+            let cap = self.longest_step(known[known.len() - 1]);
+            let step = (omega - known[known.len() - 1]).abs();
+            if step > 1.5 * cap {
+                self.step_back(curve, walk, before, cap / step);
+                continue;
+            }
+            let mut end = None;
+            if omega < self.bounds.0 || omega > self.bounds.1 {
+                let edge = if omega < self.bounds.0 { self.bounds.0 } else { self.bounds.1 };
+                end = Some(if edge == to { CurveEnd::Range } else { CurveEnd::Returned });
+                match between(curve, &known, &z, edge) {
+                    Some((at, _)) => z = at,
+                    None => return Ok(Change::Ends(CurveEnd::Stalled)),
+                }
+            }
+            let iterations = walk.iterations - before.iterations;
+            let Some(mut point) = self.solved(curve, &z, resolution, iterations)? else {
+                return Ok(Change::Ends(CurveEnd::Interrupted));
+            };
+            let mut kept = resolution;
+            while let Some(more) = self.wanted(&mut point, kept) {
+                kept = more;
+                match self.finer(&point, kept)? {
+                    Some(finer) => point = finer,
+                    None => break,
+                }
+            }
+            if end.is_none() && kept == resolution {
+                let tolerance = self.balance.settings.tolerance;
+                let error = self.line_error(&point, length).unwrap_or(0.81 * tolerance);
+                let factor = (0.9 * (tolerance / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
+                if error > 2.0 * tolerance && length > SHORT * STEPS.longest {
+                    self.step_back(curve, walk, before, factor);
+                    continue;
+                }
+                walk.limit_step((length * factor).max(SHORT * STEPS.longest));
+            }
+            self.add_fold(curve, resolution, &point)?;
+            self.push(point);
+            if let Some(end) = end {
+                return Ok(Change::Ends(end));
+            }
+            let next = self.balance.control.first();
+            let next = if kept == resolution { next } else { kept.or_finer(next) };
+            if next != resolution {
+                return Ok(Change::Resolution(next));
+            }
+        }
+    }
+
+    fn last(&self) -> &Point {
+        &self.points[self.points.len() - 1]
+    }
+
+    fn push(&mut self, point: Point) {
+        if point.is_solved() {
+            self.balance.scale.include(&point);
+        }
+        let point = Arc::new(point);
+        keep(self.balance.kept, &point);
+        self.points.push(point);
+    }
+
+    /// Takes a step again, shorter.
+    fn step_back(
+        &self,
+        curve: &mut ForcedCurve<'_>,
+        walk: &mut Continuation,
+        before: Continuation,
+        factor: f64,
+    ) {
+        let iterations = walk.iterations;
+        let taken = distance(&before.point, &walk.point);
+        *walk = before;
+        walk.iterations = iterations;
+        walk.limit_step((factor * taken).max(STEPS.shortest));
+        curve.accept(&walk.point);
+    }
+
+    /// Longest step in frequency from here.
+    fn longest_step(&self, omega: f64) -> f64 {
+        let room = |&(at, width): &(f64, f64)| (NEAR * (at - omega).abs()).max(width);
+        self.stops.iter().map(room).fold(self.longest, f64::min).max(1e-6 * self.longest)
+    }
+
+    /// Displacements, forces and error of a point of the curve; nothing if the analysis is to end.
+    fn solved(
+        &mut self,
+        curve: &mut ForcedCurve<'_>,
+        z: &[f64],
+        resolution: Resolution,
+        iterations: usize,
+    ) -> Result<Option<Point>, Error> {
+        let unknowns = curve.series(z);
+        let u = &z[..z.len() - 1];
+        let Some((equations, residual)) = curve.equations(z) else { return Ok(None) };
+        let mut point = equations.recover(u, self.balance.observe, PointStatus::Converged)?;
+        point.samples = resolution.samples;
+        if !self.balance.observe.is_empty() && !self.balance.estimate(equations, u, &mut point)? {
+            return Ok(None);
+        }
+        point.residual = residual;
+        point.iterations = iterations;
+        point.unknowns = Some(unknowns);
+        Ok(Some(point))
+    }
+
+    /// The resolution that a point lacks, if any.
+    fn wanted(&mut self, point: &mut Point, at: Resolution) -> Option<Resolution> {
+        if self.balance.control.is_fixed() {
+            return None;
+        }
+        match self.balance.judge(point) {
+            Decision::Enough => None,
+            Decision::More(more) => Some(more).filter(|more| *more != at),
+            Decision::Limit(limit) => {
+                point.status = limit;
+                self.balance.control.stay(at);
+                None
+            }
+        }
+    }
+
+    /// The point of the curve of another resolution on the plane across the way to a point.
+    fn finer(&mut self, point: &Point, resolution: Resolution) -> Result<Option<Point>, Error> {
+        let table = self.balance.table(resolution.harmonics);
+        let model = self.balance.evaluated(resolution.samples)?;
+        let ask = self.balance.interruption();
+        let mut curve = ForcedCurve::new(model, &table, self.balance.settings.residual, &ask);
+        let last = self.last();
+        let (Some(known), Some(here)) = (&last.unknowns, &point.unknowns) else { return Ok(None) };
+        let (before, at) = (curve.point(known, last.omega), curve.point(here, point.omega));
+        let found = across(&mut curve, &before, &at, 1.0);
+        let inside = |z: &Vec<f64>| (self.bounds.0..=self.bounds.1).contains(&z[z.len() - 1]);
+        let Some(z) = found.filter(inside) else { return Ok(None) };
+        let solved = self.solved(&mut curve, &z, resolution, point.iterations);
+        self.balance.add_profile(&curve.profile);
+        solved
+    }
+
+    /// Adds the fold before a new point, if the frequency has turned.
+    fn add_fold(
+        &mut self,
+        curve: &mut ForcedCurve<'_>,
+        resolution: Resolution,
+        new: &Point,
+    ) -> Result<(), Error> {
+        let [.., before, last] = &self.points[..] else { return Ok(()) };
+        if last.fold || (last.omega - before.omega) * (new.omega - last.omega) >= 0.0 {
+            return Ok(());
+        }
+        let (before, last) = (Arc::clone(before), Arc::clone(last));
+        let points: Option<Vec<Vec<f64>>> = [&*before, &*last, new]
+            .into_iter()
+            .map(|point| Some(curve.point(point.unknowns()?, point.omega)))
+            .collect();
+        let Some([a, b, c]) = points.as_deref() else { return Ok(()) };
+        let Some(z) = Branch::turn(curve, a, b, c) else { return Ok(()) };
+        let Some(mut fold) = self.solved(curve, &z, resolution, 0)? else { return Ok(()) };
+        fold.fold = true;
+        let (same, before) = (distance(&z, b) < SAME, distance(&z, a) < distance(b, a));
+        if same || before {
+            self.points.pop();
+        }
+        self.push(fold);
+        if before && !same {
+            self.points.push(last);
+        }
+        Ok(())
+    }
+
+    /// Largest relative distance of the observed DOFs from a straight line between the last point and
+    /// `new`, from the curvature through the last three points along the curve.
+    fn line_error(&self, new: &Point, step: f64) -> Option<f64> {
+        let [.., before, last] = &self.points[..] else { return None };
+        let earlier = {
+            let table_of = |p: &Point| p.unknowns.clone();
+            let (a, b) = (table_of(before)?, table_of(last)?);
+            let mut from = a.recast(&b.harmonics);
+            from.push(before.omega);
+            let mut to = b.values;
+            to.push(last.omega);
+            distance(&from, &to)
+        };
+        let ratio = step / earlier.max(f64::MIN_POSITIVE);
+        let bend = 0.25 * step / (step + earlier);
+        let own = |point: &Point, dof: usize, order: usize| {
+            let orders = point.harmonics + 1;
+            let kept = order < orders;
+            if kept {
+                point.displacement[dof * orders + order]
+            } else {
+                c64::new(0.0, 0.0)
+            }
+        };
+        let errors = (0..new.error_estimate.len()).map(|dof| {
+            let missed: f64 = (1..=new.harmonics)
+                .map(|k| {
+                    let (x, y, z) = (own(before, dof, k), own(last, dof, k), own(new, dof, k));
+                    (z - y - (y - x) * ratio).norm_sqr()
+                })
+                .sum();
+            bend * missed.sqrt()
+        });
+        Some(self.balance.scale.relative(new, OF_STEPS, errors))
+    }
+}
+
+/// What ends a stretch.
+enum Change {
+    Resolution(Resolution),
+    Ends(CurveEnd),
+}
+
+/// Distance of two points: motion against its size, frequency against itself.
+pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let (Some((w, u)), Some((x, v))) = (a.split_last(), b.split_last()) else { return f64::NAN };
+    let way: f64 = u.iter().zip(v).map(|(u, v)| (u - v).powi(2)).sum();
+    let size: f64 = u.iter().map(|u| u * u).sum();
+    (way / size.max(f64::MIN_POSITIVE) + (x / w - 1.0).powi(2)).sqrt()
+}

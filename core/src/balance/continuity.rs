@@ -1,0 +1,125 @@
+//! Whether two neighbouring points of a sweep lie on one branch, or the sweep has jumped between them.
+//!
+//! Where solutions are not unique Newton's method may lead to another branch. If the tangents at both
+//! points do not explain the way between them the curve is followed by arclength: it reaches the new
+//! frequency without a turn, and the solution there is taken, or it turns back before, and the sweep
+//! jumps.
+
+use super::branch_sweep::{distance, STEPS};
+use super::forced::ForcedBalance;
+use super::forced_curve::ForcedCurve;
+use super::solution::{Point, PointStatus};
+use crate::solve::{between, tangent, Advance, Continuation, Curve as _};
+use crate::Error;
+
+/// Part of the way between two points that their tangents may leave unexplained, …
+const UNEXPLAINED: f64 = 0.05;
+/// … and distance, relative to the motion, below which nothing has to be explained.
+const CLOSE: f64 = 1e-5;
+/// Steps along a curve from one frequency to the next.
+const MOST: usize = 400;
+/// Distance of two solutions that are the same.
+const SAME: f64 = 1e-6;
+
+/// Where a branch leads.
+enum Reached {
+    /// To the same solution.
+    Same,
+    /// To another one.
+    Other(Vec<f64>),
+    /// Back, before the frequency.
+    Turned,
+    /// Not known.
+    Lost,
+}
+
+impl ForcedBalance<'_> {
+    /// Replaces a new point by that of the branch of the last one if Newton's method has left it, and
+    /// says so of a point that the branch does not reach.
+    pub(super) fn stay_on_branch(&mut self, last: &Point, point: &mut Point) -> Result<(), Error> {
+        if !last.is_solved() || !point.is_solved() || last.omega == point.omega {
+            return Ok(());
+        }
+        match self.reached(last, point)? {
+            Reached::Turned => point.jump = true,
+            Reached::Other(z) => {
+                let table = self.table(point.harmonics);
+                let start =
+                    super::Unknowns::new(table.harmonics().clone(), z[..z.len() - 1].to_vec());
+                let other = self.solve(point.omega, Some(&start))?;
+                if other.is_solved() {
+                    *point = other;
+                } else if other.status == PointStatus::NotComputed {
+                    return Ok(());
+                }
+            }
+            Reached::Same | Reached::Lost => {}
+        }
+        Ok(())
+    }
+
+    fn reached(&mut self, last: &Point, point: &Point) -> Result<Reached, Error> {
+        let resolution = last.resolution().or_finer(point.resolution());
+        let table = self.table(resolution.harmonics);
+        let model = self.evaluated(resolution.samples)?;
+        let ask = self.interruption();
+        let mut curve = ForcedCurve::new(model, &table, self.settings.residual, &ask);
+        let (Some(known), Some(found)) = (last.unknowns(), point.unknowns()) else {
+            return Ok(Reached::Lost);
+        };
+        let (from, to) = (curve.point(known, last.omega), curve.point(found, point.omega));
+        let reached = followed(&mut curve, &from, &to);
+        self.add_profile(&curve.profile);
+        Ok(reached)
+    }
+}
+
+/// Where the branch through `from` leads at the frequency of `to`.
+fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: &[f64]) -> Reached {
+    if is_explained(curve, from, to) {
+        return Reached::Same;
+    }
+    let (start, end) = (from[from.len() - 1], to[to.len() - 1]);
+    let sign = (end - start).signum();
+    let Some(mut walk) = Continuation::new(curve, from.to_vec(), sign, STEPS) else {
+        return Reached::Lost;
+    };
+    let mut before = from.to_vec();
+    for _ in 0..MOST {
+        if !matches!(walk.advance(curve), Advance::Point) {
+            return Reached::Lost;
+        }
+        let omega = walk.point[walk.point.len() - 1];
+        if (omega - before[before.len() - 1]) * sign < 0.0 {
+            return Reached::Turned;
+        }
+        if (omega - end) * sign >= 0.0 {
+            let Some((z, _)) = between(curve, &before, &walk.point, end) else {
+                return Reached::Lost;
+            };
+            return if distance(&z, to) < SAME { Reached::Same } else { Reached::Other(z) };
+        }
+        before.clone_from(&walk.point);
+    }
+    Reached::Lost
+}
+
+/// Whether the mean of the tangents at both points leads from one to the other.
+fn is_explained(curve: &mut ForcedCurve<'_>, from: &[f64], to: &[f64]) -> bool {
+    let way = distance(from, to);
+    if way < CLOSE {
+        return true;
+    }
+    let step = to[to.len() - 1] - from[from.len() - 1];
+    let mut mean = from.to_vec();
+    for z in [from, to] {
+        curve.accept(z);
+        let weights = curve.weights(z);
+        let mut ahead = vec![0.0; z.len()];
+        ahead[z.len() - 1] = step.signum();
+        let Some(along) = tangent(curve, z, &weights, &ahead) else { return false };
+        let rate = along[z.len() - 1];
+        mean.iter_mut().zip(&along).for_each(|(m, a)| *m += 0.5 * step * a / rate);
+    }
+    distance(&mean, to) < UNEXPLAINED * way
+}

@@ -1,0 +1,199 @@
+//! The cubic spring, `f = k u³`: the nonlinearity of Duffing's oscillator.
+//!
+//! Of a series of H harmonics the force has 3 H, and the products with the basis that its coefficients
+//! and their tangent are integrals of have 4 H: more than 4 H equidistant samples integrate them exactly.
+
+use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::parameter::number;
+use super::{
+    ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointState, PointSummary,
+    SlipLoad,
+};
+use crate::fourier::{Harmonics, IntervalSums};
+use crate::Error;
+use faer::{c64, Mat};
+use std::f64::consts::TAU;
+
+/// A spring whose force is cubic in its elongation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cubic {
+    /// k [N/m³]; a negative one softens.
+    stiffness: f64,
+}
+
+impl Cubic {
+    /// A spring of the coefficient k [N/m³].
+    ///
+    /// # Errors
+    /// A coefficient that is not finite.
+    pub fn new(stiffness: f64) -> Result<Self, Error> {
+        if !stiffness.is_finite() {
+            return Err(Error::value("cubic: stiffness", stiffness, "must be finite, in N/m^3"));
+        }
+        Ok(Self { stiffness })
+    }
+
+    pub(super) fn from_parameters(parameters: &Parameters) -> Result<Self, Error> {
+        Self::new(number("cubic", parameters, "stiffness")?)
+    }
+
+    /// Calls `visit(angle, u)` at instants that integrate all products exactly, and returns the weight of
+    /// each in `1/π ∫ dθ` over the period.
+    fn integrate(motion: Motion<'_>, mut visit: impl FnMut(f64, f64)) -> f64 {
+        let harmonics = motion.table.harmonics();
+        // Odd harmonics alone: products have even orders and repeat after half a period.
+        let half = harmonics.half_wave();
+        let most = 4 * harmonics.highest();
+        let count = if half { most / 2 + 1 } else { most + 1 };
+        for n in 0..count {
+            let theta = harmonics.span() * n as f64 / count as f64;
+            visit(theta, harmonics.jet(motion.displacement, theta)[0]);
+        }
+        2.0 / count as f64
+    }
+
+    /// Series of `u³` times the stiffness, added with a sign.
+    fn add_force(&self, motion: Motion<'_>, sign: f64, out: &mut [f64]) {
+        let harmonics = motion.table.harmonics();
+        let mut basis = vec![0.0; harmonics.slots()];
+        let mut sum = vec![0.0; basis.len()];
+        let weight = Self::integrate(motion, |theta, u| {
+            harmonics.basis(theta, &mut basis);
+            sum.iter_mut().zip(&basis).for_each(|(sum, b)| *sum += u.powi(3) * b);
+        });
+        harmonics.halve_means(&mut sum);
+        let factor = sign * self.stiffness * weight;
+        out.iter_mut().zip(&sum).for_each(|(out, sum)| *out += factor * sum);
+    }
+
+    fn tangent(&self, motion: Motion<'_>, harmonics: &Harmonics, out: &mut [f64]) {
+        let mut sums = IntervalSums::new(harmonics);
+        let weight = Self::integrate(motion, |theta, u| sums.add_instant(theta, u * u));
+        let size = harmonics.slots();
+        sums.products(harmonics, -3.0 * self.stiffness * weight, |i, j, value| {
+            out[i * size + j] = value;
+        });
+    }
+}
+
+impl ContactLaw for Cubic {
+    fn name(&self) -> &'static str {
+        "cubic"
+    }
+
+    fn displacements(&self) -> usize {
+        1
+    }
+
+    fn state_size(&self) -> usize {
+        0
+    }
+
+    /// That at rest: none.
+    fn stiffness(&self) -> Mat<f64> {
+        Mat::zeros(1, 1)
+    }
+
+    fn state_stiffness(&self) -> Mat<f64> {
+        Mat::zeros(0, 1)
+    }
+
+    fn is_odd(&self) -> bool {
+        true
+    }
+
+    /// The force grows with the displacement, but not with the velocity: that does not make the motion
+    /// unique.
+    fn is_monotone(&self) -> bool {
+        false
+    }
+
+    fn limits(&self) -> Vec<f64> {
+        vec![f64::INFINITY]
+    }
+
+    fn return_map(
+        &self,
+        _before: &[f64],
+        after: &[f64],
+        _state: &mut [f64],
+        force: &mut [f64],
+        jacobian: Option<&mut ReturnMapJacobian>,
+    ) {
+        let u = after[0];
+        force[0] = self.stiffness * u.powi(3);
+        let Some(jacobian) = jacobian else { return };
+        jacobian.reset(1, 0);
+        jacobian.force_by_after[0] = 3.0 * self.stiffness * u * u;
+    }
+
+    fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
+        Box::new(Self { stiffness: share * self.stiffness })
+    }
+
+    /// `c f(u/c)` with the factor c.
+    fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
+        Box::new(Self { stiffness: self.stiffness / (factor * factor) })
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::stiffness(self.stiffness)]
+    }
+
+    fn with_parameter(&self, _index: usize, value: f64) -> Result<Box<dyn ContactLaw>, Error> {
+        Ok(Box::new(Self::new(value)?))
+    }
+
+    fn closed_form(&self) -> Option<&dyn HarmonicForce> {
+        Some(self)
+    }
+
+    /// `3/4 k A²`.
+    fn describing(&self, amplitude: f64) -> Option<Describing> {
+        let real = |value: f64| c64::new(value, 0.0);
+        Some(Describing {
+            stiffness: real(0.75 * self.stiffness * amplitude * amplitude),
+            slope: real(1.5 * self.stiffness * amplitude),
+            slip_fraction: 0.0,
+        })
+    }
+}
+
+impl HarmonicForce for Cubic {
+    fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
+        let harmonics = motion.table.harmonics();
+        out.reset(harmonics.slots(), tangent);
+        self.add_force(motion, -1.0, &mut out.value);
+        if tangent {
+            self.tangent(motion, harmonics, &mut out.tangent);
+            let size = out.value.len();
+            if harmonics.has_mean() {
+                out.tangent[..size].iter_mut().for_each(|entry| *entry *= 0.5);
+            }
+        }
+        out.active = self.stiffness != 0.0;
+    }
+
+    fn summary(&self, _motion: Motion<'_>, out: &mut [PointSummary]) {
+        out.fill(PointSummary::default());
+    }
+
+    fn state_history(&self, _motion: Motion<'_>, _samples: usize) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
+        let harmonics = motion.table.harmonics();
+        let at = |n: usize| harmonics.jet(motion.displacement, TAU * n as f64 / samples as f64)[0];
+        (0..samples).map(|n| self.stiffness * at(n).powi(3)).collect()
+    }
+
+    fn phases(&self, _motion: Motion<'_>) -> Vec<Phase> {
+        vec![Phase { start: 0.0, states: vec![PointState::Stuck] }]
+    }
+
+    fn parameter_slope(&self, motion: Motion<'_>, _index: usize, out: &mut [f64]) {
+        out.fill(0.0);
+        Self { stiffness: 1.0 }.add_force(motion, 1.0, out);
+    }
+}

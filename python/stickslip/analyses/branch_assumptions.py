@@ -1,0 +1,64 @@
+"""What a curve says of itself where solutions need not be unique."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.analyses.texts import told
+from stickslip.model import Model
+from stickslip.results.arrays import STABILITY, Arrays
+from stickslip.results.diagnostic import Diagnostic, present
+
+if TYPE_CHECKING:
+    from stickslip import _core
+
+_ENDS = {
+    "returned": "branch-end/returned",
+    "stalled": "branch-end/stalled",
+    "points": "branch-end/points",
+}
+
+
+def branch_assumptions(
+    model: Model, arrays: Arrays, solution: _core.Solution
+) -> tuple[Diagnostic, ...]:
+    """Say where a curve turns back, jumps or ends, and how much of it is unstable."""
+    if not model.problem.laws_not_monotone:
+        return ()
+    omega, folds = arrays.omega, int(arrays.fold.sum())
+    unstable = int((arrays.stability == STABILITY.index("unstable")).sum())
+    unresolved = int(((arrays.stability == STABILITY.index("not decided")) & arrays.solved).sum())
+    return present(
+        (
+            folds > 0 and told("folds", count=folds),
+            unstable > 0 and told("unstable", points=unstable, _solved=int(arrays.solved.sum())),
+            unresolved > 0 and told("stability-undecided/points", points=unresolved),
+            _jumps(arrays),
+            solution.end in _ENDS
+            and told(
+                _ENDS[solution.end],
+                omega=float(omega[-1]),
+                points=omega.size,
+                _start=omega[0],
+            ),
+        )
+    )
+
+
+def _jumps(arrays: Arrays) -> Diagnostic | None:
+    """Name the first jump of a sweep, and how many follow."""
+    jumps = np.flatnonzero(arrays.jump)
+    if not jumps.size:
+        return None
+    before, after = arrays.omega[jumps[0] - 1], arrays.omega[jumps[0]]
+    more = f", the first of {jumps.size} jumps" if jumps.size > 1 else ""
+    return told(
+        "jump",
+        low=float(min(before, after)),
+        high=float(max(before, after)),
+        jumps=int(jumps.size),
+        _direction="upward" if after > before else "downward",
+        _more=more,
+    )
