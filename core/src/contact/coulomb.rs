@@ -18,7 +18,7 @@
 //! error of a sampled evaluation is that of the straight lines, of second order in their length.
 
 use super::dual::{Dual, Real};
-use super::law::ReturnMapJacobian;
+use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::parameter::numbers;
 use super::{ContactLaw, Parameter, Parameters};
 use crate::Error;
@@ -403,5 +403,9 @@ impl ContactLaw for Coulomb {
             _ => law.normal_stiffness = Some(value),
         })?;
         Ok(Box::new(changed))
+    }
+
+    fn closed_form(&self) -> Option<&dyn HarmonicForce> {
+        (self.directions == 1).then_some(self as &dyn HarmonicForce)
     }
 }

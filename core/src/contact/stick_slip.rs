@@ -159,7 +159,7 @@ fn path_from_crest(harmonics: &Harmonics, turns: &[TurningPoint]) -> Vec<Turning
 
 /// Angle at which the monotone arc between two turning points takes the value `target`: Halley's
 /// method from the angle of a cosine arc, kept inside its bracket.
-fn crossing(
+pub(super) fn crossing(
     harmonics: &Harmonics,
     series: &[f64],
     from: TurningPoint,
