@@ -18,7 +18,7 @@
 //! error of a sampled evaluation is that of the straight lines, of second order in their length.
 
 use super::dual::{Dual, Real};
-use super::law::ReturnMapJacobian;
+use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::parameter::numbers;
 use super::{ContactLaw, Parameter, Parameters};
 use crate::Error;
@@ -144,6 +144,15 @@ impl Coulomb {
             Closure::Preload(force) => force,
             Closure::Gap(_) => 0.0,
         }
+    }
+
+    /// Slider positions w from which friction has its history \[m\].
+    pub(super) fn slider(&self) -> [f64; 2] {
+        let (displacement, traction) = &self.beginning;
+        std::array::from_fn(|i| match traction[i] {
+            0.0 => displacement[i],
+            t => displacement[i] - t / self.tangential_stiffness,
+        })
     }
 
     /// `N₀ + k_n v` at the displacements of the contact: negative while it is open \[N\].
@@ -423,5 +432,9 @@ impl ContactLaw for Coulomb {
             _ => law.normal_stiffness = Some(value),
         })?;
         Ok(Box::new(changed))
+    }
+
+    fn closed_form(&self) -> Option<&dyn HarmonicForce> {
+        (self.directions == 1).then_some(self as &dyn HarmonicForce)
     }
 }

@@ -1,0 +1,361 @@
+//! The exact evaluation of the Coulomb law over periodic motions: against closed forms, a fine march
+//! of its return map, differences and the Jenkins element.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::damper::Random;
+use std::f64::consts::PI;
+use stickslip_core::contact::{
+    Aft, Closure, ContactLaw, Coulomb, HarmonicForce, Jenkins, Motion, PointSummary, Residual,
+    SlipLoad,
+};
+use stickslip_core::fourier::{Harmonics, SampleTable};
+
+fn exact(law: &Coulomb) -> &dyn HarmonicForce {
+    law.closed_form().unwrap()
+}
+
+fn motion<'a>(table: &'a SampleTable, displacement: &'a [f64]) -> Motion<'a> {
+    Motion { table, displacement, residual: Residual::Centred }
+}
+
+fn load(law: &dyn HarmonicForce, motion: Motion<'_>, tangent: bool) -> SlipLoad {
+    let mut out = SlipLoad::default();
+    law.slip_load(motion, tangent, &mut out);
+    out
+}
+
+/// Series of the force, `D u − q`.
+fn force(law: &Coulomb, motion: Motion<'_>) -> Vec<f64> {
+    let slots = motion.table.harmonics().slots();
+    let stiffness = law.stiffness();
+    let q = load(exact(law), motion, false).value;
+    let stuck = |(index, u): (usize, &f64)| stiffness[(index / slots, index / slots)] * u;
+    motion.displacement.iter().enumerate().map(stuck).zip(q).map(|(stuck, q)| stuck - q).collect()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(1e-300_f64, |most, x| most.max(x.abs()))
+}
+
+fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+    let size = largest(expected);
+    for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
+        let error = (found - expected).abs() / size;
+        assert!(error <= tolerance, "{what}: [{i}] {found} {expected} of {size}: {error:.2e}");
+    }
+}
+
+/// A random contact and a motion of it, in units of the order of one.
+struct Case {
+    law: Coulomb,
+    table: SampleTable,
+    displacement: Vec<f64>,
+}
+
+/// Contacts that stick, slip, open and close again, by turns.
+fn random_case(random: &mut Random, directions: usize, highest: usize) -> Case {
+    let friction = random.between(0.0, 1.2);
+    let tangential_stiffness = 10f64.powf(random.between(-0.5, 1.0));
+    let normal_stiffness = 10f64.powf(random.between(-0.5, 1.0));
+    let closure = if random.next() > 0.0 {
+        Closure::Preload(normal_stiffness * random.between(0.0, 2.0))
+    } else {
+        Closure::Gap(random.between(-1.5, 0.7))
+    };
+    let law =
+        Coulomb::new(directions, friction, tangential_stiffness, Some(normal_stiffness), closure);
+    let table = SampleTable::new(Harmonics::new(highest, false));
+    let slots = table.harmonics().slots();
+    let decay = random.between(0.5, 2.0);
+    let amplitude = 10f64.powf(random.between(-1.0, 0.5));
+    let displacement = (0..(directions + 1) * slots)
+        .map(|index| {
+            let order = (index % slots).div_ceil(2).max(1) as f64;
+            let size = if index / slots == directions { 1.0 } else { amplitude };
+            size * random.next() / order.powf(decay)
+        })
+        .collect();
+    Case { law: law.unwrap(), table, displacement }
+}
+
+fn summary(law: &dyn HarmonicForce, motion: Motion<'_>) -> Vec<PointSummary> {
+    let slots = motion.table.harmonics().slots();
+    let mut out = vec![PointSummary::default(); motion.displacement.len() / slots];
+    law.summary(motion, &mut out);
+    out
+}
+
+fn shakes_down(case: &Case) -> bool {
+    let shares = summary(exact(&case.law), motion(&case.table, &case.displacement));
+    shares.iter().all(|share| share.slip_fraction == 0.0)
+}
+
+/// The same contact, marched through many samples of its return map.
+fn marched(case: &Case, samples: usize) -> SlipLoad {
+    let sampled = Aft::new(Box::new(case.law) as Box<dyn ContactLaw>, samples).unwrap();
+    load(&sampled, motion(&case.table, &case.displacement), false)
+}
+
+fn tangent_error(case: &Case, residual: Residual) -> f64 {
+    let size = case.displacement.len();
+    let at = |u: &[f64], tangent: bool| {
+        load(exact(&case.law), Motion { residual, ..motion(&case.table, u) }, tangent)
+    };
+    let tangent = at(&case.displacement, true).tangent;
+    let step = 1e-5 * largest(&case.displacement);
+    let mut error = 0.0_f64;
+    for j in 0..size {
+        let moved = |by: f64| {
+            let mut moved = case.displacement.clone();
+            moved[j] += by * step;
+            at(&moved, false).value
+        };
+        // Fourth order.
+        let (near, far) = ([moved(1.0), moved(-1.0)], [moved(2.0), moved(-2.0)]);
+        for i in 0..size {
+            let slope = (8.0 * (near[0][i] - near[1][i]) - (far[0][i] - far[1][i])) / (12.0 * step);
+            error = error.max((tangent[i * size + j] - slope).abs());
+        }
+    }
+    error / largest(&tangent)
+}
+
+#[test]
+fn one_direction_agrees_with_a_fine_march() {
+    let mut random = Random(41);
+    let mut compared = 0;
+    for n in 0..150 {
+        let case = random_case(&mut random, 1, 1 + n % 15);
+        let u = motion(&case.table, &case.displacement);
+        // What a contact keeps that never slips is assumed; a march has it from its start.
+        if shakes_down(&case) {
+            continue;
+        }
+        compared += 1;
+        let found = load(exact(&case.law), u, false);
+        let expected = marched(&case, 1 << 16);
+        assert_close(&found.value, &expected.value, 1e-6, &format!("case {n}"));
+    }
+    assert!(compared > 100, "{compared}");
+}
+
+#[test]
+fn the_tangent_in_one_direction_is_that_of_differences() {
+    let mut random = Random(43);
+    let residuals = [Residual::Centred, Residual::FromRest, Residual::Value(0.1)];
+    let mut errors: Vec<f64> = (0..500)
+        .map(|n| {
+            let case = random_case(&mut random, 1, 1 + n % 9);
+            tangent_error(&case, residuals[n % 3])
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    println!("median {:.1e}, 95 % {:.1e}, worst {:.1e}", errors[250], errors[475], errors[499]);
+    assert!(errors[490] < 1e-8, "{:?}", &errors[480..]);
+}
+
+#[test]
+fn constant_load_is_a_jenkins_element() {
+    let mut random = Random(47);
+    for n in 0..60 {
+        let mut case = random_case(&mut random, 1, 7);
+        let half_wave = n % 2 == 1;
+        case.table = SampleTable::new(Harmonics::new(7, half_wave));
+        let slots = case.table.harmonics().slots();
+        let preload = random.between(0.0, 3.0);
+        let (mu, k) = (random.between(0.0, 1.2), random.between(0.5, 5.0));
+        let jenkins = Jenkins::new(k, mu * preload).unwrap();
+        let u: Vec<f64> = case.displacement[..slots].to_vec();
+        for normal in [None, Some(0.0)] {
+            let law = Coulomb::new(1, mu, k, normal, Closure::Preload(preload)).unwrap();
+            let mut all = u.clone();
+            all.extend(case.displacement[slots..2 * slots].iter().filter(|_| normal.is_some()));
+            for residual in [Residual::Centred, Residual::FromRest, Residual::Value(0.2)] {
+                let by = |law: &dyn HarmonicForce, displacement: &[f64]| {
+                    let motion = Motion { table: &case.table, displacement, residual };
+                    let summary = summary(law, motion);
+                    let shares = vec![summary[0].slip_fraction, summary[0].dissipation];
+                    (load(law, motion, true), shares, law.state_history(motion, 64))
+                };
+                let (found, shares, history) = by(exact(&law), &all);
+                let (expected, own_shares, own_history) = by(&jenkins, &u);
+                assert_close(&found.value[..slots], &expected.value, 1e-12, "value");
+                for i in 0..slots {
+                    let row = &found.tangent[i * all.len()..][..slots];
+                    assert_close(row, &expected.tangent[i * slots..][..slots], 1e-12, "tangent");
+                }
+                assert_close(&shares, &own_shares, 1e-12, "shares");
+                assert_close(&history, &own_history, 1e-12, "history");
+                assert_eq!(found.active, expected.active);
+            }
+        }
+    }
+}
+
+/// A variable load that does not vary is a constant one: the play's numbers are the element's.
+#[test]
+fn a_normal_load_that_stands_still_is_constant() {
+    let mut random = Random(53);
+    for _ in 0..60 {
+        let mut case = random_case(&mut random, 1, 7);
+        let slots = case.table.harmonics().slots();
+        let preload = random.between(0.1, 3.0);
+        case.displacement[slots..].fill(0.0);
+        case.displacement[slots] = random.between(0.0, 1.0);
+        let (mu, k) = (random.between(0.0, 1.2), random.between(0.5, 5.0));
+        let law = Coulomb::new(1, mu, k, Some(1.0), Closure::Preload(preload)).unwrap();
+        let jenkins = Jenkins::new(k, mu * (preload + case.displacement[slots])).unwrap();
+        let found = load(exact(&law), motion(&case.table, &case.displacement), true);
+        let expected = load(&jenkins, motion(&case.table, &case.displacement[..slots]), true);
+        assert_close(&found.value[..slots], &expected.value, 1e-12, "value");
+        for i in 0..slots {
+            let row = &found.tangent[i * 2 * slots..][..slots];
+            let own = &expected.tangent[i * slots..][..slots];
+            assert!(row.iter().zip(own).all(|(a, b)| (a - b).abs() < 1e-11 * k), "{row:?} {own:?}");
+        }
+    }
+}
+
+fn work(series: &[f64], displacement: &[f64]) -> f64 {
+    let pairs = series[1..].chunks_exact(2).zip(displacement[1..].chunks_exact(2));
+    let term = |(order, (f, u)): (usize, (&[f64], &[f64]))| {
+        (order + 1) as f64 * (f[0] * u[1] - f[1] * u[0])
+    };
+    PI * pairs.enumerate().map(term).sum::<f64>()
+}
+
+fn check_histories(directions: usize, seed: u64) {
+    let mut random = Random(seed);
+    for n in 0..60 {
+        let case = random_case(&mut random, directions, 1 + n % 9);
+        let (law, u) = (exact(&case.law), motion(&case.table, &case.displacement));
+        let slots = case.table.harmonics().slots();
+        let summary = summary(law, u);
+        let series = force(&case.law, u);
+        let stiffness = case.law.stiffness()[(0, 0)];
+        let pull = stiffness * largest(&case.displacement[..directions * slots]);
+        let size = (largest(&series) + pull) * largest(&case.displacement);
+        for i in 0..directions {
+            let own = i * slots..(i + 1) * slots;
+            let expected = work(&series[own.clone()], &case.displacement[own]);
+            let found = summary[i].dissipation;
+            assert!((found - expected).abs() < 1e-9 * size, "{n}: {found} {expected}");
+            assert!(found >= 0.0);
+            assert!((0.0..=1.0 + 1e-12).contains(&summary[i].slip_fraction));
+        }
+        assert!((0.0..=1.0 + 1e-12).contains(&summary[directions].slip_fraction));
+        assert_eq!(summary[directions].dissipation, 0.0);
+        let count = 10_000;
+        let history = law.force_history(u, count);
+        let balanced = match case.law.parameters()[2] {
+            closure if closure.name == "preload" => closure.value,
+            _ => 0.0,
+        };
+        let friction = case.law.parameters()[0].value;
+        let mut mean = vec![0.0; directions + 1];
+        for forces in history.chunks_exact(directions + 1) {
+            let normal = forces[directions] + balanced;
+            let traction = forces[..directions].iter().map(|t| t * t).sum::<f64>().sqrt();
+            assert!(traction <= friction * normal + 1e-12 * size, "{n}: {traction} {normal}");
+            mean.iter_mut().zip(forces).for_each(|(sum, f)| *sum += f / count as f64);
+        }
+        for (i, mean) in mean.iter().enumerate() {
+            assert!(
+                (mean - series[i * slots]).abs() < 1e-5 * (largest(&series) + pull),
+                "{n}: mean"
+            );
+        }
+        let states = law.state_history(u, 100);
+        let forces = law.force_history(u, 100);
+        for (state, force) in
+            states.chunks_exact(directions).zip(forces.chunks_exact(directions + 1))
+        {
+            assert_eq!(state, &force[..directions]);
+        }
+        let phases = law.phases(u);
+        assert!(!phases.is_empty() && phases.windows(2).all(|p| p[0].start <= p[1].start));
+    }
+}
+
+#[test]
+fn work_shares_and_histories_in_one_direction() {
+    check_histories(1, 59);
+}
+
+fn check_parameter_slopes(directions: usize, seed: u64) {
+    let mut random = Random(seed);
+    let mut errors = Vec::new();
+    for n in 0..40 {
+        let case = random_case(&mut random, directions, 1 + n % 7);
+        let u = motion(&case.table, &case.displacement);
+        for (index, parameter) in case.law.parameters().iter().enumerate() {
+            let step = 1e-5 * parameter.value.abs().max(0.1);
+            let at = |by: f64| {
+                let law = case.law.with_parameter(index, parameter.value + by * step).unwrap();
+                let mut out = SlipLoad::default();
+                law.slip_load(u, false, &mut out);
+                let (slots, stiffness) = (case.table.harmonics().slots(), law.stiffness());
+                let stuck = |i: usize| stiffness[(i / slots, i / slots)] * case.displacement[i];
+                (0..out.value.len()).map(|i| stuck(i) - out.value[i]).collect::<Vec<f64>>()
+            };
+            if parameter.value < 2.0 * step && parameter.name != "gap" {
+                continue;
+            }
+            let sides = [at(1.0), at(-1.0), at(2.0), at(-2.0)];
+            let mut slope = vec![0.0; case.displacement.len()];
+            exact(&case.law).parameter_slope(u, index, &mut slope);
+            let differences: Vec<f64> = (0..slope.len())
+                .map(|i| {
+                    let near = sides[0][i] - sides[1][i];
+                    (8.0 * near - (sides[2][i] - sides[3][i])) / (12.0 * step)
+                })
+                .collect();
+            let size = largest(&slope).max(largest(&differences)).max(1e-3);
+            let error = slope.iter().zip(&differences).map(|(a, b)| (a - b).abs() / size);
+            errors.push(error.fold(0.0, f64::max));
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    let most = errors[errors.len() * 97 / 100];
+    assert!(most < 1e-7, "{:?}", &errors[errors.len() * 9 / 10..]);
+}
+
+#[test]
+fn parameter_slopes_in_one_direction() {
+    check_parameter_slopes(1, 61);
+}
+
+#[test]
+#[ignore = "measures time"]
+fn time_in_one_direction() {
+    let mut random = Random(67);
+    let cases: Vec<Case> = (0..40).map(|_| random_case(&mut random, 1, 7)).collect();
+    let slots = cases[0].table.harmonics().slots();
+    let time = |of: &dyn Fn(&Case)| {
+        let round = || {
+            let start = std::time::Instant::now();
+            cases.iter().for_each(of);
+            start.elapsed().as_secs_f64() / cases.len() as f64 * 1e6
+        };
+        (0..200).map(|_| round()).fold(f64::INFINITY, f64::min)
+    };
+    let own = time(&|case| {
+        load(exact(&case.law), motion(&case.table, &case.displacement), true);
+    });
+    let jenkins = time(&|case| {
+        let law = Jenkins::new(2.0, 1.0).unwrap();
+        load(&law, motion(&case.table, &case.displacement[..slots]), true);
+    });
+    let constant = time(&|case| {
+        let law = Coulomb::new(1, 0.5, 2.0, None, Closure::Preload(2.0)).unwrap();
+        load(exact(&law), motion(&case.table, &case.displacement[..slots]), true);
+    });
+    println!(
+        "{own:.2} {jenkins:.2} {constant:.2} us: {:.2} {:.2}",
+        own / jenkins,
+        constant / jenkins
+    );
+}
