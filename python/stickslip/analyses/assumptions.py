@@ -142,8 +142,10 @@ def _static_traction(
     model: Model, settings: ForcedSettings | ExactSettings, arrays: Arrays
 ) -> Diagnostic | None:
     """Say what contacts that never slip were taken to hold."""
-    stuck = (arrays.slip_fraction[arrays.solved] == 0.0).any(axis=1)
-    if all(contact.points > 1 for contact in model.contacts) or not stuck.any():
+    centred = [not one.components for one in model.contacts for _ in range(one.displacements)]
+    shares = arrays.slip_fraction[arrays.solved][:, np.array(centred, dtype=np.bool_)]
+    stuck = (shares == 0.0).any(axis=1)
+    if all(one.points > 1 or one.components for one in model.contacts) or not stuck.any():
         return None
     held = {
         "centred": "no force at mid-range of its displacement",
@@ -159,7 +161,7 @@ def _static_traction(
 
 
 def _start_of_march(model: Model) -> Diagnostic | None:
-    """Say how dampers of several points begin, and what holds them."""
+    """Say how contacts of several displacements begin, and what holds dampers."""
     several = [one for one in model.contacts if isinstance(one, StructuralDamper)]
     held = (
         f"; the rows of the stiffness of {one.name!r} do not sum to zero ({one.grounding:.3g} "
@@ -167,7 +169,10 @@ def _start_of_march(model: Model) -> Diagnostic | None:
         for one in several
         if one.grounding
     )
-    return told("start-of-march", _held="".join(held)) if several else None
+    if several:
+        return told("start-of-march", _held="".join(held))
+    nodes = any(one.components for one in model.contacts)
+    return told("start-of-march/nodes") if nodes else None
 
 
 def _samples(settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
