@@ -29,7 +29,7 @@ _NAMES = {
     "fe": "Reduction Solid craig_bampton",
     "html.report": "report",
     "io": "Frf read_dofs read_frf read_matrix write_frf",
-    "model": "Cubic Force Jenkins ModalDamping Model ParallelJenkins Rayleigh Stop "
+    "model": "Coulomb Cubic Force Jenkins ModalDamping Model ParallelJenkins Rayleigh Stop "
     "StructuralDamper Structure join natural_frequencies slip_configurations",
     "model.destabilised": "destabilised modal_damping",
     "model.state": "State",

@@ -33,6 +33,7 @@ from stickslip.io import read_dofs as read_dofs
 from stickslip.io import read_frf as read_frf
 from stickslip.io import read_matrix as read_matrix
 from stickslip.io import write_frf as write_frf
+from stickslip.model import Coulomb as Coulomb
 from stickslip.model import Cubic as Cubic
 from stickslip.model import Force as Force
 from stickslip.model import Jenkins as Jenkins

@@ -250,11 +250,11 @@ def run(*changes, tail=""):
     ("changes", "tail", "message"),
     [
         (
-            [('"jenkins"', '"coulomb"')],
+            [('"jenkins"', '"dahl"')],
             "",
-            "contact 1: unknown law 'coulomb'; known: 'jenkins', 'parallel-jenkins', 'structural' "
-            "(slip limits are slip_force of 'jenkins' and slip_forces of 'parallel-jenkins' and "
-            "slip_forces of 'structural')",
+            "contact 1: unknown law 'dahl'; known: 'jenkins', 'parallel-jenkins', 'structural', "
+            "'coulomb' (slip limits are slip_force of 'jenkins' and slip_forces of "
+            "'parallel-jenkins' and slip_forces of 'structural')",
         ),
         (
             [('"forced-response"', '"exact-response"')],

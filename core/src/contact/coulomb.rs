@@ -211,7 +211,13 @@ impl Coulomb {
                 (root - b) / a
             }
         };
-        let share = stick.value().clamp(0.0, 1.0);
+        // Of a step of the size of rounding the root is anywhere.
+        let stick = match stick.value() {
+            late if late >= 1.0 => T::from(1.0),
+            inside if inside > 0.0 => stick,
+            _ => zero,
+        };
+        let share = stick.value();
         let from = stuck(traction, stick);
         let size = squared(from);
         let way = squared(du);

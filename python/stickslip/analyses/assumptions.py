@@ -142,9 +142,14 @@ def _static_traction(
     model: Model, settings: ForcedSettings | ExactSettings, arrays: Arrays
 ) -> Diagnostic | None:
     """Say what contacts that never slip were taken to hold."""
-    slips = [contact.slips for contact in model.contacts for _ in range(contact.points)]
-    stuck = (arrays.slip_fraction[arrays.solved][:, slips] == 0.0).any(axis=1)
-    if all(contact.points > 1 for contact in model.contacts) or not stuck.any():
+    slips = [
+        contact.slips and not contact.components
+        for contact in model.contacts
+        for _ in range(contact.displacements)
+    ]
+    shares = arrays.slip_fraction[arrays.solved][:, np.array(slips, dtype=np.bool_)]
+    stuck = (shares == 0.0).any(axis=1)
+    if all(one.points > 1 or one.components for one in model.contacts) or not stuck.any():
         return None
     held = {
         "centred": "no force at mid-range of its displacement",
@@ -160,7 +165,7 @@ def _static_traction(
 
 
 def _start_of_march(model: Model) -> Diagnostic | None:
-    """Say how dampers of several points begin, and what holds them."""
+    """Say how contacts of several displacements begin, and what holds dampers."""
     several = [one for one in model.contacts if isinstance(one, StructuralDamper)]
     held = (
         f"; the rows of the stiffness of {one.name!r} do not sum to zero ({one.grounding:.3g} "
@@ -168,7 +173,10 @@ def _start_of_march(model: Model) -> Diagnostic | None:
         for one in several
         if one.grounding
     )
-    return told("start-of-march", _held="".join(held)) if several else None
+    if several:
+        return told("start-of-march", _held="".join(held))
+    nodes = any(one.components for one in model.contacts)
+    return told("start-of-march/nodes") if nodes else None
 
 
 def _samples(settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:

@@ -71,6 +71,8 @@ TEXTS = {
     "start-of-march": "The march through a damper of several points begins without slip, so that "
     "points which never slip hold what they built up from zero displacement, and no mean force "
     "where the motion is half-wave symmetric{_held}.",
+    "start-of-march/nodes": "The march through a contact with components begins without slip, so "
+    "that nodes which never slip hold the traction that they built up from zero displacement.",
     # transients and free motions
     "start": "The run starts from {_begun}.",
     "start/contacts": "The run starts from {_begun}; a contact that never slips keeps for ever the "

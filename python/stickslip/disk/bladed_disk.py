@@ -180,7 +180,7 @@ class BladedDisk(Model):
         return Structure(np.eye(size), np.zeros((size, size)), dofs=names)
 
     def contact_rows(self, contact: Contact) -> tuple[Matrix, ...]:
-        """Return the two parts of B of u = B x_i + B' x_(i+1), (points, N) each."""
+        """Return the two parts of B of u = B x_i + B' x_(i+1), (n_u, N) each."""
         rows, size = contact.rows(self.neighbours), len(self.structure)
         return np.ascontiguousarray(rows[:, :size]), np.ascontiguousarray(rows[:, size:])
 
@@ -286,7 +286,7 @@ class BladedDisk(Model):
             raise ModelError(
                 f"nodal_diameter: {diameter}; {self.sectors} sectors have 0 to {self.sectors // 2}"
             )
-        return self._unforced.natural_frequencies(points, diameter)
+        return self._unforced.natural_frequencies(self._slipping(points), diameter)
 
     @cached_property
     def _unforced(self) -> _core.Problem:

@@ -114,11 +114,10 @@ class MistunedDisk(Model):
     def ring(self) -> Ring:
         """The disk in numbers, sector by sector."""
         places = [self.disk.contact_rows(contact) for contact in self.disk.contacts]
-        contacts = []
+        contacts: list[SectorContact] = []
         for number, one in enumerate(self.contacts):
             sector, place = divmod(number, len(places))
-            own, following = places[place]
-            contacts.append(SectorContact(sector, one.law, own, following, one.law_parameters()))
+            contacts += [SectorContact(sector, *law) for law in one.core_laws(*places[place])]
         shape = self.sectors, len(self.disk.structure)
         loads = tuple((harmonic, load.reshape(shape)) for harmonic, load in self._loads())
         return _ring(self.disk, self.blades, tuple(contacts), loads)
@@ -282,9 +281,9 @@ class SectorContact(NamedTuple):
     law: str
     """Name of the law, as the compiled core knows it."""
     own: Matrix
-    """(points, N) Part of B on the sector itself."""
+    """(n_u, N) Part of B on the sector itself."""
     next: Matrix
-    """(points, N) Part of B on the next sector."""
+    """(n_u, N) Part of B on the next sector."""
     parameters: Mapping[str, float | list[float]]
     """Parameters of the law."""
 

@@ -7,6 +7,7 @@ from stickslip.model.configurations import (
     slip_configurations,
 )
 from stickslip.model.contact import Contact
+from stickslip.model.coulomb import Coulomb
 from stickslip.model.force import Force
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
 from stickslip.model.model import ContactRef, Model, PointRef
@@ -17,6 +18,7 @@ from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 __all__ = [
     "Contact",
     "ContactRef",
+    "Coulomb",
     "Cubic",
     "Force",
     "Jenkins",

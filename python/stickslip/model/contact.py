@@ -12,10 +12,14 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.checks import Matrix, members, real_number, require_keys, text
 from stickslip.errors import ModelError
 from stickslip.model.dofs import Dofs
+
+OPEN = 2
+"""State of a point whose bodies do not touch, beside 0, stuck, and 1 and -1, slipping."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +45,9 @@ class Contact(ABC):
     slips: ClassVar[bool] = True
     """Whether its points stick and slip; a spring without friction remembers no force."""
 
+    by_point: ClassVar[bool] = False
+    """Whether each point is a law of its own in the core; else one law has all points."""
+
     name: str | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -57,12 +64,54 @@ class Contact(ABC):
     def points(self) -> int:
         """Number of contact points, each of which sticks or slips."""
 
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the displacements, and forces, of a point that has several; else none."""
+        return ()
+
+    @property
+    def tangential(self) -> int:
+        """Number of the displacements of a point, the first ones, along which it slips."""
+        return 1
+
+    @property
+    def single(self) -> bool:
+        """Whether it is one point with components, without a list of points around it."""
+        return False
+
+    @property
+    def displacements(self) -> int:
+        """Number n_u of its relative displacements."""
+        return self.points * max(len(self.components), 1)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of its displacements, and forces, at an instant.
+
+        (points,), with components (points, components), or (components,) of a `single` point.
+        """
+        parts = (len(self.components),) if self.components else ()
+        return parts if self.single else (self.points, *parts)
+
+    def place(self, point: int | None) -> slice:
+        """Return where the displacements of a point stand among those of the contact."""
+        size = self.displacements // self.points
+        return slice(None) if point is None else slice(size * point, size * (point + 1))
+
     @abstractmethod
     def rows(self, dofs: Dofs) -> Matrix:
-        """Return B of u = B x for a structure of N degrees of freedom, shape (points, N).
+        """Return B of u = B x for a structure of N degrees of freedom, shape (n_u, N).
 
-        One row per contact point: +1 at its degree of freedom, -1 at that of its other end.
+        One row per displacement: +1 at its degree of freedom, -1 at that of its other end.
         """
+
+    @property
+    def balanced(self) -> Matrix:
+        """Force of each displacement that is in equilibrium without motion, shape (n_u,) [N].
+
+        The structure does not feel it, so that the laws leave it out.
+        """
+        return np.zeros(self.displacements)
 
     @property
     def limits(self) -> tuple[float, ...]:
@@ -110,8 +159,15 @@ class Contact(ABC):
 
     @property
     def stuck_stiffness(self) -> Matrix:
-        """Stiffness while every point sticks [N/m], shape (points, points)."""
+        """Stiffness while every point sticks [N/m], shape (n_u, n_u)."""
         raise self._without_limits()
+
+    def states(self, force: Matrix) -> NDArray[np.int8]:
+        """Return what points with components do by their forces; see `ContactStates`."""
+        raise ModelError(
+            f"contact {self.name!r}: the law {self.law!r} tells no states from forces; see "
+            "contact_force instead"
+        )
 
     def linear_limit(self, *, stuck: bool) -> Contact | None:
         """Return what is left of the contact in a linear limit, as one that never slips.
@@ -129,9 +185,21 @@ class Contact(ABC):
             "limits; draw with stuck=False, free=False"
         )
 
-    def law_parameters(self) -> dict[str, float | list[float]]:
-        """Return all parameters of the law as the compiled core takes them, in SI units."""
-        return dict(self.parameters())
+    def law_parameters(self) -> list[dict[str, Any]]:
+        """Return the parameters of each law as the compiled core takes them, in SI units.
+
+        One law has all points, or each its own: see `by_point`.
+        """
+        return [dict(self.parameters())]
+
+    def core_laws(self, *rows: Matrix) -> list[tuple[Any, ...]]:
+        """Return the laws as the compiled core takes them: name, rows of B, parameters.
+
+        `rows` are B of the contact, or its parts, shape (n_u, N) each.
+        """
+        laws = self.law_parameters()
+        parts = zip(*(np.split(one, len(laws)) for one in rows), strict=True)
+        return [(self.law, *own, values) for own, values in zip(parts, laws, strict=True)]
 
     def summary(self) -> str:
         """Return the parameters in words, in SI units."""

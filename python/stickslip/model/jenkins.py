@@ -164,9 +164,9 @@ class ParallelJenkins(_Elements, Sliders):
         total = sum(self.stiffness) or 1.0
         return tuple(stiffness / total for stiffness in self.stiffness)
 
-    def law_parameters(self) -> dict[str, float | list[float]]:
+    def law_parameters(self) -> list[dict[str, Any]]:
         """Return `stiffness` [N/m] and `slip_force` [N] of the elements."""
-        return {"stiffness": [*self.stiffness], "slip_force": [*self.slip_forces]}
+        return [{"stiffness": [*self.stiffness], "slip_force": [*self.slip_forces]}]
 
     def summary(self) -> str:
         """Return the parameters in words, in SI units."""

@@ -8,13 +8,14 @@ from typing import Any
 from stickslip.checks import brief, require_keys, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
+from stickslip.model.coulomb import Coulomb
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
 from stickslip.model.springs import Cubic, Stop
 from stickslip.model.structural import StructuralDamper
 
 LAWS: Mapping[str, type[Contact]] = {
-    law.law: law for law in (Jenkins, ParallelJenkins, StructuralDamper, Stop, Cubic)
+    law.law: law for law in (Jenkins, ParallelJenkins, StructuralDamper, Coulomb, Stop, Cubic)
 }
 """Every law by its name."""
 

@@ -206,7 +206,7 @@ class Model:
                 f"nodal_diameter: {brief(nodal_diameter)} of a model without sectors; leave it "
                 "out, or give a BladedDisk"
             )
-        return self.problem.natural_frequencies(points)
+        return self.problem.natural_frequencies(self._slipping(points))
 
     @cached_property
     def problem(self) -> _core.Problem:
@@ -230,7 +230,23 @@ class Model:
 
     def _core_contacts(self) -> list[Any]:
         """Return the contacts as the compiled core takes them."""
-        return [(one.law, *self.contact_rows(one), one.law_parameters()) for one in self.contacts]
+        laws = (one.core_laws(*self.contact_rows(one)) for one in self.contacts)
+        return list(chain.from_iterable(laws))
+
+    def law_index(self, contact: int, point: int = 0) -> int:
+        """Return the position among the laws of the core of that of a contact, or of its point."""
+        before = sum(one.points if one.by_point else 1 for one in self.contacts[:contact])
+        return before + point * self.contacts[contact].by_point
+
+    def _slipping(self, points: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+        """Return the displacements along which points slip, as the core counts them."""
+        return [
+            (self.law_index(number, point), place.start + direction)
+            for number, point in points
+            for one in (self.contacts[number],)
+            for place in (one.place(0 if one.by_point else point),)
+            for direction in range(one.tangential)
+        ]
 
     def _loads(self) -> list[tuple[int, NDArray[np.complex128]]]:
         """Sum the forces of each harmonic, in ascending harmonics."""

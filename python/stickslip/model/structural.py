@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,9 +164,9 @@ class StructuralDamper(Sliders):
                 row[dofs.index(dof)] = 1.0
         return rows
 
-    def law_parameters(self) -> dict[str, float | list[float]]:
+    def law_parameters(self) -> list[dict[str, Any]]:
         """Return `stiffness`, row by row [N/m], and `slip_forces` [N]."""
-        return {"stiffness": self.stiffness.ravel().tolist(), "slip_forces": [*self.slip_forces]}
+        return [{"stiffness": self.stiffness.ravel().tolist(), "slip_forces": [*self.slip_forces]}]
 
     def summary(self) -> str:
         """Return the slip limits in words."""

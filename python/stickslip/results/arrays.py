@@ -99,7 +99,11 @@ class PeriodicArrays(Columns):
         least=0.0,
     )
     slip_fraction: Float = column(
-        "* point", "1", "share of the period that the contact point slips", least=0.0, most=SHARE
+        "* point",
+        "1",
+        "share of the period that the contact point slips; of its component N, that it is open",
+        least=0.0,
+        most=SHARE,
     )
     dissipation: Float = column("* point", "J", "work lost to friction per cycle")
 

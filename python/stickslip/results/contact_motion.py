@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -11,11 +11,17 @@ from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
 from stickslip.results.arrays import Complex, Float, amplitude_of, constant, mean_forces
-from stickslip.results.events import ContactStates
+from stickslip.results.events import ContactStates, states_at
 from stickslip.results.peaks import Peaks
 
 if TYPE_CHECKING:
     from stickslip import _core
+
+    _Evaluation: TypeAlias = tuple[_core.Problem, int, Complex, str | float, int | None]
+
+
+_INSTANTS = 4096
+"""Instants per period by which states are told from forces, as the core does."""
 
 
 class ContactMotion(Peaks):
@@ -25,36 +31,48 @@ class ContactMotion(Peaks):
         """Return one period of the contact forces, as the friction law gives them.
 
         This is the law's answer to the harmonics of the displacement, with its corners, not the
-        truncated series of the force.
+        truncated series of the force. Of a contact whose points have components, as `Coulomb`, they
+        are in its frame, t1, t2, N: N is the normal force itself, a preload included.
 
         Returns
         -------
         ndarray of float64, shape (samples, points) or (samples,)
-            [N], positive against the relative displacement.
+            [N], positive against the relative displacement. With components (samples, points,
+            components), (samples, components) of one point.
         """
         from stickslip import _core
 
         position = self.position(index)
         count = whole_number(samples, "samples", smallest=1)
         number, point = self.locate(contact)
+        own = self.model.contacts[number]
         if not self.arrays.solved[position]:
-            forces = np.full((count, self.model.contacts[number].points), np.nan)
+            forces = np.full((count, own.displacements), np.nan)[:, own.place(point)]
         else:
             try:
-                forces = _core.contact_force(*self._evaluation(number, position), count)
+                forces = np.concatenate(
+                    [_core.contact_force(*law, count) for law in self._laws(contact, position)],
+                    axis=1,
+                )
             except ValueError as error:
                 raise ModelError(str(error)) from error
-        return constant(forces if point is None else np.ascontiguousarray(forces[:, point]))
+            if not own.by_point:
+                forces = forces[:, own.place(point)]
+            forces = forces + own.balanced[own.place(point)]
+        return constant(np.ascontiguousarray(self._shaped(forces, number, point)))
 
-    def _evaluation(
-        self, number: int, position: int
-    ) -> tuple[_core.Problem, int, Complex, str | float, int | None]:
-        """Return what the core evaluates the law of a contact by, at a solved point."""
-        arrays, columns = self.arrays, self._columns(number, None)
+    def _laws(self, contact: PointRef, position: int) -> Iterator[_Evaluation]:
+        """Give what the core evaluates the laws of a contact, or a point, by at a solved point."""
+        arrays, (number, point) = self.arrays, self.locate(contact)
         kept = int(arrays.harmonics[position]) + 1
-        series = np.ascontiguousarray(arrays.contact_displacement[position, :kept, columns].T)
         samples = int(arrays.samples[position]) or None
-        return self.model.problem, number, series, self.settings.residual, samples
+        own = self.model.contacts[number]
+        every = range(own.points) if point is None else [point]
+        for part in every if own.by_point else [None]:
+            columns = self._columns(number, part)
+            series = np.ascontiguousarray(arrays.contact_displacement[position, :kept, columns].T)
+            law = self.model.law_index(number, part or 0)
+            yield self.model.problem, law, series, self.settings.residual, samples
 
     def resultant(self, contact: ContactRef, index: int, samples: int = 512) -> Float:
         """Return one period of the sum of the forces of a contact, shape (samples,) [N].
@@ -66,7 +84,7 @@ class ContactMotion(Peaks):
         return constant(forces.reshape(len(forces), -1).sum(axis=1))
 
     def contact_states(self, contact: ContactRef, index: int) -> ContactStates:
-        """Return when the points of a contact stick and slip over one period.
+        """Return when the points of a contact stick, slip and are open over one period.
 
         The phases, and the sets of points that slip at once.
 
@@ -81,7 +99,11 @@ class ContactMotion(Peaks):
                 f"index: {position} was not solved, so that its contacts have no states; choose a "
                 "solved point"
             )
-        start, direction = _core.contact_phases(*self._evaluation(number, position))
+        own = self.model.contacts[number]
+        if own.components:
+            force = self.contact_force(number, position, _INSTANTS)
+            return states_at(own.states(force.reshape(_INSTANTS, own.points, -1)))
+        start, direction = _core.contact_phases(*next(self._laws(number, position)))
         return ContactStates(constant(start / (2.0 * np.pi)), direction.astype(np.int8))
 
     def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:
@@ -92,9 +114,11 @@ class ContactMotion(Peaks):
         Returns
         -------
         ndarray of float64, shape (samples, points) or (samples,)
-            [m].
+            [m]. With components as of `contact_force`; that of N closes the contact.
         """
-        return self._period(self._select(self.arrays.contact_displacement, contact), index, samples)
+        number, point = self.locate(contact)
+        series = self.arrays.contact_displacement[..., self._columns(number, point)]
+        return constant(self._shaped(self._period(series, index, samples), number, point))
 
     def damper_displacement(self, contact: PointRef, index: int, samples: int = 512) -> Float:
         """Return one period of the deflection of the contact springs, z = f / k_d.

@@ -19,7 +19,7 @@ Coordinate: TypeAlias = tuple[str, NDArray[np.generic], dict[str, str]]
 def require_fit(dataset: xr.Dataset, model: Model, states: Sequence[str]) -> tuple[str, ...]:
     """Return the observed dofs of a dataset, or refuse one that belongs to another model."""
     for dimension, noun, names in (
-        ("point", "contact points in the arrays", point_names(model)),
+        ("point", "contact points in the arrays", displacement_names(model)),
         ("state_entry", "entries per state", states),
     ):
         size = dataset.sizes.get(dimension, len(names))
@@ -39,6 +39,13 @@ def labels(dimension: str, values: object, meaning: str) -> Coordinate:
 def point_names(model: Model) -> list[str]:
     """Return a name for every contact point: that of its contact, numbered if it has several."""
     return _numbered(model, [contact.points for contact in model.contacts])
+
+
+def displacement_names(model: Model) -> list[str]:
+    """Return a name for every relative displacement: that of its point, with its component."""
+    parts = [one.components for one in model.contacts for _ in range(one.points)]
+    named = zip(point_names(model), parts, strict=True)
+    return [f"{name}.{part}" if part else name for name, own in named for part in own or [""]]
 
 
 def slider_names(model: Model) -> list[str]:

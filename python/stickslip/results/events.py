@@ -118,8 +118,9 @@ class ContactStates:
     start : ndarray of float64, shape (m,)
         Where each phase begins, as a share of the period; the first at 0, the last ends at 1.
     direction : ndarray of int8, shape (m, points)
-        1 where a point slips with positive force, -1 with negative force, 0 where it sticks. A
-        point without friction counts as sticking: it carries no force.
+        1 where a point slips with positive force, -1 with negative force, 0 where it sticks, 2
+        where it is open. A point that slips in a plane has 1, whatever its direction. A point
+        without friction counts as sticking: it carries no force.
     """
 
     start: Float
@@ -145,13 +146,22 @@ class ContactStates:
 
     def slipping(self, phase: int) -> tuple[int, ...]:
         """Return the points that slip in a phase, counted from 0."""
-        return tuple(int(point) for point in np.flatnonzero(self.direction[phase]))
+        slips = np.abs(self.direction[phase]) == 1
+        return tuple(int(point) for point in np.flatnonzero(slips))
 
     def share(self, points: tuple[int, ...]) -> float:
         """Return the share of the period in which exactly these points slip."""
         wanted = tuple(sorted(points))
         chosen = [self.slipping(phase) == wanted for phase in range(self.start.size)]
         return float(self.length[chosen].sum())
+
+
+def states_at(states: NDArray[np.int8]) -> ContactStates:
+    """Return the phases of states at equidistant instants, shape (instants, points)."""
+    changed = (states != np.roll(states, 1, axis=0)).any(axis=1)
+    changed[0] = True
+    start = np.flatnonzero(changed)
+    return ContactStates(constant(start / len(states)), constant(states[start]))
 
 
 def states_of(events: Events, columns: slice, period: float) -> ContactStates:

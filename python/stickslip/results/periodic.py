@@ -74,9 +74,34 @@ class PeriodicMotions(ColumnResult):
     def slip_fraction(self, contact: PointRef) -> Float:
         """Return the share of the period that each contact point slips, shape (n, points) or (n,).
 
-        From 0, it never slips, to 1.
+        From 0, it never slips, to 1. An open contact does not slip.
         """
-        return self._select(self.arrays.slip_fraction, contact)
+        return self._share(contact, 0)
+
+    def open_fraction(self, contact: PointRef) -> Float:
+        """Return the share of the period that each contact point is open.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, points) or (n,)
+            0, if the law has no normal force that could vanish.
+        """
+        number, _ = self.locate(contact)
+        if "N" in self.model.contacts[number].components:
+            return self._share(contact, -1)
+        return constant(0.0 * self._share(contact, 0))
+
+    def _share(self, contact: PointRef, component: int) -> Float:
+        """Return the column of a component of each point: see `PeriodicArrays.slip_fraction`."""
+        return self._by_node(self.arrays.slip_fraction, contact)[..., component]
+
+    def _by_node(self, values: Float, contact: PointRef) -> Float:
+        """Return the components of each point along the last axis."""
+        number, point = self.locate(contact)
+        own = self.model.contacts[number]
+        columns = values[..., self._columns(number, point)]
+        nodes = () if point is not None else (own.points,)
+        return columns.reshape(*values.shape[:-1], *nodes, own.displacements // own.points)
 
     def dissipation(self, contact: PointRef) -> Float:
         """Return the work that each contact point loses to friction per cycle.
@@ -86,7 +111,7 @@ class PeriodicMotions(ColumnResult):
         ndarray of float64, shape (n, points) or (n,)
             [J].
         """
-        return self._select(self.arrays.dissipation, contact)
+        return constant(self._by_node(self.arrays.dissipation, contact).sum(axis=-1))
 
     def position(self, index: int) -> int:
         """Return the position of a motion, counted from 0.

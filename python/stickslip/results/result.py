@@ -19,8 +19,8 @@ from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.results.dataset import (
+    displacement_names,
     labels,
-    point_names,
     require_fit,
     state_names,
 )
@@ -159,15 +159,23 @@ class Result(Frozen, ABC):
         raise ModelError(unknown("dof", dof, self.dofs))
 
     def _columns(self, contact: int, point: int | None) -> slice:
-        start = sum(one.points for one in self.model.contacts[:contact])
-        if point is None:
-            return slice(start, start + self.model.contacts[contact].points)
-        return slice(start + point, start + point + 1)
+        """Return where the displacements of a contact, or of one of its points, stand in arrays."""
+        start = sum(one.displacements for one in self.model.contacts[:contact])
+        own = self.model.contacts[contact]
+        first, end, _ = own.place(point).indices(own.displacements)
+        return slice(start + first, start + end)
 
     def _select(self, values: NDArray[Kind], contact: PointRef) -> NDArray[Kind]:
+        """Return what belongs to the displacements of a contact: see `Contact.shape`."""
         number, point = self.locate(contact)
-        columns = values[..., self._columns(number, point)]
-        return columns if point is None else columns[..., 0]
+        return self._shaped(values[..., self._columns(number, point)], number, point)
+
+    def _shaped(self, values: NDArray[Kind], contact: int, point: int | None) -> NDArray[Kind]:
+        """Return displacements side by side in the shape of their contact, or of its point."""
+        own = self.model.contacts[contact]
+        if point is None:
+            return values.reshape(*values.shape[:-1], *own.shape)
+        return values if own.components else values[..., 0]
 
 
 class ColumnResult(Result):
@@ -307,9 +315,11 @@ def _coordinates(
         owners = [
             name
             for name, contact in zip(model.contact_names, model.contacts, strict=True)
-            for _ in range(contact.points)
+            for _ in range(contact.displacements)
         ]
-        made["point"] = labels("point", point_names(model), "contact point")
+        made["point"] = labels(
+            "point", displacement_names(model), "contact point, with the component if it has some"
+        )
         made["contact"] = labels("point", owners, "contact of the point")
     if "state_entry" in sizes:
         made["state_entry"] = labels("state_entry", states, "entry of the state")

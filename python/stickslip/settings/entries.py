@@ -118,6 +118,9 @@ Newtons = Annotated[float, quantity_of("N"), _quantity_schema("20.3 N", "1.2 kN"
 SlipForce = Annotated[
     float, quantity_of("N", "not be negative", finite=False), _quantity_schema("246 N", "1.2 kN")
 ]
+NormalLoad = Annotated[
+    float, quantity_of("N", "not be negative"), _quantity_schema("120 N", "1.2 kN")
+]
 StiffnessValue = Annotated[
     float, quantity_of("N/m", "not be negative"), _quantity_schema("24 kN/mm", "1e6 N/m")
 ]
@@ -128,6 +131,7 @@ Omega = Annotated[
     float, quantity_of("rad/s", "be positive"), _quantity_schema("20 rad/s", "25 Hz", "1500 rpm")
 ]
 Ratio = Annotated[float, quantity_of(""), _quantity_schema("0.1 %")]
+Friction = Annotated[float, quantity_of("", "not be negative"), _quantity_schema("30 %")]
 percent = _quantity_schema("0.1 %")
 Tolerance = Annotated[float, Within(1e-8, 0.5), percent]
 Factor = Annotated[float, quantity_of("", "be positive"), WithJsonSchema({"type": "number"})]

@@ -16,17 +16,29 @@ from pydantic import (
 
 from stickslip.checks import brief
 from stickslip.errors import EntryError, ModelError
-from stickslip.model import Cubic, Force, Jenkins, ParallelJenkins, Stop, StructuralDamper
+from stickslip.model import (
+    Coulomb,
+    Cubic,
+    Force,
+    Jenkins,
+    ParallelJenkins,
+    Stop,
+    StructuralDamper,
+)
 from stickslip.model.contact import Contact
 from stickslip.settings.entries import (
     ONE_OF,
     Angle,
     CubicStiffness,
     Dof,
+    Friction,
     Index,
     Length,
+    ListOr,
     Many,
     Newtons,
+    NormalLoad,
+    Number,
     SlipForce,
     Some,
     StiffnessValue,
@@ -55,6 +67,10 @@ def _length_unit(value: object) -> object:
 
 
 # ------------------------------------------------------------------------ [[contact]], [[force]]
+
+
+Nodes = Some[ListOr[Dof, Dof]]
+"""The DOFs of a node, or one such list per node."""
 
 
 class LawTable(Table):
@@ -154,6 +170,59 @@ class CubicTable(EndsTable):
     )
 
 
+class CoulombTable(LawTable):
+    """A Coulomb contact of one node, or of many, whose normal load may vary and vanish."""
+
+    makes = Coulomb
+    law: Literal["coulomb"] = Field(description="Friction law.")
+    dofs: Nodes = Field(
+        description="The DOFs of the node, 3 in space, 2 in a plane, or the tangential ones alone; "
+        "or a list of such lists, one per node.",
+        examples=[["pad.x", "pad.y", "pad.z"]],
+    )
+    other: Nodes | None = Field(
+        default=None,
+        description="As many DOFs of the other body; left out: the ground.",
+        examples=[["disk.x", "disk.y", "disk.z"]],
+    )
+    normal: ListOr[ListOr[Number, Number], Number] | None = Field(
+        default=None,
+        description="Normal out of the first body into the other, or one per node; left out: the "
+        "normal load is constant.",
+        examples=[[0.0, 0.0, 1.0]],
+    )
+    friction: ListOr[Friction, Friction] = Field(description="Coefficient of friction.")
+    tangential_stiffness: ListOr[StiffnessValue, StiffnessValue] = Field(
+        description="Stiffness k_t of a node while it sticks."
+    )
+    normal_stiffness: ListOr[StiffnessValue, StiffnessValue] | None = Field(
+        default=None, description="Stiffness k_n of a node while it is closed."
+    )
+    preload: ListOr[NormalLoad, NormalLoad] | None = Field(
+        default=None, description="Normal force of a node without motion."
+    )
+    gap: ListOr[Length, Length] | None = Field(
+        default=None,
+        description="Instead: distance between the bodies, negative for an interference; left out: "
+        "0.",
+    )
+
+    @property
+    def ends(self) -> tuple[object, ...]:
+        """What the law takes by position."""
+        return (self.dofs,)
+
+    @property
+    def touched(self) -> tuple[str, ...]:
+        """The DOFs it acts on."""
+        ends = [self.dofs, *([self.other] if self.other else [])]
+        return tuple(dof for end in ends for one in end for dof in _listed(one))
+
+
+def _listed(node: str | tuple[str, ...]) -> tuple[str, ...]:
+    return (node,) if isinstance(node, str) else node
+
+
 _GROUND = "ground"
 """What a file calls the ground: it has no empty entries."""
 
@@ -209,9 +278,10 @@ ContactTable = Annotated[
     Annotated[JenkinsTable, Tag("<jenkins>")]
     | Annotated[ParallelJenkinsTable, Tag("<parallel-jenkins>")]
     | Annotated[StructuralTable, Tag("<structural>")]
+    | Annotated[CoulombTable, Tag("<coulomb>")]
     | Annotated[StopTable, Tag("<stop>")]
     | Annotated[CubicTable, Tag("<cubic>")],
-    chosen_by("law", "jenkins", "parallel-jenkins", "structural", "stop", "cubic"),
+    chosen_by("law", "jenkins", "parallel-jenkins", "structural", "coulomb", "stop", "cubic"),
 ]
 """Each further friction law joins this union with a table of its own."""
 

@@ -1,0 +1,480 @@
+"""The elastic Coulomb contact: friction under a normal load that may vary and vanish."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import Any, ClassVar, Self, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.checks import (
+    Matrix,
+    brief,
+    members,
+    real_number,
+    require_keys,
+    set_fields,
+    text,
+    whole_number,
+)
+from stickslip.errors import ModelError
+from stickslip.model.bonded import Bonded
+from stickslip.model.contact import OPEN, Contact
+from stickslip.model.dofs import Dofs
+
+Each: TypeAlias = float | tuple[float, ...]
+"""One number for all nodes, or one per node."""
+Vectors: TypeAlias = tuple[float, ...] | tuple[tuple[float, ...], ...]
+"""One vector for all nodes, or one per node."""
+
+_ENTRY = "coulomb contact"
+_OPTIONAL = ("normal_stiffness", "preload", "gap")
+_ON_CONE = 1e-9
+"""Distance from the cone, relative to it, that is none."""
+_STEEP = 0.9
+"""Component of the normal from which on the tangent is laid along the next axis."""
+
+
+@dataclass(frozen=True, init=False)
+class Coulomb(Contact):
+    """Dry friction at a node, or at many, whose normal load may vary and vanish.
+
+    A node A touches the ground or a node B of another body. The unit vector n points out of A into
+    B; v = n . (x_A - x_B) closes the contact, u are the displacements x_A - x_B across n:
+
+    * normal force N = max(N0 + k_n v, 0) under a preload N0, which is in equilibrium without
+      motion; N = max(k_n (v - g), 0) behind a gap g, of which the structure feels all;
+    * traction t = k_t (u - w) with abs(t) <= mu N, where the slider w moves along t as long as
+      abs(t) = mu N. An open contact has t = 0, and its slider follows.
+
+    Forces and displacements are given in the frame of the contact: t1, t2, N, or t, N of a planar
+    one, or without the normal under a constant load. It is right-handed, t1 x t2 = n. In space t1
+    is the direction of the first degree of freedom laid into the plane; where that direction is the
+    normal to within 26 degrees, abs(n_1) > 0.9, the second one. In a plane t = (n_2, -n_1), so that
+    n = (0, 1) has t = (1, 0). See `frame`.
+
+    Parameters
+    ----------
+    dofs : sequence of str, or of sequences of str
+        Degrees of freedom of the node: 3 in space, 2 in a plane, those of the tangential directions
+        alone (2 or 1) where `normal` is None. One such list per node makes many nodes one contact.
+    other : sequence of str, or of sequences of str, optional
+        As many of the other body. Default: the ground.
+    normal : sequence of float or None
+        Normal n, of any length above 0, out of the first body into the other; of many nodes also
+        one per node. None: the normal load is constant, the preload.
+    friction : float or sequence of float
+        Coefficient of friction mu. Of many nodes all numbers may be one per node.
+    tangential_stiffness : float or sequence of float
+        Stiffness k_t while it sticks [N/m], the same in both directions.
+    normal_stiffness : float or sequence of float, optional
+        Stiffness k_n while it is closed [N/m]; needed with a normal.
+    preload : float or sequence of float, optional
+        Normal force N0 without motion [N]; needed without a normal.
+    gap : float or sequence of float, optional
+        Instead: distance g between the bodies [m], negative for an interference. Default: 0.
+    areas : sequence of float, optional
+        Areas of the nodes [m2]. Stiffnesses are then those of an area [N/m3], and the preload is a
+        pressure [Pa].
+    name : str, optional
+        By which results and settings refer to it. Default: "coulomb".
+
+    Raises
+    ------
+    ModelError
+        If the degrees of freedom, the normal and the numbers do not fit each other, the normal is
+        zero, a number is negative that must not be, or both a preload and a gap are given.
+
+    References
+    ----------
+    Yang, Chu and Menq (1998): the cases of stick, slip and separation. Petrov and Ewins (2003).
+    """
+
+    law: ClassVar[str] = "coulomb"
+    keys: ClassVar[tuple[str, ...]] = (
+        "friction",
+        "tangential_stiffness",
+        "normal_stiffness",
+        "preload",
+        "gap",
+        "normal",
+    )
+    by_point: ClassVar[bool] = True
+
+    friction: Each
+    tangential_stiffness: Each
+    normal_stiffness: Each | None
+    preload: Each | None
+    gap: Each | None
+    normal: Vectors | None
+    _first: tuple[str, ...]
+    _other: tuple[str, ...]
+    _shape: tuple[int, ...]
+
+    def __init__(
+        self,
+        dofs: Sequence[str] | Sequence[Sequence[str]],
+        other: Sequence[str] | Sequence[Sequence[str]] | None = None,
+        *,
+        normal: ArrayLike | None,
+        friction: float | Sequence[float],
+        tangential_stiffness: float | Sequence[float],
+        normal_stiffness: float | Sequence[float] | None = None,
+        preload: float | Sequence[float] | None = None,
+        gap: float | Sequence[float] | None = None,
+        areas: Sequence[float] | None = None,
+        name: str | None = None,
+    ) -> None:
+        object.__setattr__(self, "name", name)
+        Contact.__post_init__(self)
+        first, shape = _names(dofs, "dofs")
+        second = () if other is None else _other(other, shape)
+        _require_apart(first, second, shape[-1])
+        vectors = _normal(normal, shape)
+        preload, gap = _closure(preload, gap, constant=normal is None)
+        if (normal_stiffness is None) != (normal is None):
+            raise ModelError(
+                f"{_ENTRY}: normal_stiffness: {brief(normal_stiffness)} with normal="
+                f"{brief(normal)}; give both, or neither where the normal load is constant"
+            )
+        given = {
+            "friction": friction,
+            "tangential_stiffness": tangential_stiffness,
+            "normal_stiffness": normal_stiffness,
+            "preload": preload,
+            "gap": gap,
+        }
+        each = {
+            key: None
+            if one is None and key in _OPTIONAL
+            else _each(one, key, shape, negative=key == "gap")
+            for key, one in given.items()
+        }
+        if areas is not None:
+            _spread(each, areas, shape)
+        set_fields(self, **each, normal=vectors, _first=first, _other=second, _shape=shape)
+
+    def __repr__(self) -> str:
+        ends = f"{list(self._node(0))}" + (" ..." if self.points > 1 else "")
+        return f"Coulomb({ends}, {self.summary()}, name={self.name!r})"
+
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """Names of the degrees of freedom, those of the first body before those of the other."""
+        return self._first + self._other
+
+    @property
+    def points(self) -> int:
+        """Number of nodes."""
+        return len(self._first) // self._shape[-1]
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the displacements and forces of a node, in its frame."""
+        tangential = ("t1", "t2") if self.tangential == 2 else ("t",)
+        return tangential if self.normal is None else (*tangential, "N")
+
+    @property
+    def tangential(self) -> int:
+        """Number of tangential directions."""
+        return self._shape[-1] - (self.normal is not None)
+
+    @property
+    def single(self) -> bool:
+        """Whether it was given as one node, without a list of nodes around it."""
+        return len(self._shape) == 1
+
+    @property
+    def frame(self) -> Matrix:
+        """Directions of the components in those of the degrees of freedom.
+
+        Shape (d, d), or (points, d, d) of many nodes: rows t1, t2, n, or t, n.
+        """
+        frames = np.array([_frame(one) for one in self._normals])
+        return frames[0] if self.single else frames
+
+    @property
+    def _normals(self) -> Iterator[Matrix | int]:
+        """The normal of each node, or the number of directions where there is none."""
+        size = self._shape[-1]
+        if self.normal is None:
+            return iter([size] * self.points)
+        return iter(np.broadcast_to(np.array(self.normal), (self.points, size)))
+
+    def rows(self, dofs: Dofs) -> Matrix:
+        """Return B of u = B x, in the frame of each node, shape (points * d, N)."""
+        size = self._shape[-1]
+        rows = np.zeros((self.points, size, len(dofs)))
+        for names, sign in ((self._first, 1.0), (self._other, -1.0)):
+            for place, name in enumerate(names):
+                node, axis = divmod(place, size)
+                rows[node, axis, dofs.index(name)] = sign
+        frames = np.array([_frame(one) for one in self._normals])
+        return np.ascontiguousarray((frames @ rows).reshape(-1, len(dofs)))
+
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Friction force of each node at which it slips under its load without motion [N]."""
+        friction = self._per_node("friction")
+        return tuple((friction * np.maximum(self._pressing, 0.0)).tolist())
+
+    @property
+    def _pressing(self) -> Matrix:
+        """Normal force of each node without motion, negative behind an open gap [N]."""
+        if self.gap is None:
+            return self._per_node("preload")
+        # A negative zero would be written as such.
+        return 0.0 - self._per_node("normal_stiffness") * self._per_node("gap")
+
+    @property
+    def balanced(self) -> Matrix:
+        """Force of each displacement in equilibrium without motion; see `Contact.balanced`."""
+        forces = np.zeros((self.points, len(self.components)))
+        if self.normal is not None and self.preload is not None:
+            forces[:, -1] = self.preload
+        return forces.ravel()
+
+    def _per_node(self, key: str) -> Matrix:
+        return np.broadcast_to(np.asarray(getattr(self, key), dtype=np.float64), self.points)
+
+    @property
+    def stuck_stiffness(self) -> Matrix:
+        """Stiffness while every node sticks and is closed [N/m], shape (n_u, n_u)."""
+        stiffness = np.zeros((self.points, len(self.components)))
+        stiffness[:, : self.tangential] = self._per_node("tangential_stiffness")[:, None]
+        if self.normal is not None:
+            stiffness[:, -1] = self._per_node("normal_stiffness")
+        return np.diag(stiffness.ravel())
+
+    def linear_limit(self, *, stuck: bool) -> Bonded | None:
+        """Return what sticks in a linear limit; see `Contact.linear_limit`.
+
+        At small amplitude every node that has friction and is not behind an open gap, at large
+        amplitude none: its normal force is no linear spring there.
+        """
+        closed = self._pressing >= 0.0
+        sticks = np.repeat(closed[:, None], len(self.components), axis=1)
+        sticks[:, : self.tangential] &= (self._per_node("friction") > 0.0)[:, None]
+        held = np.diag(sticks.ravel().astype(np.float64)) * self.stuck_stiffness
+        return Bonded(self, held, name=self.name) if stuck and held.any() else None
+
+    def states(self, force: Matrix) -> NDArray[np.int8]:
+        """Return what nodes do by their forces, (..., components); see `ContactStates`."""
+        traction = np.linalg.norm(force[..., : self.tangential], axis=-1)
+        pressing = force[..., -1] if self.normal is not None else self._pressing
+        slips = traction >= self._per_node("friction") * pressing * (1.0 - _ON_CONE)
+        return np.where(pressing > 0.0, 1 * (slips & (traction > 0.0)), OPEN).astype(np.int8)
+
+    @property
+    def _given(self) -> dict[str, Any]:
+        return {key: one for key in self.keys if (one := getattr(self, key)) is not None}
+
+    def _values(self) -> dict[str, Any]:
+        return self._given | {"shape": self._shape}
+
+    def adjustable(self) -> dict[str, tuple[float, ...]]:
+        """Return friction, stiffnesses, and preload or gap, by name, in SI units."""
+        given = {key: one for key, one in self._given.items() if key != "normal"}
+        return {key: one if isinstance(one, tuple) else (one,) for key, one in given.items()}
+
+    def adjusted(self, parameter: str, values: Sequence[float]) -> Self:
+        """Return the contact with other values of a parameter, one, or one per node."""
+        one = len(self.adjustable()[parameter]) == 1
+        return self._with(parameter, values[0] if one else tuple(values))
+
+    def law_parameters(self) -> list[dict[str, Any]]:
+        """Return the parameters of the law of each node, in SI units."""
+        keys = [key for key in self._given if key != "normal"]
+        columns = [self._per_node(key).tolist() for key in keys]
+        return [
+            dict(zip(keys, node, strict=True)) | {"directions": float(self.tangential)}
+            for node in zip(*columns, strict=True)
+        ]
+
+    def summary(self) -> str:
+        """Return the parameters in words, in SI units."""
+        many = "" if self.single else f"{self.points} nodes, "
+        values = self.adjustable().items()
+        return many + ", ".join(f"{key} {_range(one)}" for key, one in values)
+
+    def _node(self, node: int) -> tuple[str, ...]:
+        size = self._shape[-1]
+        return self._first[size * node : size * (node + 1)]
+
+    @classmethod
+    def from_parameters(
+        cls, dofs: tuple[str | None, ...], parameters: Mapping[str, object], name: str | None
+    ) -> Self:
+        """Build the contact from what `dofs`, the parameters of `to_spec` and `name` hold."""
+        known = (*cls.keys, "shape")
+        require_keys(parameters, _ENTRY, known, ("shape",), "parameter")
+        given: dict[str, Any] = dict(parameters)
+        sizes: Iterable[object] = given.pop("shape")
+        listed = members(sizes, f"{_ENTRY}: shape", "shape=[...]")
+        shape = tuple(whole_number(one, f"{_ENTRY}: shape", smallest=1) for one in listed)
+        half = prod(shape)
+        if not shape or len(dofs) not in (half, 2 * half):
+            raise ModelError(
+                f"{_ENTRY}: {len(dofs)} dofs for names of shape {_times(shape)}; give as many, or "
+                "twice as many"
+            )
+        ends = np.array(dofs, dtype=object).reshape(-1, *shape).tolist()
+        values: dict[str, Any] = {"normal": None} | given
+        return cls(*ends, **values, name=name)
+
+
+def _names(value: object, key: str) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    """Return names of degrees of freedom, node by node, and the shape of their list."""
+    listed = _members(value, key)
+    nested = bool(listed) and not isinstance(listed[0], str)
+    nodes = [_members(one, f"{key}[{n}]") for n, one in enumerate(listed)] if nested else [listed]
+    sizes = {len(node) for node in nodes}
+    if len(sizes) != 1 or not 1 <= min(sizes) <= 3:
+        got = ", ".join(map(str, sorted(sizes)))
+        raise ModelError(
+            f"{_ENTRY}: {key}: {got or 'no'} names per node; give 3 in space, 2 in a plane, or the "
+            "tangential ones with normal=None"
+        )
+    names = tuple(text(one, f"{_ENTRY}: {key}") for node in nodes for one in node)
+    (size,) = sizes
+    return names, (len(nodes), size) if nested else (size,)
+
+
+def _members(value: object, key: str) -> tuple[object, ...]:
+    remedy = 'a list of names, as ["pad.x", "pad.y", "pad.z"]'
+    if value is None or isinstance(value, Mapping | float | int):
+        raise ModelError(f"{_ENTRY}: {key}: {brief(value)} is not a list; write {remedy}")
+    return members(value, f"{_ENTRY}: {key}", remedy)  # type: ignore[arg-type]
+
+
+def _other(value: object, shape: tuple[int, ...]) -> tuple[str, ...]:
+    names, found = _names(value, "other")
+    if found != shape:
+        raise ModelError(
+            f"{_ENTRY}: other: names of shape {_times(found)} for dofs of {_times(shape)}; give as "
+            "many, or leave it out for the ground"
+        )
+    return names
+
+
+def _times(shape: tuple[int, ...]) -> str:
+    return " x ".join(map(str, shape))
+
+
+def _require_apart(first: tuple[str, ...], other: tuple[str, ...], size: int) -> None:
+    """Refuse a node that has a degree of freedom twice."""
+    for node in range(0, len(first), size):
+        names = first[node : node + size] + other[node : node + size]
+        twice = next((name for place, name in enumerate(names) if name in names[:place]), None)
+        if twice is not None:
+            raise ModelError(
+                f"{_ENTRY}: dof {brief(twice)} twice at one node; name every direction of both "
+                "bodies once"
+            )
+
+
+def _normal(value: object, shape: tuple[int, ...]) -> Vectors | None:
+    """Return unit normals, one or one per node."""
+    size = shape[-1]
+    if value is None:
+        if size > 2:
+            raise ModelError(
+                f"{_ENTRY}: normal: None, a constant load, with 3 dofs per node; give the one or "
+                "two tangential ones, or the normal"
+            )
+        return None
+    try:
+        vectors = np.array(value)
+    except ValueError:
+        vectors = np.array(None)
+    fits = (size,) if len(shape) == 1 or vectors.ndim < 2 else shape
+    if vectors.dtype.kind not in "fiu" or vectors.shape != fits or size == 1:
+        many = "" if len(shape) == 1 else ", or one such list per node"
+        raise ModelError(
+            f"{_ENTRY}: normal: {brief(value)}; give {max(size, 2)} numbers, as many as a node has "
+            f"dofs{many}, or None for a constant load"
+        )
+    vectors = vectors.astype(np.float64)
+    # Numbers far from 1 would overflow when squared.
+    largest = np.abs(vectors).max(axis=-1, keepdims=True)
+    if not (np.isfinite(largest) & (largest > 0.0)).all():
+        raise ModelError(
+            f"{_ENTRY}: normal: {brief(value)} has no direction; give a finite vector that is not "
+            "zero"
+        )
+    length = np.linalg.norm(vectors / largest, axis=-1, keepdims=True) * largest
+    # What has unit length already stays as it is, bit by bit.
+    near = np.abs(length - 1.0) <= 4.0 * np.finfo(np.float64).eps
+    unit = np.where(near, vectors, vectors / largest / (length / largest))
+    if unit.ndim == 1:
+        return tuple(unit.tolist())
+    return tuple(map(tuple, unit.tolist()))
+
+
+def _closure(preload: Any, gap: Any, *, constant: bool) -> tuple[Any, Any]:
+    """Return preload and gap, of which one is None."""
+    if preload is not None and gap is not None:
+        raise ModelError(
+            f"{_ENTRY}: preload {brief(preload)} and gap {brief(gap)}; give one of the two, the "
+            "other follows from it"
+        )
+    if constant and preload is None:
+        raise ModelError(
+            f"{_ENTRY}: preload is missing; give the constant normal load in N, or a normal"
+        )
+    return preload, 0.0 if preload is None and gap is None else gap
+
+
+def _each(value: object, key: str, shape: tuple[int, ...], *, negative: bool) -> Each:
+    """Return the number of all nodes, or one per node."""
+    entry = f"{_ENTRY}: {key}"
+    if not (isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim)):
+        return _number(value, entry, negative=negative)
+    listed = tuple(value)
+    if len(shape) == 1 or len(listed) != shape[0]:
+        nodes = "one node" if len(shape) == 1 else f"{shape[0]} nodes"
+        expected = "one number" if len(shape) == 1 else "one number, or one per node"
+        raise ModelError(f"{entry}: {len(listed)} numbers for {nodes}; give {expected}")
+    return tuple(
+        _number(one, f"{entry}[{place}]", negative=negative) for place, one in enumerate(listed)
+    )
+
+
+def _number(value: object, entry: str, *, negative: bool) -> float:
+    number = real_number(value, entry)
+    if number < 0.0 and not negative:
+        raise ModelError(f"{entry} {number:g} is negative; give a number from zero, in SI units")
+    return number
+
+
+def _spread(each: dict[str, Each | None], areas: object, shape: tuple[int, ...]) -> None:
+    """Multiply what is given per area by the areas of the nodes."""
+    if len(shape) == 1:
+        raise ModelError(
+            f"{_ENTRY}: areas {brief(areas)} of one node; give its stiffness in N/m, or a list of "
+            "nodes"
+        )
+    sizes = np.asarray(_each(areas, "areas", shape, negative=False))
+    for key in ("tangential_stiffness", "normal_stiffness", "preload"):
+        if (one := each[key]) is not None:
+            each[key] = tuple((sizes * np.asarray(one) * np.ones(shape[0])).tolist())
+
+
+def _frame(normal: Matrix | int) -> Matrix:
+    """Return rows t1, t2, n of a unit normal, or t, n; the axes where there is none."""
+    if isinstance(normal, int):
+        return np.eye(normal)
+    if normal.size == 2:
+        return np.array([[normal[1], -normal[0]], normal])
+    axis = np.eye(3)[int(abs(normal[0]) > _STEEP)]
+    first = axis - (axis @ normal) * normal
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(normal, first), normal])
+
+
+def _range(values: Iterable[float]) -> str:
+    low, high = min(values), max(values)
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
