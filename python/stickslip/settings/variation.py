@@ -28,7 +28,7 @@ Chosen: TypeAlias = str | tuple[str, int]
 """A contact by its name, or one of its points."""
 
 
-class CommonSettings(Settings):
+class ParameterMode(Settings):
     """How contacts share the value of a parameter."""
 
     common: Common = Field(
@@ -44,7 +44,7 @@ _Contacts = Annotated[
 ]
 
 
-class ContactKeys(CommonSettings):
+class ContactKeys(ParameterMode):
     """Which contacts have a parameter in common."""
 
     contacts: _Contacts | None = Field(
@@ -55,7 +55,7 @@ class ContactKeys(CommonSettings):
     )
 
 
-class Variation(CommonSettings):
+class Variation(ParameterMode):
     """What is varied."""
 
     parameter: Annotated[Parameter, ONE_OF] = Field(
