@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.analyses.texts import TEXTS, told
 from stickslip.analyses.uniqueness import uniqueness
 from stickslip.model import Model, StructuralDamper, natural_frequencies
 from stickslip.results.arrays import Arrays, amplitude_of
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
-
-if TYPE_CHECKING:
-    from stickslip import _core
-    from stickslip.settings.balance import ForcedSettings
-    from stickslip.settings.entries import Span
-    from stickslip.settings.motion import ClassifySettings, TransientSettings
-    from stickslip.settings.orbits import ExactSettings
+from stickslip.settings.balance import ForcedSettings
+from stickslip.settings.entries import Span
+from stickslip.settings.motion import ClassifySettings, TransientSettings
+from stickslip.settings.orbits import ExactSettings
 
 LARGE_ERROR = 0.05
 """Share of the amplitude above which the discarded harmonics are worth a warning."""

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.errors import ModelError
 from stickslip.html.figures import Drawn, drawn
 from stickslip.html.models import summaries
@@ -197,7 +198,5 @@ def _provenance(entry: Entry) -> list[Row]:
 
 
 def _versions() -> list[Row]:
-    from stickslip._core import __version__
-
     libraries = [(name, version(name)) for name in ("numpy", "scipy", "matplotlib", "plotly")]
-    return [("stickslip", __version__), ("Python", platform.python_version()), *libraries]
+    return [("stickslip", _core.__version__), ("Python", platform.python_version()), *libraries]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _core
 from stickslip.results.fields import Bool, Code, Columns, Complex, Computed, Float, Int, column
 from stickslip.results.status import Status
 
@@ -166,8 +167,6 @@ class Arrays(PeriodicArrays):
 
 def amplitude_of(coefficients: Complex, measure: Measure) -> Float:
     """Return the amplitudes of harmonic series (n, H+1); not-a-number where a coefficient is."""
-    from stickslip import _core
-
     finite = np.isfinite(coefficients).all(axis=1)
     values = np.full(len(coefficients), np.nan)
     if finite.any():

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple, Self, TypeAlias
+from typing import NamedTuple, Self, TypeAlias
 
 import numpy as np
 
 from stickslip.checks import brief, text, unknown
+from stickslip.disk import BladedDisk, MistunedDisk
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
 from stickslip.results.peaks import Peak
-
-if TYPE_CHECKING:
-    from stickslip.disk import BladedDisk, MistunedDisk
 
 SectorDof: TypeAlias = str
 """Of the equal sectors of a disk."""
@@ -146,8 +144,6 @@ class BladeMotion(ContactMotion):
         return Amplification(peak.amplitude / reference.amplitude, blade, peak, reference)
 
     def _tuned_disk(self) -> BladedDisk:
-        from stickslip.disk import BladedDisk
-
         if not isinstance(self.model, BladedDisk):
             raise ModelError(
                 "sector: the model has no equal sectors; a MistunedDisk has all its sectors among "
@@ -156,8 +152,6 @@ class BladeMotion(ContactMotion):
         return self.model
 
     def _mistuned_disk(self) -> MistunedDisk:
-        from stickslip.disk import MistunedDisk
-
         if not isinstance(self.model, MistunedDisk):
             raise ModelError(
                 "blades: the model is no MistunedDisk; the blades of a tuned disk are all alike, "

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
 from stickslip.results.arrays import Complex, Float, amplitude_of, constant, mean_forces
 from stickslip.results.events import ContactStates
 from stickslip.results.peaks import Peaks
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 
 class ContactMotion(Peaks):
@@ -32,8 +29,6 @@ class ContactMotion(Peaks):
         ndarray of float64, shape (samples, points) or (samples,)
             [N], positive against the relative displacement.
         """
-        from stickslip import _core
-
         position = self.position(index)
         count = whole_number(samples, "samples", smallest=1)
         number, point = self.locate(contact)
@@ -72,8 +67,6 @@ class ContactMotion(Peaks):
 
         Raises ModelError if the point was not solved.
         """
-        from stickslip import _core
-
         position = self.position(index)
         number = self.model.contact_index(contact)
         if not self.arrays.solved[position]:

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _core
 from stickslip.checks import whole_number
+from stickslip.disk.wave_ring import Rotation, moving
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
@@ -38,9 +40,6 @@ from stickslip.settings.orbits import ExactSettings
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from stickslip import _core
-    from stickslip.disk.wave_ring import Rotation
 
 
 class OrbitArrays(Arrays, ExactColumns):
@@ -170,8 +169,6 @@ class ExactResponse(ForcedResponse, FloquetStability):
 
     @cached_property
     def _moving(self) -> tuple[_core.Problem, Rotation | None]:
-        from stickslip.disk.wave_ring import moving
-
         return moving(self.model, half_wave=self.half_wave)
 
     def sector(self, number: int) -> Self:
@@ -270,8 +267,6 @@ class ExactResponse(ForcedResponse, FloquetStability):
     @classmethod
     def _states(cls, model: Model, *, half_wave: bool) -> list[str]:
         """Return a name for every entry of a state; of a wave, with the sectors in front."""
-        from stickslip.disk.wave_ring import moving
-
         own, rotation = super()._states(model, half_wave=half_wave), None
         if model.travels:
             _, rotation = moving(model, half_wave=half_wave)
@@ -293,8 +288,6 @@ class ExactResponse(ForcedResponse, FloquetStability):
 
     def _orbit(self, part: int, places: slice | int, index: int, samples: int) -> Float:
         """Return displacement, velocity, contact displacement or force (0 to 3) of an orbit."""
-        from stickslip import _core
-
         position = self.position(index)
         count = whole_number(samples, "samples", smallest=1)
         model, arrays = self.model, self.arrays

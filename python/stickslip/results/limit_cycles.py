@@ -14,6 +14,7 @@ from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
+from stickslip.model.structure import Structure
 from stickslip.results.arrays import (
     Bool,
     ExactColumns,
@@ -207,8 +208,6 @@ class LimitCycles(PeriodicMotions, FloquetStability):
 
         Raises ModelError if the model is a sector of a travelling wave.
         """
-        from stickslip.model.structure import Structure
-
         if self.model.travels:
             raise ModelError(
                 "model_at: a sector of a travelling wave has no damping matrix of its own"

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _core
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
@@ -266,12 +267,10 @@ class ColumnResult(Result):
 
 def _attributes(result: ColumnResult) -> dict[str, object]:
     """Return what every dataset says of its result, tables as JSON texts."""
-    from stickslip._core import __version__
-
     return {
         "title": result.title,
         "Conventions": "CF-1.11",
-        "stickslip_version": __version__,
+        "stickslip_version": _core.__version__,
         "settings": json.dumps(result.settings.model_dump()),
         "diagnostics": to_json(result.diagnostics),
         "timings": json.dumps(dict(result.timings)),

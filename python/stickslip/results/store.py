@@ -15,6 +15,7 @@ from stickslip.checks import brief, file_path, is_file, listed
 from stickslip.errors import ModelError
 from stickslip.files import refusal, require_place, write
 from stickslip.io.hdf5 import require_held, require_own
+from stickslip.memory import SHARE, physical_memory
 from stickslip.results.seal import SEAL, require_harmless, seal_variable, sealed, sealed_whole
 from stickslip.results.stored_model import model_of, model_variables
 
@@ -106,8 +107,6 @@ def load(path: str | os.PathLike[str]) -> Any:
 
 def content_of(source: Path) -> bytes:
     """Return the bytes of a result file, or refuse one that is larger than the memory."""
-    from stickslip.memory import SHARE, physical_memory
-
     try:
         size, memory = os.stat(source).st_size, physical_memory()
         if memory is not None and size > SHARE * memory:

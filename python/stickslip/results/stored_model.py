@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from stickslip.disk import BladedDisk, Interface, MistunedDisk
+from stickslip.disk.coupling import coupling_from_spec
 from stickslip.model import Model
 from stickslip.model.force import force_from_spec
 from stickslip.model.laws import contact_from_spec, law_from_spec
@@ -16,8 +18,6 @@ from stickslip.results.fields import Float
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from stickslip.disk import BladedDisk, MistunedDisk
 
 _MATRICES = {
     "mass": ("kg", "mass matrix"),
@@ -69,9 +69,6 @@ def _bladed(model: Any) -> dict[Hashable, object]:
 
 
 def _read_bladed(dataset: xr.Dataset, prefix: str = "") -> BladedDisk:
-    from stickslip.disk import BladedDisk, Interface
-    from stickslip.disk.coupling import coupling_from_spec
-
     contacts, forces = parts_of(dataset, prefix)
     settings = _read_texts(dataset, "disk")[0]
     interface = None
@@ -104,8 +101,6 @@ def _mistuned(model: Any) -> dict[Hashable, object]:
 
 
 def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
-    from stickslip.disk import MistunedDisk
-
     disk = _read_bladed(dataset, "sector_")
     stacks = [_real(dataset, f"blade_{name}") for name in ("mass", "stiffness", "damping")]
     known = np.zeros(disk.sectors)

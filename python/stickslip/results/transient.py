@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -20,9 +20,6 @@ from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.spectrum import Spectrum, spectrum_of
 from stickslip.results.status import Settled, TransientStatus
 from stickslip.settings.motion import TransientSettings
-
-if TYPE_CHECKING:
-    pass
 
 
 class TransientArrays(Columns):

@@ -16,7 +16,7 @@ from pydantic.fields import FieldInfo
 from stickslip.calls import misfit
 from stickslip.checks import brief
 from stickslip.errors import CallError, ModelError
-from stickslip.model import Model
+from stickslip.model.model import require_model
 from stickslip.settings.entries import CALL, Table
 from stickslip.settings.ranges import Or
 from stickslip.settings.refusal import refusal
@@ -57,11 +57,6 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-def _require_model(model: object) -> None:
-    if not isinstance(model, Model):
-        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
-
-
 def _require_progress(progress: object) -> None:
     if progress is not None and not callable(progress):
         raise ModelError(
@@ -70,7 +65,7 @@ def _require_progress(progress: object) -> None:
 
 
 _CHECKS: dict[str, Callable[[object], None]] = {
-    "model": _require_model,
+    "model": require_model,
     "progress": _require_progress,
 }
 _SAID = {

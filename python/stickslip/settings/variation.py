@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
 from pydantic import Field, Strict
 
+from stickslip import _core
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.model.contact import Contact
 from stickslip.settings.entries import ONE_OF, NamedContact, Some
 from stickslip.settings.ranges import Or
 from stickslip.settings.settings import Settings
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
 Common = Annotated[Literal["value", "factor"], ONE_OF]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from rich.table import Table
 
-if TYPE_CHECKING:
-    from stickslip.model import Model
-    from stickslip.results.result import Result
-    from stickslip.results.status import Status
+from stickslip.disk import BladedDisk, MistunedDisk
+from stickslip.model import Model
+from stickslip.results.result import Result
+from stickslip.results.status import Status
 
 __all__ = ["Row", "Table", "assumed", "counted", "listed", "model_rows", "new_table", "tabulated"]
 
@@ -51,8 +51,6 @@ def tabulated(
 
 def model_rows(model: Model) -> list[Row]:
     """Return what a result is of, as rows of its facts."""
-    from stickslip.disk import BladedDisk, MistunedDisk
-
     rows = [("dofs", f"{len(model.structure)}: {listed(model.structure.dofs)}")]
     if isinstance(model, BladedDisk):
         order = f"engine order {model.engine_order}"
