@@ -87,29 +87,20 @@ class BladeMotion(ContactMotion):
     def blade_amplitudes(self, dof: SectorDof, measure: Measure = "half_range") -> Float:
         """Return the amplitudes of one degree of freedom at all blades of a mistuned disk.
 
-        Raises ModelError as `blades`.
+        Of those that `blades` returns, shape (n, blades) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (n, blades)
-            [m], of the blades that `blades` returns.
+        Raises ModelError as `blades`.
         """
         columns = [self.amplitude(f"{blade}.{dof}", measure) for blade in self.blades(dof)]
         return constant(np.stack(columns, axis=1))
 
     def highest_blade(self, dof: SectorDof, measure: Measure = "half_range") -> tuple[int, Peak]:
-        """Return the blade with the highest peak, and the peak.
+        """Return the blade with the highest peak, counted from 0, and the peak.
 
-        All observed blades are followed together over the range of the computed points.
+        All observed blades are followed together over the range of the computed points, between
+        which the peak is refined.
 
         Raises ModelError as `blades`; if no point is solved.
-
-        Returns
-        -------
-        blade : int
-            Counted from 0.
-        peak : Peak
-            Its peak, refined between the computed points.
         """
         if not self.arrays.solved.any():
             raise ModelError(f"peak of {dof!r}: no point is solved; see status")

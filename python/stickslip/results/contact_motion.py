@@ -19,15 +19,11 @@ class ContactMotion(Peaks):
     """The part of a result that concerns the contacts."""
 
     def contact_force(self, contact: PointRef, index: int, samples: int = 512) -> Float:
-        """Return one period of the contact forces, as the friction law gives them.
+        """Return one period of the contact forces, shape (samples, points) or (samples,) [N].
 
-        This is the law's answer to the harmonics of the displacement, with its corners, not the
-        truncated series of the force.
-
-        Returns
-        -------
-        ndarray of float64, shape (samples, points) or (samples,)
-            [N], positive against the relative displacement.
+        Positive against the relative displacement, and as the friction law gives them: its answer
+        to the harmonics of the displacement, with its corners, not the truncated series of the
+        force.
         """
         position = self.position(index)
         count = whole_number(samples, "samples", smallest=1)
@@ -80,12 +76,8 @@ class ContactMotion(Peaks):
     def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:
         """Return one period of the relative displacement at the contacts.
 
-        With `contact_force` at the same instants it draws the hysteresis loop.
-
-        Returns
-        -------
-        ndarray of float64, shape (samples, points) or (samples,)
-            [m].
+        With `contact_force` at the same instants it draws the hysteresis loop. Of a contact or one
+        of its points, shape (samples, points) or (samples,) [m].
         """
         return self._period(self._select(self.arrays.contact_displacement, contact), index, samples)
 
@@ -96,12 +88,9 @@ class ContactMotion(Peaks):
         motion while the contact sticks and rests at F_d / k_d while it slips. For a single harmonic
         this is Guillen's improvement of Griffin's method.
 
-        Raises ModelError if its law has no single stiffness above 0.
+        Of a contact or one of its points, shape (samples, points) or (samples,) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (samples, points) or (samples,)
-            [m].
+        Raises ModelError if its law has no single stiffness above 0.
 
         References
         ----------
@@ -113,12 +102,10 @@ class ContactMotion(Peaks):
     def damper_amplitude(self, contact: PointRef) -> Float:
         """Return half the range of the deflection of the contact springs over a period.
 
-        Raises ModelError if its law has no single stiffness above 0.
+        That of the relative displacement where the contact never slips, else F_d / k_d. Of a
+        contact or one of its points, shape (n, points) or (n,) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            [m]: that of the relative displacement where the contact never slips, else F_d / k_d.
+        Raises ModelError if its law has no single stiffness above 0.
 
         References
         ----------
@@ -137,12 +124,9 @@ class ContactMotion(Peaks):
         bounds are those of the mean force. A contact that slips holds the mean force that the
         motion gives it, and the two bounds are 0.
 
-        Raises ModelError if its law has no single stiffness and slip force.
+        Lower and upper bound, shape (n, points, 2) or (n, 2) [N].
 
-        Returns
-        -------
-        ndarray of float64, shape (n, points, 2) or (n, 2)
-            Lower and upper bound [N].
+        Raises ModelError if its law has no single stiffness and slip force.
         """
         number, _ = self.locate(contact)
         parameters = self.model.contacts[number].parameters()

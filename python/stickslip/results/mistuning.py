@@ -154,10 +154,7 @@ class MistuningStudy(ColumnResult):
     ) -> Float:
         """Return the amplification factors found for one deviation and one coupling.
 
-        Returns
-        -------
-        ndarray of float64, shape (found,)
-            In the order of the patterns, those that were not found left out.
+        In the order of the patterns, those that were not found left out, shape (found,).
         """
         row = self.amplification(dof)[
             _one(deviation, self.deviation, "deviation"),

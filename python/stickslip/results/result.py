@@ -139,15 +139,7 @@ class Result(Frozen, ABC):
         save(path, self.kind, self.to_dataset(derived=False), self.model)
 
     def locate(self, contact: PointRef) -> tuple[int, int | None]:
-        """Return the position of a contact, and of its point if one is meant.
-
-        Returns
-        -------
-        contact : int
-            Position of the contact.
-        point : int or None
-            Position of the point in it; None for the whole contact.
-        """
+        """Return the position of a contact, and of its point; None for the whole contact."""
         if isinstance(contact, tuple | list):
             return self.model.point(contact)
         return self.model.contact_index(contact), None

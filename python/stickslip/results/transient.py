@@ -180,17 +180,14 @@ class Transient(ColumnResult):
         return states[:, place], states[:, len(structure) + place]
 
     def amplitudes(self, dof: str, measure: Literal["half_range", "max"] = "half_range") -> Float:
-        """Return the amplitude of a displacement in each period.
+        """Return the amplitude of a displacement in each period, shape (P,) [m].
+
+        From extrema, not samples.
 
         Parameters
         ----------
         measure : {"half_range", "max"}, optional
             Half the peak-to-peak range over the period, or the largest |x|.
-
-        Returns
-        -------
-        ndarray of float64, shape (P,)
-            [m]. From extrema, not samples.
         """
         choice(measure, "measure", ("half_range", "max"))
         return amplitude_in(self.arrays.range[:, self._column(dof)], measure)

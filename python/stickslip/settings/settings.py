@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import re
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
@@ -13,6 +12,7 @@ from typing import Annotated, Any, Literal, Self, TypeVar, Union, get_args, get_
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
+from stickslip import numpydoc
 from stickslip.calls import misfit
 from stickslip.checks import brief
 from stickslip.errors import CallError, ModelError
@@ -155,29 +155,18 @@ def _taken(annotation: Any, metadata: Iterable[Any] = ()) -> Any:
 
 def _documented(text: str, signature: inspect.Signature, keys: Mapping[str, FieldInfo]) -> str:
     """Complete "Parameters" by the keys, in the order of the signature, and "Raises"."""
-    head, *parts = re.split(r"\n\n(\w+)\n-+\n", inspect.cleandoc(text))
-    sections = dict.fromkeys(("Parameters", "Returns", "Raises"), "")
-    sections |= zip(parts[::2], parts[1::2], strict=True)
-    said = dict(_SAID)
-    for block in _blocks(sections["Parameters"]):
-        names = block.split(" : ")[0].replace("*", "").split(", ")
-        said |= dict.fromkeys(names, block)
+    sections = dict.fromkeys(("Parameters", "Returns", "Raises"), "") | numpydoc.sections(text)
+    said = _SAID | numpydoc.entries(sections["Parameters"])
     said |= {name: described(name, field) for name, field in keys.items()}
     sections["Parameters"] = "\n".join(
         dict.fromkeys(said[name] for name in signature.parameters if name in said)
     )
-    raised = dict(block.split("\n", 1) for block in _blocks(sections["Raises"]))
+    raised = numpydoc.entries(sections["Raises"])
     sections["Raises"] = "\n".join(
-        "\n".join(filter(None, (f"{name}{common}", raised.get(name))))
+        f"{name}{common}{raised.get(name, '').removeprefix(name)}"
         for name, common in _RAISED.items()
     )
-    written = (f"{name}\n{'-' * len(name)}\n{body}" for name, body in sections.items())
-    return "\n\n".join((head, *written))
-
-
-def _blocks(section: str) -> list[str]:
-    """Return the entries of a section; what is said of them is indented."""
-    return re.split(r"\n(?=\S)", section) if section else []
+    return numpydoc.written(sections)
 
 
 def described(name: str, field: FieldInfo) -> str:
