@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.analyses.texts import told
 from stickslip.checks import listed
 from stickslip.model import Model
-from stickslip.results.diagnostic import Diagnostic, diagnostic
+from stickslip.results.diagnostic import Diagnostic
 
 
 def uniqueness(model: Model) -> Diagnostic | None:
@@ -17,11 +18,7 @@ def uniqueness(model: Model) -> Diagnostic | None:
     """
     open_laws = list(dict.fromkeys(model.problem.laws_not_monotone))
     if open_laws:
-        return diagnostic(
-            "law-not-monotone",
-            f"The contact law {listed(open_laws)} is not monotone in the motion: the solution may "
-            "be unstable or not the only one.",
-        )
+        return told("law-not-monotone", _laws=listed(open_laws))
     damping = model.structure.damping
     # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
     symmetric = 0.5 * (damping + damping.T)
@@ -33,16 +30,8 @@ def uniqueness(model: Model) -> Diagnostic | None:
     if _is_positive(scaled - 1e-13 * identity):
         return None
     if _is_positive(scaled + 1e-9 * identity):
-        return diagnostic(
-            "undamped-motion",
-            "The damping leaves some motion undamped: a steady state that friction does not damp "
-            "either may not be the only one.",
-        )
-    return diagnostic(
-        "negative-damping",
-        "The damping is negative for some motion: the solution may be unstable or not the only "
-        "one.",
-    )
+        return told("undamped-motion")
+    return told("negative-damping")
 
 
 def _is_positive(matrix: NDArray[np.float64]) -> bool:

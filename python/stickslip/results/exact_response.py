@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ from stickslip.results.arrays import (
     amplitude_in,
     constant,
 )
+from stickslip.results.dataset import Dataset
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import KINDS, ContactStates, Events, states_of
 from stickslip.results.fields import Computed, column
@@ -37,9 +38,6 @@ from stickslip.results.periodic import key_of
 from stickslip.results.stability import FloquetStability
 from stickslip.results.status import Status
 from stickslip.settings.orbits import ExactSettings
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class OrbitArrays(Arrays, ExactColumns):
@@ -89,7 +87,7 @@ class OrbitArrays(Arrays, ExactColumns):
         return cls(**{name: values[name] for name in cls.table()})
 
     @classmethod
-    def read(cls, dataset: xr.Dataset, **more: Any) -> Self:
+    def read(cls, dataset: Dataset, **more: Any) -> Self:
         """Return the columns that a dataset holds; see `Columns.read`."""
         arrays = super().read(dataset, **more)
         ends, events = arrays.event_offset, arrays.event_time.size

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from stickslip.drawn import Drawn
 from stickslip.results.blades import BladeMotion
 from stickslip.results.certificate import Certificate
+from stickslip.results.dataset import Dataset
 from stickslip.results.energy import Energy, energy_of
 from stickslip.results.sensitivities import Sensitivities
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class ForcedResponse(BladeMotion, Sensitivities):
@@ -64,5 +62,5 @@ class ForcedResponse(BladeMotion, Sensitivities):
         return certified | super()._further_variables(derived=derived)
 
     @classmethod
-    def _further_arguments(cls, dataset: xr.Dataset) -> dict[str, Any]:
+    def _further_arguments(cls, dataset: Dataset) -> dict[str, Any]:
         return {"certificate": Certificate.of_dataset(dataset)}

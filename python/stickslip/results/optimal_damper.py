@@ -9,6 +9,7 @@ import numpy as np
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
+from stickslip.results.dataset import Dataset
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.fields import Columns, Float, column
 from stickslip.results.result import Result
@@ -16,7 +17,6 @@ from stickslip.results.status import Status
 from stickslip.results.stored_model import part_variables, parts_of
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 
@@ -112,7 +112,7 @@ class OptimalDamper(Result):
         """Number of peaks computed; `curve.counters` tells of how many solutions each."""
         return int(self.curve.values.size)
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+    def to_dataset(self, *, derived: bool = True) -> Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
         That of the curve, with the dimension minimum of the local minima, the least first, and the
@@ -133,7 +133,7 @@ class OptimalDamper(Result):
         return dataset
 
     @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
         """Return the result that a dataset holds; `model` is the one at the best value."""
         given = Model(model.structure, *parts_of(dataset, "given_"))
         prefix = "curve_"

@@ -10,7 +10,7 @@ from dataclasses import fields
 from functools import partial
 from os import PathLike
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.results.dataset import (
+    Dataset,
     labels,
     point_names,
     require_fit,
@@ -29,9 +30,6 @@ from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.documented import Frozen
 from stickslip.results.fields import Columns, Shown
 from stickslip.settings.settings import Settings
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Kind = TypeVar("Kind", bound=np.generic)
 Attributes: TypeAlias = Mapping[str, Callable[[Any], object]]
@@ -93,7 +91,7 @@ class Result(Frozen, ABC):
         return partial(type(self), **values), ()
 
     @abstractmethod
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+    def to_dataset(self, *, derived: bool = True) -> Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
         Numbers as variables, everything else as attributes; all numbers are copies.
@@ -106,7 +104,7 @@ class Result(Frozen, ABC):
 
     @classmethod
     @abstractmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
         """Return the result that a dataset holds.
 
         Equal to the one that made the dataset, bit by bit.
@@ -203,7 +201,7 @@ class ColumnResult(Result):
         names = {"timings", "counters", *cls.attributes} - set(given)
         return cls(**{name: getattr(solution, name) for name in names}, **given)
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+    def to_dataset(self, *, derived: bool = True) -> Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
         The columns of `arrays` are the variables, with names along their dimensions; everything
@@ -221,7 +219,7 @@ class ColumnResult(Result):
         return dataset.assign_coords(_coordinates(self, dataset.sizes, states))
 
     @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
         """Return the result that a dataset holds."""
         told = dataset.attrs
         states = cls._states(model, half_wave=bool(told.get("half_wave", False)))
@@ -252,7 +250,7 @@ class ColumnResult(Result):
         return {}
 
     @classmethod
-    def _further_arguments(cls, dataset: xr.Dataset) -> dict[str, Any]:
+    def _further_arguments(cls, dataset: Dataset) -> dict[str, Any]:
         """Return what `_further_variables` wrote and cannot be derived."""
         return {}
 
@@ -272,7 +270,7 @@ def _attributes(result: ColumnResult) -> dict[str, object]:
     }
 
 
-def _settings_of(kind: type[ColumnResult], dataset: xr.Dataset) -> Settings:
+def _settings_of(kind: type[ColumnResult], dataset: Dataset) -> Settings:
     """Return the settings that `attributes` wrote."""
     values = json.loads(dataset.attrs["settings"])
     if values.get("samples", 0) is None:
