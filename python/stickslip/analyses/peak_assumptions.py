@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption
+from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption, uniqueness
 from stickslip.analyses.texts import told
-from stickslip.analyses.uniqueness import uniqueness
 from stickslip.checks import listed
 from stickslip.model import Model
 from stickslip.results.arrays import Bool

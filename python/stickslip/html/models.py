@@ -13,7 +13,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.structure import Rayleigh, Structure
 from stickslip.results.result import Result
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, model_rows, tabulated
 
 _MODES = 12
 
@@ -83,17 +83,12 @@ def _frequencies(model: Model) -> Table:
         if limit < inf
     ]
     stuck, free = natural_frequencies(model), natural_frequencies(model, slipping)
-    table = new_table("natural frequencies")
-    columns = [("stuck", stuck), ("free", free)] if slipping else [("", stuck)]
-    table.add_column("mode", justify="right")
-    for state, _ in columns:
-        for unit in ("rad/s", "Hz"):
-            table.add_column(f"{state} [{unit}]".strip(), justify="right")
-    for mode in range(min(stuck.size, _MODES)):
-        cells = [
-            f"{value:#.6g}" for _, omega in columns for value in (omega[mode], omega[mode] / 2 / pi)
-        ]
-        table.add_row(f"{mode}", *cells)
+    columns = {"stuck": stuck, "free": free} if slipping else {"": stuck}
+    headings = [f"{state} [{unit}]".strip() for state in columns for unit in ("rad/s", "Hz")]
+    values = np.stack([omega / part for omega in columns.values() for part in (1.0, 2 * pi)], 1)
+    rows = [("", (f"{mode}", *(f"{x:#.6g}" for x in row))) for mode, row in enumerate(values)]
+    table = tabulated("", (), ["mode", *headings], (), rows[:_MODES])
+    table.title = "natural frequencies"
     notes = ["all contacts stuck, and all slipping without friction"] if slipping else []
     if stuck.size > _MODES:
         notes.append(f"the lowest {_MODES} of {stuck.size}")

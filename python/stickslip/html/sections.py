@@ -25,7 +25,7 @@ from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import VIEWS, cautions, failures, view_of
 from stickslip.views.picture import Panel
-from stickslip.views.tables import Row, Table, new_table
+from stickslip.views.tables import Row, Table, tabulated
 
 
 class Entry(NamedTuple):
@@ -129,17 +129,13 @@ def _figures(panels: Iterable[Panel]) -> list[Drawn | str]:
 
 
 def _overview(entries: Sequence[Entry]) -> Table:
-    table = new_table()
-    for heading in ("result", "kind", "status"):
-        table.add_column(heading)
-    for heading in ("assumptions", "computed in [s]"):
-        table.add_column(heading, justify="right")
+    rows = []
     for entry in entries:
         result = entry.result
         status = _status(result) + ", interrupted" * result.interrupted
         time = f"{result.timings['total']:.3g}" if "total" in result.timings else ""
-        table.add_row(entry.name, _kind(result), status, f"{len(result.assumptions)}", time)
-    return table
+        rows.append((entry.name, (_kind(result), status, f"{len(result.assumptions)}", time)))
+    return tabulated("result", ("kind", "status"), ("assumptions", "computed in [s]"), (), rows)
 
 
 def _kind(result: Result) -> str:

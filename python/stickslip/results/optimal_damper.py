@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
+from stickslip.drawn import Axes
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
@@ -15,9 +16,6 @@ from stickslip.results.fields import Columns, Float, column
 from stickslip.results.result import Result
 from stickslip.results.status import Status
 from stickslip.results.stored_model import part_variables, parts_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 class _Minima(Columns):
