@@ -17,7 +17,7 @@ from stickslip.disk.mistuned import MistunedDisk, deviating
 from stickslip.disk.sector import Sector
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
-from stickslip.model import natural_frequencies
+from stickslip.model.configurations import every_point, natural_frequencies
 from stickslip.model.model import AnyMatrix, PointRef, from_core
 from stickslip.model.structure import Structure
 
@@ -151,8 +151,8 @@ class BladedDisk(Sector):
 
         `slipping` are the contact points that slip, as of `natural_frequencies`. Default: all.
         """
-        every = [(c, point) for c, one in enumerate(self.contacts) for point in range(one.points)]
-        slips = every if slipping is None else members(slipping, "slipping", "slipping=[...]")
+        given = every_point(self) if slipping is None else slipping
+        slips = members(given, "slipping", "slipping=[...]")
         diameters = np.arange(self.sectors // 2 + 1)
         stuck, free = (
             np.stack([natural_frequencies(self, points, nodal_diameter=int(d)) for d in diameters])

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, pi
+from math import pi
 
 import numpy as np
 
 from stickslip.disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
+from stickslip.model.configurations import every_point
 from stickslip.model.structure import Rayleigh, Structure
 from stickslip.results.result import Result
 from stickslip.views.tables import Row, Table, model_rows, tabulated
@@ -76,12 +77,7 @@ def _damping(structure: Structure) -> str:
 
 def _frequencies(model: Model) -> Table:
     """Tabulate the lowest natural frequencies, all contacts stuck and all free to slip."""
-    slipping = [
-        (contact, point)
-        for contact, one in enumerate(model.contacts)
-        for point, limit in enumerate(one.limits)
-        if limit < inf
-    ]
+    slipping = every_point(model, finite=True)
     stuck, free = natural_frequencies(model), natural_frequencies(model, slipping)
     columns = {"stuck": stuck, "free": free} if slipping else {"": stuck}
     headings = [f"{state} [{unit}]".strip() for state in columns for unit in ("rad/s", "Hz")]

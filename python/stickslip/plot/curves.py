@@ -148,16 +148,8 @@ class _View:
     def draw_limit(self, model: Model, span: tuple[float, float], at: str, *, stuck: bool) -> None:
         """Draw the linear response with all contacts stuck, or with none."""
         omega, amplitude = limit_curve(model, self.dof, span, self.measure, stuck=stuck)
-        self.ax.plot(
-            self.omega.factor * omega,
-            self._factor(model) * amplitude,
-            color=style.GREY,
-            lw=1.1,
-            ls=style.STUCK if stuck else style.FREE,
-            label=f"{'stuck' if stuck else 'free'} (linear{at})",
-            zorder=1.5,
-            gid=style.LIMIT,
-        )
+        x, y = self.omega.factor * omega, self._factor(model) * amplitude
+        self.ax.plot(x, y, **style.linear_limit(stuck=stuck, of=at))
 
     def shade_error(self, result: ForcedResponse, colour: Colour) -> None:
         """Shade what the discarded harmonics could still change."""

@@ -103,10 +103,7 @@ class DamperCurve(ColumnResult):
 
         `stickslip.optimal_damper` finds the lowest of all values, between the computed ones.
 
-        Raises
-        ------
-        ModelError
-            If no peak was found.
+        Raises ModelError if no peak was found.
         """
         if not self.arrays.solved.any():
             raise ModelError(f"optimum: none of the {self.values.size} peaks was found; see status")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import Field, dataclass
+from functools import cached_property
 from inspect import CO_VARARGS, CO_VARKEYWORDS
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
@@ -74,6 +75,8 @@ class Frozen:
         for name, value in vars(cls).items():
             if isinstance(value, FunctionType) and value.__doc__ and not name.startswith("_"):
                 value.__doc__ = _of_method(value, getattr(super(cls, cls), name, None))
+            elif isinstance(value, property | cached_property) and value.__doc__:
+                value.__doc__ = _written(_sections(value.__doc__))
         if cls.__doc__:
             cls.__doc__ = _of_class(cls)
 

@@ -50,10 +50,7 @@ class ForcedResponse(BladeMotion, Sensitivities):
     def energy(self) -> Energy:
         """Work of the forces and energy lost, per period.
 
-        Raises
-        ------
-        ModelError
-            If a degree of freedom was not observed: all of them take part.
+        Raises ModelError if a degree of freedom was not observed: all of them take part.
         """
         return energy_of(self)
 

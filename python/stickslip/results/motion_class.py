@@ -112,10 +112,7 @@ class MotionClass(ColumnResult):
     def final(self) -> State:
         """The state once it was decided; ``classify(model, result.final)`` goes on.
 
-        Raises
-        ------
-        ModelError
-            If the motion has overflowed, and has no finite state.
+        Raises ModelError if the motion has overflowed, and has no finite state.
         """
         return State.of_vector(self.model, self.arrays.final[0])
 

@@ -82,10 +82,7 @@ class OptimalDamper(Result):
     def slip_force(self) -> float:
         """The best slip force of the contacts that were varied [N].
 
-        Raises
-        ------
-        ModelError
-            If something else was varied, or the contacts have several slip forces.
+        Raises ModelError if something else was varied, or the contacts have several slip forces.
         """
         if self.parameter != "slip_force":
             raise ModelError(f"slip_force: the {self.parameter} was varied; see value")

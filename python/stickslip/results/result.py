@@ -19,13 +19,8 @@ from stickslip import _core
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
-from stickslip.results.dataset import (
-    Dataset,
-    labels,
-    point_names,
-    require_fit,
-    state_names,
-)
+from stickslip.model.configurations import every_point
+from stickslip.results.dataset import Dataset, labels, point_names, require_fit, state_names
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.documented import Frozen
 from stickslip.results.fields import Columns, Shown
@@ -293,11 +288,7 @@ def _coordinates(
             about = {"units": "1", "long_name": meaning}
             made[dimension] = (dimension, np.arange(sizes[dimension]), about)
     if "point" in sizes:
-        owners = [
-            name
-            for name, contact in zip(model.contact_names, model.contacts, strict=True)
-            for _ in range(contact.points)
-        ]
+        owners = [model.contact_names[contact] for contact, _ in every_point(model)]
         made["point"] = labels("point", point_names(model), "contact point")
         made["contact"] = labels("point", owners, "contact of the point")
     if "state_entry" in sizes:

@@ -129,10 +129,7 @@ class Transient(ColumnResult):
     def final(self) -> State:
         """The state after the last period; ``transient(..., start=result.final)`` goes on.
 
-        Raises
-        ------
-        ModelError
-            If the motion is unbounded and has no finite state at its end.
+        Raises ModelError if the motion is unbounded and has no finite state at its end.
         """
         return State.of_vector(self.model, self.arrays.poincare[-1])
 
