@@ -125,14 +125,10 @@ class BladeMotion(ContactMotion):
         tuned : ForcedResponse
             The response of the tuned disk.
         """
-        if not isinstance(tuned, BladeMotion) or not tuned.model.travels:
-            raise ModelError(
-                f"tuned: {brief(tuned)} is not the response of a BladedDisk; give "
-                "forced_response(disk, ...)"
-            )
+        reference = response_of_disk(tuned)
         blade, peak = self.highest_blade(dof, measure)
-        reference = tuned.peak(dof, measure)
-        return Amplification(peak.amplitude / reference.amplitude, blade, peak, reference)
+        known = reference.peak(dof, measure)
+        return Amplification(peak.amplitude / known.amplitude, blade, peak, known)
 
     def _tuned_disk(self) -> BladedDisk:
         if not isinstance(self.model, BladedDisk):
@@ -149,3 +145,13 @@ class BladeMotion(ContactMotion):
                 "see sector"
             )
         return self.model
+
+
+def response_of_disk(tuned: object) -> BladeMotion:
+    """Return the response of a tuned disk, or refuse anything else."""
+    if not isinstance(tuned, BladeMotion) or not tuned.model.travels:
+        raise ModelError(
+            f"tuned: {brief(tuned)} is not the response of a BladedDisk; give "
+            "forced_response(disk, ...)"
+        )
+    return tuned
