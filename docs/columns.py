@@ -22,7 +22,13 @@ class Columns(griffe.Extension):
             _document(func)
 
     def on_attribute_instance(self, *, attr: griffe.Attribute, **_: Any) -> None:
-        """Say what the column of an attribute is, or which function draws."""
+        """Say what a property says, what the column of an attribute is, or which function draws."""
+        if (
+            "property" in attr.labels
+            and attr.docstring
+            and attr.path.startswith("stickslip.results.")
+        ):
+            _document(attr)
         if not isinstance(attr.value, griffe.ExprCall):
             return
         kind = str(attr.value.function)

@@ -4,7 +4,7 @@ use numpy::ndarray::IntoDimension;
 use numpy::{Complex64, Element, PyArray1, PyArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict as _, PyDict};
-use stickslip_core::balance::{Point, PointStatus};
+use stickslip_core::balance::Point;
 use stickslip_core::contact::PointState;
 use stickslip_core::motion::Event;
 use stickslip_core::timing::Profile;
@@ -151,7 +151,7 @@ impl<'py> Columns<'py> {
         self.one("omega", all().map(|p| p.omega))?;
         self.one("harmonics", all().map(|p| p.harmonics as i64))?;
         self.one("samples", all().map(|p| p.samples.unwrap_or(0) as i64))?;
-        self.one("status", all().map(|p| status_code(p.status)))?;
+        self.one("status", all().map(|p| p.status as u8))?;
         self.one("residual", all().map(|p| p.residual))?;
         self.one("iterations", all().map(|p| p.iterations as i64))?;
         let series = |of: fn(&Point) -> &[Complex64]| all().map(move |p| (p.harmonics, of(p)));
@@ -200,20 +200,5 @@ pub fn stability_code(stable: Option<bool>) -> u8 {
         Some(false) => 0,
         Some(true) => 1,
         None => 2,
-    }
-}
-
-/// Number of a status, as Python knows it.
-pub fn status_code(status: PointStatus) -> u8 {
-    match status {
-        PointStatus::Converged => 0,
-        PointStatus::Stalled => 1,
-        PointStatus::Singular => 2,
-        PointStatus::NotComputed => 3,
-        PointStatus::HarmonicsLimit => 4,
-        // 5 is an orbit that did not close.
-        PointStatus::SamplesLimit => 6,
-        PointStatus::StepsLimit => 7,
-        PointStatus::EffortLimit => 8,
     }
 }

@@ -1,7 +1,7 @@
 //! Damper design: peaks along a parameter, the least of them, and sensitivities.
 
 use crate::arrays::{series, table, Array3};
-use crate::columns::{status_code, Columns};
+use crate::columns::Columns;
 use crate::problem::Problem;
 use crate::settings::{evaluated, get, harmonic, measure, residual, variation};
 use crate::watch;
@@ -27,7 +27,7 @@ fn written<'py>(py: Python<'py>, peaks: &[Peak], curve: &Curve) -> PyResult<Boun
     columns.one("error_estimate", peaks().map(|p| p.error_estimate))?;
     columns.one("harmonics", peaks().map(|p| p.harmonics as i64))?;
     columns.one("at_edge", peaks().map(|p| p.at_edge))?;
-    columns.one("status", peaks().map(|p| status_code(p.status)))?;
+    columns.one("status", peaks().map(|p| p.status as u8))?;
     columns.tell("interrupted", curve.interrupted)?;
     columns.effort(&curve.profile, ("points", curve.points))?;
     columns.end()

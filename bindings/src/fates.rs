@@ -37,7 +37,6 @@ pub fn fates<'py>(
     let reasons = || fates().map(|fate| fate.map_or(Reason::Interrupted, |fate| fate.reason));
     let modes = fates().map(|fate| fate.and_then(|fate| fate.mode).map_or(-1, |mode| mode as i64));
     let columns = Columns::new(py);
-    // Python has the reasons in the same order.
     columns.one("reason", reasons().map(|reason| reason as u8))?;
     columns.one("mode", modes)?;
     columns.one("share", numbers(|fate| fate.share))?;

@@ -38,7 +38,6 @@ fn branch<'py>(
     let changes = || found.changes.iter();
     columns.rows("change", 2, f64::NAN, changes().map(|c| [c.value, c.omega]))?;
     columns.one("change_after", changes().map(|c| c.after as i64))?;
-    // Python has the kinds in the same order.
     columns.one("change_kind", changes().map(|c| c.kind as i64))?;
     let unstable = changes().map(|c| [c.unstable.0 as i64, c.unstable.1 as i64]);
     columns.rows("change_unstable", 2, 0, unstable)?;

@@ -1,7 +1,6 @@
 //! Mistuned disks: the highest blade of one, and of many patterns in parallel threads.
 
 use crate::arrays::{matrix, refused, Array2};
-use crate::columns::status_code;
 use crate::problem::{
     harmonic_loads, ring_coupling, sector_contacts, Forces, Matrix, Problem, SectorContactSpec,
 };
@@ -62,7 +61,7 @@ type Row = (f64, f64, usize, u8, usize, f64, bool);
 
 fn row(summit: &GlobalPeak) -> Row {
     let GlobalPeak { omega, amplitude, member, harmonics, error_estimate, at_edge, .. } = *summit;
-    (omega, amplitude, member, status_code(summit.status), harmonics, error_estimate, at_edge)
+    (omega, amplitude, member, summit.status as u8, harmonics, error_estimate, at_edge)
 }
 
 /// The highest point of every group of DOFs, of each of which the highest.

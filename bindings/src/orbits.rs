@@ -17,11 +17,11 @@ use stickslip_core::orbit::{
 };
 use stickslip_core::timing::Profile;
 
-/// Sectors, shift, wrap, sign and parts.
-type RotationArgument = (usize, usize, f64, f64, usize);
-
-fn rotation_of((sectors, shift, wrap, sign, parts): RotationArgument) -> Rotation {
-    Rotation { sectors, shift, wrap, sign, parts }
+/// The symmetry of a travelling wave, `Rotation` of Python; none of another model.
+fn rotation(given: &Bound<'_, PyAny>) -> PyResult<Option<Rotation>> {
+    let given = given.extract::<Option<(usize, usize, f64, f64, usize)>>()?;
+    let of = |(sectors, shift, wrap, sign, parts)| Rotation { sectors, shift, wrap, sign, parts };
+    Ok(given.map(of))
 }
 
 /// Exact periodic orbits over a grid of frequencies.
@@ -35,11 +35,10 @@ pub fn exact_response<'py>(
     harmonics: usize,
     #[pyo3(from_py_with = orbit)] settings: OrbitSettings,
     progress: Option<Py<PyAny>>,
-    rotation: Option<RotationArgument>,
+    #[pyo3(from_py_with = rotation)] rotation: Option<Rotation>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let settings = OrbitSettings { harmonics, ..settings };
-    let (rotation, observed) = (rotation.map(rotation_of), observe.len());
-    let (model, own) = (&problem.model, Arc::clone(&problem.model));
+    let (model, own, observed) = (&problem.model, Arc::clone(&problem.model), observe.len());
     let found = keeping(
         py,
         progress,
@@ -80,10 +79,9 @@ pub fn exact_peak(
     dof: usize,
     #[pyo3(from_py_with = measure)] measure: Measure,
     #[pyo3(from_py_with = orbit)] settings: OrbitSettings,
-    rotation: Option<RotationArgument>,
+    #[pyo3(from_py_with = rotation)] rotation: Option<Rotation>,
 ) -> PyResult<(f64, f64)> {
     let model = Arc::clone(&problem.model);
-    let rotation = rotation.map(rotation_of);
     whole(py, move |look| {
         let observe = [dof];
         PeriodicOrbits::new(&model, settings, &observe)

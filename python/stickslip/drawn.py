@@ -9,10 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 from types import MethodType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    from matplotlib import axes
+
+Axes: TypeAlias = "axes.Axes"
+"""Of Matplotlib, which takes long to load."""
 
 
 class _Plots:

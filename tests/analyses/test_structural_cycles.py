@@ -58,3 +58,27 @@ def test_few_harmonics_are_followed_past_all_corners_too(fed_pair):
     assert not any("Stalled" in text for text in branch.assumptions)
     assert branch.limit.ratio == pytest.approx(51.56, rel=0.05)
     assert branch.ratio[-1] == pytest.approx(0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["newton", "exact"])
+def test_a_structural_damper_of_two_contacts_is_a_jenkins_element(method):
+    pair = ss.reference.damped_pair().structure
+    bare = ss.Structure(pair.mass, pair.stiffness, None, pair.dofs)
+    negative = ss.reference.negative_damping(pair)
+    stiffness, ends = 2.4e6, ("1.tip", "2.tip")
+    element = ss.Jenkins(*ends, stiffness=stiffness, slip_force=60.0)
+    body = ss.StructuralDamper(
+        ends, stiffness=stiffness * np.array([[1, -1], [-1, 1]]), slip_forces=[60.0, np.inf]
+    )
+    one, other = (
+        ss.limit_cycles(model, negative, mode=1, method=method, harmonics=9, ratio=[4.0, 9.0])
+        for model in (ss.Model(bare, [contact], []) for contact in (element, body))
+    )
+    assert (
+        list(one.branch) == list(other.branch) == ["sticking", "sticking", "slipping", "slipping"]
+    )
+    np.testing.assert_allclose(other.omega, one.omega, rtol=1e-9)
+    np.testing.assert_allclose(other.amplitude("1.tip"), one.amplitude("1.tip"), rtol=1e-9)
+    largest = np.abs(one.multipliers).max(axis=1)
+    np.testing.assert_allclose(np.abs(other.multipliers).max(axis=1), largest, rtol=1e-6)

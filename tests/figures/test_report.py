@@ -1,21 +1,18 @@
-"""Reports: what stands on the page, what is refused, and how a new kind of result joins."""
+"""Reports: what stands on the page, and how a new kind of result joins."""
 
 import json
 import re
 import sys
-from html.parser import HTMLParser
 from itertools import pairwise
-from pathlib import Path
 from types import ModuleType
 from typing import ClassVar
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import stickslip as ss
 from packed import numbers
-from stickslip.cli import app
+from report_page import Page
 from stickslip.results.diagnostic import diagnostic
 from stickslip.results.result import Result
 from stickslip.views import kinds
@@ -24,50 +21,6 @@ from stickslip.views.tables import tabulated
 
 BEAM = ss.reference.snecma_beam(20.313)
 FLUTTER = ss.destabilised(ss.reference.single_dof(), ss.Rayleigh(mass=-20.0))
-VOID = {"meta", "img", "br", "link"}
-
-
-class Page(HTMLParser):
-    """What stands on a page, with a complaint about every element that is not closed."""
-
-    def __init__(self, file):
-        super().__init__()
-        self.open, self.ids, self.links, self.tags = [], [], [], []
-        self.data, self.texts, self.captions = [], [], []
-        self.feed(Path(file).read_text(encoding="utf-8"))
-        assert self.open == []
-
-    def handle_starttag(self, tag, attrs):
-        given = dict(attrs)
-        self.tags.append((tag, given))
-        if "id" in given:
-            self.ids.append(given["id"])
-        if tag == "a":
-            self.links.append(given["href"])
-        if tag not in VOID:
-            self.open.append((tag, given))
-
-    def handle_endtag(self, tag):
-        assert self.open.pop()[0] == tag
-
-    def handle_data(self, data):
-        if not self.open:
-            return
-        tag, given = self.open[-1]
-        if given.get("type") == "application/json":
-            self.data.append(json.loads(data))
-        elif tag == "caption":
-            self.captions.append(data.strip())
-        elif tag not in ("script", "style") and data.strip():
-            self.texts.append(" ".join(data.split()))
-
-    @property
-    def text(self):
-        return "\n".join(self.texts)
-
-    @property
-    def figures(self):
-        return self.data
 
 
 def names_of(figure):
@@ -203,106 +156,6 @@ def test_marks_go_with_the_curve_of_their_colour(results, tmp_path):
     curves = {trace["name"]: trace for trace in data if trace["showlegend"]}
     for mark in marks:
         assert curves[mark["name"]]["legendgroup"] == mark["legendgroup"]
-
-
-# ---------------------------------------------------------------------------------- files
-
-
-@pytest.mark.slow
-def test_the_command(results, tmp_path):
-    for name in ("low", "high"):
-        results[name].save(tmp_path / f"{name}.nc")
-    files = [str(tmp_path / f"{name}.nc") for name in ("low", "high")]
-    done = CliRunner().invoke(app, ["report", *files, "--title", "Two", "--dof", "tip", "--hertz"])
-    assert (done.exit_code, done.stderr) == (0, "")
-    assert done.stdout == f"report: {tmp_path / 'report.html'}\n"
-    page = Page(tmp_path / "report.html")
-    assert page.texts[0] == "Two"
-    assert files[0] in page.texts
-    import hashlib
-
-    assert hashlib.sha256(Path(files[0]).read_bytes()).hexdigest() in page.texts
-    assert any(text.endswith(f"by stickslip {ss.__version__}") for text in page.texts)
-
-
-@pytest.mark.slow
-def test_files_of_the_same_name_are_told_apart(results, tmp_path):
-    files = []
-    for folder in ("a", "b"):
-        (tmp_path / folder).mkdir()
-        files.append(tmp_path / folder / "run.nc")
-        results["low"].save(files[-1])
-    ss.report(files, tmp_path / "two.html")
-    page = Page(tmp_path / "two.html")
-    assert {"a/run", "b/run"} <= set(page.texts)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["none.nc"], "none.nc: no such file"),
-        (["cut.nc"], "cut.nc: not a readable NetCDF file, or a damaged one"),
-        (["changed.nc"], "changed.nc: was changed since it was saved, its digest differs"),
-        (["low.nc", "cut.nc"], "cut.nc: not a readable"),
-        (["odd.nc"], "odd.nc: holds 'mystery', this version reads"),
-        (["low.nc", "--dof", "tpi"], "unknown dof 'tpi'; did you mean 'tip'?"),
-        (["low.nc", "--out", "a.pdf"], "a.pdf: a report is a page of HTML; let its name end in"),
-        (["low.nc", "--out", "none/a.html"], "there is no folder none; create it first"),
-        (["low.nc", "--length-unit", "km"], "unknown choice 'km'"),
-    ],
-)
-def test_refused_in_one_line(results, tmp_path, monkeypatch, arguments, message):
-    import xarray as xr
-
-    monkeypatch.chdir(tmp_path)
-    results["low"].save("low.nc")
-    Path("cut.nc").write_bytes(Path("low.nc").read_bytes()[:9000])
-    Path("changed.nc").write_bytes(Path("low.nc").read_bytes() + b"\n")
-    odd = xr.load_dataset("low.nc", engine="h5netcdf").drop_dims("seal_byte")
-    odd.assign_attrs(stickslip_kind="mystery").to_netcdf("odd.nc", engine="h5netcdf")
-    before = sorted(tmp_path.iterdir())
-    done = CliRunner().invoke(app, ["report", *arguments])
-    assert (done.exit_code, done.stdout) == (2, "")
-    (line,) = done.stderr.splitlines()
-    assert message in line
-    assert sorted(tmp_path.iterdir()) == before
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ([], "results: empty; give at least one result or file"),
-        ({}, "results: empty"),
-        (3, "results: 3 is neither a result nor a file of one"),
-        ([BEAM], "is neither a result nor a file of one"),
-        ({3: "a.nc"}, "name of a result"),
-    ],
-)
-def test_what_is_no_result_is_refused(tmp_path, given, message):
-    with pytest.raises(ss.ModelError, match=re.escape(message)):
-        ss.report(given, tmp_path / "a.html")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_whole_or_not_at_all(results, tmp_path, monkeypatch):
-    file = tmp_path / "a.html"
-    file.write_text("before")
-
-    def fail(handle):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.fsync", fail)
-    with pytest.raises(ss.ModelError, match=r"a\.html: cannot be written \(No space left"):
-        ss.report(results["low"], file)
-    assert file.read_text() == "before"
-    assert list(tmp_path.iterdir()) == [file]
-
-
-def test_a_missing_library_is_named(results, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "plotly", None)
-    with pytest.raises(ss.ModelError, match=r"plotly is not installed; .*'stickslip\[report\]'"):
-        ss.report(results["low"], tmp_path / "a.html")
 
 
 def test_points_that_failed_are_said_and_marked(tmp_path):

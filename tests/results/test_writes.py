@@ -1,97 +1,24 @@
 """Every place that writes a file: on a full, a read-only and a failing disk, and one that is slow.
 
-A disk that refuses is played by the calls of the system, which fail for the temporary file alone;
-real refusals come from the limit of the size of files, in processes of their own.
+Studies on such disks are in `tests/study/test_study_writes.py`.
 """
 
 import ast
 import errno
 import os
 import re
-import shutil
-import subprocess
-import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import stickslip as ss
-from beam_study import COMMAND, EXAMPLE, invoke, study_text
+from failing_disk import Disk, names
 from stickslip import files
 from stickslip.reference import snecma_beam
 
 PACKAGE = Path(ss.__file__).parent
-
-
-class Disk:
-    """Takes the place of the calls of the system that write a file, and fails as it is told.
-
-    Parameters
-    ----------
-    monkeypatch : pytest.MonkeyPatch
-        Puts everything back.
-    fails : dict of int
-        Error number by name of the call: open, write, fsync, close, replace.
-    room : int, optional
-        Bytes that are taken before writing fails.
-    most : int, optional
-        Bytes that one call takes.
-    after : int, optional
-        Files that are written well before.
-    """
-
-    def __init__(self, monkeypatch, fails, *, room=0, most=2**30, after=0):
-        self.fails, self.room, self.most, self.after = fails, room, most, after
-        self.handles, self.contents = set(), []
-        self.calls = {name: getattr(os, name) for name in ("open", "write", "fsync", "close")}
-        self.calls["replace"] = os.replace
-        for name in self.calls:
-            monkeypatch.setattr(os, name, getattr(self, name))
-
-    def fail(self, name):
-        if name in self.fails and self.after <= 0:
-            raise OSError(self.fails[name], os.strerror(self.fails[name]))
-
-    def open(self, path, flags, *rest, **options):
-        if ".stickslip-" not in str(path):
-            return self.calls["open"](path, flags, *rest, **options)
-        self.fail("open")
-        handle = self.calls["open"](path, flags, *rest, **options)
-        self.handles.add(handle)
-        self.contents.append(b"")
-        return handle
-
-    def write(self, handle, content):
-        if handle not in self.handles:
-            return self.calls["write"](handle, content)
-        if len(content) > self.room or "write" not in self.fails:
-            if not self.room:
-                self.fail("write")
-            content = content[: min(self.most, self.room or self.most)]
-        count = self.calls["write"](handle, content)
-        self.room = max(self.room - count, 0)
-        self.contents[-1] += bytes(content[:count])
-        return count
-
-    def fsync(self, handle):
-        if handle in self.handles:
-            self.fail("fsync")
-        self.calls["fsync"](handle)
-
-    def close(self, handle):
-        self.calls["close"](handle)
-        if handle in self.handles:
-            self.handles.remove(handle)
-            self.fail("close")
-
-    def replace(self, source, target):
-        if ".stickslip-" in str(source):
-            self.fail("replace")
-            self.after -= 1
-        self.calls["replace"](source, target)
 
 
 FAULTS = {
@@ -113,10 +40,6 @@ FAULTS = {
 @pytest.fixture
 def frf():
     return ss.forced_response(snecma_beam(), np.linspace(150.0, 250.0, 12), 3)
-
-
-def names(folder):
-    return sorted(entry.name for entry in folder.iterdir())
 
 
 @pytest.mark.parametrize("there", [False, True])
@@ -321,137 +244,3 @@ def require_harmless(place, name, call):
     elif re.search(r"'[rbt]*[wax+]|O_WRONLY|O_RDWR|O_CREAT", told):
         # Standard output that is not there, or that refused, leads nowhere.
         assert first == "os.devnull", told
-
-
-# ---------------------------------------------------------------------------------- studies
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    for file in ("mass.mtx", "stiffness.mtx"):
-        shutil.copy(EXAMPLE / file, tmp_path)
-    (tmp_path / "study.toml").write_text('name = "beam"\n' + study_text())
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("written", [0, 1, 2])
-def test_a_study_keeps_what_is_whole_and_ends_with_code_2(written, folder, monkeypatch):
-    with monkeypatch.context() as patch:
-        Disk(patch, {"write": errno.ENOSPC}, after=written)
-        result = invoke("run", "study.toml")
-    assert result.exit_code == 2
-    *cautions, line = result.stderr.splitlines()
-    assert all(one.startswith("warning: ") for one in cautions)
-    file = ["beam-6.563.nc", "beam-20.313.nc", "beam.png"][written]
-    path = Path("results", file)
-    assert line.startswith(f"error: {path}: cannot be written (No space left on device); make room")
-    if written < 2:
-        assert line.endswith(f"; {written} of 2 curves complete in results")
-        assert result.stdout == ""
-    else:
-        # The picture alone is missing: tables and files are told as ever.
-        assert "results: " in result.stdout
-        assert "picture: " not in result.stdout
-    assert names(folder / "results") == sorted(["beam-6.563.nc", "beam-20.313.nc"][:written])
-    for one in (folder / "results").iterdir():
-        assert ss.load(one).converged.all()
-
-
-def test_a_folder_that_takes_no_files_is_refused_before_anything_is_computed(folder, monkeypatch):
-    def computed(*_):
-        raise AssertionError
-
-    monkeypatch.setattr("stickslip.study.Study.run", computed)
-    with monkeypatch.context() as patch:
-        Disk(patch, {"open": errno.EROFS})
-        result = invoke("run", "study.toml")
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr == (
-        "error: results: cannot be written to (Read-only file system); choose a place that can be "
-        "written\n"
-    )
-    (folder / "file").write_bytes(b"")
-    for out in ("file", "file/results"):
-        result = invoke("run", "study.toml", "--out", out)
-        assert result.exit_code == 2
-        (line,) = result.stderr.splitlines()
-        assert line.startswith(f"error: {Path(out)}: cannot be made (")
-        assert line.endswith("); name a folder, not a file")
-
-
-@pytest.mark.slow
-def test_an_interrupted_study_on_a_full_disk_ends_in_one_line(folder, monkeypatch):
-    def interrupted(*_):
-        part = replace(ss.forced_response(snecma_beam(), [190.0], 3), interrupted=True)
-        raise ss.Interrupted("stopped", part)
-
-    monkeypatch.setattr("stickslip.study.Study.run", lambda *_: map(interrupted, [0]))
-    with monkeypatch.context() as patch:
-        Disk(patch, {"write": errno.ENOSPC})
-        result = invoke("run", "study.toml")
-    assert result.exit_code == 2
-    first, line = result.stderr.splitlines()
-    assert first == "interrupted: saving what was computed"
-    path = Path("results", "beam-6.563-partial.nc")
-    assert line.startswith(f"error: {path}: cannot be written (No space left on device)")
-
-
-MISTUNED = """
-name = "ring"
-[structure]
-mass = [[1]]
-stiffness = [[1000]]
-damping = [[0.3]]
-dofs = ["tip"]
-[[contact]]
-law = "jenkins"
-dof = "tip"
-stiffness = 100
-slip_force = 1
-[[force]]
-dof = "tip"
-amplitude = 1
-[[coupling]]
-dof = "tip"
-stiffness = 50
-[disk]
-sectors = 6
-engine_order = 1
-[analysis]
-kind = "mistuning-study"
-omega = {from = 25, to = 45}
-deviation = 0.02
-patterns = 60
-harmonics = 1
-"""
-
-
-def limited(size, *arguments):
-    """Run the command where no file can grow beyond a size, which the system itself enforces."""
-    limit = f"import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))"
-    command = [sys.executable, "-c", f"{limit}; {COMMAND[-1]}", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform != "linux", reason="the limit of the size of files is of Linux")
-def test_a_limit_of_the_system_stops_a_study_in_one_line(folder):
-    done = limited(20_000, "run", "study.toml")
-    assert (done.returncode, done.stdout) == (2, "")
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("error: results/beam-6.563.nc: cannot be written (File too large); make")
-    assert names(folder / "results") == []
-    (folder / "ring.toml").write_text(MISTUNED)
-    done = limited(12_288, "run", "ring.toml")
-    assert (done.returncode, done.stdout) == (2, "")
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("error: ring.toml: results/ring.db: cannot be used as a store (")
-    assert "of 60 disks are stored, run again to go on from there" in line
-    stored = int(line.split("; ")[-1].split()[0])
-    assert 0 < stored < 60
-    result = invoke("run", "ring.toml")
-    assert (result.exit_code, result.stderr) == (0, "")
-    study = ss.load(folder / "results" / "ring.nc")
-    assert study.counters["disks"] == 60

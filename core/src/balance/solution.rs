@@ -8,26 +8,27 @@ use crate::timing::Profile;
 use faer::c64;
 use std::sync::Arc;
 
-/// How the solution at one frequency ended.
+/// How the solution at one frequency ended. The numbers are those that results keep; 5 is an
+/// orbit that did not close, which is a stall here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PointStatus {
     /// Solved.
-    Converged,
+    Converged = 0,
     /// Newton's method and both homotopies failed.
-    Stalled,
+    Stalled = 1,
     /// The equations are singular: an undamped resonance at an unforced harmonic.
-    Singular,
+    Singular = 2,
     /// The analysis was ended before.
-    NotComputed,
+    NotComputed = 3,
     /// Solved, but automatic harmonics reached their limit above the tolerance.
-    HarmonicsLimit,
+    HarmonicsLimit = 4,
     /// Solved, but automatic samples reached their limit above their share of the tolerance.
-    SamplesLimit,
+    SamplesLimit = 6,
     /// Solved, but more harmonics, or an exact orbit, would have cost far more than the tolerance is
     /// worth.
-    EffortLimit,
+    EffortLimit = 8,
     /// An exact orbit was not found within the steps of the flow that it is granted.
-    StepsLimit,
+    StepsLimit = 7,
 }
 
 impl PointStatus {

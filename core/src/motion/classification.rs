@@ -27,33 +27,33 @@ const FASTEST: f64 = 1e6;
 /// Slow periods between two choices of the section.
 const CHOICE: usize = 32;
 
-/// Why a motion was given its class.
+/// Why a motion was given its class. The numbers are those that results keep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
     /// Dies away: no contact slips any more, and the stuck structure is damped.
-    Stuck,
+    Stuck = 0,
     /// Dies away: every motion loses energy.
-    Passive,
+    Passive = 1,
     /// Settled on a periodic motion.
-    Closed,
+    Closed = 2,
     /// Neither settled nor changing in size over the second half of the span.
-    Aperiodic,
+    Aperiodic = 3,
     /// Grows for ever: friction cannot hold the motion at its size.
-    Unbounded,
+    Unbounded = 4,
     /// Grew out of the range of numbers.
-    Overflow,
+    Overflow = 5,
     /// Undecided: still settling at the end of the span.
-    Settling,
+    Settling = 6,
     /// Undecided: still growing at the end of the span.
-    Growing,
+    Growing = 7,
     /// Undecided: still falling at the end of the span.
-    Falling,
+    Falling = 8,
     /// Undecided: the motion does not come back.
-    Monotone,
+    Monotone = 9,
     /// Undecided: contacts change state without end at one instant.
-    Contradiction,
+    Contradiction = 10,
     /// Undecided: the caller has ended the run.
-    Interrupted,
+    Interrupted = 11,
 }
 
 /// What becomes of one start.

@@ -189,17 +189,17 @@ pub(super) fn relative(point: &Point) -> f64 {
     errors.map(|(error, size)| error / size.max(0.02 * largest)).fold(0.0, f64::max)
 }
 
-/// What happens where stability changes.
+/// What happens where stability changes. The numbers are those that results keep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChangeKind {
     /// A multiplier passes 1: the branch turns.
-    Fold,
+    Fold = 0,
     /// A complex pair passes the unit circle: quasi-periodic motion branches off.
-    ComplexPair,
+    ComplexPair = 1,
     /// A multiplier passes 1 with motion that breaks the half-wave symmetry.
-    Symmetry,
+    Symmetry = 2,
     /// A multiplier jumps: a contact begins or ceases to slip at a further place of the period.
-    Grazing,
+    Grazing = 3,
 }
 
 /// A change of stability.

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.analyses.texts import TEXTS, told
-from stickslip.analyses.uniqueness import uniqueness
+from stickslip.checks import listed
 from stickslip.model import Model, StructuralDamper, natural_frequencies
-from stickslip.results.arrays import Arrays, amplitude_of
+from stickslip.results.arrays import STABILITY, Arrays, Float, amplitude_of
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
-
-if TYPE_CHECKING:
-    from stickslip import _core
-    from stickslip.settings.balance import ForcedSettings
-    from stickslip.settings.entries import Span
-    from stickslip.settings.motion import ClassifySettings, TransientSettings
-    from stickslip.settings.orbits import ExactSettings
+from stickslip.settings.balance import ForcedSettings
+from stickslip.settings.entries import Span
+from stickslip.settings.motion import ClassifySettings, TransientSettings
+from stickslip.settings.orbits import ExactSettings
 
 LARGE_ERROR = 0.05
 """Share of the amplitude above which the discarded harmonics are worth a warning."""
@@ -199,6 +197,46 @@ def direct_assumption(model: Model) -> Diagnostic | None:
     return told("direct-solution") if model.problem.is_direct else None
 
 
+def uniqueness(model: Model) -> Diagnostic | None:
+    """Say that a solution need not be the only one, if contact laws or damping leave that open.
+
+    The passive structure with laws that are monotone operators has one steady motion.
+    """
+    open_laws = list(dict.fromkeys(model.problem.laws_not_monotone))
+    if open_laws:
+        return told("law-not-monotone", _laws=listed(open_laws))
+    damping = model.structure.damping
+    # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
+    symmetric = 0.5 * (damping + damping.T)
+    diagonal = np.abs(np.diag(symmetric))
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    scaled = symmetric * scale * scale[:, None]
+    # Rounding may put the zero eigenvalue of an undamped motion on either side.
+    identity = np.eye(len(scaled))
+    if _is_positive(scaled - 1e-13 * identity):
+        return None
+    if _is_positive(scaled + 1e-9 * identity):
+        return told("undamped-motion")
+    return told("negative-damping")
+
+
+def arrays_of(solution: _core.Solution, model: Model) -> Arrays:
+    """Return the numbers of a curve; a motion that is the only one is stable."""
+    arrays = Arrays.of(solution)
+    if uniqueness(model) is not None:
+        return arrays
+    states = np.where(arrays.solved, STABILITY.index("stable"), STABILITY.index("not decided"))
+    return replace(arrays, stability=states.astype(np.uint8))
+
+
+def _is_positive(matrix: Float) -> bool:
+    try:
+        np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
 def turn_per_step(model: Model, settings: TransientSettings) -> float:
     """Return the angle by which the fastest stuck motion turns in a Runge-Kutta step [rad].
 
@@ -254,8 +292,8 @@ def _frequencies(
 
 def _observed(model: Model, dofs: tuple[str, ...]) -> Diagnostic | None:
     kept, total = len(dofs), len(model.structure)
-    listed = ", ".join(dofs[:_SHOWN]) + (", ..." if kept > _SHOWN else "")
-    return None if kept == total else told("observed-dofs", kept=kept, total=total, _listed=listed)
+    names = ", ".join(dofs[:_SHOWN]) + (", ..." if kept > _SHOWN else "")
+    return None if kept == total else told("observed-dofs", kept=kept, total=total, _listed=names)
 
 
 def _truncation(dofs: tuple[str, ...], arrays: Arrays, *, single: bool) -> Diagnostic | None:

@@ -15,6 +15,7 @@ from stickslip.checks import members, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.memory import require_numbers
 from stickslip.model import Model
+from stickslip.model.damping import held_stiffness
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
 from stickslip.results.basin_map import BasinMap
@@ -114,8 +115,6 @@ def _over_axes(model: Model, axes: Grid, base: State) -> Float:
 def _direction(model: Model, axis: Axis) -> Float:
     """Return the displacements per unit along an axis, shape (N,)."""
     from scipy.linalg import eigh
-
-    from stickslip.model.damping import held_stiffness
 
     structure = model.structure
     if isinstance(axis, str):

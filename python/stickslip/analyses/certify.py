@@ -151,14 +151,13 @@ def _require_balance(result: object) -> None:
 
 
 def _dofs(result: ForcedResponse, dofs: Iterable[str] | str) -> tuple[str, ...]:
-    names = tuple(
-        dict.fromkeys((dofs,) if isinstance(dofs, str) else members(dofs, "dofs", "dofs=[...]"))
-    )
+    given = (dofs,) if isinstance(dofs, str) else members(dofs, "dofs", "dofs=[...]")
+    names = tuple(dict.fromkeys(given))
     if not names:
         raise ModelError("dofs: empty; name at least one, or leave it out for all")
     for name in names:
         result.error_estimate(name)  # refuses what is unknown
-    return tuple(dict.fromkeys(names))
+    return names
 
 
 def _indices(result: ForcedResponse, settings: CertifySettings) -> Int:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from stickslip import _core
 from stickslip.analyses.texts import told
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.limit_cycles import CycleArrays
 from stickslip.settings.cycles import MOST_HARMONICS, CycleSettings
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 
 def cycle_assumptions(

@@ -16,10 +16,9 @@ from stickslip.analyses.arguments import (
     require_forced,
     require_held,
 )
-from stickslip.analyses.assumptions import balance_assumptions
+from stickslip.analyses.assumptions import arrays_of, balance_assumptions
 from stickslip.analyses.branch_assumptions import branch_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
-from stickslip.analyses.uniqueness import arrays_of
 from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results import ForcedResponse

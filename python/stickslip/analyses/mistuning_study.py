@@ -17,9 +17,9 @@ from stickslip.analyses.mistuning_run import Series, Work
 from stickslip.analyses.pattern_store import Identity, PatternStore, Row, digest
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.checks import brief, whole_number
-from stickslip.disk.bladed_disk import NEXT, BladedDisk
-from stickslip.disk.coupling import Coupling
+from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.pattern import drawn_patterns
+from stickslip.disk.sector import NEXT
 from stickslip.errors import ModelError
 from stickslip.memory import require_numbers
 from stickslip.model import Model
@@ -193,22 +193,9 @@ def _coupled_disks(disk: BladedDisk, stiffness: ArrayLike | None) -> list[tuple[
         )
     values = np.atleast_1d(np.asarray(stiffness, dtype=np.float64)).tolist()
     return [
-        (value, _coupled(disk, [replace(one, stiffness=value) for one in disk.couplings]))
+        (value, disk._like(couplings=[replace(one, stiffness=value) for one in disk.couplings]))
         for value in values
     ]
-
-
-def _coupled(disk: BladedDisk, couplings: Sequence[Coupling]) -> BladedDisk:
-    return BladedDisk(
-        disk.structure,
-        disk.sectors,
-        couplings,
-        disk.contacts,
-        disk.forces,
-        engine_order=disk.engine_order,
-        engine_orders=disk.engine_orders,
-        interface=disk.interface,
-    )
 
 
 def _is_one_wave(disk: BladedDisk) -> bool:
@@ -226,8 +213,6 @@ def _identity_of(
     given: bool,
 ) -> Identity:
     """Return what makes a study, but for how many patterns, which deviations and couplings."""
-    from stickslip._core import __version__
-
     structure, law = disk.structure, disk.structure.damping_law
     couplings = [one.to_spec() for one in disk.couplings]
     if given or len({one.stiffness for one in disk.couplings}) == 1:
@@ -236,7 +221,7 @@ def _identity_of(
     interface = disk.interface
     blocks = () if interface is None else (interface.mass, interface.damping, interface.stiffness)
     return {
-        "version": __version__,
+        "version": _core.__version__,
         "structure": digest(structure.mass, structure.damping, structure.stiffness),
         "damping": None if law is None else law.to_spec(),
         "sector": list(structure.dofs),

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption
+from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption, uniqueness
 from stickslip.analyses.texts import told
-from stickslip.analyses.uniqueness import uniqueness
 from stickslip.checks import listed
 from stickslip.model import Model
 from stickslip.results.arrays import Bool
+from stickslip.results.damper_curve import DamperArrays
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
+from stickslip.results.mistuning import MistuningArrays
 from stickslip.results.status import Status
-
-if TYPE_CHECKING:
-    from stickslip.results.damper_curve import DamperArrays
-    from stickslip.results.mistuning import MistuningArrays
-    from stickslip.settings.peaks import DamperSettings, MistuningSettings
-    from stickslip.settings.variation import Variation
+from stickslip.settings.peaks import DamperSettings, MistuningSettings
+from stickslip.settings.variation import Variation
 
 
 def damper_assumptions(

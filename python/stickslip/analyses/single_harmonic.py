@@ -6,10 +6,9 @@ import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import columns_of, observed_dofs, points_of
-from stickslip.analyses.assumptions import balance_assumptions
+from stickslip.analyses.assumptions import arrays_of, balance_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.texts import told
-from stickslip.analyses.uniqueness import arrays_of
 from stickslip.errors import ModelError
 from stickslip.memory import require_memory
 from stickslip.model import Model

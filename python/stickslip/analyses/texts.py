@@ -54,6 +54,12 @@ TEXTS = {
     "frequencies/balance": "The frequencies between {_low:g} and {_high:g} rad/s are those that an "
     "adaptive harmonic balance chose to a tolerance of {tolerance:g}.",
     "observed-dofs": "Only {kept} of {total} dofs are kept in the result: {_listed}.",
+    "law-not-monotone": "The contact law {_laws} is not monotone in the motion: the solution may "
+    "be unstable or not the only one.",
+    "undamped-motion": "The damping leaves some motion undamped: a steady state that friction does "
+    "not damp either may not be the only one.",
+    "negative-damping": "The damping is negative for some motion: the solution may be unstable or "
+    "not the only one.",
     "truncation": "{_what} could still change {dof!r} by {share:.1%} at omega = {omega:.6g} rad/s, "
     "the worst point; {_remedy}.",
     "truncation/peak": "The discarded harmonics could still change the peak by {share:.1%} at "

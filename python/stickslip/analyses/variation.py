@@ -9,6 +9,7 @@ import numpy as np
 from stickslip.checks import brief, listed, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef, natural_frequencies
+from stickslip.model.configurations import every_point
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import Float
 from stickslip.settings.entries import Span
@@ -126,12 +127,7 @@ def resonance_range(model: Model, variation: Variation, mode: int, values: Float
     if variation.parameter == "stiffness":
         members = [variation.apply(model, value) for value in (min(values), max(values))]
     stuck = max(float(natural_frequencies(one)[mode]) for one in members)
-    points = [
-        (number, point)
-        for number, contact in enumerate(model.contacts)
-        for point in range(contact.points)
-    ]
-    free = float(natural_frequencies(model, points)[mode])
+    free = float(natural_frequencies(model, every_point(model))[mode])
     harmonic = min((force.harmonic for force in model.forces if force.harmonic), default=1)
     low = max((1.0 - MARGIN) * min(free, stuck), MARGIN * stuck) / harmonic
     high = (1.0 + MARGIN) * max(free, stuck) / harmonic

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 from stickslip.errors import ModelError
-from stickslip.views.tables import new_table
+from stickslip.views.tables import tabulated
 
 if TYPE_CHECKING:
     from stickslip.results.result import Result
@@ -145,13 +145,9 @@ def stages(results: Iterable[Result], clock: dict[str, float]) -> None:
     rows["other in the solver"] = max(0.0, seconds["total"] - sum(rows.values()))
     rows |= clock
     whole = sum(rows.values()) or 1.0
-    table = new_table()
-    table.add_column("stage")
-    table.add_column("ms", justify="right")
-    table.add_column("share", justify="right")
-    for label, value in (*rows.items(), ("total", sum(rows.values()))):
-        table.add_row(label, f"{1e3 * value:.1f}", f"{value / whole:.0%}")
-    show(table)
+    told = {**rows, "total": sum(rows.values())}
+    cells = ((name, (f"{1e3 * s:.1f}", f"{s / whole:.0%}")) for name, s in told.items())
+    show(tabulated("stage", (), ("ms", "share"), (), cells))
     tell(", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counts.items()))
 
 

@@ -6,20 +6,16 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 from stickslip.errors import ModelError
+from stickslip.plot.style import OmegaUnit
 from stickslip.results import ForcedResponse
 from stickslip.results.exact_response import ExactResponse
+from stickslip.results.result import Result
 from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import view_of
-from stickslip.views.picture import titled
-
-if TYPE_CHECKING:
-    from stickslip.plot.style import OmegaUnit
-    from stickslip.results.result import Result
-    from stickslip.views.picture import Panel
+from stickslip.views.picture import Panel, titled
 
 
 @dataclass(frozen=True)

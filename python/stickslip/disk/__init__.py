@@ -1,16 +1,11 @@
 """Bladed disks: equal sectors in a travelling wave, and rings of sectors that differ."""
 
 from stickslip.calls import checked_names
-from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.bladed_disk import BladedDisk, NodalDiameters
 from stickslip.disk.coupling import Coupling, Interface, cyclic_sector
 from stickslip.disk.mistuned import MistunedDisk, Ring
 from stickslip.disk.pattern import mistuning_pattern
-from stickslip.disk.waves import (
-    AerodynamicWaves,
-    InfluenceCoefficients,
-    NodalDiameters,
-    aerodynamic_waves,
-)
+from stickslip.disk.waves import AerodynamicWaves, InfluenceCoefficients, aerodynamic_waves
 
 __all__ = [
     "AerodynamicWaves",

@@ -5,23 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip import _core
 from stickslip.checks import Matrix, brief, members, set_fields, unknown
-from stickslip.disk.bladed_disk import NEXT, BladedDisk
 from stickslip.disk.coupling import MATRICES, Blocks, CyclicMatrices, assembled
+from stickslip.disk.sector import NEXT, Sector
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
 from stickslip.model.force import Force
 from stickslip.model.model import Model, from_core
 from stickslip.model.structure import Structure
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -48,17 +46,17 @@ class MistunedDisk(Model):
         if the contacts are not as many, or lie elsewhere.
     """
 
-    disk: BladedDisk
+    disk: Sector
     blades: tuple[Structure, ...]
 
     def __init__(
         self,
-        disk: BladedDisk,
+        disk: Sector,
         blades: Iterable[Structure],
         contacts: Iterable[Contact] | None = None,
         forces: Iterable[Force] | None = None,
     ) -> None:
-        if not isinstance(disk, BladedDisk):
+        if not isinstance(disk, Sector):
             raise ModelError(f"disk: {brief(disk)} is no BladedDisk; give ss.BladedDisk(...)")
         sectors = _required(blades, disk)
         set_fields(self, disk=disk, blades=sectors)
@@ -94,8 +92,6 @@ class MistunedDisk(Model):
     @cached_property
     def problem(self) -> _core.Problem:
         """The ring as the compiled core sees it, sector by sector, built once."""
-        from stickslip import _core
-
         ring = self.ring
         contacts: list[list[_core.SectorContact]] = [[] for _ in range(self.sectors)]
         for one in ring.contacts:
@@ -124,7 +120,7 @@ class MistunedDisk(Model):
 
 
 def deviating(
-    disk: BladedDisk,
+    disk: Sector,
     pattern: ArrayLike | None,
     mass: ArrayLike | None,
     structures: Iterable[Structure] | None,
@@ -155,7 +151,7 @@ def deviating(
     return tuple(made)
 
 
-def _contacts(disk: BladedDisk) -> tuple[Contact, ...]:
+def _contacts(disk: Sector) -> tuple[Contact, ...]:
     return tuple(
         contact.moved(
             [_placed(dof, sector, disk.sectors) for dof in contact.dofs],
@@ -166,7 +162,7 @@ def _contacts(disk: BladedDisk) -> tuple[Contact, ...]:
     )
 
 
-def _forces(disk: BladedDisk) -> tuple[Force, ...]:
+def _forces(disk: Sector) -> tuple[Force, ...]:
     return tuple(
         replace(force, dof=f"{sector}.{force.dof}")
         for sector in range(disk.sectors)
@@ -183,7 +179,7 @@ def _placed(dof: str | None, sector: int, sectors: int) -> str | None:
 
 
 def _ring(
-    disk: BladedDisk,
+    disk: Sector,
     blades: tuple[Structure, ...],
     contacts: tuple[SectorContact, ...],
     loads: tuple[tuple[int, NDArray[np.complex128]], ...],
@@ -203,13 +199,11 @@ def _ring(
     return Ring(**parts, proportional=known, contacts=contacts, loads=loads)
 
 
-def tuned_disk(disk: BladedDisk) -> _core.TunedDisk:
+def tuned_disk(disk: Sector) -> _core.TunedDisk:
     """Return what makes many mistuned disks of a tuned one in the compiled core.
 
     Its method `mistuned` makes what ``disk.mistuned(pattern).problem`` is, to rounding.
     """
-    from stickslip import _core
-
     sector, matrices = disk.structure, disk.matrices
     law, nothing = sector.damping_law, np.zeros_like(sector.mass)
     # Damping that stays, that goes with the stiffness, and that with its root: given ratios go with
@@ -227,7 +221,7 @@ def tuned_disk(disk: BladedDisk) -> _core.TunedDisk:
         (constant + (matrices.damping.own - sector.damping), proportional, root),
         (matrices.mass.next, matrices.damping.next, matrices.stiffness.next),
         disk._core_contacts(),
-        disk.mistuned(0.0).ring.loads_by_sector(),
+        MistunedDisk(disk, (sector,) * disk.sectors).ring.loads_by_sector(),
         matrices.proportional,
     )
 
@@ -254,7 +248,7 @@ def _deviations(values: ArrayLike | None, entry: str, sectors: int) -> NDArray[n
     return row
 
 
-def _required(blades: Iterable[Structure], disk: BladedDisk) -> tuple[Structure, ...]:
+def _required(blades: Iterable[Structure], disk: Sector) -> tuple[Structure, ...]:
     given = members(blades, "structures", "structures=[...]")
     if len(given) != disk.sectors:
         raise ModelError(f"structures: {len(given)} for {disk.sectors} sectors; give one each")

@@ -9,16 +9,14 @@ move alike are one, and with ``x(t + T/2) = -x(t)`` so are opposite ones.
 from __future__ import annotations
 
 from math import gcd
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.coupling import Blocks, assembled
 from stickslip.model.model import Model, from_core
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 
 class Rotation(NamedTuple):
@@ -67,8 +65,6 @@ def moving(model: Model, *, half_wave: bool) -> tuple[_core.Problem, Rotation | 
 
 def wave_ring(disk: BladedDisk, rotation: Rotation) -> _core.Problem:
     """Return the sectors that a wave tells apart as the compiled core sees them."""
-    from stickslip import _core
-
     _ = disk.problem  # refuses forces that make no single wave
     size, count = len(disk.structure), rotation.sectors
     matrices = (disk.matrices.mass, disk.matrices.damping, disk.matrices.stiffness)

@@ -1,4 +1,4 @@
-"""Travelling waves of a tuned disk: frequencies by nodal diameter, and damping in a flow."""
+"""Travelling waves of a tuned disk in a flow, and their damping."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from stickslip.checks import Matrix, brief, members, set_fields, text, whole_num
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
-from stickslip.model import natural_frequencies
 from stickslip.model.model import AnyMatrix, PointRef
 from stickslip.model.structural import condensed_stiffness
 from stickslip.model.structure import Structure
@@ -311,40 +310,3 @@ class InfluenceCoefficients:
             )
         _, shapes = eigh(structure.stiffness, structure.mass)
         return np.asarray(structure.mass @ shapes[:, mode], dtype=np.float64)
-
-
-@dataclass(frozen=True, eq=False)
-class NodalDiameters:
-    """Natural frequencies at the nodal diameters 0 to n/2, rounded down.
-
-    A wave of nodal diameter d that runs the other way round, n - d, has the same frequencies unless
-    gyroscopic terms part them; those belong to the damping, which plays no part here.
-    """
-
-    disk: BladedDisk
-    """The disk."""
-    diameters: NDArray[np.int64]
-    """(D,) Nodal diameters."""
-    stuck: NDArray[np.float64]
-    """(D, N) With all contacts stuck [rad/s], ascending at each diameter."""
-    slipping: NDArray[np.float64]
-    """(D, N) With the chosen contact points slipping [rad/s]."""
-
-    plot = Drawn("nodal_diameters")
-    plot_safe = Drawn("safe")
-
-
-def nodal_diameters(disk: BladedDisk, slipping: Iterable[PointRef] | None) -> NodalDiameters:
-    """Return the natural frequencies at all nodal diameters; see `BladedDisk.nodal_diameters`."""
-    every = [
-        (contact, point) for contact, one in enumerate(disk.contacts) for point in range(one.points)
-    ]
-    slips = every if slipping is None else list(members(slipping, "slipping", "slipping=[...]"))
-    diameters = np.arange(disk.sectors // 2 + 1)
-    stuck, free = (
-        np.stack([natural_frequencies(disk, points, nodal_diameter=int(d)) for d in diameters])
-        for points in ([], slips)
-    )
-    found = NodalDiameters(disk, diameters, stuck, free)
-    set_fields(found, **vars(found))
-    return found

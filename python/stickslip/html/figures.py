@@ -8,10 +8,11 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, log10
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import FixedFormatter, FixedLocator
 from matplotlib.transforms import Transform
 
@@ -19,12 +20,7 @@ from stickslip.html.artists import Trace, UndrawableError, proxy, traces
 from stickslip.html.notation import label, plain
 from stickslip.plot.style import RESPONSE, fit
 from stickslip.results.arrays import Float
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.text import Text
-
-    from stickslip.views.picture import Panel
+from stickslip.views.picture import Panel
 
 _SIZE = (7.4, 4.2)
 _HEIGHT, _LEGEND_ROW, _LEGEND_WIDTH = 400, 22, 800

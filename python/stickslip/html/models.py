@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, pi
+from math import pi
 
 import numpy as np
 
 from stickslip.disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
+from stickslip.model.configurations import every_point
 from stickslip.model.structure import Rayleigh, Structure
 from stickslip.results.result import Result
-from stickslip.views.tables import Row, Table, model_rows, new_table
+from stickslip.views.tables import Row, Table, model_rows, tabulated
 
 _MODES = 12
 
@@ -76,24 +77,14 @@ def _damping(structure: Structure) -> str:
 
 def _frequencies(model: Model) -> Table:
     """Tabulate the lowest natural frequencies, all contacts stuck and all free to slip."""
-    slipping = [
-        (contact, point)
-        for contact, one in enumerate(model.contacts)
-        for point, limit in enumerate(one.limits)
-        if limit < inf
-    ]
+    slipping = every_point(model, finite=True)
     stuck, free = natural_frequencies(model), natural_frequencies(model, slipping)
-    table = new_table("natural frequencies")
-    columns = [("stuck", stuck), ("free", free)] if slipping else [("", stuck)]
-    table.add_column("mode", justify="right")
-    for state, _ in columns:
-        for unit in ("rad/s", "Hz"):
-            table.add_column(f"{state} [{unit}]".strip(), justify="right")
-    for mode in range(min(stuck.size, _MODES)):
-        cells = [
-            f"{value:#.6g}" for _, omega in columns for value in (omega[mode], omega[mode] / 2 / pi)
-        ]
-        table.add_row(f"{mode}", *cells)
+    columns = {"stuck": stuck, "free": free} if slipping else {"": stuck}
+    headings = [f"{state} [{unit}]".strip() for state in columns for unit in ("rad/s", "Hz")]
+    values = np.stack([omega / part for omega in columns.values() for part in (1.0, 2 * pi)], 1)
+    rows = [("", (f"{mode}", *(f"{x:#.6g}" for x in row))) for mode, row in enumerate(values)]
+    table = tabulated("", (), ["mode", *headings], (), rows[:_MODES])
+    table.title = "natural frequencies"
     notes = ["all contacts stuck, and all slipping without friction"] if slipping else []
     if stuck.size > _MODES:
         notes.append(f"the lowest {_MODES} of {stuck.size}")

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.errors import ModelError
 from stickslip.html.figures import Drawn, drawn
 from stickslip.html.models import summaries
@@ -24,7 +25,7 @@ from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import VIEWS, cautions, failures, view_of
 from stickslip.views.picture import Panel
-from stickslip.views.tables import Row, Table, new_table
+from stickslip.views.tables import Row, Table, tabulated
 
 
 class Entry(NamedTuple):
@@ -128,17 +129,13 @@ def _figures(panels: Iterable[Panel]) -> list[Drawn | str]:
 
 
 def _overview(entries: Sequence[Entry]) -> Table:
-    table = new_table()
-    for heading in ("result", "kind", "status"):
-        table.add_column(heading)
-    for heading in ("assumptions", "computed in [s]"):
-        table.add_column(heading, justify="right")
+    rows = []
     for entry in entries:
         result = entry.result
         status = _status(result) + ", interrupted" * result.interrupted
         time = f"{result.timings['total']:.3g}" if "total" in result.timings else ""
-        table.add_row(entry.name, _kind(result), status, f"{len(result.assumptions)}", time)
-    return table
+        rows.append((entry.name, (_kind(result), status, f"{len(result.assumptions)}", time)))
+    return tabulated("result", ("kind", "status"), ("assumptions", "computed in [s]"), (), rows)
 
 
 def _kind(result: Result) -> str:
@@ -197,7 +194,5 @@ def _provenance(entry: Entry) -> list[Row]:
 
 
 def _versions() -> list[Row]:
-    from stickslip._core import __version__
-
     libraries = [(name, version(name)) for name in ("numpy", "scipy", "matplotlib", "plotly")]
-    return [("stickslip", __version__), ("Python", platform.python_version()), *libraries]
+    return [("stickslip", _core.__version__), ("Python", platform.python_version()), *libraries]

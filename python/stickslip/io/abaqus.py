@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.checks import is_file
-from stickslip.io.entries import Labelled, node_names, square_matrix
+from stickslip.io.entries import Labelled, Sparse, node_names, square_matrix
 from stickslip.io.numbers import counted, entry_table, real_field
 from stickslip.io.source import Key, read_text
-
-if TYPE_CHECKING:
-    from scipy.sparse import coo_array
 
 _MATRIX = re.compile(r"\*MATRIX,\s*TYPE\s*=\s*(\w+)", re.I).match
 _NAME = re.compile(r"[1-9][0-9]*\.[0-6]")
@@ -50,7 +46,7 @@ def read_abaqus(path: Path, key: Key) -> Labelled:
     raise ValueError(f"a line holds {words} numbers; 3 or 5 are known, and MatrixMarket files")
 
 
-def _of_places(text: str) -> coo_array:
+def _of_places(text: str) -> Sparse:
     """Return the matrix of lines of row, column, value."""
     table = entry_table(text, 3)
     rows, columns = counted(table[:, 0], "row") - 1, counted(table[:, 1], "column") - 1

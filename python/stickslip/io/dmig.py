@@ -6,16 +6,12 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.io.entries import Labelled, node_names, square_matrix, whole_matrix
+from stickslip.io.entries import Labelled, Sparse, node_names, square_matrix, whole_matrix
 from stickslip.io.numbers import real_field, whole_field
 from stickslip.io.source import Key, read_text
-
-if TYPE_CHECKING:
-    from scipy.sparse import coo_array
 
 _Place = tuple[int, int]
 """Grid point and component."""
@@ -109,7 +105,7 @@ def _add_column(entries: _Entries, fields: list[str]) -> None:
         entries.values.append(real_field(real))
 
 
-def _matrix(name: str, entries: _Entries, index: dict[_Place, int]) -> coo_array:
+def _matrix(name: str, entries: _Entries, index: dict[_Place, int]) -> Sparse:
     if entries.kind not in (1, 2):
         raise ValueError(f"matrix {name!r} is complex (type {entries.kind}); export real matrices")
     if entries.form not in (1, 6):

@@ -17,6 +17,9 @@ from stickslip.checks import MAX_SPARSE
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
+Sparse: TypeAlias = "coo_array"
+"""Of SciPy, which takes long to load."""
+
 SIGNS = {"general": 0, "symmetric": 1, "skew-symmetric": -1}
 """What an entry is multiplied by when it is mirrored; 0: it is not."""
 
@@ -76,7 +79,7 @@ def whole_matrix(
     columns: _Indices,
     values: NDArray[np.float64],
     symmetry: str,
-) -> coo_array:
+) -> Sparse:
     """Return a sparse matrix from its entries; one that is not "general" is given by a triangle.
 
     `symmetry` is a key of `SIGNS`.
@@ -99,7 +102,7 @@ def whole_matrix(
 
 def square_matrix(
     rows: _Indices, columns: _Indices, values: NDArray[np.float64], size: int
-) -> coo_array:
+) -> Sparse:
     """Return a matrix given whole or by one triangle, in formats that do not say which.
 
     If no place beside the diagonal has its mirror place, one triangle is taken to be given and is
@@ -131,7 +134,7 @@ def _mirrored(
     columns: _Indices,
     values: NDArray[np.float64],
     sign: int,
-) -> coo_array:
+) -> Sparse:
     """Return the matrix of entries and, unless the sign is 0, of their mirror entries."""
     from scipy.sparse import coo_array
 

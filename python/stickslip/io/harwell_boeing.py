@@ -10,17 +10,13 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.entries import columns_of, whole_matrix
+from stickslip.io.entries import Sparse, columns_of, whole_matrix
 from stickslip.io.numbers import real_field, require_whole_numbers, whole_field
 from stickslip.io.source import read_text
-
-if TYPE_CHECKING:
-    from scipy.sparse import coo_array
 
 _FORMAT = re.compile(
     r"\(\s*(?P<scale>[0-9]+\s*P\s*,?\s*)?(?P<repeat>[0-9]*)\s*(?P<kind>[IEDFG])"
@@ -75,7 +71,7 @@ class _Columns:
         return np.fromiter(map(real_field, self.fields(lines, count)), np.float64, count)
 
 
-def read_harwell_boeing(path: Path) -> coo_array:
+def read_harwell_boeing(path: Path) -> Sparse:
     """Read an assembled real matrix; symmetric storage is mirrored, right-hand sides are left out.
 
     References

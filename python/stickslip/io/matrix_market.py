@@ -10,18 +10,15 @@ import gzip
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import MAX_DENSE
-from stickslip.io.entries import SIGNS, whole_matrix
+from stickslip.io.entries import SIGNS, Sparse, whole_matrix
 from stickslip.io.numbers import require_representable, require_whole_numbers
 from stickslip.io.source import plain, unzip
-
-if TYPE_CHECKING:
-    from scipy.sparse import coo_array
 
 _FIELDS = {"real": False, "double": False, "integer": True, "unsigned-integer": True}
 """Whether the values are whole numbers."""
@@ -64,7 +61,7 @@ class _Head:
         return cls(layout, whole, symmetry, rows, columns, entries, end)
 
 
-def read_matrix_market(path: Path) -> coo_array:
+def read_matrix_market(path: Path) -> Sparse:
     """Read a real matrix in coordinate or array format; one triangle is mirrored.
 
     A file whose name ends in `.gz` is packed.

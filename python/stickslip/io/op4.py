@@ -11,17 +11,13 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.io.entries import require_size
+from stickslip.io.entries import Sparse, require_size
 from stickslip.io.numbers import real_field, whole_field
 from stickslip.io.source import Key, plain
-
-if TYPE_CHECKING:
-    from scipy.sparse import coo_array
 
 _FORMAT = re.compile(r"(?:1P,?)?(\d+)[ED](\d+)\.\d+", re.I)
 _LARGE = 65536
@@ -66,7 +62,7 @@ class _Header:
         return words - 1, row
 
 
-def read_op4(path: Path, key: Key) -> coo_array:
+def read_op4(path: Path, key: Key) -> Sparse:
     """Read a matrix of a file: text, or binary of either byte order with integers of 4 or 8 bytes.
 
     Names are in capitals. The whole file is walked through, but only the matrix that is asked for
@@ -91,7 +87,7 @@ _Column = tuple[_Header, list[tuple[int, list[_Piece]]]]
 """A matrix as the walks yield it: what precedes it, and the pieces of each column."""
 
 
-def _matrix(header: _Header, columns: list[tuple[int, list[_Piece]]]) -> coo_array:
+def _matrix(header: _Header, columns: list[tuple[int, list[_Piece]]]) -> Sparse:
     from scipy.sparse import coo_array
 
     if header.kind > 2:

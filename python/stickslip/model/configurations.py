@@ -81,6 +81,16 @@ class SlipConfigurations(Mapping[tuple[tuple[str, int], ...], NDArray[np.float64
         return f"SlipConfigurations({len(self)} sets)"
 
 
+def every_point(model: Model, *, finite: bool = False) -> list[tuple[int, int]]:
+    """Return all contact points as positions, see `Model.point`; or those of finite slip limit."""
+    return [
+        (number, point)
+        for number, contact in enumerate(model.contacts)
+        for point in range(contact.points)
+        if not finite or np.isfinite(contact.limits[point])
+    ]
+
+
 def slip_configurations(
     model: Model, points: Iterable[PointRef] | None = None, *, nodal_diameter: int | None = None
 ) -> SlipConfigurations:
@@ -111,12 +121,7 @@ def slip_configurations(
     """
     require_model(model)
     if points is None:
-        chosen = [
-            (number, point)
-            for number, contact in enumerate(model.contacts)
-            for point, limit in enumerate(contact.limits)
-            if np.isfinite(limit)
-        ]
+        chosen = every_point(model, finite=True)
     else:
         chosen = sorted({model.point(ref) for ref in points})
     if len(chosen) > _MOST:

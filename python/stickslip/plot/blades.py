@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stickslip.checks import brief, members, whole_number
+from stickslip.checks import members, whole_number
 from stickslip.errors import ModelError
 from stickslip.plot import style
 from stickslip.plot.arguments import at, solved_points
@@ -17,6 +17,7 @@ from stickslip.plot.figure import figure
 from stickslip.plot.options import BladeBarOptions, BladeCurveOptions
 from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
+from stickslip.results.blades import response_of_disk
 
 
 @figure
@@ -44,7 +45,7 @@ def blade_bars(
         solved_points(result, index)
         heights, title = amplitudes[result.position(index)], at(result, index)
     if options["tuned"] is not None:
-        tuned = _tuned(options["tuned"])
+        tuned = response_of_disk(options["tuned"])
         level = tuned.peak(dof, measure).amplitude
         if index is not None:
             level = tuned.amplitude(dof, measure)[tuned.index(float(result.omega[index]))]
@@ -85,7 +86,7 @@ def blade_curves(
             raise ModelError(f"blades: {blade} was not observed at {dof!r}; observed: {observed}")
     x = omega.factor * result.omega
     curves = [result.amplitude(f"{blade}.{dof}", options["measure"]) for blade in chosen]
-    tuned = None if options["tuned"] is None else _tuned(options["tuned"])
+    tuned = None if options["tuned"] is None else response_of_disk(options["tuned"])
     for blade, curve, colour in zip(chosen, curves, style.colours(len(chosen)), strict=True):
         label = f"blade {blade}" if len(chosen) <= 12 else None
         ax.plot(x, length.factor * curve, color=colour, lw=1.3, label=label, gid=style.RESPONSE)
@@ -95,12 +96,3 @@ def blade_curves(
         ax.plot(omega.factor * tuned.omega, reference, label="tuned", **looks)
     ax.set(xlabel=omega.label, ylabel=f"amplitude of {dof} [{length.label}]")
     style.fit(ax, log=options["log"])
-
-
-def _tuned(tuned: object) -> ForcedResponse:
-    if not isinstance(tuned, ForcedResponse) or not tuned.model.travels:
-        raise ModelError(
-            f"tuned: {brief(tuned)} is not the response of a BladedDisk; give "
-            "forced_response(disk, ...)"
-        )
-    return tuned

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 
+from stickslip.analyses.forced_response import forced_response
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
@@ -206,8 +207,6 @@ def _strips(result: ForcedResponse, index: int) -> Iterator[list[tuple[float, fl
 
 def _stuck_forces(result: ForcedResponse, number: int, index: int, count: int) -> Float:
     """Return the forces of a contact at the same frequency if nothing ever slipped."""
-    from stickslip.analyses.forced_response import forced_response
-
     model = result.model
     own = model.contacts[number].linear_limit(stuck=True)
     if own is None:

@@ -154,16 +154,11 @@ class _View:
     ) -> None:
         """Draw the linear response with all contacts stuck, or with none."""
         omega, amplitude = limit_curve(model, self.dof, span, self.measure, stuck=stuck)
-        self.ax.plot(
-            self.omega.factor * omega,
-            self._factor(model) * amplitude,
-            color=style.GREY,
-            lw=1.1,
-            ls=style.STUCK if stuck else style.FREE,
-            label=f"{name or ('stuck' if stuck else 'free')} (linear{at})",
-            zorder=1.5,
-            gid=style.LIMIT,
-        )
+        looks = style.linear_limit(stuck=stuck, of=at)
+        if name:
+            looks |= {"label": f"{name} (linear{at})"}
+        x, y = self.omega.factor * omega, self._factor(model) * amplitude
+        self.ax.plot(x, y, **looks)
 
     def shade_error(self, result: ForcedResponse, colour: Colour) -> None:
         """Shade what the discarded harmonics could still change."""

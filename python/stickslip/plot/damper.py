@@ -117,6 +117,4 @@ def _draw_limits(ax: Axes, curve: DamperCurve, view: _View) -> None:
             continue
         _, amplitude = limit_curve(curve.model, kept.dof, kept.span, kept.measure, stuck=stuck)
         height = float(amplitude.max()) * view.stretch * view.factor
-        label, ls = ("stuck (linear)", style.STUCK) if stuck else ("free (linear)", style.FREE)
-        looks: Looks = {"color": style.GREY, "lw": 1.1, "zorder": 1.5, "gid": style.LIMIT}
-        ax.plot(view.x, height, label=label, ls=ls, **looks)
+        ax.plot(view.x, height, **style.linear_limit(stuck=stuck))

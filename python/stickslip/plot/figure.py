@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import re
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
@@ -23,6 +22,7 @@ from typing import (
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 
+from stickslip import numpydoc
 from stickslip.calls import misfit
 from stickslip.checks import choice
 from stickslip.errors import CallError, ModelError
@@ -32,7 +32,6 @@ from stickslip.settings.settings import type_in_words
 
 P = ParamSpec("P")
 Result = TypeVar("Result")
-_SECTION = re.compile(r"^(Parameters|Returns|Raises)\n-+\n", re.M)
 _MEANINGS = {
     "result": "What is drawn.",
     "results": "One or several of the same parameter, a line each.",
@@ -123,21 +122,17 @@ def _documented(
     """Complete the sections of a text; its own are for what means more than elsewhere."""
     if text is None:  # python -OO
         return None
-    head, *parts = _SECTION.split(inspect.cleandoc(text))
-    sections = dict(zip(parts[::2], map(str.strip, parts[1::2]), strict=True))
-    own = {
-        block.partition(" : ")[0]: block
-        for block in re.split(r"\n(?=\S)", sections.pop("Parameters", ""))
-    }
+    sections = numpydoc.sections(text)
+    own = numpydoc.entries(sections.pop("Parameters", ""))
     blocks = []
     for name, one in signature.parameters.items():
         optional = "" if one.default is one.empty else ", optional"
         said = textwrap.indent(textwrap.fill(meanings.get(name, ""), 96), "    ")
         block = f"{name} : {_in_words(one.annotation)}{optional}\n{said}"
         blocks.append(own.get(name, block))
-    sections = {"Parameters": "\n".join(blocks), "Returns": _RETURNS, "Raises": _RAISES} | sections
-    written = (f"{name}\n{'-' * len(name)}\n{said}" for name, said in sections.items())
-    return "\n\n".join((head.strip(), *written))
+    listed = "\n".join(dict.fromkeys(blocks))
+    derived = {"": "", "Parameters": listed, "Returns": _RETURNS, "Raises": _RAISES}
+    return numpydoc.written(derived | sections)
 
 
 def _in_words(kind: Any) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 from stickslip.analyses.forced_response import forced_response
 from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
+from stickslip.model.damping import held_stiffness
 from stickslip.model.structure import Structure
 from stickslip.results.arrays import Float, Measure
 
@@ -41,15 +42,12 @@ def limit_model(model: Model, *, stuck: bool) -> Model:
     are part of its structure; of a `BladedDisk` they stay contacts, which never slip.
     """
     structure = model.structure
-    stiffness = structure.stiffness.copy()
     held = (contact.linear_limit(stuck=stuck) for contact in model.contacts)
     sticking = [one for one in held if one is not None]
     if model.travels:
         # A contact between sectors has no place in the matrices of one: it never slips instead.
         return model.replaced(contacts=sticking)
-    for contact in sticking:
-        rows = contact.rows(structure)
-        stiffness += rows.T @ contact.stuck_stiffness @ rows
+    stiffness = held_stiffness(structure.stiffness, structure, sticking)
     linear = Structure(structure.mass, stiffness, structure.damping, structure.dofs)
     return Model(linear, forces=model.forces)
 

@@ -110,6 +110,12 @@ def slip_limits(ax: Axes, limit: float, *, lw: float = 0.9, ls: Any = STUCK) -> 
         ax.axhline(side, color=GREY, lw=lw, ls=ls, zorder=1.5)
 
 
+def linear_limit(*, stuck: bool, of: str = "") -> Looks:
+    """Return the looks of a linear response with all contacts stuck, or with none."""
+    label, ls = (f"stuck (linear{of})", STUCK) if stuck else (f"free (linear{of})", FREE)
+    return {"color": GREY, "lw": 1.1, "ls": ls, "label": label, "zorder": 1.5, "gid": LIMIT}
+
+
 def unit_circle(ax: Axes) -> None:
     """Draw the circle inside which Floquet multipliers are stable, and name the axes."""
     turn = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 361))

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import json
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias, TypeVar
+from typing import Any, Literal, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _core
+from stickslip.results.dataset import Dataset
 from stickslip.results.fields import Bool, Code, Columns, Complex, Computed, Float, Int, column
 from stickslip.results.status import Status
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = [
     "SHARE",
@@ -45,7 +44,7 @@ SHARE = 1.0 + 1e-6
 """Largest share of a period: sums of times are rounded."""
 
 
-def _samples(dataset: xr.Dataset) -> Int:
+def _samples(dataset: Dataset) -> Int:
     """Return the samples that the first files name in their settings, unless they were chosen."""
     settings = json.loads(dataset.attrs["settings"])
     samples = settings["samples"] if settings.get("evaluation") == "marched" else 0
@@ -54,15 +53,15 @@ def _samples(dataset: xr.Dataset) -> Int:
     return np.full(dataset.sizes["omega"], samples, np.int64)
 
 
-def _unknown(dataset: xr.Dataset) -> Float:
+def _unknown(dataset: Dataset) -> Float:
     return np.full_like(dataset["error_estimate"].values, np.nan)
 
 
-def _nowhere(dataset: xr.Dataset) -> Bool:
+def _nowhere(dataset: Dataset) -> Bool:
     return np.zeros(dataset.sizes["omega"], np.bool_)
 
 
-def _undecided(dataset: xr.Dataset) -> Code:
+def _undecided(dataset: Dataset) -> Code:
     return np.full(dataset.sizes["omega"], STABILITY.index("not decided"), np.uint8)
 
 
@@ -191,8 +190,6 @@ class Arrays(PeriodicArrays):
 
 def amplitude_of(coefficients: Complex, measure: Measure) -> Float:
     """Return the amplitudes of harmonic series (n, H+1); not-a-number where a coefficient is."""
-    from stickslip import _core
-
     finite = np.isfinite(coefficients).all(axis=1)
     values = np.full(len(coefficients), np.nan)
     if finite.any():

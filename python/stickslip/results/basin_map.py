@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Hashable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -15,13 +15,10 @@ from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int, constant
-from stickslip.results.dataset import labels
+from stickslip.results.dataset import Dataset, labels
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.result import ColumnResult
 from stickslip.settings.motion import BasinSettings
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class Outcome(NamedTuple):
@@ -126,7 +123,7 @@ class BasinMap(ColumnResult):
         return State.of_vector(self.model, self.arrays.start[row])
 
     @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
         """Return the map that a dataset holds."""
         found = super().from_dataset(dataset, model)
         if np.prod(found.shape) != len(found):

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple, Self, TypeAlias
+from typing import NamedTuple, Self, TypeAlias
 
 import numpy as np
 
 from stickslip.checks import brief, text, unknown
+from stickslip.disk import BladedDisk, MistunedDisk
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float, Measure, constant
 from stickslip.results.contact_motion import ContactMotion
 from stickslip.results.peaks import Peak
-
-if TYPE_CHECKING:
-    from stickslip.disk import BladedDisk, MistunedDisk
 
 SectorDof: TypeAlias = str
 """Of the equal sectors of a disk."""
@@ -89,29 +87,20 @@ class BladeMotion(ContactMotion):
     def blade_amplitudes(self, dof: SectorDof, measure: Measure = "half_range") -> Float:
         """Return the amplitudes of one degree of freedom at all blades of a mistuned disk.
 
-        Raises ModelError as `blades`.
+        Of those that `blades` returns, shape (n, blades) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (n, blades)
-            [m], of the blades that `blades` returns.
+        Raises ModelError as `blades`.
         """
         columns = [self.amplitude(f"{blade}.{dof}", measure) for blade in self.blades(dof)]
         return constant(np.stack(columns, axis=1))
 
     def highest_blade(self, dof: SectorDof, measure: Measure = "half_range") -> tuple[int, Peak]:
-        """Return the blade with the highest peak, and the peak.
+        """Return the blade with the highest peak, counted from 0, and the peak.
 
-        All observed blades are followed together over the range of the computed points.
+        All observed blades are followed together over the range of the computed points, between
+        which the peak is refined.
 
         Raises ModelError as `blades`; if no point is solved.
-
-        Returns
-        -------
-        blade : int
-            Counted from 0.
-        peak : Peak
-            Its peak, refined between the computed points.
         """
         if not self.arrays.solved.any():
             raise ModelError(f"peak of {dof!r}: no point is solved; see status")
@@ -136,18 +125,12 @@ class BladeMotion(ContactMotion):
         tuned : ForcedResponse
             The response of the tuned disk.
         """
-        if not isinstance(tuned, BladeMotion) or not tuned.model.travels:
-            raise ModelError(
-                f"tuned: {brief(tuned)} is not the response of a BladedDisk; give "
-                "forced_response(disk, ...)"
-            )
+        reference = response_of_disk(tuned)
         blade, peak = self.highest_blade(dof, measure)
-        reference = tuned.peak(dof, measure)
-        return Amplification(peak.amplitude / reference.amplitude, blade, peak, reference)
+        known = reference.peak(dof, measure)
+        return Amplification(peak.amplitude / known.amplitude, blade, peak, known)
 
     def _tuned_disk(self) -> BladedDisk:
-        from stickslip.disk import BladedDisk
-
         if not isinstance(self.model, BladedDisk):
             raise ModelError(
                 "sector: the model has no equal sectors; a MistunedDisk has all its sectors among "
@@ -156,11 +139,19 @@ class BladeMotion(ContactMotion):
         return self.model
 
     def _mistuned_disk(self) -> MistunedDisk:
-        from stickslip.disk import MistunedDisk
-
         if not isinstance(self.model, MistunedDisk):
             raise ModelError(
                 "blades: the model is no MistunedDisk; the blades of a tuned disk are all alike, "
                 "see sector"
             )
         return self.model
+
+
+def response_of_disk(tuned: object) -> BladeMotion:
+    """Return the response of a tuned disk, or refuse anything else."""
+    if not isinstance(tuned, BladeMotion) or not tuned.model.travels:
+        raise ModelError(
+            f"tuned: {brief(tuned)} is not the response of a BladedDisk; give "
+            "forced_response(disk, ...)"
+        )
+    return tuned

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.dataset import Dataset, labels
 from stickslip.results.fields import Columns, column
 from stickslip.results.status import Status
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 ROUNDING = 1e-9
 """Relative difference that two solvers leave: a smaller one is no error of truncation."""
@@ -133,11 +131,8 @@ class Certificate(Columns):
     def variables(self, words: Mapping[str, str] = MappingProxyType({})) -> dict[Hashable, Any]:
         """Return the variables that the certificate adds to the dataset of its curve."""
         variables = super().variables(words)
-        variables["certified_dof"] = (
-            "certified_dof",
-            np.array(self.dofs, dtype=np.str_),
-            {"units": "1", "long_name": "degree of freedom compared with exact orbits"},
-        )
+        meaning = "degree of freedom compared with exact orbits"
+        variables["certified_dof"] = labels("certified_dof", self.dofs, meaning)
         variables["certified_tolerance"] = (
             (),
             np.nan if self.tolerance is None else self.tolerance,
@@ -146,7 +141,7 @@ class Certificate(Columns):
         return variables
 
     @classmethod
-    def of_dataset(cls, dataset: xr.Dataset) -> Certificate | None:
+    def of_dataset(cls, dataset: Dataset) -> Certificate | None:
         """Return what `variables` added to a dataset; None if nothing was."""
         if "certified_dof" not in dataset:
             return None

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
@@ -28,20 +29,13 @@ class ContactMotion(Peaks):
     """The part of a result that concerns the contacts."""
 
     def contact_force(self, contact: PointRef, index: int, samples: int = 512) -> Float:
-        """Return one period of the contact forces, as the friction law gives them.
+        """Return one period of the contact forces, shape (samples, points) or (samples,) [N].
 
-        This is the law's answer to the harmonics of the displacement, with its corners, not the
-        truncated series of the force. Of a contact whose points have components, as `Coulomb`, they
-        are in its frame, t1, t2, N: N is the normal force itself, a preload included.
-
-        Returns
-        -------
-        ndarray of float64, shape (samples, points) or (samples,)
-            [N], positive against the relative displacement. With components (samples, points,
-            components), (samples, components) of one point.
+        Positive against the relative displacement, and as the friction law gives them: its answer
+        to the harmonics of the displacement, with its corners, not the truncated series of the
+        force. Of a contact whose points have components, as `Coulomb`, they are in its frame, t1,
+        t2, N, shape (samples, points, components): N is the normal force, a preload included.
         """
-        from stickslip import _core
-
         position = self.position(index)
         count = whole_number(samples, "samples", smallest=1)
         number, point = self.locate(contact)
@@ -90,8 +84,6 @@ class ContactMotion(Peaks):
 
         Raises ModelError if the point was not solved.
         """
-        from stickslip import _core
-
         position = self.position(index)
         number = self.model.contact_index(contact)
         if not self.arrays.solved[position]:
@@ -109,12 +101,9 @@ class ContactMotion(Peaks):
     def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:
         """Return one period of the relative displacement at the contacts.
 
-        With `contact_force` at the same instants it draws the hysteresis loop.
-
-        Returns
-        -------
-        ndarray of float64, shape (samples, points) or (samples,)
-            [m]. With components as of `contact_force`; that of N closes the contact.
+        With `contact_force` at the same instants it draws the hysteresis loop. Of a contact or one
+        of its points, shape (samples, points) or (samples,) [m]; with components as of
+        `contact_force`, where that of N closes the contact.
         """
         number, point = self.locate(contact)
         series = self.arrays.contact_displacement[..., self._columns(number, point)]
@@ -127,12 +116,9 @@ class ContactMotion(Peaks):
         motion while the contact sticks and rests at F_d / k_d while it slips. For a single harmonic
         this is Guillen's improvement of Griffin's method.
 
-        Raises ModelError if its law has no single stiffness above 0.
+        Of a contact or one of its points, shape (samples, points) or (samples,) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (samples, points) or (samples,)
-            [m].
+        Raises ModelError if its law has no single stiffness above 0.
 
         References
         ----------
@@ -144,12 +130,10 @@ class ContactMotion(Peaks):
     def damper_amplitude(self, contact: PointRef) -> Float:
         """Return half the range of the deflection of the contact springs over a period.
 
-        Raises ModelError if its law has no single stiffness above 0.
+        That of the relative displacement where the contact never slips, else F_d / k_d. Of a
+        contact or one of its points, shape (n, points) or (n,) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            [m]: that of the relative displacement where the contact never slips, else F_d / k_d.
+        Raises ModelError if its law has no single stiffness above 0.
 
         References
         ----------
@@ -168,12 +152,9 @@ class ContactMotion(Peaks):
         bounds are those of the mean force. A contact that slips holds the mean force that the
         motion gives it, and the two bounds are 0.
 
-        Raises ModelError if its law has no single stiffness and slip force.
+        Lower and upper bound, shape (n, points, 2) or (n, 2) [N].
 
-        Returns
-        -------
-        ndarray of float64, shape (n, points, 2) or (n, 2)
-            Lower and upper bound [N].
+        Raises ModelError if its law has no single stiffness and slip force.
         """
         number, _ = self.locate(contact)
         parameters = self.model.contacts[number].parameters()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -12,13 +12,11 @@ from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.dataset import Dataset
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
 from stickslip.settings.peaks import DamperSettings
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class LeastPeak(NamedTuple):
@@ -105,10 +103,7 @@ class DamperCurve(ColumnResult):
 
         `stickslip.optimal_damper` finds the lowest of all values, between the computed ones.
 
-        Raises
-        ------
-        ModelError
-            If no peak was found.
+        Raises ModelError if no peak was found.
         """
         if not self.arrays.solved.any():
             raise ModelError(f"optimum: none of the {self.values.size} peaks was found; see status")
@@ -131,7 +126,7 @@ class DamperCurve(ColumnResult):
         return self.settings.variation.apply(self.model, value)
 
     @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
         """Return the curve that a dataset holds."""
         curve = super().from_dataset(dataset, model)
         curve.settings.variation.varied(model)

@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.model import Model
+
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.model import Model
-
+Dataset: TypeAlias = "xr.Dataset"
+"""Of xarray, which takes long to load."""
 Coordinate: TypeAlias = tuple[str, NDArray[np.generic], dict[str, str]]
 
 
-def require_fit(dataset: xr.Dataset, model: Model, states: Sequence[str]) -> tuple[str, ...]:
+def require_fit(dataset: Dataset, model: Model, states: Sequence[str]) -> tuple[str, ...]:
     """Return the observed dofs of a dataset, or refuse one that belongs to another model."""
     for dimension, noun, names in (
         ("point", "contact points in the arrays", displacement_names(model)),

@@ -10,9 +10,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import Field, dataclass
-from inspect import CO_VARARGS, CO_VARKEYWORDS, cleandoc
+from functools import cached_property
+from inspect import CO_VARARGS, CO_VARKEYWORDS
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
+
+from stickslip.numpydoc import entries, sections, written
 
 _VALUE = (
     "deviation, coupling : float, optional\n"
@@ -57,7 +60,7 @@ _PARAMETERS: Mapping[str, tuple[str, str]] = {
 """What parameters mean, and what a refused value is none of."""
 
 _ARRAYS = {"Float": "float64", "Complex": "complex128", "Int": "int64"}
-_ORDER = ("Parameters", "Attributes", "Returns", "Raises", "Warns", "References")
+_ORDER = ("", "Parameters", "Attributes", "Returns", "Raises", "Warns", "References")
 
 
 @dataclass_transform(eq_default=False, frozen_default=True, kw_only_default=True)
@@ -72,20 +75,22 @@ class Frozen:
         for name, value in vars(cls).items():
             if isinstance(value, FunctionType) and value.__doc__ and not name.startswith("_"):
                 value.__doc__ = _of_method(value, getattr(super(cls, cls), name, None))
+            elif isinstance(value, property | cached_property) and value.__doc__:
+                value.__doc__ = _written(_sections(value.__doc__))
         if cls.__doc__:
             cls.__doc__ = _of_class(cls)
 
 
 def _of_method(function: FunctionType, overridden: object) -> str:
-    sections = _sections(overridden.__doc__) if overridden is not None else {}
-    inherited = _entries(sections.pop("Parameters", ""))
-    sections |= _sections(function.__doc__)
-    own = _entries(sections.get("Parameters", ""))
+    parts = _sections(overridden.__doc__) if overridden is not None else {}
+    inherited = entries(parts.pop("Parameters", ""))
+    parts |= _sections(function.__doc__)
+    own = entries(parts.get("Parameters", ""))
     common = {name: _common(name, function) for name in _arguments(function)}
     known = {name: said for name, (said, _) in common.items()} | inherited | own
     # Entries of several names count once.
     blocks = dict.fromkeys(known[name] for name in common if known[name])
-    sections["Parameters"] = "\n".join(blocks)
+    parts["Parameters"] = "\n".join(blocks)
     refused = [
         kind if known[name] == said else kind.removeprefix("observed ")
         for name, (said, kind) in common.items()
@@ -94,26 +99,26 @@ def _of_method(function: FunctionType, overridden: object) -> str:
     if refused:
         listed = " or ".join(filter(None, [", ".join(refused[:-1]), refused[-1]]))
         sentence = f"    If there is no such {listed}."
-        others = sections.get("Raises", "").splitlines()[1:]
-        sections["Raises"] = "\n".join(dict.fromkeys(["ModelError", sentence, *others]))
+        others = parts.get("Raises", "").splitlines()[1:]
+        parts["Raises"] = "\n".join(dict.fromkeys(["ModelError", sentence, *others]))
     array = _ARRAYS.get(function.__annotations__.get("return", ""))
-    shape = re.search(r", shape (.+)\.(\n|$)", sections[""])
+    shape = re.search(r", shape (.+)\.(\n|$)", parts[""])
     if array and shape:
-        sections["Returns"] = f"ndarray of {array}, shape {shape[1]}"
-    return _written(sections)
+        parts["Returns"] = f"ndarray of {array}, shape {shape[1]}"
+    return _written(parts)
 
 
 def _of_class(cls: type) -> str:
     """Add the attributes of the bases, with the types that they have here."""
-    sections = _sections(cls.__doc__)
-    entries: dict[str, str] = {}
+    parts = _sections(cls.__doc__)
+    known: dict[str, str] = {}
     for base in reversed(cls.__mro__[1:]):
-        entries |= _entries(_sections(base.__doc__).get("Attributes", ""))
+        known |= entries(_sections(base.__doc__).get("Attributes", ""))
     for name, kind in cls.__annotations__.items():
-        if name in entries:
-            entries[name] = re.sub(r" : .*", f" : {kind}", entries[name], count=1)
-    entries |= _entries(sections.get("Attributes", ""))
-    return _written(sections | {"Attributes": "\n".join(dict.fromkeys(entries.values()))})
+        if name in known:
+            known[name] = re.sub(r" : .*", f" : {kind}", known[name], count=1)
+    known |= entries(parts.get("Attributes", ""))
+    return _written(parts | {"Attributes": "\n".join(dict.fromkeys(known.values()))})
 
 
 def _common(name: str, function: FunctionType) -> tuple[str, str]:
@@ -129,25 +134,14 @@ def _arguments(function: FunctionType) -> tuple[str, ...]:
 
 
 def _sections(text: str | None) -> dict[str, str]:
-    """Return the sections of a documentation by their names, what precedes them under ""."""
-    head, *rest = re.split(r"\n\n(\w+)\n-+\n", cleandoc(text or ""))
-    head, _, refused = head.partition("\n\nRaises ModelError ")
-    sections = {"": head, **dict(zip(rest[::2], rest[1::2], strict=True))}
+    """Return the sections of a documentation, with the one that a last sentence stands for."""
+    parts = sections(text)
+    parts[""], _, refused = parts[""].partition("\n\nRaises ModelError ")
     if refused:
         told = f"{refused[0].upper()}{refused[1:]}".replace("\n", "\n    ")
-        sections["Raises"] = f"ModelError\n    {told}"
-    return sections
+        parts["Raises"] = f"ModelError\n    {told}"
+    return parts
 
 
-def _entries(section: str) -> dict[str, str]:
-    """Return the entries of a section by their names."""
-    blocks = re.split(r"\n(?=\S)", section) if section else []
-    names = [(re.split(r" : |\n", block)[0].replace("*", ""), block) for block in blocks]
-    return {name: block for listed, block in names for name in listed.split(", ")}
-
-
-def _written(sections: Mapping[str, str]) -> str:
-    named = [(name, sections[name]) for name in _ORDER if sections.get(name)]
-    return "\n\n".join(
-        [sections[""], *(f"{name}\n{'-' * len(name)}\n{text}" for name, text in named)]
-    )
+def _written(parts: Mapping[str, str]) -> str:
+    return written({name: parts.get(name, "") for name in _ORDER})

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float, constant
-
-if TYPE_CHECKING:
-    from stickslip.results.periodic import Sweep
+from stickslip.results.periodic import Sweep
 
 
 class Energy(NamedTuple):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.model import Model
+from stickslip.model.configurations import every_point
 from stickslip.results.arrays import Float, Int, constant
 
 KINDS = ("sticks", "slips forward", "slips backward")
@@ -100,13 +101,9 @@ class Events(Sequence[Event]):
 
 def _owners(model: Model) -> tuple[NDArray[np.str_], Int]:
     """Return the contact and the place in it of every contact point of a model."""
-    pairs = [
-        (name, point)
-        for name, contact in zip(model.contact_names, model.contacts, strict=True)
-        for point in range(contact.points)
-    ]
-    names = np.array([name for name, _ in pairs], dtype=np.str_)
-    return names, np.array([point for _, point in pairs], dtype=np.int64)
+    points = every_point(model)
+    names = np.array([model.contact_names[contact] for contact, _ in points], dtype=np.str_)
+    return names, np.array([point for _, point in points], dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

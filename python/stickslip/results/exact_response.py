@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _core
 from stickslip.checks import whole_number
+from stickslip.disk.wave_ring import Rotation, moving
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
@@ -27,6 +29,7 @@ from stickslip.results.arrays import (
     amplitude_in,
     constant,
 )
+from stickslip.results.dataset import Dataset
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import KINDS, ContactStates, Events, states_of
 from stickslip.results.fields import Computed, column
@@ -36,12 +39,6 @@ from stickslip.results.periodic import key_of
 from stickslip.results.stability import FloquetStability, stability_of
 from stickslip.results.status import Status
 from stickslip.settings.orbits import ExactSettings
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from stickslip import _core
-    from stickslip.disk.wave_ring import Rotation
 
 
 class OrbitArrays(Arrays, ExactColumns):
@@ -94,7 +91,7 @@ class OrbitArrays(Arrays, ExactColumns):
         return replace(made, stability=np.array(codes, np.uint8))
 
     @classmethod
-    def read(cls, dataset: xr.Dataset, **more: Any) -> Self:
+    def read(cls, dataset: Dataset, **more: Any) -> Self:
         """Return the columns that a dataset holds; see `Columns.read`."""
         arrays = super().read(dataset, **more)
         ends, events = arrays.event_offset, arrays.event_time.size
@@ -174,8 +171,6 @@ class ExactResponse(FloquetStability, ForcedResponse):
 
     @cached_property
     def _moving(self) -> tuple[_core.Problem, Rotation | None]:
-        from stickslip.disk.wave_ring import moving
-
         return moving(self.model, half_wave=self.half_wave)
 
     def sector(self, number: int) -> Self:
@@ -274,8 +269,6 @@ class ExactResponse(FloquetStability, ForcedResponse):
     @classmethod
     def _states(cls, model: Model, *, half_wave: bool) -> list[str]:
         """Return a name for every entry of a state; of a wave, with the sectors in front."""
-        from stickslip.disk.wave_ring import moving
-
         own, rotation = super()._states(model, half_wave=half_wave), None
         if model.travels:
             _, rotation = moving(model, half_wave=half_wave)
@@ -297,8 +290,6 @@ class ExactResponse(FloquetStability, ForcedResponse):
 
     def _orbit(self, part: int, places: slice | int, index: int, samples: int) -> Float:
         """Return displacement, velocity, contact displacement or force (0 to 3) of an orbit."""
-        from stickslip import _core
-
         position = self.position(index)
         count = whole_number(samples, "samples", smallest=1)
         model, arrays = self.model, self.arrays

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +13,10 @@ from stickslip.drawn import Drawn
 from stickslip.results.arrays import STABILITY, Int, constant
 from stickslip.results.blades import BladeMotion
 from stickslip.results.certificate import Certificate
+from stickslip.results.dataset import Dataset
 from stickslip.results.energy import Energy, energy_of
 from stickslip.results.sensitivities import Sensitivities
 from stickslip.results.stability import States, truths
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class ForcedResponse(BladeMotion, Sensitivities):
@@ -94,10 +92,7 @@ class ForcedResponse(BladeMotion, Sensitivities):
     def energy(self) -> Energy:
         """Work of the forces and energy lost, per period.
 
-        Raises
-        ------
-        ModelError
-            If a degree of freedom was not observed: all of them take part.
+        Raises ModelError if a degree of freedom was not observed: all of them take part.
         """
         return energy_of(self)
 
@@ -106,5 +101,5 @@ class ForcedResponse(BladeMotion, Sensitivities):
         return certified | super()._further_variables(derived=derived)
 
     @classmethod
-    def _further_arguments(cls, dataset: xr.Dataset) -> dict[str, Any]:
+    def _further_arguments(cls, dataset: Dataset) -> dict[str, Any]:
         return {"certificate": Certificate.of_dataset(dataset)}

@@ -13,6 +13,7 @@ from stickslip.checks import choice, whole_number
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.model.destabilised import destabilised
 from stickslip.model.state import State
 from stickslip.results.arrays import (
     Bool,
@@ -207,24 +208,15 @@ class LimitCycles(PeriodicMotions, FloquetStability):
 
         Raises ModelError if the model is a sector of a travelling wave.
         """
-        from stickslip.model.structure import Structure
-
         if self.model.travels:
             raise ModelError(
                 "model_at: a sector of a travelling wave has no damping matrix of its own"
             )
-        position = self.position(index)
-        own = self.model.structure
-        structure = Structure(
-            mass=own.mass,
-            stiffness=own.stiffness,
-            damping=own.damping + self.ratio[position] * self.negative_damping,
-            dofs=own.dofs,
-        )
-        model = self.model
+        position, model = self.position(index), self.model
         if self.settings.variation is not None:
             model = self.settings.variation.apply(model, float(self.values[position]))
-        return Model(structure, model.contacts, [])
+        free = Model(model.structure, model.contacts)
+        return destabilised(free, self.negative_damping, float(self.ratio[position]))
 
     def _words(self) -> Mapping[str, str]:
         return {"unit": self.settings.unit, "followed": self.settings.followed}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import choice, real_number, unknown
-from stickslip.drawn import Drawn, plots
+from stickslip.drawn import Axes, Drawn, plots
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
 from stickslip.results.blades import SectorDof
@@ -19,10 +19,6 @@ from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
 from stickslip.results.weibull import Percentile, WeibullFit, empirical_percentile, fit_weibull
 from stickslip.settings.peaks import MistuningSettings
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 ALL = "deviation coupling_stiffness pattern dof"
 _TUNED = "coupling_stiffness dof"
@@ -154,10 +150,7 @@ class MistuningStudy(ColumnResult):
     ) -> Float:
         """Return the amplification factors found for one deviation and one coupling.
 
-        Returns
-        -------
-        ndarray of float64, shape (found,)
-            In the order of the patterns, those that were not found left out.
+        In the order of the patterns, those that were not found left out, shape (found,).
         """
         row = self.amplification(dof)[
             _one(deviation, self.deviation, "deviation"),

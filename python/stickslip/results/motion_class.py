@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -16,9 +16,6 @@ from stickslip.results.fields import Float, Shown, column
 from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.spectrum import Spectrum, spectrum_of
 from stickslip.settings.motion import ClassifySettings
-
-if TYPE_CHECKING:
-    pass
 
 SEGMENTS = 8
 """Windows over which a spectrum is averaged, so that what is noise in one is level in the mean."""
@@ -115,10 +112,7 @@ class MotionClass(ColumnResult):
     def final(self) -> State:
         """The state once it was decided; ``classify(model, result.final)`` goes on.
 
-        Raises
-        ------
-        ModelError
-            If the motion has overflowed, and has no finite state.
+        Raises ModelError if the motion has overflowed, and has no finite state.
         """
         return State.of_vector(self.model, self.arrays.final[0])
 

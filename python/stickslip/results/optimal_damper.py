@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
+from stickslip.drawn import Axes
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
+from stickslip.results.dataset import Dataset
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.fields import Columns, Float, column
 from stickslip.results.result import Result
 from stickslip.results.status import Status
 from stickslip.results.stored_model import part_variables, parts_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
 
 
 class _Minima(Columns):
@@ -84,10 +82,7 @@ class OptimalDamper(Result):
     def slip_force(self) -> float:
         """The best slip force of the contacts that were varied [N].
 
-        Raises
-        ------
-        ModelError
-            If something else was varied, or the contacts have several slip forces.
+        Raises ModelError if something else was varied, or the contacts have several slip forces.
         """
         if self.parameter != "slip_force":
             raise ModelError(f"slip_force: the {self.parameter} was varied; see value")
@@ -112,7 +107,7 @@ class OptimalDamper(Result):
         """Number of peaks computed; `curve.counters` tells of how many solutions each."""
         return int(self.curve.values.size)
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+    def to_dataset(self, *, derived: bool = True) -> Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
         That of the curve, with the dimension minimum of the local minima, the least first, and the
@@ -133,7 +128,7 @@ class OptimalDamper(Result):
         return dataset
 
     @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
         """Return the result that a dataset holds; `model` is the one at the best value."""
         given = Model(model.structure, *parts_of(dataset, "given_"))
         prefix = "curve_"

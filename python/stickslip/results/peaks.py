@@ -6,19 +6,18 @@ import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.checks import brief
+from stickslip.disk.wave_ring import moving
 from stickslip.errors import ModelError
 from stickslip.model.model import refusal
 from stickslip.results.arrays import Bool, Float, Int, Measure
 from stickslip.results.periodic import Sweep, key_of
 from stickslip.results.status import Status
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 RIVAL = 0.9
 """Local maxima from this share of the largest may be the true peak once they are refined."""
@@ -189,8 +188,6 @@ def summits(
     With its degree of freedom, by its position among the group. The range of the computed points
     is searched; no peak is below any of them.
     """
-    from stickslip import _core
-
     rows: list[_core.Summit] = []
     low, high = float(result.omega.min()), float(result.omega.max())
     if low < high and result.arrays.solved.any():
@@ -321,9 +318,6 @@ def _rivals(amplitude: Float) -> Int:
 
 def of_orbits(result: Peaks, dof: str, measure: Measure, bracket: Bracket) -> tuple[float, float]:
     """Return frequency and amplitude of the maximum inside a bracket, by exact orbits."""
-    from stickslip import _core
-    from stickslip.disk.wave_ring import moving
-
     low, high, guess = bracket
     problem, rotation = moving(result.model, half_wave=result.half_wave)
     try:

@@ -49,25 +49,19 @@ class PeriodicMotions(ColumnResult):
         """
 
     def coefficients(self, dof: str) -> Complex:
-        """Return the harmonics of a displacement, X_k of x(t) = Re sum_k X_k exp(i k omega t).
+        """Return the harmonics of a displacement, shape (n, H+1) [m].
 
-        Returns
-        -------
-        ndarray of complex128, shape (n, H+1)
-            [m]. At points that did not converge the last iterate, kept for diagnosis.
+        They are the X_k of x(t) = Re sum_k X_k exp(i k omega t); at points that did not converge
+        the last iterate, kept for diagnosis.
         """
         return self.arrays.displacement[:, :, self._column(dof)]
 
     def error_estimate(self, dof: str) -> Float:
-        """Return what the discarded harmonics, and more samples, could still change.
+        """Return what could still change in a displacement, shape (n,) [m].
 
-        Returns
-        -------
-        ndarray of float64, shape (n,)
-            [m], in a displacement. The discarded harmonics of the contact forces, pushed through
-            the compliance; of a marched evaluation with the error of its samples, which alone is
-            `arrays.sampling_error`. Of exact orbits what their gap could change, of exact limit
-            cycles 0.
+        The discarded harmonics of the contact forces, pushed through the compliance; of a marched
+        evaluation with the error of its samples, which alone is `arrays.sampling_error`. Of exact
+        orbits what their gap could change, of exact limit cycles 0.
         """
         return self.arrays.error_estimate[:, self._column(dof)]
 
@@ -104,12 +98,9 @@ class PeriodicMotions(ColumnResult):
         return columns.reshape(*values.shape[:-1], *nodes, own.displacements // own.points)
 
     def dissipation(self, contact: PointRef) -> Float:
-        """Return the work that each contact point loses to friction per cycle.
+        """Return the work that each contact point loses to friction per cycle [J].
 
-        Returns
-        -------
-        ndarray of float64, shape (n, points) or (n,)
-            [J].
+        Of a contact or one of its points, shape (n, points) or (n,).
         """
         return constant(self._by_node(self.arrays.dissipation, contact).sum(axis=-1))
 

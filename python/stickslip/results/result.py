@@ -10,15 +10,17 @@ from dataclasses import fields
 from functools import partial
 from os import PathLike
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _core
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.results.dataset import (
+    Dataset,
     displacement_names,
     labels,
     require_fit,
@@ -28,9 +30,6 @@ from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.documented import Frozen
 from stickslip.results.fields import Columns, Shown
 from stickslip.settings.settings import Settings
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Kind = TypeVar("Kind", bound=np.generic)
 Attributes: TypeAlias = Mapping[str, Callable[[Any], object]]
@@ -92,7 +91,7 @@ class Result(Frozen, ABC):
         return partial(type(self), **values), ()
 
     @abstractmethod
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+    def to_dataset(self, *, derived: bool = True) -> Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
         Numbers as variables, everything else as attributes; all numbers are copies.
@@ -105,7 +104,7 @@ class Result(Frozen, ABC):
 
     @classmethod
     @abstractmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
         """Return the result that a dataset holds.
 
         Equal to the one that made the dataset, bit by bit.
@@ -138,15 +137,7 @@ class Result(Frozen, ABC):
         save(path, self.kind, self.to_dataset(derived=False), self.model)
 
     def locate(self, contact: PointRef) -> tuple[int, int | None]:
-        """Return the position of a contact, and of its point if one is meant.
-
-        Returns
-        -------
-        contact : int
-            Position of the contact.
-        point : int or None
-            Position of the point in it; None for the whole contact.
-        """
+        """Return the position of a contact, and of its point; None for the whole contact."""
         if isinstance(contact, tuple | list):
             return self.model.point(contact)
         return self.model.contact_index(contact), None
@@ -218,7 +209,7 @@ class ColumnResult(Result):
         names = {"timings", "counters", *cls.attributes} - set(given)
         return cls(**{name: getattr(solution, name) for name in names}, **given)
 
-    def to_dataset(self, *, derived: bool = True) -> xr.Dataset:
+    def to_dataset(self, *, derived: bool = True) -> Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
         The columns of `arrays` are the variables, with names along their dimensions; everything
@@ -236,7 +227,7 @@ class ColumnResult(Result):
         return dataset.assign_coords(_coordinates(self, dataset.sizes, states))
 
     @classmethod
-    def from_dataset(cls, dataset: xr.Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
         """Return the result that a dataset holds."""
         told = dataset.attrs
         states = cls._states(model, half_wave=bool(told.get("half_wave", False)))
@@ -267,19 +258,17 @@ class ColumnResult(Result):
         return {}
 
     @classmethod
-    def _further_arguments(cls, dataset: xr.Dataset) -> dict[str, Any]:
+    def _further_arguments(cls, dataset: Dataset) -> dict[str, Any]:
         """Return what `_further_variables` wrote and cannot be derived."""
         return {}
 
 
 def _attributes(result: ColumnResult) -> dict[str, object]:
     """Return what every dataset says of its result, tables as JSON texts."""
-    from stickslip._core import __version__
-
     return {
         "title": result.title,
         "Conventions": "CF-1.11",
-        "stickslip_version": __version__,
+        "stickslip_version": _core.__version__,
         "settings": json.dumps(result.settings.model_dump()),
         "diagnostics": to_json(result.diagnostics),
         "timings": json.dumps(dict(result.timings)),
@@ -289,7 +278,7 @@ def _attributes(result: ColumnResult) -> dict[str, object]:
     }
 
 
-def _settings_of(kind: type[ColumnResult], dataset: xr.Dataset) -> Settings:
+def _settings_of(kind: type[ColumnResult], dataset: Dataset) -> Settings:
     """Return the settings that `attributes` wrote."""
     values = json.loads(dataset.attrs["settings"])
     if values.get("samples", 0) is None:

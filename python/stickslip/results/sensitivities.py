@@ -6,6 +6,7 @@ from typing import TypeAlias, overload
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.checks import listed, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
@@ -126,8 +127,6 @@ class Sensitivities(ContactMotion):
         float or dict
             As `sensitivity`, one number each.
         """
-        from stickslip import _core
-
         self._require_balance()
         if parameter == "omega":
             raise ModelError(
@@ -158,8 +157,6 @@ class Sensitivities(ContactMotion):
 
     def _slopes(self, arrays: Arrays, dof: str, causes: list[Cause], measure: Measure) -> Float:
         """Return the derivatives of an amplitude, shape (n, causes)."""
-        from stickslip import _core
-
         self._require_balance()
         position = self.model.structure.index(key_of(dof, measure)[0])
         solved = arrays.solved

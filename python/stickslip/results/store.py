@@ -7,7 +7,7 @@ import os
 from collections.abc import Hashable, Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,13 +15,11 @@ from stickslip.checks import brief, file_path, is_file, listed
 from stickslip.errors import ModelError
 from stickslip.files import refusal, require_place, write
 from stickslip.io.hdf5 import require_held, require_own
+from stickslip.memory import SHARE, physical_memory
+from stickslip.model import Model
+from stickslip.results.dataset import Dataset
 from stickslip.results.seal import SEAL, require_harmless, seal_variable, sealed, sealed_whole
 from stickslip.results.stored_model import model_of, model_variables
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from stickslip.model import Model
 
 KINDS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.results.forced_response", "ForcedResponse"),
@@ -44,7 +42,7 @@ FORMAT = 2
 """Version of the layout of the file; it rises when an older reader could not read it."""
 
 
-def save(path: str | os.PathLike[str], kind: str, dataset: xr.Dataset, model: Model) -> None:
+def save(path: str | os.PathLike[str], kind: str, dataset: Dataset, model: Model) -> None:
     """Write the dataset of a result, also a partial one, with its model; see `Result.save`.
 
     Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
@@ -59,7 +57,7 @@ def save(path: str | os.PathLike[str], kind: str, dataset: xr.Dataset, model: Mo
     write(target, sealed(_netcdf(dataset)))
 
 
-def _netcdf(dataset: xr.Dataset) -> memoryview:
+def _netcdf(dataset: Dataset) -> memoryview:
     """Return the bytes of a NetCDF 4 file."""
     import h5netcdf  # type: ignore[import-untyped, unused-ignore]
     from xarray.backends import H5NetCDFStore
@@ -106,8 +104,6 @@ def load(path: str | os.PathLike[str]) -> Any:
 
 def content_of(source: Path) -> bytes:
     """Return the bytes of a result file, or refuse one that is larger than the memory."""
-    from stickslip.memory import SHARE, physical_memory
-
     try:
         size, memory = os.stat(source).st_size, physical_memory()
         if memory is not None and size > SHARE * memory:
@@ -117,7 +113,7 @@ def content_of(source: Path) -> bytes:
         raise refusal(source, "cannot be read", error) from error
 
 
-def _read(source: Path) -> xr.Dataset:
+def _read(source: Path) -> Dataset:
     import h5py
     import xarray as xr
 
@@ -155,7 +151,7 @@ def _changed(source: Path) -> ModelError:
     )
 
 
-def _required_kind(dataset: xr.Dataset, source: Path) -> Any:
+def _required_kind(dataset: Dataset, source: Path) -> Any:
     """Return the class of the result in a file, or refuse a file of which this version has none."""
     kind, version = (dataset.attrs.get(f"stickslip_{key}") for key in ("kind", "format"))
     if kind is None or version is None:
@@ -175,7 +171,7 @@ def _required_kind(dataset: xr.Dataset, source: Path) -> Any:
     return getattr(import_module(module), name)
 
 
-def _split(dataset: xr.Dataset) -> xr.Dataset:
+def _split(dataset: Dataset) -> Dataset:
     """Replace every complex variable by its real and its imaginary part."""
     parts = {}
     names = [name for name, variable in dataset.data_vars.items() if variable.dtype.kind == "c"]
@@ -191,7 +187,7 @@ def _split(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.drop_vars(names).assign(parts)
 
 
-def _joined(dataset: xr.Dataset) -> xr.Dataset:
+def _joined(dataset: Dataset) -> Dataset:
     """Undo `_split`."""
     wholes = {}
     names = [str(name) for name in dataset.data_vars if str(name).endswith("_real")]
@@ -207,7 +203,7 @@ def _joined(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.assign(wholes)
 
 
-def _encoding(dataset: xr.Dataset) -> dict[Hashable, dict[str, object]]:
+def _encoding(dataset: Dataset) -> dict[Hashable, dict[str, object]]:
     """Compress tables, with check sums, and declare no fill value: every bit pattern counts."""
     encoding: dict[Hashable, dict[str, object]] = {}
     for name, variable in dataset.variables.items():

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from stickslip.disk import BladedDisk, Interface, MistunedDisk
+from stickslip.disk.coupling import coupling_from_spec
 from stickslip.model import Model
 from stickslip.model.force import force_from_spec
 from stickslip.model.laws import contact_from_spec, law_from_spec
 from stickslip.model.structure import Structure
+from stickslip.results.dataset import Dataset, labels
 from stickslip.results.fields import Float
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from stickslip.disk import BladedDisk, MistunedDisk
 
 _MATRICES = {
     "mass": ("kg", "mass matrix"),
@@ -36,7 +34,7 @@ def model_variables(model: Model) -> Mapping[Hashable, object]:
     return {"model": ((), kind, {"long_name": "kind of model"}), **_KINDS[kind][0](model)}
 
 
-def model_of(dataset: xr.Dataset) -> Model:
+def model_of(dataset: Dataset) -> Model:
     """Return the model that a dataset holds; see `model_variables`."""
     # The first files held no other kind and did not say so.
     kind = str(dataset["model"].values) if "model" in dataset else "Model"
@@ -47,7 +45,7 @@ def _model(model: Model) -> dict[Hashable, object]:
     return _structure_variables(model.structure) | part_variables(model)
 
 
-def _read_model(dataset: xr.Dataset) -> Model:
+def _read_model(dataset: Dataset) -> Model:
     return Model(_structure(dataset), *parts_of(dataset))
 
 
@@ -68,10 +66,7 @@ def _bladed(model: Any) -> dict[Hashable, object]:
     return variables
 
 
-def _read_bladed(dataset: xr.Dataset, prefix: str = "") -> BladedDisk:
-    from stickslip.disk import BladedDisk, Interface
-    from stickslip.disk.coupling import coupling_from_spec
-
+def _read_bladed(dataset: Dataset, prefix: str = "") -> BladedDisk:
     contacts, forces = parts_of(dataset, prefix)
     settings = _read_texts(dataset, "disk")[0]
     interface = None
@@ -103,9 +98,7 @@ def _mistuned(model: Any) -> dict[Hashable, object]:
     return variables
 
 
-def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
-    from stickslip.disk import MistunedDisk
-
+def _read_mistuned(dataset: Dataset) -> MistunedDisk:
     disk = _read_bladed(dataset, "sector_")
     stacks = [_real(dataset, f"blade_{name}") for name in ("mass", "stiffness", "damping")]
     known = np.zeros(disk.sectors)
@@ -119,7 +112,7 @@ def _read_mistuned(dataset: xr.Dataset) -> MistunedDisk:
 
 
 _Writer: TypeAlias = Callable[[Any], Mapping[Hashable, object]]
-_KINDS: Mapping[str, tuple[_Writer, Callable[[xr.Dataset], Model]]] = {
+_KINDS: Mapping[str, tuple[_Writer, Callable[[Dataset], Model]]] = {
     "Model": (_model, _read_model),
     "BladedDisk": (_bladed, _read_bladed),
     "MistunedDisk": (_mistuned, _read_mistuned),
@@ -131,11 +124,7 @@ def _structure_variables(structure: Structure) -> dict[Hashable, object]:
         name: (("row", "column"), getattr(structure, name), {"units": unit, "long_name": meaning})
         for name, (unit, meaning) in _MATRICES.items()
     }
-    variables["row"] = (
-        "row",
-        np.array(structure.dofs, dtype=np.str_),
-        {"units": "1", "long_name": "degree of freedom of the structure"},
-    )
+    variables["row"] = labels("row", structure.dofs, "degree of freedom of the structure")
     law = structure.damping_law
     if law is None and structure.proportional and structure.damping.any():
         said = {"units": "1", "long_name": "damping known to couple no modes"}
@@ -143,7 +132,7 @@ def _structure_variables(structure: Structure) -> dict[Hashable, object]:
     return variables | _texts("damping_law", [] if law is None else [law.to_spec()])
 
 
-def _structure(dataset: xr.Dataset) -> Structure:
+def _structure(dataset: Dataset) -> Structure:
     laws = _read_texts(dataset, "damping_law") if "damping_law" in dataset else []
     return Structure.of_law(
         _real(dataset, "mass"),
@@ -155,7 +144,7 @@ def _structure(dataset: xr.Dataset) -> Structure:
     )
 
 
-def _real(dataset: xr.Dataset, name: str) -> Float:
+def _real(dataset: Dataset, name: str) -> Float:
     """Return a matrix, or several, of real numbers."""
     values: Float = dataset[name].values
     if values.dtype != np.float64:
@@ -169,7 +158,7 @@ def part_variables(model: Model, prefix: str = "") -> dict[Hashable, object]:
     return contacts | _texts(f"{prefix}forces", [force.to_spec() for force in model.forces])
 
 
-def parts_of(dataset: xr.Dataset, prefix: str = "") -> tuple[list[Any], list[Any]]:
+def parts_of(dataset: Dataset, prefix: str = "") -> tuple[list[Any], list[Any]]:
     """Return the contacts and forces that `part_variables` wrote."""
     contacts = _read_texts(dataset, f"{prefix}contacts")
     forces = _read_texts(dataset, f"{prefix}forces")
@@ -181,10 +170,9 @@ def _texts(name: str, entries: Iterable[Mapping[str, object]]) -> dict[Hashable,
 
     They are variables rather than attributes: HDF5 keeps no attribute above 64 kB.
     """
-    texts = np.array([json.dumps(entry) for entry in entries], dtype=np.str_)
     meaning = f"{name.replace('_', ' ')} of the model, one JSON text each"
-    return {name: (f"{name}_entry", texts, {"units": "1", "long_name": meaning})}
+    return {name: labels(f"{name}_entry", [json.dumps(entry) for entry in entries], meaning)}
 
 
-def _read_texts(dataset: xr.Dataset, name: str) -> list[Any]:
+def _read_texts(dataset: Dataset, name: str) -> list[Any]:
     return [json.loads(text) for text in dataset[name].values]

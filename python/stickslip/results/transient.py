@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -20,9 +20,6 @@ from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.spectrum import Spectrum, spectrum_of
 from stickslip.results.status import Settled, TransientStatus
 from stickslip.settings.motion import TransientSettings
-
-if TYPE_CHECKING:
-    pass
 
 
 class TransientArrays(Columns):
@@ -132,10 +129,7 @@ class Transient(ColumnResult):
     def final(self) -> State:
         """The state after the last period; ``transient(..., start=result.final)`` goes on.
 
-        Raises
-        ------
-        ModelError
-            If the motion is unbounded and has no finite state at its end.
+        Raises ModelError if the motion is unbounded and has no finite state at its end.
         """
         return State.of_vector(self.model, self.arrays.poincare[-1])
 
@@ -183,17 +177,14 @@ class Transient(ColumnResult):
         return states[:, place], states[:, len(structure) + place]
 
     def amplitudes(self, dof: str, measure: Literal["half_range", "max"] = "half_range") -> Float:
-        """Return the amplitude of a displacement in each period.
+        """Return the amplitude of a displacement in each period, shape (P,) [m].
+
+        From extrema, not samples.
 
         Parameters
         ----------
         measure : {"half_range", "max"}, optional
             Half the peak-to-peak range over the period, or the largest |x|.
-
-        Returns
-        -------
-        ndarray of float64, shape (P,)
-            [m]. From extrema, not samples.
         """
         choice(measure, "measure", ("half_range", "max"))
         return amplitude_in(self.arrays.range[:, self._column(dof)], measure)

@@ -42,15 +42,8 @@ class Estimate(NamedTuple):
     """Upper end; it may be open, infinity."""
 
 
-class Percentile(NamedTuple):
-    """A percentile with its confidence interval."""
-
-    value: float
-    """The percentile."""
-    low: float
-    """Lower end of the interval; minus infinity if there are too few factors for one."""
-    high: float
-    """Upper end; infinity if there are too few factors for one."""
+class Percentile(Estimate):
+    """A percentile with its confidence interval, an end of which is open for too few factors."""
 
 
 class WeibullFit(Frozen):
@@ -210,17 +203,18 @@ def _sorted(factors: ArrayLike) -> Float:
 
 
 def _share(q: float) -> float:
-    value = real_number(q, "q")
-    if not 0.0 < value < 100.0:
-        raise ModelError(f"q: {value:g}; give a percentile between 0 and 100, 99.9")
-    return value / 100.0
+    return _inside(q, "q", 100.0, "a percentile between 0 and 100, 99.9") / 100.0
 
 
 def _confidence(value: float) -> float:
-    level = real_number(value, "confidence")
-    if not 0.0 < level < 1.0:
-        raise ModelError(f"confidence: {level:g}; give a probability between 0 and 1, 0.95")
-    return level
+    return _inside(value, "confidence", 1.0, "a probability between 0 and 1, 0.95")
+
+
+def _inside(value: float, entry: str, most: float, remedy: str) -> float:
+    number = real_number(value, entry)
+    if not 0.0 < number < most:
+        raise ModelError(f"{entry}: {number:g}; give {remedy}")
+    return number
 
 
 def _frozen(best: tuple[float, float, float]) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import re
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
@@ -13,10 +12,11 @@ from typing import Annotated, Any, Literal, Self, TypeVar, Union, get_args, get_
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
+from stickslip import numpydoc
 from stickslip.calls import misfit
 from stickslip.checks import brief
 from stickslip.errors import CallError, ModelError
-from stickslip.model import Model
+from stickslip.model.model import require_model
 from stickslip.settings.entries import CALL, Table
 from stickslip.settings.ranges import Or
 from stickslip.settings.refusal import refusal
@@ -57,11 +57,6 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-def _require_model(model: object) -> None:
-    if not isinstance(model, Model):
-        raise ModelError(f"model: {brief(model)} is not a Model; give ss.Model(structure, ...)")
-
-
 def _require_progress(progress: object) -> None:
     if progress is not None and not callable(progress):
         raise ModelError(
@@ -70,7 +65,7 @@ def _require_progress(progress: object) -> None:
 
 
 _CHECKS: dict[str, Callable[[object], None]] = {
-    "model": _require_model,
+    "model": require_model,
     "progress": _require_progress,
 }
 _SAID = {
@@ -160,29 +155,18 @@ def _taken(annotation: Any, metadata: Iterable[Any] = ()) -> Any:
 
 def _documented(text: str, signature: inspect.Signature, keys: Mapping[str, FieldInfo]) -> str:
     """Complete "Parameters" by the keys, in the order of the signature, and "Raises"."""
-    head, *parts = re.split(r"\n\n(\w+)\n-+\n", inspect.cleandoc(text))
-    sections = dict.fromkeys(("Parameters", "Returns", "Raises"), "")
-    sections |= zip(parts[::2], parts[1::2], strict=True)
-    said = dict(_SAID)
-    for block in _blocks(sections["Parameters"]):
-        names = block.split(" : ")[0].replace("*", "").split(", ")
-        said |= dict.fromkeys(names, block)
+    sections = dict.fromkeys(("Parameters", "Returns", "Raises"), "") | numpydoc.sections(text)
+    said = _SAID | numpydoc.entries(sections["Parameters"])
     said |= {name: described(name, field) for name, field in keys.items()}
     sections["Parameters"] = "\n".join(
         dict.fromkeys(said[name] for name in signature.parameters if name in said)
     )
-    raised = dict(block.split("\n", 1) for block in _blocks(sections["Raises"]))
+    raised = numpydoc.entries(sections["Raises"])
     sections["Raises"] = "\n".join(
-        "\n".join(filter(None, (f"{name}{common}", raised.get(name))))
+        f"{name}{common}{raised.get(name, '').removeprefix(name)}"
         for name, common in _RAISED.items()
     )
-    written = (f"{name}\n{'-' * len(name)}\n{body}" for name, body in sections.items())
-    return "\n\n".join((head, *written))
-
-
-def _blocks(section: str) -> list[str]:
-    """Return the entries of a section; what is said of them is indented."""
-    return re.split(r"\n(?=\S)", section) if section else []
+    return numpydoc.written(sections)
 
 
 def described(name: str, field: FieldInfo) -> str:

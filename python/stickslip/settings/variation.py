@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
 from pydantic import Field, Strict
 
+from stickslip import _core
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.model.contact import Contact
 from stickslip.settings.entries import ONE_OF, NamedContact, Some
 from stickslip.settings.ranges import Or
 from stickslip.settings.settings import Settings
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
 Common = Annotated[Literal["value", "factor"], ONE_OF]
@@ -28,7 +26,7 @@ Chosen: TypeAlias = str | tuple[str, int]
 """A contact by its name, or one of its points."""
 
 
-class CommonSettings(Settings):
+class ParameterMode(Settings):
     """How contacts share the value of a parameter."""
 
     common: Common = Field(
@@ -44,7 +42,7 @@ _Contacts = Annotated[
 ]
 
 
-class ContactKeys(CommonSettings):
+class ContactKeys(ParameterMode):
     """Which contacts have a parameter in common."""
 
     contacts: _Contacts | None = Field(
@@ -55,7 +53,7 @@ class ContactKeys(CommonSettings):
     )
 
 
-class Variation(CommonSettings):
+class Variation(ParameterMode):
     """What is varied."""
 
     parameter: Annotated[Parameter, ONE_OF] = Field(

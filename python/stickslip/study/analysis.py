@@ -6,9 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from operator import or_
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import Field, GetCoreSchemaHandler, Tag, model_validator
+from pydantic_core import CoreSchema
 
 from stickslip.analyses.basin_map import basin_map
 from stickslip.analyses.certify import certify
@@ -22,6 +23,7 @@ from stickslip.analyses.single_harmonic import single_harmonic
 from stickslip.analyses.transient import transient
 from stickslip.checks import real_matrix
 from stickslip.model import Model
+from stickslip.results.result import Result
 from stickslip.settings.balance import BalanceKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import Factor, Some, Table, chosen_by
@@ -35,11 +37,6 @@ from stickslip.study.matrices import (
     damping_of,
     matrix_of,
 )
-
-if TYPE_CHECKING:
-    from pydantic_core import CoreSchema
-
-    from stickslip.results.result import Result
 
 # Share of the progress that the balance is given before it is certified.
 _BALANCE = 0.5

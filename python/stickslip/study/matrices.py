@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
-from stickslip.checks import brief, file_path, is_file, unknown
+from stickslip.checks import MatrixLike, brief, file_path, is_file, unknown
 from stickslip.errors import EntryError, ModelError
-from stickslip.model.structure import ModalDamping, Rayleigh
+from stickslip.model.structure import DampingLaw, ModalDamping, Rayleigh
 from stickslip.settings.entries import (
     Dof,
     ListOr,
@@ -25,10 +25,6 @@ from stickslip.settings.entries import (
     Text,
     Time,
 )
-
-if TYPE_CHECKING:
-    from stickslip.checks import MatrixLike
-    from stickslip.model.structure import DampingLaw
 
 
 class MatrixFile(Table):

@@ -8,7 +8,6 @@ import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
@@ -16,20 +15,16 @@ from stickslip.analyses.arguments import loaded_dofs, physical_dofs
 from stickslip.analyses.run import share
 from stickslip.checks import brief, file_path, is_file, is_reserved, unknown, vanished
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
-from stickslip.disk.bladed_disk import NEXT, stranger
+from stickslip.disk.sector import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping, Structure
+from stickslip.results.result import Result
 from stickslip.settings.refusal import refusal
 from stickslip.study.analysis import level_name
-from stickslip.study.matrices import damping_of, matrix_of, named, neighbour
-from stickslip.study.tables import ForceTable, StudyTables
-
-if TYPE_CHECKING:
-    from stickslip.results.result import Result
-    from stickslip.study.disk_table import DiskTable, InterfaceTable
-    from stickslip.study.matrices import StructureTable
-    from stickslip.study.tables import ContactTable
+from stickslip.study.disk_table import DiskTable, InterfaceTable
+from stickslip.study.matrices import StructureTable, damping_of, matrix_of, named, neighbour
+from stickslip.study.tables import ContactTable, ForceTable, StudyTables
 
 _SHOWN_DOFS = 4
 # tomllib takes hours for a key of 100 000 parts.

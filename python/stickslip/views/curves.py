@@ -6,24 +6,21 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from math import inf, pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.disk import MistunedDisk
 from stickslip.drawn import plots
 from stickslip.results.certificate import Certificate
 from stickslip.results.exact_response import ExactResponse
+from stickslip.results.fields import Int
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts
+from stickslip.study.tables import OutputTable
 from stickslip.units import quantity
 from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.picture import Panel, Panels
 from stickslip.views.tables import Row, Table, tabulated
-
-if TYPE_CHECKING:
-    from stickslip.disk import MistunedDisk
-    from stickslip.results.fields import Int
-    from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panel, Panels
 
 _SLIP_POINTS = 12
 _LOOPS = 2
@@ -120,8 +117,6 @@ class CurveView(View[ForcedResponse]):
 
 
 def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterator[Panel]:
-    from stickslip.disk import MistunedDisk
-
     length, omega = output.length_unit, output.omega_unit
     if isinstance(result.model, MistunedDisk):
         for dof in _of_sectors(result.model, dofs):

@@ -5,17 +5,15 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
+from typing import Any, Generic, TypeAlias, TypeVar
 
 from stickslip.errors import ModelError
 from stickslip.results.diagnostic import Severity
 from stickslip.results.result import Result
+from stickslip.study.tables import OutputTable
 from stickslip.units import quantity
+from stickslip.views.picture import Panels
 from stickslip.views.tables import Row, Table, assumed, model_rows, tabulated
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
-    from stickslip.views.picture import Panels
 
 VIEWS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.views.curves", "CurveView"),

@@ -5,13 +5,11 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import Protocol, TypeAlias
 
+from stickslip.drawn import Axes
 from stickslip.errors import ModelError
 from stickslip.files import make_folder, write
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 class Panel(Protocol):

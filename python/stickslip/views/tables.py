@@ -8,22 +8,19 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rich.table import Table
 
+# The command says its version without loading these.
 if TYPE_CHECKING:
     from stickslip.model import Model
     from stickslip.results.result import Result
     from stickslip.results.status import Status
 
-__all__ = ["Row", "Table", "assumed", "counted", "listed", "model_rows", "new_table", "tabulated"]
+
+__all__ = ["Row", "Table", "assumed", "counted", "listed", "model_rows", "tabulated"]
 
 Row: TypeAlias = tuple[str, str]
 """A fact: what it is of, and what it is."""
 
 _SHOWN_PARTS = 6
-
-
-def new_table(title: str | None = None) -> Table:
-    """Return an empty table; the attribute `caption` is for notes below."""
-    return Table(title=title)
 
 
 def tabulated(
@@ -35,9 +32,10 @@ def tabulated(
 ) -> Table:
     """Return a table of texts, of numbers flush right, and of texts behind them.
 
-    `label` is the heading of the names of the rows, which are left out if it is empty.
+    `label` is the heading of the names of the rows, which are left out if it is empty. The
+    attributes `title` and `caption` are for what stands above and below.
     """
-    table = new_table()
+    table = Table()
     for heading in [*([label] if label else []), *texts]:
         table.add_column(heading, overflow="fold")
     for heading in numbers:
