@@ -14,6 +14,7 @@ mod orbits;
 mod problem;
 mod response;
 mod settings;
+mod statics;
 mod transient;
 mod watch;
 
@@ -33,6 +34,7 @@ mod _core {
         orbits::{exact_peak, exact_response, orbit_history},
         problem::Problem,
         response::{amplitude, forced_response, single_harmonic},
+        statics::static_response,
         transient::transient,
     };
 

@@ -122,7 +122,8 @@ pub fn forced_response<'py>(
     settings: &Bound<'_, PyAny>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let stability: bool = get(settings, "stability")?;
+    let stability =
+        settings.getattr_opt("stability")?.map_or(Ok(false), |given| given.extract())?;
     let settings = balance_settings(settings)?;
     swept(py, progress, observe.len(), &problem.model, move |model, kept, look| {
         let orbits = OrbitInitialGuess::new(model, settings.residual, &observe, look);

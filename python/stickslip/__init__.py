@@ -13,6 +13,7 @@ _NAMES = {
     "analyses.basin_map": "basin_map",
     "analyses.certify": "certify",
     "analyses.classify": "classify",
+    "analyses.static_response": "static_response",
     "analyses.damper_curve": "damper_curve",
     "analyses.exact_response": "exact_response",
     "analyses.flutter_formulas": "rigid_limit_cycle single_harmonic_cycles",

@@ -86,6 +86,8 @@ def test_interruption_before_the_first_point():
         sampling_error=np.full((n, 1), np.nan),
         slip_fraction=np.full((n, 1), np.nan),
         dissipation=np.full((n, 1), np.nan),
+        fold=np.zeros(n, np.bool_),
+        stability=np.full(n, 2, np.uint8),
     )
     frf = replace(ss.forced_response(model, [1.0], 1), arrays=empty, interrupted=True)
     assert np.isnan(frf.amplitude("x")).all()

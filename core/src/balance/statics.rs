@@ -31,13 +31,13 @@ const FREE: f64 = 1e9;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RestStatus {
     /// The structure carries its loads.
-    Converged,
+    Converged = 0,
     /// Contacts have let go of a body that nothing else holds.
-    Free,
+    Free = 1,
     /// No state in equilibrium follows from the one before: contacts jam or let go at once.
-    Stalled,
+    Stalled = 2,
     /// The caller has ended the analysis.
-    NotComputed,
+    NotComputed = 3,
 }
 
 /// A structure under its static loads.

@@ -118,6 +118,10 @@ class Contact(ABC):
         """Largest force of each contact point [N]."""
         return (self.parameters().get("slip_force", np.inf),) * self.points
 
+    def friction_at(self, point: int, force: Matrix) -> float:
+        """Return the largest traction that friction allows at the force of a point [N]."""
+        return self.limits[point]
+
     @property
     def slider_limits(self) -> tuple[float, ...]:
         """Slip limit of each part that sticks or slips by itself [N]: as a rule, of each point."""

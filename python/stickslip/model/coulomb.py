@@ -240,6 +240,16 @@ class Coulomb(Contact):
     def _per_node(self, key: str) -> Matrix:
         return np.broadcast_to(np.asarray(getattr(self, key), dtype=np.float64), self.points)
 
+    def node_friction(self, node: int) -> tuple[float, float]:
+        """Return the coefficient of friction of a node, and its constant normal load [N] or 0."""
+        load = float(self._per_node("preload")[node]) if self.normal is None else 0.0
+        return float(self._per_node("friction")[node]), load
+
+    def friction_at(self, point: int, force: Matrix) -> float:
+        """Return what friction allows at a force of a node; see `Contact.friction_at`."""
+        friction, load = self.node_friction(point)
+        return friction * (load if self.normal is None else float(force[-1]))
+
     @property
     def stuck_stiffness(self) -> Matrix:
         """Stiffness while every node sticks and is closed [N/m], shape (n_u, n_u)."""

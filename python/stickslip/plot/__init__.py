@@ -10,6 +10,7 @@ from stickslip.plot.damper import damper
 from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.multipliers import cycle_multipliers, multipliers
+from stickslip.plot.statics import static_forces
 from stickslip.plot.transients import contact_history, history, phase, poincare, spectrum
 
 __all__ = [
@@ -37,6 +38,7 @@ __all__ = [
     "slip",
     "spectrum",
     "stability_map",
+    "static_forces",
     "waveform",
 ]
 

@@ -145,3 +145,23 @@ class Settled(NamedTuple):
     """Half peak-to-peak in the last period [m]."""
     change: float
     """Its change from the period before, relative; not-a-number after one period."""
+
+
+class RestStatus(Ending):
+    """How raising static loads has ended; compares equal to its text."""
+
+    CONVERGED = ("converged", "The structure carries its static loads. Nothing needs to be done.")
+    FREE = (
+        "free",
+        "Contacts have let go of a body that nothing else holds, at the share of the loads that "
+        "the result has. Lower the loads, raise preload or friction, or ground the body by a spring.",
+    )
+    STALLED = (
+        "stalled",
+        "No equilibrium follows from the one before: contacts jam or let go at once, at the share "
+        "of the loads that the result has. Lower the friction or the loads.",
+    )
+    NOT_COMPUTED = (
+        "not computed",
+        "The run was interrupted before the loads were raised. Run the analysis again.",
+    )

@@ -31,6 +31,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "motion_class": ("stickslip.results.motion_class", "MotionClass"),
     "basin_map": ("stickslip.results.basin_map", "BasinMap"),
     "mistuning_study": ("stickslip.results.mistuning", "MistuningStudy"),
+    "static_response": ("stickslip.results.static_response", "StaticResponse"),
     "stability_map": ("stickslip.results.limit_cycles", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""

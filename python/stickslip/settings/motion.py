@@ -80,6 +80,14 @@ class TransientKeys(TransientSettings, ObserveKeys):
     )
 
 
+class StaticSettings(Settings):
+    """How static loads are raised: from nothing, all together."""
+
+
+class StaticKeys(StaticSettings, ObserveKeys):
+    """Which displacements of a structure at rest are kept."""
+
+
 class ClassifySettings(Settings):
     """How it is found out what becomes of a motion."""
 

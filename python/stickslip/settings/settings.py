@@ -41,7 +41,7 @@ class Settings(Table):
     def stored(cls, values: Mapping[str, Any]) -> Self:
         """Return the settings that a file holds; keys of other versions are passed over."""
         known = {name: _frozen(values[name]) for name in cls.model_fields if name in values}
-        if not known:
+        if cls.model_fields and not known:
             raise KeyError("settings")
         return cls.of(**known)
 

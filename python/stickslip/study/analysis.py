@@ -20,6 +20,7 @@ from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.analyses.mistuning_study import mistuning_study
 from stickslip.analyses.run import Progress, share
 from stickslip.analyses.single_harmonic import single_harmonic
+from stickslip.analyses.static_response import static_response
 from stickslip.analyses.transient import transient
 from stickslip.checks import real_matrix
 from stickslip.model import Model
@@ -27,7 +28,7 @@ from stickslip.results.result import Result
 from stickslip.settings.balance import BalanceKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import Factor, Some, Table, chosen_by
-from stickslip.settings.motion import BasinKeys, TransientKeys
+from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys
 from stickslip.study.matrices import (
@@ -147,6 +148,13 @@ class TransientTable(TransientKeys, LevelEntries):
     dof_keys = ("observe", "start")
 
 
+class StaticTable(StaticKeys, LevelEntries):
+    """Equilibrium under the static loads, raised from nothing."""
+
+    kind: Literal["static"] = Field(description="The analysis.")
+    analysis: ClassVar = static_response
+
+
 class DamperCurveTable(DamperKeys, AnalysisTable):
     """Peak amplitude and frequency along a parameter of the contacts or the level of the forces."""
 
@@ -208,6 +216,7 @@ KINDS: Mapping[str, type[AnalysisTable]] = {
         ForcedResponseTable,
         ExactTable,
         TransientTable,
+        StaticTable,
         CertifyTable,
         SingleHarmonicTable,
         DamperCurveTable,

@@ -24,6 +24,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "motion_class": ("stickslip.views.motions", "MotionView"),
     "basin_map": ("stickslip.views.motions", "BasinView"),
     "mistuning_study": ("stickslip.views.mistuning", "MistuningView"),
+    "static_response": ("stickslip.views.statics", "StaticView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
 }
