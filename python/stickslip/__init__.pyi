@@ -33,6 +33,7 @@ from stickslip.io import read_dofs as read_dofs
 from stickslip.io import read_frf as read_frf
 from stickslip.io import read_matrix as read_matrix
 from stickslip.io import write_frf as write_frf
+from stickslip.model import ContactLaw as ContactLaw
 from stickslip.model import Coulomb as Coulomb
 from stickslip.model import Force as Force
 from stickslip.model import Jenkins as Jenkins
@@ -42,6 +43,7 @@ from stickslip.model import ParallelJenkins as ParallelJenkins
 from stickslip.model import Rayleigh as Rayleigh
 from stickslip.model import StructuralDamper as StructuralDamper
 from stickslip.model import Structure as Structure
+from stickslip.model import Tangents as Tangents
 from stickslip.model import join as join
 from stickslip.model import natural_frequencies as natural_frequencies
 from stickslip.model import slip_configurations as slip_configurations

@@ -7,6 +7,7 @@ from stickslip.model.configurations import (
     slip_configurations,
 )
 from stickslip.model.contact import Contact
+from stickslip.model.contact_law import ContactLaw, Tangents
 from stickslip.model.coulomb import Coulomb
 from stickslip.model.force import Force
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
@@ -16,6 +17,7 @@ from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 __all__ = [
     "Contact",
+    "ContactLaw",
     "ContactRef",
     "Coulomb",
     "Force",
@@ -28,6 +30,7 @@ __all__ = [
     "SlipConfigurations",
     "StructuralDamper",
     "Structure",
+    "Tangents",
     "join",
     "natural_frequencies",
     "slip_configurations",

@@ -42,6 +42,9 @@ class Contact(ABC):
     factors: ClassVar[frozenset[str]] = frozenset()
     """Adjustable parameters that are factors on what the contact was given: they take no value."""
 
+    core_phases: ClassVar[bool] = True
+    """Whether the core tells when its points stick and slip; else `states` does, if it can."""
+
     by_point: ClassVar[bool] = False
     """Whether each point is a law of its own in the core; else one law has all points."""
 
