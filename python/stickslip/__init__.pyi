@@ -113,6 +113,11 @@ def damper_curve(
     slip_force: ArrayLike | None = None,
     stiffness: ArrayLike | None = None,
     level: ArrayLike | None = None,
+    friction: ArrayLike | None = None,
+    preload: ArrayLike | None = None,
+    gap: ArrayLike | None = None,
+    tangential_stiffness: ArrayLike | None = None,
+    normal_stiffness: ArrayLike | None = None,
     progress: Progress = None,
 ) -> DamperCurve: ...
 def exact_response(
@@ -196,7 +201,16 @@ def optimal_damper(
     measure: Literal["half_range", "max", "fundamental"] = "half_range",
     mode: int = 0,
     omega: tuple[float, float] | None = None,
-    parameter: Literal["slip_force", "stiffness", "level"] = "slip_force",
+    parameter: Literal[
+        "slip_force",
+        "stiffness",
+        "level",
+        "friction",
+        "preload",
+        "gap",
+        "tangential_stiffness",
+        "normal_stiffness",
+    ] = "slip_force",
     bounds: tuple[float, float] | None = None,
     progress: Progress = None,
 ) -> OptimalDamper: ...

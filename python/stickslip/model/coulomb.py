@@ -262,9 +262,14 @@ class Coulomb(Contact):
     def states(self, force: Matrix) -> NDArray[np.int8]:
         """Return what nodes do by their forces, (..., components); see `ContactStates`."""
         traction = np.linalg.norm(force[..., : self.tangential], axis=-1)
-        pressing = force[..., -1] if self.normal is not None else self._pressing
-        slips = traction >= self._per_node("friction") * pressing * (1.0 - _ON_CONE)
-        return np.where(pressing > 0.0, 1 * (slips & (traction > 0.0)), OPEN).astype(np.int8)
+        slips = traction >= self.friction_limit(force) * (1.0 - _ON_CONE)
+        opens = force[..., -1] == 0.0 if self.normal is not None else np.zeros(slips.shape, bool)
+        return np.where(opens, OPEN, 1 * (slips & (traction > 0.0))).astype(np.int8)
+
+    def friction_limit(self, force: Matrix) -> Matrix:
+        """Return mu N of nodes by their forces, (..., points, components), shape (..., points)."""
+        normal = force[..., -1] if self.normal is not None else self._pressing
+        return np.broadcast_to(self._per_node("friction") * normal, force.shape[:-1])
 
     @property
     def _given(self) -> dict[str, Any]:
