@@ -12,6 +12,7 @@ mod limit_cycles;
 mod mistuning;
 mod orbits;
 mod problem;
+mod python_law;
 mod response;
 mod settings;
 mod statics;

@@ -1,13 +1,14 @@
 //! The problem: structure, contacts and loads in numbers.
 
 use crate::arrays::{matrices, matrix, refused, Array1, Array2, Array3};
+use crate::python_law::PythonLaw;
 use crate::settings::residual;
 use crate::watch::whole;
 use numpy::{Complex64, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use stickslip_core::contact::{law, ContactLaw, Parameters, Residual};
+use stickslip_core::contact::{law as registered, ContactLaw, Parameters, Residual};
 use stickslip_core::model::{Contact, Model, SectorContact};
 use stickslip_core::structure::{
     CyclicMatrix, CyclicStructure, HarmonicLoad, RingCoupling, Structure,
@@ -15,8 +16,9 @@ use stickslip_core::structure::{
 use stickslip_core::Error;
 
 pub type Matrix<'py> = Array2<'py, f64>;
-type ContactSpec<'py> = (String, Matrix<'py>, Bound<'py, PyDict>);
-pub type SectorContactSpec<'py> = (String, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
+/// A law by its name, or as an object of Python that is one; rows of B; parameters.
+type ContactSpec<'py> = (Bound<'py, PyAny>, Matrix<'py>, Bound<'py, PyDict>);
+pub type SectorContactSpec<'py> = (Bound<'py, PyAny>, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
 pub type Forces<'py> = Vec<(usize, Array1<'py, Complex64>)>;
 
 /// A structure with its contacts and loads, decomposed once.
@@ -162,14 +164,15 @@ impl Problem {
     }
 }
 
-/// A law by its name and its parameters: numbers, or lists of numbers, by name.
-fn law_of(name: &str, given: &Bound<'_, PyDict>) -> PyResult<Box<dyn ContactLaw>> {
+/// A law by its name and its parameters, numbers, or lists of numbers, by name; or a law in Python.
+fn law_of(law: &Bound<'_, PyAny>, given: &Bound<'_, PyDict>) -> PyResult<Box<dyn ContactLaw>> {
+    let Ok(name) = law.extract::<String>() else { return Ok(Box::new(PythonLaw::new(law)?)) };
     let mut parameters = Parameters::new();
     for (key, value) in given.iter() {
         let values = value.extract().map(|number| vec![number]).or_else(|_| value.extract())?;
         parameters.insert(key.extract()?, values);
     }
-    law(name, &parameters).map_err(refused)
+    registered(&name, &parameters).map_err(refused)
 }
 
 pub fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<SectorContact>> {

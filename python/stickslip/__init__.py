@@ -30,8 +30,8 @@ _NAMES = {
     "fe": "Reduction Solid craig_bampton",
     "html.report": "report",
     "io": "Frf read_dofs read_frf read_matrix write_frf",
-    "model": "Coulomb Cubic Force Jenkins ModalDamping Model ParallelJenkins Rayleigh Stop "
-    "StructuralDamper Structure join natural_frequencies slip_configurations",
+    "model": "ContactLaw Coulomb Cubic Force Jenkins ModalDamping Model ParallelJenkins Rayleigh "
+    "Stop StructuralDamper Structure Tangents join natural_frequencies slip_configurations",
     "model.destabilised": "destabilised modal_damping",
     "model.state": "State",
     "results": "ForcedResponse Status",

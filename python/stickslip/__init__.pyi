@@ -33,6 +33,7 @@ from stickslip.io import read_dofs as read_dofs
 from stickslip.io import read_frf as read_frf
 from stickslip.io import read_matrix as read_matrix
 from stickslip.io import write_frf as write_frf
+from stickslip.model import ContactLaw as ContactLaw
 from stickslip.model import Coulomb as Coulomb
 from stickslip.model import Cubic as Cubic
 from stickslip.model import Force as Force
@@ -44,6 +45,7 @@ from stickslip.model import Rayleigh as Rayleigh
 from stickslip.model import Stop as Stop
 from stickslip.model import StructuralDamper as StructuralDamper
 from stickslip.model import Structure as Structure
+from stickslip.model import Tangents as Tangents
 from stickslip.model import join as join
 from stickslip.model import natural_frequencies as natural_frequencies
 from stickslip.model import slip_configurations as slip_configurations
@@ -113,6 +115,11 @@ def damper_curve(
     slip_force: ArrayLike | None = None,
     stiffness: ArrayLike | None = None,
     level: ArrayLike | None = None,
+    friction: ArrayLike | None = None,
+    preload: ArrayLike | None = None,
+    gap: ArrayLike | None = None,
+    tangential_stiffness: ArrayLike | None = None,
+    normal_stiffness: ArrayLike | None = None,
     progress: Progress = None,
 ) -> DamperCurve: ...
 def exact_response(
@@ -197,7 +204,16 @@ def optimal_damper(
     measure: Literal["half_range", "max", "fundamental"] = "half_range",
     mode: int = 0,
     omega: tuple[float, float] | None = None,
-    parameter: Literal["slip_force", "stiffness", "level"] = "slip_force",
+    parameter: Literal[
+        "slip_force",
+        "stiffness",
+        "level",
+        "friction",
+        "preload",
+        "gap",
+        "tangential_stiffness",
+        "normal_stiffness",
+    ] = "slip_force",
     bounds: tuple[float, float] | None = None,
     progress: Progress = None,
 ) -> OptimalDamper: ...

@@ -3,6 +3,7 @@
 import copy
 import inspect
 import pickle
+from inspect import isabstract
 from pathlib import Path
 
 import numpy as np
@@ -143,7 +144,7 @@ def test_every_public_function_words_a_misspelt_keyword():
 
 
 def test_every_public_class_words_a_misspelt_keyword():
-    ours = [value for _, value in public() if isinstance(value, type)]
+    ours = [value for _, value in public() if isinstance(value, type) and not isabstract(value)]
     plain = [one for one in ours if "__init__" in vars(one) and not issubclass(one, BaseException)]
     assert len(plain) > 20
     for kind in plain:

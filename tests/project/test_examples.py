@@ -143,3 +143,18 @@ def test_the_pair_peaks_and_slips_as_the_dissertation_corrected(tmp_path, monkey
     assert lines[0].endswith("slip sets []")
     assert lines[1].endswith("slip sets [(0,)]")
     assert sorted(path.name for path in tmp_path.glob("*.png"))[-1] == "beam-pair-550.png"
+
+
+def test_the_pad_slides_as_computed_independently():
+    """Largest displacements [m] of one mass on a plane, by two other codes to 3e-5."""
+    study = Study.load(EXAMPLES / "friction-pad" / "study.toml")
+    (pad,) = study.run()
+    assert pad.converged.all()
+    for omega, expected in {
+        180.0: (1.79793e-3, 3.20807e-4, 9.63298e-5),
+        260.0: (1.39417e-3, 8.77593e-4, 1.159755e-4),
+        340.0: (4.46050e-4, 1.13998e-3, 1.606182e-4),
+    }.items():
+        at = pad.index(omega)
+        found = [pad.amplitude(f"pad.{axis}", "max")[at] for axis in "xyz"]
+        assert found == pytest.approx(expected, rel=1e-4)

@@ -154,8 +154,10 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
     /// By central differences: a march has no derivative in a parameter that would serve all laws.
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         out.fill(0.0);
-        let value = self.law.parameters()[index].value;
-        let step = DIFFERENCE * value;
+        let Parameter { name, value, .. } = self.law.parameters()[index];
+        // A gap may be zero or negative; its scale is that of the motion.
+        let moved = motion.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        let step = DIFFERENCE * if name == "gap" { value.abs().max(moved) } else { value };
         if !(step > 0.0 && step.is_finite()) {
             return;
         }

@@ -22,7 +22,7 @@ from stickslip.results.damper_curve import DamperArrays, DamperCurve
 from stickslip.results.status import Status
 from stickslip.settings.peaks import DamperKeys, DamperSettings, PeakKeys, PeakSettings
 from stickslip.settings.settings import configured
-from stickslip.settings.variation import Variation, one_of
+from stickslip.settings.variation import Variation
 
 RIGID = 250.0
 """Stiffness of a contact, over that of the structure, from which the rigid limit is taken.
@@ -34,7 +34,7 @@ square of its inverse, while the harmonics needed stay at some hundred.
 
 @configured(DamperKeys)
 def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = None) -> DamperCurve:
-    """Peak amplitude and frequency against slip force, contact stiffness or level of the forces.
+    """Peak amplitude and frequency against a parameter of contacts, or the level of the forces.
 
     The peak itself is followed: at every value the highest point over frequency is found from
     some twenty solutions with exact slopes, and the next value starts from them.
@@ -49,7 +49,7 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
     Guillen (1999), Figs 2.6, 2.10, 2.11, 4.3 to 4.8, there from full sweeps. Griffin (1980): the
     optimal slip force of a blade damper.
     """
-    parameter = one_of(settings, "slip_force", "stiffness", "level")
+    parameter = settings.varied
     values = getattr(settings, parameter)
     if parameter == "stiffness" and settings.common == "factor" and np.isinf(values).any():
         raise ModelError(

@@ -24,7 +24,7 @@ from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.optimal_damper import OptimalDamper
 from stickslip.settings.peaks import DamperSettings, OptimumKeys
 from stickslip.settings.settings import configured
-from stickslip.settings.variation import Chosen, Variation, located
+from stickslip.settings.variation import COULOMB, Chosen, Variation, located
 
 STICKS = 1.0
 """Upper bound of a slip force, over the largest force of the stuck contact: from it on nothing
@@ -67,6 +67,11 @@ def optimal_damper(
     given = settings.bounds
     if given is None and settings.parameter == "stiffness":
         given = _stiffness_bounds(model, variation)
+    if given is None and settings.parameter in COULOMB:
+        raise ModelError(
+            f"bounds: there is no default for the {settings.parameter}; give bounds=(lowest, "
+            "highest)"
+        )
     kept = settings_for(model, variation, np.array(given or (1.0,)), settings)
     low, high = given or _load_bounds(model, variation, kept)
     with Run("optimal damper", progress, model) as run:

@@ -37,7 +37,14 @@ class Run(Interruption):
     def __init__(self, what: str, progress: Progress, model: Model | None = None) -> None:
         super().__init__(progress)
         self._what, self._reported = what, monotonic()
+        self._model = model
         _ = None if model is None else model.problem
+
+    def __call__(self, share: float) -> None:
+        """Heed signals and errors of the user's laws, and tell how much of the work is done."""
+        if self._model is not None:
+            self._model.raise_own()
+        super().__call__(share)
 
     def reached(self, share: float) -> None:
         """Tell how much of the work is done, but not too often."""
@@ -66,7 +73,9 @@ def refusals(model: Model) -> Iterator[None]:
     except ModelError:
         raise
     except ValueError as error:
+        model.raise_own()
         raise refusal(error, model) from error
+    model.raise_own()
 
 
 def share(progress: Progress, start: float, end: float) -> Progress:

@@ -124,7 +124,7 @@ def resonance_range(model: Model, variation: Variation, mode: int, values: Float
     if mode >= count:
         raise ModelError(f"mode: {mode}; the structure has {count}, counted from 0")
     members = [model]
-    if variation.parameter == "stiffness":
+    if variation.parameter.endswith("stiffness"):
         members = [variation.apply(model, value) for value in (min(values), max(values))]
     stuck = max(float(natural_frequencies(one)[mode]) for one in members)
     free = float(natural_frequencies(model, every_point(model))[mode])

@@ -7,6 +7,7 @@ from stickslip.model.configurations import (
     slip_configurations,
 )
 from stickslip.model.contact import Contact
+from stickslip.model.contact_law import ContactLaw, Tangents
 from stickslip.model.coulomb import Coulomb
 from stickslip.model.force import Force
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
@@ -17,6 +18,7 @@ from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 __all__ = [
     "Contact",
+    "ContactLaw",
     "ContactRef",
     "Coulomb",
     "Cubic",
@@ -31,6 +33,7 @@ __all__ = [
     "Stop",
     "StructuralDamper",
     "Structure",
+    "Tangents",
     "join",
     "natural_frequencies",
     "slip_configurations",

@@ -45,6 +45,9 @@ class Contact(ABC):
     slips: ClassVar[bool] = True
     """Whether its points stick and slip; a spring without friction remembers no force."""
 
+    core_phases: ClassVar[bool] = True
+    """Whether the core tells when its points stick and slip; else `states` does, if it can."""
+
     by_point: ClassVar[bool] = False
     """Whether each point is a law of its own in the core; else one law has all points."""
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import prod
 from typing import Any, ClassVar, Self, TypeAlias
 
 import numpy as np
@@ -17,13 +16,13 @@ from stickslip.checks import (
     real_number,
     require_keys,
     set_fields,
-    text,
     whole_number,
 )
 from stickslip.errors import ModelError
 from stickslip.model.bonded import Bonded
 from stickslip.model.contact import OPEN, Contact
 from stickslip.model.dofs import Dofs
+from stickslip.model.nodes import Nodes
 
 Each: TypeAlias = float | tuple[float, ...]
 """One number for all nodes, or one per node."""
@@ -34,6 +33,8 @@ _ENTRY = "coulomb contact"
 _OPTIONAL = ("normal_stiffness", "preload", "gap")
 _ON_CONE = 1e-9
 """Distance from the cone, relative to it, that is none."""
+_SPACE = 3
+"""Dimensions of space."""
 _STEEP = 0.9
 """Component of the normal from which on the tangent is laid along the next axis."""
 
@@ -103,6 +104,7 @@ class Coulomb(Contact):
         "normal",
     )
     by_point: ClassVar[bool] = True
+    core_phases: ClassVar[bool] = False
 
     friction: Each
     tangential_stiffness: Each
@@ -110,9 +112,8 @@ class Coulomb(Contact):
     preload: Each | None
     gap: Each | None
     normal: Vectors | None
-    _first: tuple[str, ...]
-    _other: tuple[str, ...]
-    _shape: tuple[int, ...]
+    nodes: Nodes
+    """Where it acts."""
 
     def __init__(
         self,
@@ -130,9 +131,13 @@ class Coulomb(Contact):
     ) -> None:
         object.__setattr__(self, "name", name)
         Contact.__post_init__(self)
-        first, shape = _names(dofs, "dofs")
-        second = () if other is None else _other(other, shape)
-        _require_apart(first, second, shape[-1])
+        nodes = Nodes.of(dofs, other, _ENTRY)
+        if nodes.size > _SPACE:
+            raise ModelError(
+                f"{_ENTRY}: dofs: {nodes.size} names per node; give 3 in space, 2 in a plane, or "
+                "the tangential ones with normal=None"
+            )
+        shape = nodes.shape
         vectors = _normal(normal, shape)
         preload, gap = _closure(preload, gap, constant=normal is None)
         if (normal_stiffness is None) != (normal is None):
@@ -155,21 +160,21 @@ class Coulomb(Contact):
         }
         if areas is not None:
             _spread(each, areas, shape)
-        set_fields(self, **each, normal=vectors, _first=first, _other=second, _shape=shape)
+        set_fields(self, **each, normal=vectors, nodes=nodes)
 
     def __repr__(self) -> str:
-        ends = f"{list(self._node(0))}" + (" ..." if self.points > 1 else "")
+        ends = f"{list(self.nodes.first[: self.nodes.size])}" + (" ..." if self.points > 1 else "")
         return f"Coulomb({ends}, {self.summary()}, name={self.name!r})"
 
     @property
     def dofs(self) -> tuple[str, ...]:
         """Names of the degrees of freedom, those of the first body before those of the other."""
-        return self._first + self._other
+        return self.nodes.first + self.nodes.other
 
     @property
     def points(self) -> int:
         """Number of nodes."""
-        return len(self._first) // self._shape[-1]
+        return self.nodes.count
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -180,12 +185,12 @@ class Coulomb(Contact):
     @property
     def tangential(self) -> int:
         """Number of tangential directions."""
-        return self._shape[-1] - (self.normal is not None)
+        return self.nodes.size - (self.normal is not None)
 
     @property
     def single(self) -> bool:
         """Whether it was given as one node, without a list of nodes around it."""
-        return len(self._shape) == 1
+        return self.nodes.single
 
     @property
     def frame(self) -> Matrix:
@@ -199,21 +204,14 @@ class Coulomb(Contact):
     @property
     def _normals(self) -> Iterator[Matrix | int]:
         """The normal of each node, or the number of directions where there is none."""
-        size = self._shape[-1]
         if self.normal is None:
-            return iter([size] * self.points)
-        return iter(np.broadcast_to(np.array(self.normal), (self.points, size)))
+            return iter([self.nodes.size] * self.points)
+        return iter(np.broadcast_to(np.array(self.normal), (self.points, self.nodes.size)))
 
     def rows(self, dofs: Dofs) -> Matrix:
         """Return B of u = B x, in the frame of each node, shape (points * d, N)."""
-        size = self._shape[-1]
-        rows = np.zeros((self.points, size, len(dofs)))
-        for names, sign in ((self._first, 1.0), (self._other, -1.0)):
-            for place, name in enumerate(names):
-                node, axis = divmod(place, size)
-                rows[node, axis, dofs.index(name)] = sign
         frames = np.array([_frame(one) for one in self._normals])
-        return np.ascontiguousarray((frames @ rows).reshape(-1, len(dofs)))
+        return np.ascontiguousarray((frames @ self.nodes.rows(dofs)).reshape(-1, len(dofs)))
 
     @property
     def limits(self) -> tuple[float, ...]:
@@ -274,16 +272,21 @@ class Coulomb(Contact):
     def states(self, force: Matrix) -> NDArray[np.int8]:
         """Return what nodes do by their forces, (..., components); see `ContactStates`."""
         traction = np.linalg.norm(force[..., : self.tangential], axis=-1)
-        pressing = force[..., -1] if self.normal is not None else self._pressing
-        slips = traction >= self._per_node("friction") * pressing * (1.0 - _ON_CONE)
-        return np.where(pressing > 0.0, 1 * (slips & (traction > 0.0)), OPEN).astype(np.int8)
+        slips = traction >= self.friction_limit(force) * (1.0 - _ON_CONE)
+        opens = force[..., -1] == 0.0 if self.normal is not None else np.zeros(slips.shape, bool)
+        return np.where(opens, OPEN, 1 * (slips & (traction > 0.0))).astype(np.int8)
+
+    def friction_limit(self, force: Matrix) -> Matrix:
+        """Return mu N of nodes by their forces, (..., points, components), shape (..., points)."""
+        normal = force[..., -1] if self.normal is not None else self._pressing
+        return np.broadcast_to(self._per_node("friction") * normal, force.shape[:-1])
 
     @property
     def _given(self) -> dict[str, Any]:
         return {key: one for key in self.keys if (one := getattr(self, key)) is not None}
 
     def _values(self) -> dict[str, Any]:
-        return self._given | {"shape": self._shape}
+        return self._given | {"shape": self.nodes.shape}
 
     def adjustable(self) -> dict[str, tuple[float, ...]]:
         """Return friction, stiffnesses, and preload or gap, by name, in SI units."""
@@ -310,10 +313,6 @@ class Coulomb(Contact):
         values = self.adjustable().items()
         return many + ", ".join(f"{key} {_range(one)}" for key, one in values)
 
-    def _node(self, node: int) -> tuple[str, ...]:
-        size = self._shape[-1]
-        return self._first[size * node : size * (node + 1)]
-
     @classmethod
     def from_parameters(
         cls, dofs: tuple[str | None, ...], parameters: Mapping[str, object], name: str | None
@@ -325,65 +324,9 @@ class Coulomb(Contact):
         sizes: Iterable[object] = given.pop("shape")
         listed = members(sizes, f"{_ENTRY}: shape", "shape=[...]")
         shape = tuple(whole_number(one, f"{_ENTRY}: shape", smallest=1) for one in listed)
-        half = prod(shape)
-        if not shape or len(dofs) not in (half, 2 * half):
-            raise ModelError(
-                f"{_ENTRY}: {len(dofs)} dofs for names of shape {_times(shape)}; give as many, or "
-                "twice as many"
-            )
-        ends = np.array(dofs, dtype=object).reshape(-1, *shape).tolist()
+        nodes = Nodes.of_list(dofs, shape, _ENTRY)
         values: dict[str, Any] = {"normal": None} | given
-        return cls(*ends, **values, name=name)
-
-
-def _names(value: object, key: str) -> tuple[tuple[str, ...], tuple[int, ...]]:
-    """Return names of degrees of freedom, node by node, and the shape of their list."""
-    listed = _members(value, key)
-    nested = bool(listed) and not isinstance(listed[0], str)
-    nodes = [_members(one, f"{key}[{n}]") for n, one in enumerate(listed)] if nested else [listed]
-    sizes = {len(node) for node in nodes}
-    if len(sizes) != 1 or not 1 <= min(sizes) <= 3:
-        got = ", ".join(map(str, sorted(sizes)))
-        raise ModelError(
-            f"{_ENTRY}: {key}: {got or 'no'} names per node; give 3 in space, 2 in a plane, or the "
-            "tangential ones with normal=None"
-        )
-    names = tuple(text(one, f"{_ENTRY}: {key}") for node in nodes for one in node)
-    (size,) = sizes
-    return names, (len(nodes), size) if nested else (size,)
-
-
-def _members(value: object, key: str) -> tuple[object, ...]:
-    remedy = 'a list of names, as ["pad.x", "pad.y", "pad.z"]'
-    if value is None or isinstance(value, Mapping | float | int):
-        raise ModelError(f"{_ENTRY}: {key}: {brief(value)} is not a list; write {remedy}")
-    return members(value, f"{_ENTRY}: {key}", remedy)  # type: ignore[arg-type]
-
-
-def _other(value: object, shape: tuple[int, ...]) -> tuple[str, ...]:
-    names, found = _names(value, "other")
-    if found != shape:
-        raise ModelError(
-            f"{_ENTRY}: other: names of shape {_times(found)} for dofs of {_times(shape)}; give as "
-            "many, or leave it out for the ground"
-        )
-    return names
-
-
-def _times(shape: tuple[int, ...]) -> str:
-    return " x ".join(map(str, shape))
-
-
-def _require_apart(first: tuple[str, ...], other: tuple[str, ...], size: int) -> None:
-    """Refuse a node that has a degree of freedom twice."""
-    for node in range(0, len(first), size):
-        names = first[node : node + size] + other[node : node + size]
-        twice = next((name for place, name in enumerate(names) if name in names[:place]), None)
-        if twice is not None:
-            raise ModelError(
-                f"{_ENTRY}: dof {brief(twice)} twice at one node; name every direction of both "
-                "bodies once"
-            )
+        return cls(*nodes.names, **values, name=name)
 
 
 def _normal(value: object, shape: tuple[int, ...]) -> Vectors | None:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from stickslip.checks import Matrix, brief, members, real_number, set_fields, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
+from stickslip.model.contact_law import ContactLaw
 from stickslip.model.force import Force
 from stickslip.model.structure import Structure
 
@@ -232,6 +233,12 @@ class Model:
         """Return the contacts as the compiled core takes them."""
         laws = (one.core_laws(*self.contact_rows(one)) for one in self.contacts)
         return list(chain.from_iterable(laws))
+
+    def raise_own(self) -> None:
+        """Raise what a law in Python raised while the core called it."""
+        for contact in self.contacts:
+            if isinstance(contact, ContactLaw):
+                contact.raise_own()
 
     def law_index(self, contact: int, point: int = 0) -> int:
         """Return the position among the laws of the core of that of a contact, or of its point."""

@@ -14,7 +14,15 @@ from stickslip.results import ForcedResponse
 from stickslip.settings.variation import Variation
 
 _Kind = TypeVar("_Kind")
-_SYMBOLS = {"slip_force": "slip force $F_d$", "stiffness": "contact stiffness $k_d$"}
+_SYMBOLS = {
+    "slip_force": "slip force $F_d$",
+    "stiffness": "contact stiffness $k_d$",
+    "friction": "coefficient of friction $\\mu$",
+    "preload": "preload $N_0$",
+    "gap": "gap $g$",
+    "tangential_stiffness": "tangential stiffness $k_t$",
+    "normal_stiffness": "normal stiffness $k_n$",
+}
 
 
 def of_kind(kind: type[_Kind], result: object, entry: str = "result") -> _Kind:
@@ -92,4 +100,5 @@ def label_of(variation: Variation) -> str:
     """Return what the axis of a varied parameter of contacts is called."""
     if variation.common == "factor":
         return f"factor on the {variation.parameter.replace('_', ' ')}"
-    return f"{_SYMBOLS[variation.parameter]} [{variation.unit}]"
+    unit = "" if variation.unit == "1" else f" [{variation.unit}]"
+    return f"{_SYMBOLS[variation.parameter]}{unit}"

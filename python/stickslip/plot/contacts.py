@@ -12,12 +12,13 @@ from matplotlib.axes import Axes
 from stickslip.analyses.forced_response import forced_response
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
-from stickslip.model import ContactRef, PointRef
+from stickslip.model import ContactRef, Coulomb, PointRef
+from stickslip.model.contact import OPEN
 from stickslip.plot import style
 from stickslip.plot.arguments import at, dofs_of, solved_points
 from stickslip.plot.figure import figure, keywords
 from stickslip.plot.limits import limit_model
-from stickslip.plot.options import Drawing, ForceOptions, LoopOptions
+from stickslip.plot.options import Drawing, ForceOptions, HysteresisOptions, LoopOptions
 from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
@@ -26,6 +27,8 @@ from stickslip.results.dataset import point_names
 _FORWARD, _BACKWARD = ("slips forward", style.BLUE), ("slips backward", style.ORANGE)
 _STATES = {0: ("stuck", "0.85"), 1: _FORWARD, -1: _BACKWARD}
 """Name and colour by the direction of slip."""
+_NODE_STATES = _STATES | {1: ("slips", style.BLUE), OPEN: ("open", style.GREY)}
+"""Likewise of nodes, which slip in any direction of a plane."""
 
 
 @figure
@@ -57,9 +60,11 @@ def hysteresis(
     result: ForcedResponse,
     contact: PointRef,
     index: int | Sequence[int],
-    **options: Unpack[LoopOptions],
+    **options: Unpack[HysteresisOptions],
 ) -> None:
     """Draw the contact force against the relative displacement, over one period.
+
+    Of a contact with components one loop for each tangential direction of each point.
 
     Parameters
     ----------
@@ -67,6 +72,9 @@ def hysteresis(
         Positions of points of the sweep, one loop each; see `ForcedResponse.index`.
     """
     indices, length = solved_points(result, index), style.LENGTH[options["length_unit"]]
+    if options["plane"]:
+        _traction(ax, result, contact, indices, options["samples"])
+        return
     loops = [loop for one in indices for loop in _loops(result, contact, one, options["samples"])]
     labels = [label for _, _, label in loops]
     if len(indices) > 1:
@@ -76,7 +84,8 @@ def hysteresis(
         looks: Looks = {"color": colour, "lw": 1.6, "solid_joinstyle": "round", "label": label}
         ax.plot(length.factor * u, f, **looks)
     number, point = result.locate(contact)
-    _draw_slip_limits(ax, result.model.contacts[number].limits, point)
+    if result.model.contacts[number].core_phases:
+        _draw_slip_limits(ax, result.model.contacts[number].limits, point)
     ax.set(xlabel=f"relative displacement u [{length.label}]", ylabel="contact force f [N]")
     title = result.model.contact_names[number] + ("" if point is None else f"[{point}]")
     if len(indices) == 1:
@@ -86,9 +95,43 @@ def hysteresis(
     ax.set_title(title, fontsize="medium")
 
 
+def _traction(
+    ax: Axes, result: ForcedResponse, contact: PointRef, indices: Sequence[int], samples: int
+) -> None:
+    """Draw the traction in the plane of sliding."""
+    number, point = result.locate(contact)
+    one = result.model.contacts[number]
+    if not isinstance(one, Coulomb) or len(one.components) == 1 or one.components[1] != "t2":
+        raise ModelError(
+            f"contact {result.model.contact_names[number]!r}: it has no two tangential directions; "
+            "draw with plane=False"
+        )
+    nodes = one.points if point is None else 1
+    shape = samples, nodes, len(one.components)
+    loops = [
+        (at(result, i) if nodes == 1 else f"{at(result, i)}: point {node}", force[:, node])
+        for i in indices
+        for force in [_closed(result.contact_force(contact, i, samples).reshape(shape))]
+        for node in range(nodes)
+    ]
+    for (label, force), colour in zip(loops, style.colours(len(loops)), strict=True):
+        ax.plot(force[:, 0], force[:, 1], color=colour, lw=1.6, label=label)
+        if len(loops) == 1:
+            limit = one.friction_limit(np.repeat(force[:, None], one.points, axis=1))
+            limit = limit[:, point or 0]
+            turn = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 361))
+            for radius in {float(limit.min()), float(limit.max())}:
+                circle = radius * turn
+                ax.plot(circle.real, circle.imag, color=style.GREY, lw=0.9, ls=":", zorder=1.5)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set(xlabel="traction t1 [N]", ylabel="traction t2 [N]")
+    title = result.model.contact_names[number] + ("" if point is None else f"[{point}]")
+    ax.set_title(title, fontsize="medium")
+
+
 @figure
 def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Drawing]) -> None:
-    """Draw when contact points stick and slip, one strip each over the period.
+    """Draw when contact points stick, slip and are open, one strip each over the period.
 
     Of exact orbits the events themselves are drawn.
     """
@@ -96,15 +139,16 @@ def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Dr
     names = point_names(result.model)
     if not names:
         raise ModelError("result: the model has no contact, so that nothing sticks or slips")
-    shown: set[int] = set()
+    nodal = [not one.core_phases for one in result.model.contacts for _ in range(one.points)]
+    shown: set[str] = set()
     count = 0
     for row, strips in enumerate(_strips(result, index)):
         # A phase may go on over the end of the period.
         count += len(strips) - (strips[0][2] == strips[-1][2])
         for begin, length, direction in strips:
-            label, colour = _STATES[direction]
-            named = None if direction in shown else label
-            shown.add(direction)
+            label, colour = (_NODE_STATES if nodal[row] else _STATES)[direction]
+            named = None if label in shown else label
+            shown.add(label)
             strip = [(begin, length)], (row - 0.35, 0.7)
             ax.broken_barh(*strip, color=colour, lw=0.0, label=named)
     ax.set(xlim=(0.0, 1.0), ylim=(len(names) - 0.4, -0.6), xlabel="time over period t/T")
@@ -118,16 +162,20 @@ def contact_forces(
 ) -> list[Axes]:
     """Draw the forces of a contact over a period, one panel per point, and their sum.
 
+    Of a contact with components the panel of a point has them all, with the friction limit mu N.
+
     Returns
     -------
     list of matplotlib.axes.Axes
-        One per point and, for several points, one for the sum. Shaded where the point slips; its
-        slip limits are dotted.
+        One per point and, for several points, one for the sum. Shaded where the point slips, and
+        darker where it is open; its slip limits are dotted.
     """
     solved_points(result, index)
     number = result.model.contact_index(contact)
     count = whole_number(options["samples"], "samples", smallest=8)
     one = result.model.contacts[number]
+    if one.components:
+        return _node_forces(result, number, index, count)
     time = np.linspace(0.0, 1.0, count + 1)
     forces = _closed(result.contact_force(number, index, count).reshape(count, -1))
     linear = _stuck_forces(result, number, index, count) if options["stuck"] else None
@@ -153,13 +201,46 @@ def contact_forces(
         axes[-1].plot(time, forces.sum(axis=1), color=style.BLUE, lw=1.6)
         edge = 0.05 * float(np.abs(forces).max())
         axes[-1].set(ylim=(-edge, edge), ylabel="sum\nforce [N]")
+    _finish(axes, f"{result.model.contact_names[number]}, {at(result, index)}", 2)
+    return axes
+
+
+def _finish(axes: list[Axes], title: str, columns: int) -> None:
+    """Write legend, title and time at panels above each other."""
     for ax in axes:
         style.bare(ax)
     place: Looks = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.01)}
-    axes[0].legend(**place, ncols=2, frameon=False, fontsize="small")
-    name = result.model.contact_names[number]
-    axes[0].set_title(f"{name}, {at(result, index)}", fontsize="medium", loc="left")
+    axes[0].legend(**place, ncols=columns, frameon=False, fontsize="small")
+    axes[0].set_title(title, fontsize="medium", loc="left")
     axes[-1].set(xlim=(0.0, 1.0), xlabel="time over period t/T")
+
+
+def _node_forces(result: ForcedResponse, number: int, index: int, count: int) -> list[Axes]:
+    """Draw the components of the force at every node, its friction limit, slip and opening."""
+    one = result.model.contacts[number]
+    time = np.linspace(0.0, 1.0, count + 1)
+    shape = count, one.points, len(one.components)
+    forces = _closed(result.contact_force(number, index, count).reshape(shape))
+    states = one.states(forces) if isinstance(one, Coulomb) else np.zeros((count + 1, one.points))
+    size = (8.2, 0.6 + 1.9 * one.points)
+    _, grid = pyplot.subplots(
+        one.points, figsize=size, sharex=True, layout="constrained", squeeze=False
+    )
+    axes = [style.new_axes(ax) for ax in grid[:, 0]]
+    colours = style.colours(len(one.components))
+    for node, ax in enumerate(axes):
+        for part, colour in enumerate(colours):
+            ax.plot(time, forces[:, node, part], color=colour, lw=1.5, label=one.components[part])
+        if isinstance(one, Coulomb):
+            limit = one.friction_limit(forces)[:, node]
+            for side in (limit, -limit):
+                ax.plot(time, side, color=style.GREY, lw=0.8, ls=":")
+        for state, shaded in ((1, style.ORANGE), (OPEN, style.GREY)):
+            shade: Looks = {"color": shaded, "alpha": 0.25, "lw": 0.0}
+            edge = ax.get_xaxis_transform()
+            ax.fill_between(time, 0.0, 1.0, states[:, node] == state, transform=edge, **shade)
+        ax.set_ylabel(f"node {node}\nforce [N]" if one.points > 1 else "force [N]")
+    _finish(axes, f"{result.model.contact_names[number]}, {at(result, index)}", len(colours))
     return axes
 
 
@@ -172,12 +253,17 @@ def _loops(
     result: ForcedResponse, contact: PointRef, index: int, samples: int
 ) -> Iterator[tuple[Float, Float, str]]:
     """Give displacement, force and label of the loops of all points of a contact."""
-    u = _closed(result.contact_waveform(contact, index, samples).reshape(samples, -1))
-    f = _closed(result.contact_force(contact, index, samples).reshape(samples, -1))
+    own = result.model.contacts[result.locate(contact)[0]]
     lost = np.atleast_1d(result.dissipation(contact)[index])
+    sides = (result.contact_waveform, result.contact_force)
+    u, f = (_closed(of(contact, index, samples).reshape(samples, len(lost), -1)) for of in sides)
     for point, work in enumerate(lost):
         label = f"{style.prefixed(float(work), 'J')} per cycle" if work else "sticks"
-        yield u[:, point], f[:, point], f"point {point}: {label}" if len(lost) > 1 else label
+        label = f"point {point}: {label}" if len(lost) > 1 else label
+        for part in range(own.tangential):
+            # The work is that of all directions.
+            named = f"{own.components[part]}, {label}" if own.components else label
+            yield u[:, point, part], f[:, point, part], named
 
 
 def _draw_slip_limits(ax: Axes, limits: Sequence[float], point: int | None) -> None:

@@ -33,6 +33,17 @@ _MEASURE = {
 # A band thinner than the line it lies under says nothing.
 _VISIBLE_ERROR = 5e-3
 
+_TRAITS = (
+    ("slip_force", "F_d", "N"),
+    ("stiffness", "k_d", "N/m"),
+    ("friction", r"\mu", ""),
+    ("preload", "N_0", "N"),
+    ("gap", "g", "m"),
+    ("tangential_stiffness", "k_t", "N/m"),
+    ("normal_stiffness", "k_n", "N/m"),
+)
+"""Parameters by which results may differ, with symbol and unit."""
+
 
 @figure
 def curves(
@@ -67,7 +78,7 @@ def curves(
 def slip(
     ax: Axes, /, result: ForcedResponse, contact: PointRef | None = None, **options: Unpack[Swept]
 ) -> None:
-    """Draw the share of the period that contact points slip, over frequency.
+    """Draw the share of the period that contact points slip, and dashed, are open.
 
     Parameters
     ----------
@@ -80,8 +91,10 @@ def slip(
     if not lines:
         raise ModelError("contact: the model has none, so that nothing slips")
     x = omega.factor * result.omega
-    for (label, share), colour in zip(lines, style.colours(len(lines)), strict=True):
+    for (label, share, opens), colour in zip(lines, style.colours(len(lines)), strict=True):
         ax.plot(x, share, color=colour, lw=1.6, label=label)
+        if (opens > 0.0).any():
+            ax.plot(x, opens, color=colour, lw=1.1, ls="--", label=f"{label} open")
     if x.min() < x.max():
         ax.set_xlim(x.min(), x.max())
     ax.set(ylim=(-0.03, 1.03), xlabel=omega.label, ylabel="slipping share of the period")
@@ -229,14 +242,18 @@ def _draw_limits(
             view.draw_limit(model, (low, high), at, stuck=is_stuck)
 
 
-def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float]]:
-    """Return label and slip fraction of every point meant by an address."""
+def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float, Float]]:
+    """Return label, slip and open fraction of every point meant by an address."""
     number, only = result.locate(contact)
-    shares = result.slip_fraction(contact).reshape(result.omega.size, -1)
+    shares, opens = (
+        of(contact).reshape(result.omega.size, -1).T
+        for of in (result.slip_fraction, result.open_fraction)
+    )
     name = result.model.contact_names[number]
-    if only is None and shares.shape[1] == 1:
-        return [(name, shares[:, 0])]
-    return [(f"{name}[{point}]", share) for point, share in enumerate(shares.T, only or 0)]
+    if only is None and len(shares) == 1:
+        return [(name, shares[0], opens[0])]
+    names = (f"{name}[{point}]" for point, _ in enumerate(shares, only or 0))
+    return list(zip(names, shares, opens, strict=True))
 
 
 def _names_of(results: Sequence[ForcedResponse]) -> list[str]:
@@ -256,10 +273,10 @@ def _traits(result: ForcedResponse) -> dict[str, str]:
     for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
         of = f" ({name})" if len(result.model.contacts) > 1 else ""
         parameters = contact.adjustable()
-        for key, symbol, unit in (("slip_force", "F_d", "N"), ("stiffness", "k_d", "N/m")):
+        for key, symbol, unit in _TRAITS:
             if key in parameters and key not in contact.factors:
-                values = ", ".join(f"{value:.4g}" for value in parameters[key])
-                traits[f"{symbol}{of}"] = f"${symbol}$ = {values} {unit}{of}"
+                values = ", ".join(f"{value:.4g}" for value in dict.fromkeys(parameters[key]))
+                traits[f"{symbol}{of}"] = f"${symbol}$ = {values} {unit}".rstrip() + of
     exact = isinstance(result, ExactResponse)
     traits["H"] = "exact" if exact else f"H = {result.settings.harmonics}"
     return traits

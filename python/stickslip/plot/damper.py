@@ -113,7 +113,7 @@ def _draw_limits(ax: Axes, curve: DamperCurve, view: _View) -> None:
     if not force_level(curve.model):
         return
     for stuck in (True, False):
-        if stuck and curve.parameter == "stiffness":
+        if stuck and curve.parameter.endswith("stiffness"):
             continue
         _, amplitude = limit_curve(curve.model, kept.dof, kept.span, kept.measure, stuck=stuck)
         height = float(amplitude.max()) * view.stretch * view.factor

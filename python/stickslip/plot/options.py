@@ -52,9 +52,20 @@ class Several(Frame, Swept, total=False):
 
 
 class LoopOptions(Frame, total=False):
-    """Keywords of `waveform` and `hysteresis`."""
+    """Keywords of figures of one period."""
 
     samples: Annotated[int, 512, "Instants per period."]
+
+
+class HysteresisOptions(LoopOptions, total=False):
+    """Keywords of `hysteresis`."""
+
+    plane: Annotated[
+        bool,
+        False,
+        "Draw instead the traction in the plane of sliding, t2 against t1, inside the circles of "
+        "the least and the largest friction limit.",
+    ]
 
 
 class ForceOptions(TypedDict, total=False):

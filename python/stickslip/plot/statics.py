@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Unpack
 
 import numpy as np
+from matplotlib.axes import Axes
 
-from stickslip.drawn import Axes
 from stickslip.errors import ModelError
 from stickslip.plot import style
 from stickslip.plot.figure import figure

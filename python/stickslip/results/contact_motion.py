@@ -50,6 +50,7 @@ class ContactMotion(Peaks):
                 )
             except ValueError as error:
                 raise ModelError(str(error)) from error
+            self.model.raise_own()
             if not own.by_point:
                 forces = forces[:, own.place(point)]
             forces = forces + own.balanced[own.place(point)]
@@ -92,7 +93,7 @@ class ContactMotion(Peaks):
                 "solved point"
             )
         own = self.model.contacts[number]
-        if own.components:
+        if not own.core_phases:
             force = self.contact_force(number, position, _INSTANTS)
             return states_at(own.states(force.reshape(_INSTANTS, own.points, -1)))
         start, direction = _core.contact_phases(*next(self._laws(number, position)))

@@ -74,7 +74,7 @@ class DamperCurve(ColumnResult):
 
     @property
     def parameter(self) -> str:
-        """What was varied: "slip_force", "stiffness" or "level"."""
+        """What was varied: "slip_force", "stiffness", "level" or another parameter."""
         return self.settings.variation.parameter
 
     values = Shown[Float]("value")

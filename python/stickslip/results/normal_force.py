@@ -44,8 +44,8 @@ def normal_force_range(
     """Return the least and greatest normal force at a place among the contact displacements [N].
 
     `force` are all contact forces at rest, shape (n_u,), normal forces whole. Contacts of other
-    laws stay as they are. Unless the node is taken `alone`, its forces are those where all normal forces
-    together are least and greatest.
+    laws stay as they are. Unless the node is taken `alone`, its forces are those where all normal
+    forces together are least and greatest.
     """
     if any(len(model.contact_rows(contact)) > 1 for contact in model.contacts):
         raise ModelError(

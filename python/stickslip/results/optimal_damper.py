@@ -60,7 +60,7 @@ class OptimalDamper(Result):
 
     @property
     def parameter(self) -> str:
-        """What was varied: "slip_force", "stiffness" or "level"."""
+        """What was varied: "slip_force", "stiffness", "level" or another parameter."""
         return self.curve.parameter
 
     @property

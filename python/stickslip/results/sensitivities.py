@@ -223,9 +223,14 @@ def _known(model: Model, contact: PointRef | None) -> dict[tuple[Place, str], Ca
     for position in positions:
         owner, name = model.contacts[position], model.contact_names[position]
         for parameter, values in owner.adjustable().items():
-            if len(owner.slider_limits) == 1 or (len(values) == 1 and only is None):
-                known[name, parameter] = (position, None, parameter)
+            if owner.by_point:
+                for point in range(owner.points) if only is None else [only]:
+                    key = name if owner.points == 1 else (name, point)
+                    known[key, parameter] = (model.law_index(position, point), None, parameter)
+            elif len(owner.slider_limits) == 1 or (len(values) == 1 and only is None):
+                known[name, parameter] = (model.law_index(position), None, parameter)
             elif len(values) > 1:
                 for point in range(len(values)) if only is None else [only]:
-                    known[(name, point), parameter] = (position, point, parameter)
+                    cause = (model.law_index(position), point, parameter)
+                    known[(name, point), parameter] = cause
     return known

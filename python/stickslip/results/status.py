@@ -154,7 +154,7 @@ class RestStatus(Ending):
     FREE = (
         "free",
         "Contacts have let go of a body that nothing else holds, at the share of the loads that "
-        "the result has. Lower the loads, raise preload or friction, or ground the body by a spring.",
+        "the result has. Lower the loads, raise preload or friction, or ground the body.",
     )
     STALLED = (
         "stalled",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from os import PathLike
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
 import numpy as np
 from pydantic import BeforeValidator, Field, PlainValidator, Strict, model_validator
@@ -29,10 +29,14 @@ from stickslip.settings.entries import (
 from stickslip.settings.ranges import (
     Dofs,
     Float,
+    Frictions,
+    Gaps,
     Levels,
     Or,
     PeakSpan,
+    Preloads,
     SlipForces,
+    Springs,
     Stiffnesses,
     numbers,
 )
@@ -113,7 +117,7 @@ class PeakKeys(_FollowedPeak, ContactKeys):
 
 
 class DamperKeys(PeakKeys):
-    """Along which parameter a peak is followed, and how; give exactly one of the three."""
+    """Along which parameter a peak is followed, and how; give exactly one of the parameters."""
 
     slip_force: SlipForces | None = Field(
         default=None,
@@ -127,10 +131,30 @@ class DamperKeys(PeakKeys):
         "on the line in 1/k_d towards it.",
     )
     level: Levels | None = Field(default=None, description="Instead: factors on all forces.")
+    friction: Frictions | None = Field(
+        default=None, description="Instead: coefficients of friction of Coulomb contacts."
+    )
+    preload: Preloads | None = Field(
+        default=None, description="Instead: normal forces without motion [N]."
+    )
+    gap: Gaps | None = Field(
+        default=None, description="Instead: gaps [m], negative for an interference."
+    )
+    tangential_stiffness: Springs | None = Field(
+        default=None, description="Instead: tangential stiffnesses k_t of a node [N/m]."
+    )
+    normal_stiffness: Springs | None = Field(
+        default=None, description="Instead: normal stiffnesses k_n of a node [N/m]."
+    )
+
+    @property
+    def varied(self) -> Parameter:
+        """Which parameter is given."""
+        return one_of(self, *get_args(Parameter))
 
     @model_validator(mode="after")
     def _require_one(self) -> Self:
-        name = one_of(self, "slip_force", "stiffness", "level")
+        name = self.varied
         if isinstance(getattr(self, name), tuple):
             raise ModelError(f"{name}: a range needs 'points' here; values are not chosen")
         return self
@@ -150,7 +174,8 @@ class OptimumKeys(PeakKeys):
         "largest force that the stuck contacts bear in the range of frequencies, beyond which "
         "nothing slips. At light damping that rises far above the load: the lower bound is then "
         "0.03 times, and the upper one at most 10 000 times, what they bear at the low end of the "
-        "range. For levels likewise; for stiffnesses: 1/100 to 250 times that of the structure.",
+        "range. For levels likewise; for stiffnesses: 1/100 to 250 times that of the structure. "
+        "Parameters of Coulomb contacts have none: give them.",
     )
 
 

@@ -28,11 +28,15 @@ from stickslip.settings.entries import (
     ONE_OF,
     Dof,
     Factor,
+    Friction,
+    Length,
     ListOr,
+    NormalLoad,
     Omega,
     SlipForce,
     Some,
     Span,
+    StiffnessValue,
     Table,
     Whole,
     quantity_of,
@@ -219,6 +223,18 @@ class StiffnessRange(_Range[_Rigid]):
     """A range of contact stiffnesses."""
 
 
+class FrictionRange(_Range[Friction]):
+    """A range of coefficients of friction."""
+
+
+class LoadRange(_Range[NormalLoad]):
+    """A range of normal loads."""
+
+
+class SpringRange(_Range[StiffnessValue]):
+    """A range of stiffnesses that are finite."""
+
+
 class LevelRange(_Range[Factor]):
     """A range of levels of the forces."""
 
@@ -241,6 +257,14 @@ def _from_zero(values: object) -> Float:
     return numbers(values, "give values from 0 on", lambda x: x >= 0.0)
 
 
+def _not_negative(values: object) -> Float:
+    return numbers(values, "give finite values from 0 on", lambda x: np.isfinite(x) & (x >= 0.0))
+
+
+def _finite(values: object) -> Float:
+    return numbers(values, "give finite values")
+
+
 def _above_zero(values: object) -> Float:
     return numbers(values, "give finite values above 0", positive)
 
@@ -261,6 +285,10 @@ Frequencies = Annotated[Float | Span, Or(_Omegas, *_BOTH, _grid)]
 PeakSpan = Annotated[Span, Or(PeakRange, "tuple[float, float]", "(float, float)", span_of)]
 SlipForces = Annotated[Float | Span, Or(_SlipForces, *_LIST, _from_zero)]
 Stiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_LIST, _from_zero)]
+Frictions = Annotated[Float | Span, Or(ListOr[Friction, FrictionRange], *_LIST, _not_negative)]
+Preloads = Annotated[Float | Span, Or(ListOr[NormalLoad, LoadRange], *_LIST, _not_negative)]
+Springs = Annotated[Float | Span, Or(ListOr[StiffnessValue, SpringRange], *_LIST, _not_negative)]
+Gaps = Annotated[Float, Or(Some[Length], *_LIST, _finite)]
 Levels = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_LIST, _above_zero)]
 Ratios = Annotated[Float | Span, Or(_Ratios, *_BOTH, _branch)]
 BranchStiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_BOTH, _branch)]

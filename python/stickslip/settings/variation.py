@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
@@ -16,7 +16,28 @@ from stickslip.settings.entries import ONE_OF, NamedContact, Some
 from stickslip.settings.ranges import Or
 from stickslip.settings.settings import Settings
 
-Parameter: TypeAlias = Literal["slip_force", "stiffness", "level"]
+Parameter: TypeAlias = Literal[
+    "slip_force",
+    "stiffness",
+    "level",
+    "friction",
+    "preload",
+    "gap",
+    "tangential_stiffness",
+    "normal_stiffness",
+]
+COULOMB = frozenset({"friction", "preload", "gap", "tangential_stiffness", "normal_stiffness"})
+"""Parameters of Coulomb contacts."""
+UNITS: Mapping[Parameter, str] = {
+    "slip_force": "N",
+    "stiffness": "N/m",
+    "level": "1",
+    "friction": "1",
+    "preload": "N",
+    "gap": "m",
+    "tangential_stiffness": "N/m",
+    "normal_stiffness": "N/m",
+}
 Common = Annotated[Literal["value", "factor"], ONE_OF]
 
 Contacts: TypeAlias = Iterable[PointRef] | PointRef
@@ -76,7 +97,7 @@ class Variation(ParameterMode):
         """Return the variation as the compiled core takes it; refuse a model without a contact."""
         return {
             "parameter": self.parameter,
-            "contacts": [located(model, ref) for ref in self.contacts],
+            "contacts": [law for ref in self.contacts for law in _laws(model, ref)],
             "factor": self.common == "factor",
         }
 
@@ -85,7 +106,7 @@ class Variation(ParameterMode):
         """Unit of the parameter."""
         if self.common == "factor":
             return "1"
-        return {"slip_force": "N", "stiffness": "N/m", "level": "1"}[self.parameter]
+        return UNITS[self.parameter]
 
     def apply(self, model: Model, value: float) -> Model:
         """Return the model at a value of the parameter, or at a factor; contacts may refuse it."""
@@ -122,6 +143,15 @@ def one_of(keys: Settings, *names: Parameter) -> Parameter:
 
 def _name(ref: Chosen) -> str:
     return ref if isinstance(ref, str) else ref[0]
+
+
+def _laws(model: Model, ref: Chosen) -> list[tuple[int, int | None]]:
+    """Return the laws of the core that belong to a contact, each with a part of it or None."""
+    number, point = located(model, ref)
+    if not model.contacts[number].by_point:
+        return [(model.law_index(number), point)]
+    points = range(model.contacts[number].points) if point is None else [point]
+    return [(model.law_index(number, one), None) for one in points]
 
 
 def located(model: Model, ref: Chosen) -> tuple[int, int | None]:

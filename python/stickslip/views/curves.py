@@ -85,6 +85,7 @@ class CurveView(View[ForcedResponse]):
             march = result.settings.march
             samples = _kept(result, result.samples) if march == "auto" else f"{march}"
             rows.append(("samples", f"{samples} per period"))
+        rows += _state_rows(result)
         return rows + (_orbit_rows(result) if isinstance(result, ExactResponse) else [])
 
     def failures(self, result: ForcedResponse) -> list[str]:
@@ -128,6 +129,8 @@ def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterato
         if points <= _SLIP_POINTS and result.omega.size > 1:
             yield partial(plots.slip, result, omega_unit=omega)
         at = int(np.nanargmax(result.amplitude(dofs[0])))
+        if any(not one.core_phases for one in contacts) and points <= _SLIP_POINTS:
+            yield partial(plots.events, result, at)
         shares = [result.slip_fraction(contact)[at].max() for contact in range(len(contacts))]
         # The contacts that slip most tell most.
         for contact in sorted(np.argsort(shares)[::-1][:_LOOPS].tolist()):
@@ -162,6 +165,22 @@ def _kept(result: ForcedResponse, counts: Int) -> str:
 def _where(omega: list[float]) -> str:
     low, high = min(omega), max(omega)
     return f"at {low:.6g}" if low == high else f"between {low:.6g} and {high:.6g}"
+
+
+def _state_rows(result: ForcedResponse) -> list[Row]:
+    """Say which shares of the period the nodes of contacts are open, slip and stick."""
+    solved = result.arrays.solved
+    rows = []
+    for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
+        if "N" in contact.components and solved.any():
+            slips, opens = (of(name)[solved] for of in (result.slip_fraction, result.open_fraction))
+            shares = {"open": opens, "slips": slips, "sticks": 1.0 - slips - opens}
+            said = (
+                f"{state} {max(one.min(), 0.0):.0%} to {one.max():.0%}"
+                for state, one in shares.items()
+            )
+            rows.append(("states", f"{name}: {', '.join(said)} of the period"))
+    return rows
 
 
 def _orbit_rows(result: ExactResponse) -> list[Row]:

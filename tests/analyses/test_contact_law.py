@@ -1,0 +1,256 @@
+"""A user's own law in Python, against the compiled ones that say the same."""
+
+import time
+import traceback
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+
+class Slider(ss.ContactLaw):
+    """The Jenkins element of n nodes."""
+
+    odd = monotone = True
+
+    def __init__(self, *ends, k, limit, **options):
+        super().__init__(*ends, **options)
+        self.k, self.limit = k, limit
+
+    def stiffness(self):
+        return [[self.k]]
+
+    def step(self, before, after, state):
+        trial = state + self.k * (after - before)
+        force = np.clip(trial, -self.limit, self.limit)
+        sticks = (np.abs(trial) <= self.limit)[..., None].astype(float)
+        slope = self.k * sticks
+        return force, force, ss.Tangents(sticks, -slope, slope, [[1.0]], [[0.0]])
+
+
+class Plane(ss.ContactLaw):
+    """Constant load in two directions, by radial return: the slip is that of one straight step."""
+
+    directions = state_size = 2
+    odd = monotone = True
+    factor = 1.0
+
+    def __init__(self, *ends, k, limit, **options):
+        super().__init__(*ends, **options)
+        self.k, self.limit = k, limit
+
+    def stiffness(self):
+        return self.k * np.eye(2)
+
+    def step(self, before, after, state):
+        trial = state + self.k * (after - before)
+        size = np.linalg.norm(trial, axis=1)[:, None]
+        slips = (size > self.limit)[..., None]
+        unit = trial / np.where(size > 0.0, size, 1.0)
+        force = np.where(size > self.limit, self.limit * unit, trial)
+        across = np.eye(2) - unit[:, :, None] * unit[:, None, :]
+        turned = self.limit / np.where(size > 0.0, size, 1.0)[..., None] * across
+        slope = np.where(slips, self.factor * turned, np.eye(2))
+        tangents = slope, -self.k * slope, self.k * slope, np.eye(2), np.zeros((2, 2))
+        return force, force, ss.Tangents(*tangents)
+
+
+def structure():
+    stiffness = [[2e4, -1e4, 0], [-1e4, 3e4, -1e4], [0, -1e4, 2e4]]
+    return ss.Structure(np.eye(3), stiffness, ss.Rayleigh(mass=3.0), ["a", "b", "c"])
+
+
+def model(*contacts):
+    return ss.Model(structure(), contacts, [ss.Force("a", 30.0), ss.Force("c", 10.0, phase=1.0)])
+
+
+OMEGA = [110.0, 160.0, 200.0]
+STEPS = 64, 128, 256
+MARCHED = {"evaluation": "marched", "samples": 256}
+
+
+def respond(*contacts, omega=OMEGA, harmonics=5, **options):
+    return ss.forced_response(model(*contacts), omega, harmonics, **{**MARCHED, **options})
+
+
+def test_a_jenkins_element_written_in_python():
+    own = respond(Slider(["a"], ["b"], k=8e3, limit=10.0))
+    element = respond(ss.Jenkins("a", "b", stiffness=8e3, slip_force=10.0))
+    assert own.converged.all()
+    assert own.half_wave
+    assert own.diagnostics == element.diagnostics
+    np.testing.assert_allclose(own.coefficients("a"), element.coefficients("a"), atol=1e-12)
+    np.testing.assert_allclose(own.dissipation(0), element.dissipation(0), rtol=1e-9)
+    np.testing.assert_allclose(
+        own.contact_force("slider", 1, 64), element.contact_force(0, 1, 64), atol=1e-8
+    )
+    assert own.slip_fraction("slider") == pytest.approx(element.slip_fraction(0), abs=0.02)
+
+
+def test_nodes_are_stepped_at_once():
+    own = respond(Slider([["a"], ["c"]], k=8e3, limit=10.0, name="two"))
+    pair = respond(*(ss.Jenkins(dof, stiffness=8e3, slip_force=10.0) for dof in "ac"))
+    np.testing.assert_allclose(own.coefficients("b"), pair.coefficients("b"), atol=1e-12)
+    assert own.contact_force("two", 0).shape == (512, 2)
+    np.testing.assert_allclose(
+        own.contact_force(("two", 1), 0), pair.contact_force(1, 0)[:, 0], atol=1e-8
+    )
+
+
+def test_two_directions_are_those_of_the_compiled_contact():
+    """Radial return turns by another angle in a step, less so in short ones."""
+    own, exact = (
+        [
+            respond(contact, omega=[160.0], harmonics=3, samples=samples)
+            for samples in (64, 128, 256)
+        ]
+        for contact in (
+            Plane(["a", "b"], k=8e3, limit=10.0),
+            ss.Coulomb(
+                ["a", "b"], normal=None, friction=0.5, tangential_stiffness=8e3, preload=20.0
+            ),
+        )
+    )
+    errors = [
+        np.abs(one.coefficients("c") - other.coefficients("c")).max()
+        for one, other in zip(own, exact, strict=True)
+    ]
+    assert own[0].contact_force("plane", 0).shape == (512, 2)
+    assert own[0].slip_fraction("plane").max() > 0.3
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[2] < 0.4 * errors[0]
+    assert errors[2] < 1e-2 * np.abs(exact[2].coefficients("c")).max()
+
+
+def test_a_sector_of_a_disk():
+    def disk(*contacts):
+        forces = [ss.Force("a", 30.0)]
+        ring = [ss.Coupling("b", stiffness=2e3)]
+        return ss.BladedDisk(structure(), 6, ring, contacts, forces, engine_order=2)
+
+    own = disk(Slider(["a"], ["next.a"], k=8e3, limit=5.0))
+    element = disk(ss.Jenkins("a", "next.a", stiffness=8e3, slip_force=5.0))
+    waves = [ss.forced_response(one, OMEGA, 5, **MARCHED) for one in (own, element)]
+    assert waves[0].slip_fraction(0).max() > 0.1
+    np.testing.assert_allclose(*(one.coefficients("a") for one in waves), atol=1e-12)
+    sectors = [
+        ss.forced_response(one.mistuned(0.02 * np.arange(6)), [110.0], 3, **MARCHED)
+        for one in (own, element)
+    ]
+    np.testing.assert_allclose(*(one.coefficients("3.a") for one in sectors), atol=1e-12)
+
+
+class TestTangents:
+    def test_a_wrong_one_is_named(self):
+        wrong = Plane(["a", "b"], k=8e3, limit=10.0)
+        wrong.factor = 0.5
+        with pytest.raises(ss.ModelError) as refusal:
+            respond(wrong, harmonics=3)
+        said = str(refusal.value)
+        assert said.startswith("contact 'plane', law 'plane': tangents of step: ")
+        assert "of node 0 is" in said
+        assert "differences give" in said
+
+    def test_of_the_force(self):
+        class Wrong(Slider):
+            def step(self, before, after, state):
+                force, state, tangents = super().step(before, after, state)
+                return 1.1 * force, state, tangents
+
+        with pytest.raises(ss.ModelError, match=r"force\[0\] by state\[0\] of node 0 is 1, differ"):
+            respond(Wrong(["a"], k=8e3, limit=1e3))
+
+
+class TestErrors:
+    def test_of_the_users_code_come_with_their_line(self):
+        class Broken(Slider):
+            def step(self, before, after, state):
+                if np.abs(after).max() > 1e-9:
+                    return 1.0 / state.missing
+                return super().step(before, after, state)
+
+        start = time.monotonic()
+        broken = model(Broken(["a"], k=8e3, limit=1.0))
+        for _ in range(2):
+            with pytest.raises(ss.ModelError) as refusal:
+                ss.forced_response(broken, np.linspace(90.0, 200.0, 2000), 5)
+            said = str(refusal.value)
+            assert "law 'broken': step raised AttributeError" in said
+            shown = "".join(traceback.format_exception(refusal.value))
+            assert "return 1.0 / state.missing" in shown
+        assert time.monotonic() < start + 30.0
+
+    @pytest.mark.parametrize(
+        ("answer", "message"),
+        [
+            (None, r"step returns no \(force, state, Tangents"),
+            ((0.0, 0.0, None), r"step returns no \(force, state, Tangents"),
+            (([[np.nan]], [[0.0]], ([[0.0]],) * 5), r"force\[0, 0\] is nan; give numbers"),
+            (([[0.0]], [[0.0, 1.0]], ([[0.0]],) * 5), r"state .*; give shape \(1, 1\)"),
+            (
+                ([[0.0]], [[0.0]], ([[0.0]],) * 4 + (np.eye(2),)),
+                "force_by_after of shape",
+            ),
+        ],
+    )
+    def test_answers_that_are_none(self, answer, message):
+        class Broken(Slider):
+            def step(self, before, after, state):
+                return answer
+
+        with pytest.raises(ss.ModelError, match=message):
+            respond(Broken(["a"], k=8e3, limit=1.0))
+
+    def test_stiffness_is_checked(self):
+        class Skew(Plane):
+            def stiffness(self):
+                return [[1.0, 2.0], [0.0, 1.0]]
+
+        with pytest.raises(ss.ModelError, match="not symmetric and positive semidefinite"):
+            respond(Skew(["a", "b"], k=1.0, limit=1.0))
+
+    def test_state_stiffness_is_needed_of_other_states(self):
+        class Long(Slider):
+            state_size = 2
+
+        with pytest.raises(ss.ModelError, match="is no force; define state_stiffness"):
+            respond(Long(["a"], k=1.0, limit=1.0))
+
+    def test_names_fit_the_directions(self):
+        with pytest.raises(ss.ModelError, match="1 names per node for 2 displacements"):
+            Plane(["a"], k=1.0, limit=1.0)
+
+    def test_a_class_without_a_step_is_none(self):
+        class Half(ss.ContactLaw):
+            def stiffness(self):
+                return [[1.0]]
+
+        with pytest.raises(TypeError, match="step"):
+            Half(["a"])
+
+
+@pytest.mark.parametrize(
+    "analyse",
+    [
+        lambda one: ss.exact_response(one, OMEGA),
+        lambda one: ss.transient(one, 110.0, 2),
+        lambda one: ss.single_harmonic(one, OMEGA),
+        lambda one: ss.damper_curve(one, slip_force=[1.0, 2.0], dof="a"),
+        lambda one: ss.forced_response(one, OMEGA, 3, **MARCHED).contact_states(0, 0),
+    ],
+)
+def test_what_needs_more_refuses_the_law_by_its_name(analyse):
+    with pytest.raises(ss.ModelError, match=r"slider|slip_force"):
+        analyse(model(Slider(["a"], k=8e3, limit=10.0)))
+
+
+def test_files_refuse_it_and_pickles_hold_it(tmp_path):
+    import pickle
+
+    result = respond(Slider(["a"], k=8e3, limit=10.0), omega=[110.0], harmonics=1)
+    with pytest.raises(ss.ModelError, match="'slider' is written in Python, which no file holds"):
+        result.save(tmp_path / "own.nc")
+    again = pickle.loads(pickle.dumps(result))
+    np.testing.assert_array_equal(again.contact_force(0, 0), result.contact_force(0, 0))
+    result.to_dataset()
