@@ -4,6 +4,7 @@ mod active_set;
 mod aft;
 mod aft_march;
 mod coulomb;
+mod coulomb_element;
 mod derivative;
 mod described;
 mod describing;
@@ -35,7 +36,7 @@ pub use describing::Describing;
 pub use elastic::Elastic;
 pub use jenkins::Jenkins;
 pub use law::{
-    ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary, Residual,
+    Bound, ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary, Residual,
     ReturnMapJacobian, SlipElement, SlipLoad,
 };
 pub use parameter::{Parameter, Parameters};
