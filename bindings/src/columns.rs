@@ -166,12 +166,13 @@ impl<'py> Columns<'py> {
         self.rows("dissipation", contacts, f64::NAN, work)
     }
 
-    /// Events between stick and slip.
+    /// Events between stick, slip and separation.
     pub fn events<'a>(&self, events: impl Iterator<Item = &'a Event> + Clone) -> PyResult<()> {
         let kind = |event: &Event| match event.state {
             PointState::Stuck => 0_u8,
             PointState::Forward => 1,
             PointState::Backward => 2,
+            PointState::Open => 3,
         };
         self.one("event_time", events.clone().map(|event| event.time))?;
         self.one("event_point", events.clone().map(|event| event.point as i64))?;

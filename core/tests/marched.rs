@@ -281,7 +281,7 @@ impl ContactLaw for Rubbing {
         jacobian: Option<&mut ReturnMapJacobian>,
     ) {
         let mut sticks = [0.0];
-        self.slider.increment(&[after[0] - before[0]], state, Some(&mut sticks));
+        self.slider.increment(before, after, state, Some(&mut sticks));
         let touches = f64::from(u8::from(after[0] > self.gap));
         force[0] = state[0] + touches * self.spring * (after[0] - self.gap);
         let Some(jacobian) = jacobian else { return };

@@ -165,7 +165,7 @@ fn equal_limits_slip_together_with_the_least_slip() {
     assert!((slip_load.value[0] - 9.0).abs() < 1e-14 && slip_load.active);
     let mut force = [0.2, -0.2];
     let mut gain = [0.0; 4];
-    law.increment(&[1.0, -1.0], &mut force, Some(&mut gain));
+    law.increment(&[0.0; 2], &[1.0, -1.0], &mut force, Some(&mut gain));
     assert_eq!(force, [0.7, -0.7]);
 }
 
@@ -182,7 +182,7 @@ fn increments_solve_their_complementarity_problem() {
             let du: Vec<f64> = (0..points).map(|_| size * random.next()).collect();
             let before = force.clone();
             let mut gain = vec![0.0; points * points];
-            law.increment(&du, &mut force, Some(&mut gain));
+            law.increment(&vec![0.0; points], &du, &mut force, Some(&mut gain));
             let trial: Vec<f64> = (0..points)
                 .map(|i| before[i] + (0..points).map(|j| stiffness[(i, j)] * du[j]).sum::<f64>())
                 .collect();

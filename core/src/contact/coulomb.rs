@@ -18,11 +18,12 @@
 //! error of a sampled evaluation is that of the straight lines, of second order in their length.
 
 use super::dual::{Dual, Real};
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::{Element, HarmonicForce, ReturnMapJacobian};
 use super::parameter::numbers;
 use super::{ContactLaw, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;
+use std::sync::Arc;
 
 /// Numbers that a step depends on: traction before (2), tangential change (2), N before and after.
 const INPUTS: usize = 6;
@@ -408,6 +409,12 @@ impl ContactLaw for Coulomb {
         let (displacement, traction) = self.beginning;
         let beginning = (displacement.map(|u| factor * u), traction.map(|t| factor * t));
         Box::new(Self { closure, beginning, ..*self })
+    }
+
+    /// Slip in one direction alone is linear between events.
+    fn elements(&self) -> Option<Vec<Element>> {
+        let components = (0..self.displacements()).collect();
+        (self.directions == 1).then(|| vec![Element { components, law: Arc::new(*self) }])
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -142,11 +142,10 @@ impl ContactLaw for Jenkins {
         force: &mut [f64],
         jacobian: Option<&mut ReturnMapJacobian>,
     ) {
-        let du = [after[0] - before[0]];
         let count = self.sliders.len();
         let mut sticks = vec![0.0; count];
         for (i, slider) in self.sliders.iter().enumerate() {
-            slider.increment(&du, &mut state[i..=i], Some(&mut sticks[i..=i]));
+            slider.increment(before, after, &mut state[i..=i], Some(&mut sticks[i..=i]));
         }
         force[0] = state.iter().sum();
         let Some(jacobian) = jacobian else { return };

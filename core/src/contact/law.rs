@@ -103,14 +103,16 @@ pub enum PointState {
     Forward,
     /// It slips with negative force.
     Backward,
+    /// It is open: there is no force.
+    Open,
 }
 
 impl PointState {
-    /// Direction of slip: 1, −1, or 0 in stick.
+    /// Direction of slip: 1, −1, or 0 without slip.
     #[must_use]
     pub fn sign(self) -> f64 {
         match self {
-            Self::Stuck => 0.0,
+            Self::Stuck | Self::Open => 0.0,
             Self::Forward => 1.0,
             Self::Backward => -1.0,
         }
@@ -120,7 +122,7 @@ impl PointState {
     #[must_use]
     pub fn mirrored(self) -> Self {
         match self {
-            Self::Stuck => Self::Stuck,
+            Self::Stuck | Self::Open => self,
             Self::Forward => Self::Backward,
             Self::Backward => Self::Forward,
         }
@@ -360,23 +362,59 @@ pub struct Element {
     pub law: Arc<dyn SlipElement>,
 }
 
-/// An element that is linear between events: each of its points sticks, or slips at its limit. Its
-/// forces are its state.
+/// What bounds the force of a point of an element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bound {
+    /// A slip limit that does not change: `|f| ≤ F`. The force is remembered.
+    Constant(f64),
+    /// Friction under a normal force: `|f| ≤ μN`, and `f = 0` while it is open. The force is
+    /// remembered.
+    Friction {
+        /// μ.
+        friction: f64,
+        /// The point of the element whose force presses.
+        normal: usize,
+    },
+    /// A normal force `N = N₀ + k u ≥ 0`, of which the structure feels `f = N − balanced`. The
+    /// displacement alone determines it, and whether the contact is open.
+    Unilateral {
+        /// N₀ \[N\].
+        at_rest: f64,
+        /// k [N/m].
+        stiffness: f64,
+        /// What of N the structure does not feel \[N\].
+        balanced: f64,
+    },
+}
+
+/// An element that is linear between events: each of its points sticks, or slips at its limit, or is
+/// open. Forces that are bounded by slip are its state.
 pub trait SlipElement: Send + Sync + std::fmt::Debug {
     /// Stiffness of the stuck element, points × points [N/m].
     fn stiffness(&self) -> Mat<f64>;
 
-    /// Slip limit of every point \[N\].
+    /// Slip limit of every point \[N\]: 0 if it never carries a force, infinite if it never slips;
+    /// of a limit that varies the largest number.
     fn limits(&self) -> Vec<f64>;
+
+    /// What bounds the force of every point: constant limits, unless an element has others.
+    fn bounds(&self) -> Vec<Bound> {
+        self.limits().into_iter().map(Bound::Constant).collect()
+    }
 
     /// `∂f/∂u` while the points are in these states, points × points [N/m].
     fn tangent(&self, points: &[PointState]) -> Mat<f64>;
 
     /// Slip per relative displacement, `s' = R u'`, while the points are in these states,
-    /// points × points; rows of points that stick are zero.
+    /// points × points; rows of points that do not slip are zero.
     fn slip_rate(&self, points: &[PointState]) -> Mat<f64>;
 
-    /// Takes the forces through a change `du` of the displacements. `gain`, if asked for, is the
-    /// derivative of the new forces in the trial forces `f + D du`, points × points, row by row.
-    fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>);
+    /// Takes the forces through a straight change of the displacements. `gain`, if asked for, is the
+    /// derivative of the new forces in the trial forces `f + D Δu`, points × points, row by row.
+    fn increment(&self, before: &[f64], after: &[f64], force: &mut [f64], gain: Option<&mut [f64]>);
+
+    /// [`SlipElement::increment`] of an element that remembers something else than its forces.
+    fn march(&self, before: &[f64], after: &[f64], _memory: &mut [f64], force: &mut [f64]) {
+        self.increment(before, after, force, None);
+    }
 }

@@ -7,6 +7,7 @@ mod coulomb;
 mod coulomb_constant;
 mod coulomb_cycle;
 mod coulomb_drive;
+mod coulomb_element;
 mod coulomb_harmonics;
 mod coulomb_play;
 mod cubic;
@@ -43,7 +44,7 @@ pub use describing::Describing;
 pub use elastic::Elastic;
 pub use jenkins::Jenkins;
 pub use law::{
-    ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary, Residual,
+    Bound, ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary, Residual,
     ReturnMapJacobian, SlipElement, SlipLoad,
 };
 pub use parameter::{Parameter, Parameters};

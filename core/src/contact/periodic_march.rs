@@ -142,7 +142,7 @@ impl<'a> March<'a> {
         self.here.set = self.find_set();
         let jet = self.jet(0.0);
         let (mut force, mut gain) = (vec![0.0; points], vec![0.0; points * points]);
-        self.law.increment(jet.value(), &mut force, Some(&mut gain));
+        self.law.increment(&vec![0.0; points], jet.value(), &mut force, Some(&mut gain));
         self.slipped = (0..points).any(|i| gain[i * points + i] == 0.0);
         let gradient = self.derivative.start(self.law, &self.basis(0.0), &force, &gain);
         self.settle(&jet, force, gradient, None);

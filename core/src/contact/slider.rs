@@ -156,8 +156,14 @@ impl SlipElement for Slider {
         Mat::from_fn(1, 1, |_, _| points[0].sign().abs())
     }
 
-    fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
-        let trial = force[0] + self.stiffness * du[0];
+    fn increment(
+        &self,
+        before: &[f64],
+        after: &[f64],
+        force: &mut [f64],
+        gain: Option<&mut [f64]>,
+    ) {
+        let trial = force[0] + self.stiffness * (after[0] - before[0]);
         force[0] = trial.clamp(-self.slip_force, self.slip_force);
         if let Some(gain) = gain {
             gain[0] = f64::from(u8::from(trial == force[0]));

@@ -138,13 +138,20 @@ impl SlipElement for StructuralDamper {
         self.reduced(points).slip_rate
     }
 
-    fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>) {
-        let before = force.to_vec();
+    fn increment(
+        &self,
+        before: &[f64],
+        after: &[f64],
+        force: &mut [f64],
+        gain: Option<&mut [f64]>,
+    ) {
+        let known = force.to_vec();
+        let du = || after.iter().zip(before).map(|(after, before)| after - before).enumerate();
         for (i, force) in force.iter_mut().enumerate() {
-            *force += du.iter().enumerate().map(|(j, du)| self.stiffness[(i, j)] * du).sum::<f64>();
+            *force += du().map(|(j, du)| self.stiffness[(i, j)] * du).sum::<f64>();
         }
         let mut increment = Increment::new(&self.stiffness, &self.limits);
-        increment.solve(&before, force);
+        increment.solve(&known, force);
         if let Some(gain) = gain {
             increment.gain(gain);
         }

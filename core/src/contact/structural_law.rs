@@ -54,14 +54,13 @@ impl ContactLaw for StructuralDamper {
         jacobian: Option<&mut ReturnMapJacobian>,
     ) {
         let points = state.len();
-        let du: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
         let Some(jacobian) = jacobian else {
-            self.increment(&du, state, None);
+            self.increment(before, after, state, None);
             force.copy_from_slice(state);
             return;
         };
         jacobian.reset(points, points);
-        self.increment(&du, state, Some(&mut jacobian.by_state));
+        self.increment(before, after, state, Some(&mut jacobian.by_state));
         force.copy_from_slice(state);
         for i in 0..points {
             let gain = &jacobian.by_state[i * points..(i + 1) * points];

@@ -1,13 +1,15 @@
 //! The exact flow: power series from event to event.
 //!
 //! A point that sticks begins to slip where its force reaches its limit; a point that slips sticks
-//! where its slip velocity vanishes. Both are zeros of polynomials, located to rounding.
+//! where its slip velocity vanishes. A contact opens where its normal force vanishes. Where it closes
+//! friction begins without force: it sticks if its force grows more slowly than its limit, and else
+//! slips. All of these are zeros of polynomials, located to rounding.
 
 use super::modal_system::{ContactState, ModalSystem};
 use super::polynomial::first_zero;
 use super::power_series::{sum_of_products, PowerSeries, DEGREE};
 use super::state::State;
-use crate::contact::PointState;
+use crate::contact::{Bound, PointState};
 
 /// Leading coefficient, relative to the largest, that counts as zero: a point is at its limit.
 const AT_LIMIT: f64 = 1e-14;
@@ -17,8 +19,10 @@ const AT_REST: f64 = 1e-9;
 const LOOK: usize = 32;
 /// Changes of state at one instant after which the states are contradictory.
 const CHANGES: usize = 8;
+/// Share of a step that is no step.
+const INSTANT: f64 = 1e-13;
 
-/// A contact point changes from stick to slip or back.
+/// A contact point changes from stick to slip or back, opens or closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
     /// Time in the period \[s\].
@@ -188,7 +192,7 @@ impl<'a> Flow<'a> {
                 }
             }
             if length > 0.0 {
-                changes = 0;
+                changes = if length > INSTANT * natural { 0 } else { changes };
                 let start = state.time;
                 observe(FlowEvent::Segment(FlowSegment {
                     series: &self.series,
@@ -206,36 +210,71 @@ impl<'a> Flow<'a> {
             if changes > CHANGES * self.system.points() {
                 return Err(Halt::Contradiction);
             }
-            self.events += 1;
-            state.points[point] = to;
-            let limit = self.system.limits[point];
-            let side = if to == PointState::Stuck { state.force[point] } else { to.sign() };
-            state.force[point] = limit.copysign(side);
-            let after = ContactState::new(self.system, &state.points);
             let speed = self.system.contact_displacement(&state.velocity);
-            observe(FlowEvent::Event {
-                event: Event { time: state.time, point, state: to },
-                speed: &speed,
-                before: &regime,
-                after: &after,
-            });
+            self.change(state, &speed, point, to);
+            let after = ContactState::new(self.system, &state.points);
+            // Friction comes and goes with the normal force.
+            let mut before = &regime;
+            for point in std::iter::once(point).chain(self.system.pressed_by(point)) {
+                self.events += 1;
+                observe(FlowEvent::Event {
+                    event: Event { time: state.time, point, state: state.points[point] },
+                    speed: &speed,
+                    before,
+                    after: &after,
+                });
+                before = &after;
+            }
             regime = after;
         }
         Ok(())
     }
 
     fn move_on(&self, state: &mut State, length: f64) {
-        self.series.state_at(length, &self.system.limits, state.parts());
+        self.series.state_at(length, self.system, state.parts());
+        state.press(self.system);
         state.time += length / self.series.rate();
+    }
+
+    /// Changes the state of a point, at its limit, and of those whose friction it presses.
+    fn change(&self, state: &mut State, speed: &[f64], point: usize, to: PointState) {
+        let system = self.system;
+        let side = if to == PointState::Stuck { state.force[point] } else { to.sign() };
+        state.points[point] = to;
+        if !matches!(system.bounds[point], Bound::Unilateral { .. }) {
+            state.force[point] = system.limit(point, &state.force).copysign(side);
+            return;
+        }
+        state.force[point] = -system.balanced(point);
+        for friction in system.pressed_by(point) {
+            state.force[friction] = 0.0;
+            state.points[friction] = to;
+        }
+        if to == PointState::Open {
+            return;
+        }
+        let stuck = ContactState::new(system, &state.points);
+        for friction in system.pressed_by(point) {
+            let [own, limit] = system.loading(&stuck, friction, speed);
+            if own.abs() >= limit {
+                state.points[friction] = PointState::slipping(own);
+            }
+        }
     }
 
     /// What a point does within `length` of τ, and whether it can begin the step as it is.
     fn next(&mut self, regime: &ContactState, point: usize, natural: f64, length: f64) -> Next {
-        let limit = self.system.limits[point];
-        if !(limit > 0.0 && limit.is_finite()) {
-            return Next::Stay;
-        }
         let state = regime.points[point];
+        let (constant, friction) = match self.system.bounds[point] {
+            Bound::Constant(limit) if limit > 0.0 && limit.is_finite() => (limit, None),
+            Bound::Friction { friction, normal } if state != PointState::Open => {
+                (friction * self.system.balanced(normal), Some((friction, normal)))
+            }
+            Bound::Unilateral { stiffness, .. } if stiffness > 0.0 => {
+                return self.opens_or_closes(state, point, natural, length);
+            }
+            _ => return Next::Stay,
+        };
         if state != PointState::Stuck {
             self.fill_slip_velocity(regime, point, state.sign(), natural);
             // Another point's onset of slip turns it back at once.
@@ -249,11 +288,19 @@ impl<'a> Flow<'a> {
             };
         }
         let force = self.series.force(point);
+        let (limit, size) = match friction {
+            None => (constant, constant),
+            Some((friction, normal)) => (
+                constant + friction * self.series.force(normal)[0],
+                friction * self.normal_size(normal),
+            ),
+        };
         let mut scale = 1.0;
         let mut reach = 0.0;
-        for f in &force[1..] {
+        for (power, f) in force.iter().enumerate().skip(1) {
             scale *= length;
-            reach += f.abs() * scale;
+            let moves = friction.map_or(0.0, |(mu, at)| mu * self.series.force(at)[power].abs());
+            reach += (f.abs() + moves) * scale;
         }
         if reach < limit - force[0].abs() {
             return Next::Stay;
@@ -261,8 +308,9 @@ impl<'a> Flow<'a> {
         let mut first = Next::Stay;
         let mut window = length;
         for side in [1.0, -1.0] {
-            self.fill_margin(point, side, natural);
-            match self.leaves(window / natural, limit) {
+            self.fill_margin(point, side, constant, friction);
+            rescale(&mut self.scratch, natural);
+            match self.leaves(window / natural, size) {
                 Some(0.0) => return Next::Now(PointState::slipping(side)),
                 Some(share) => {
                     window = share * natural;
@@ -287,12 +335,56 @@ impl<'a> Flow<'a> {
         rescale(&mut self.scratch, natural);
     }
 
-    /// Distance of the force from its limit on one side, on the unit interval.
-    fn fill_margin(&mut self, point: usize, side: f64, natural: f64) {
+    /// Whether a normal force vanishes, or comes back.
+    fn opens_or_closes(
+        &mut self,
+        state: PointState,
+        point: usize,
+        natural: f64,
+        length: f64,
+    ) -> Next {
+        let (side, to) = match state {
+            PointState::Open => (-1.0, PointState::Stuck),
+            _ => (1.0, PointState::Open),
+        };
+        let stiffness = side * self.system.normal_stiffness(point);
+        self.scratch.clear();
+        self.scratch.extend(self.series.contact(point).iter().map(|u| stiffness * u));
+        self.scratch[0] = side * self.system.pressing(point, self.series.displacement());
+        rescale(&mut self.scratch, natural);
+        let size = self.normal_size(point);
+        match self.leaves(length / natural, size) {
+            Some(0.0) => Next::Now(to),
+            Some(share) => Next::At(share * natural, to),
+            None => Next::Stay,
+        }
+    }
+
+    /// What the rounding of a normal force counts against.
+    fn normal_size(&self, point: usize) -> f64 {
+        let Bound::Unilateral { at_rest, stiffness, .. } = self.system.bounds[point] else {
+            return 0.0;
+        };
+        let shape = self.system.contact_shape(point).iter();
+        let parts = shape.zip(self.series.displacement()).map(|(b, x)| (b * x).abs());
+        at_rest.abs() + stiffness * parts.sum::<f64>()
+    }
+
+    /// Distance of the force from its limit on one side.
+    fn fill_margin(
+        &mut self,
+        point: usize,
+        side: f64,
+        constant: f64,
+        friction: Option<(f64, usize)>,
+    ) {
         self.scratch.clear();
         self.scratch.extend(self.series.force(point).iter().map(|f| -side * f));
-        self.scratch[0] += self.system.limits[point];
-        rescale(&mut self.scratch, natural);
+        self.scratch[0] += constant;
+        if let Some((friction, normal)) = friction {
+            let pressing = self.series.force(normal);
+            self.scratch.iter_mut().zip(pressing).for_each(|(a, f)| *a += friction * f);
+        }
     }
 
     /// First zero of the polynomial at hand up to `share` of the unit interval: 0 if it is at zero

@@ -25,7 +25,6 @@ pub use flow::{Event, Flow, FlowEvent, FlowSegment, Halt};
 pub use history::{History, Scheme, Trace, TransientSettings};
 pub use modal_system::{ContactState, ModalSystem};
 pub(crate) use output::Extremes;
-pub(crate) use polynomial::value;
 pub use power_series::PowerSeries;
 pub use runge_kutta::RungeKutta;
 pub use state::State;

@@ -1,8 +1,8 @@
 //! The equations of motion in the modes of the structure without contacts.
 
-use super::bodies::{elements, limits_of, Body};
+use super::bodies::{Bodies, Body};
 use super::damping::Damping;
-use crate::contact::{PointState, PointSummary};
+use crate::contact::{Bound, PointState, PointSummary};
 use crate::model::Model;
 use crate::structure::{modes, ModalDamping, RealModes};
 use crate::Error;
@@ -30,6 +30,10 @@ pub struct ModalSystem {
     rate: f64,
     /// Slip limits of all points \[N\].
     pub(super) limits: Vec<f64>,
+    /// What bounds the forces of all points.
+    pub(super) bounds: Vec<Bound>,
+    /// Points whose force follows from their displacement, varies and may vanish.
+    pub(super) normals: Vec<usize>,
     /// The elements of the contacts.
     bodies: Vec<Body>,
 }
@@ -41,6 +45,19 @@ impl ModalSystem {
     /// The eigenvalue iteration fails; the model is one sector of a travelling wave; a contact law
     /// has no events that an exact motion could be followed by.
     pub fn new(model: &Model) -> Result<Self, Error> {
+        Self::of(model, Bodies::new(model, false)?)
+    }
+
+    /// The same for motions that are stepped through: a law without events takes part by its return
+    /// map.
+    ///
+    /// # Errors
+    /// The eigenvalue iteration fails; the model is one sector of a travelling wave.
+    pub(super) fn marched(model: &Model) -> Result<Self, Error> {
+        Self::of(model, Bodies::new(model, true)?)
+    }
+
+    fn of(model: &Model, bodies: Bodies) -> Result<Self, Error> {
         if model.is_travelling_wave() {
             return Err(Error::TravellingWave);
         }
@@ -49,9 +66,11 @@ impl ModalSystem {
         let damping = modes.damping(structure.damping());
         let size = modes.omega_squared.len();
         let rows = &model.ports().rows * &modes.shapes;
-        let (bodies, components) = elements(model)?;
-        let contacts =
-            components.iter().flat_map(|&i| (0..size).map(move |j| (i, j))).map(|at| rows[at]);
+        let contacts = bodies
+            .components
+            .iter()
+            .flat_map(|&i| (0..size).map(move |j| (i, j)))
+            .map(|at| rows[at]);
         let loads = model.ports().loads.iter().map(|load| {
             let modal = (0..size)
                 .map(|j| (0..size).map(|i| load.amplitude[i] * modes.shapes[(i, j)]).sum())
@@ -64,9 +83,11 @@ impl ModalSystem {
             rate: rate_of(model, &damping),
             damping: Damping::of(&damping),
             to_modes: modes.shapes.transpose() * structure.mass(),
-            limits: limits_of(&bodies),
-            bodies,
-            components,
+            limits: bodies.limits(),
+            normals: bodies.normals(),
+            bounds: bodies.bounds(),
+            components: bodies.components,
+            bodies: bodies.all,
             omega_squared: modes.omega_squared,
             shapes: modes.shapes,
         })
@@ -78,14 +99,16 @@ impl ModalSystem {
     /// # Errors
     /// A contact whose stiffness has no eigenvalues.
     pub(crate) fn undriven(&self, model: &Model, damping: &ModalDamping) -> Result<Self, Error> {
-        let (bodies, components) = elements(model)?;
+        let bodies = Bodies::new(model, false)?;
         Ok(Self {
             loads: Vec::new(),
             rate: rate_of(model, damping),
             damping: Damping::of(damping),
-            limits: limits_of(&bodies),
-            bodies,
-            components,
+            limits: bodies.limits(),
+            normals: bodies.normals(),
+            bounds: bodies.bounds(),
+            components: bodies.components,
+            bodies: bodies.all,
             ..self.clone()
         })
     }
@@ -273,10 +296,100 @@ impl ModalSystem {
         &self.omega_squared
     }
 
-    /// Slip limits of all points of the elements \[N\].
+    /// Slip limits of all points of the elements \[N\]; of a limit that varies the largest number.
     #[must_use]
     pub fn limits(&self) -> &[f64] {
         &self.limits
+    }
+
+    /// Slip limit of a point under these forces, none where it is open \[N\].
+    pub(super) fn limit(&self, point: usize, force: &[f64]) -> f64 {
+        match self.bounds[point] {
+            Bound::Friction { friction, normal } => friction * self.normal_force(normal, force),
+            _ => self.limits[point],
+        }
+    }
+
+    /// N of a point that is bounded on one side.
+    fn normal_force(&self, point: usize, force: &[f64]) -> f64 {
+        (force[point] + self.balanced(point)).max(0.0)
+    }
+
+    /// What of N the structure does not feel \[N\].
+    pub(super) fn balanced(&self, point: usize) -> f64 {
+        match self.bounds[point] {
+            Bound::Unilateral { balanced, .. } => balanced,
+            _ => 0.0,
+        }
+    }
+
+    /// `N₀ + k u` of a point that is bounded on one side: negative while it is open \[N\].
+    pub(super) fn pressing(&self, point: usize, modal: &[f64]) -> f64 {
+        match self.bounds[point] {
+            Bound::Unilateral { at_rest, stiffness, .. } => {
+                at_rest + stiffness * dot(self.contact_shape(point), modal)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Keeps forces within their bounds.
+    pub(super) fn confine(&self, force: &mut [f64]) {
+        for point in 0..force.len() {
+            if let Bound::Unilateral { balanced, .. } = self.bounds[point] {
+                force[point] = force[point].max(-balanced);
+            } else {
+                let limit = self.limit(point, force);
+                force[point] = force[point].clamp(-limit, limit);
+            }
+        }
+    }
+
+    /// Whether slip limits vary, or contacts may open.
+    pub(crate) fn has_normals(&self) -> bool {
+        !self.normals.is_empty()
+    }
+
+    /// Derivative of the slip limit of a point in the modal displacements while it is closed; empty
+    /// if it is constant.
+    pub(super) fn limit_slope(&self, point: usize) -> Vec<f64> {
+        let Bound::Friction { friction, normal } = self.bounds[point] else { return Vec::new() };
+        let slope = friction * self.normal_stiffness(normal);
+        self.contact_shape(normal).iter().map(|b| slope * b).collect()
+    }
+
+    /// k_n of a point that is bounded on one side [N/m].
+    pub(super) fn normal_stiffness(&self, point: usize) -> f64 {
+        match self.bounds[point] {
+            Bound::Unilateral { stiffness, .. } => stiffness,
+            _ => 0.0,
+        }
+    }
+
+    /// Rates of the force of a point and of its slip limit in given states [N/s].
+    pub(super) fn loading(&self, regime: &ContactState, point: usize, speed: &[f64]) -> [f64; 2] {
+        let rate = |i: usize| -> f64 {
+            speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
+        };
+        match self.bounds[point] {
+            Bound::Friction { friction, normal } => [rate(point), friction * rate(normal)],
+            _ => [rate(point), 0.0],
+        }
+    }
+
+    /// Points whose slip limit follows the force of a point.
+    pub(super) fn pressed_by(&self, point: usize) -> impl Iterator<Item = usize> + '_ {
+        let pressed = move |bound: &Bound| match *bound {
+            Bound::Friction { normal, .. } => normal == point,
+            _ => false,
+        };
+        (0..self.points()).filter(move |i| pressed(&self.bounds[*i]))
+    }
+
+    /// How many numbers the contacts remember.
+    pub(crate) fn memories(&self) -> usize {
+        let own = |body: &Body| body.remembered.len() + body.memory.len();
+        self.bodies.iter().map(own).sum()
     }
 
     /// The elements of the contacts.

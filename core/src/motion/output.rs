@@ -72,7 +72,7 @@ impl<'a> Output<'a> {
                 let end = segment.start + segment.duration();
                 while sample <= self.settings.samples && self.instant(sample) <= end + slack {
                     let tau = (self.instant(sample) - segment.start) * segment.series.rate();
-                    segment.series.state_at(tau, self.system.limits(), [&mut x, &mut v, &mut f]);
+                    segment.series.state_at(tau, self.system, [&mut x, &mut v, &mut f]);
                     self.push(begin + self.instant(sample), &x, &v, &f, trace);
                     sample += 1;
                 }

@@ -130,7 +130,9 @@ impl Slipping {
         let phase = Phase::new(system, &states)?;
         let n = system.modes();
         let neutral = phase.neutral();
-        let grip = (0..2 * n)
+        // Nothing is known of friction forces that normal loads bound.
+        let bounded = if system.has_normals() { 0 } else { 2 * n };
+        let grip = (0..bounded)
             .filter(|&k| phase.poles[k].re > neutral)
             .map(|k| {
                 let per_point = |point: usize| {
@@ -260,12 +262,17 @@ impl Sticking {
         }
         let z = self.phase.coordinates(&about, state);
         let u = system.contact_displacement(&about);
+        let mean: Vec<f64> = (0..rest.len())
+            .map(|i| rest[i] + (0..u.len()).map(|j| self.phase.tangent[(i, j)] * u[j]).sum::<f64>())
+            .collect();
+        let swing =
+            |i: usize| -> f64 { self.force[i].iter().zip(&z).map(|(c, z)| c * z.norm()).sum() };
+        let lowest: Vec<f64> = (0..rest.len()).map(|i| mean[i] - swing(i)).collect();
         (0..rest.len()).all(|i| {
             let limit = system.limits()[i];
-            let mean: f64 =
-                rest[i] + (0..u.len()).map(|j| self.phase.tangent[(i, j)] * u[j]).sum::<f64>();
-            let swing: f64 = self.force[i].iter().zip(&z).map(|(c, z)| c * z.norm()).sum();
-            limit == 0.0 || mean.abs() + swing < limit
+            let closed = !system.normals.contains(&i) || lowest[i] + system.balanced(i) > 0.0;
+            let limit = if limit == f64::MAX { system.limit(i, &lowest) } else { limit };
+            closed && (limit == 0.0 || mean[i].abs() + swing(i) < limit)
         })
     }
 

@@ -202,12 +202,18 @@ impl PowerSeries {
         polynomial::value(self.force(point), tau)
     }
 
-    /// [`PowerSeries::motion_at`] with the contact forces, kept within their limits.
-    pub(crate) fn state_at(&self, tau: f64, limits: &[f64], [x, v, f]: [&mut [f64]; 3]) {
+    /// [`PowerSeries::motion_at`] with the contact forces, kept within their bounds.
+    pub(crate) fn state_at(&self, tau: f64, system: &ModalSystem, [x, v, f]: [&mut [f64]; 3]) {
         self.motion_at(tau, x, v);
-        for (point, (force, limit)) in f.iter_mut().zip(limits).enumerate() {
-            *force = self.force_at(point, tau).clamp(-limit, *limit);
+        for (point, force) in f.iter_mut().enumerate() {
+            *force = self.force_at(point, tau);
         }
+        system.confine(f);
+    }
+
+    /// Modal displacements at the start.
+    pub(super) fn displacement(&self) -> &[f64] {
+        &self.modal[..self.modes]
     }
 
     /// Writes the coefficients of `Σ_j shape_j η_j` over the window `[0, length]` of τ, scaled to

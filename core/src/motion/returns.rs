@@ -83,7 +83,7 @@ impl Returns {
                 if self.rises && !rises {
                     let tau = from * segment.length;
                     let mut state = State::rest(system);
-                    segment.series.state_at(tau, system.limits(), state.parts());
+                    segment.series.state_at(tau, system, state.parts());
                     let time = begin + segment.start + tau / segment.series.rate();
                     let (size, error) = self.add(time, coordinates.coordinates(&state));
                     told(size, error);

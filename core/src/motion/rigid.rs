@@ -50,6 +50,7 @@ impl Transition<'_> {
             .conserved(slipped)
             .into_iter()
             .map(|(_, form)| form.iter().zip(self.weight()).map(|(f, w)| f * w).collect::<Vec<_>>())
+            .chain(system.normals.iter().map(|&i| system.contact_shape(i).to_vec()))
             .map(|row| scaled(&row))
             .collect();
         let (shifts, momenta) = (kernel(&stuck, &rigid), kernel(&system.answers(), &rigid));

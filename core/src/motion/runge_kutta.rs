@@ -14,8 +14,9 @@ pub struct RungeKutta<'a> {
     stages: [Vec<f64>; 4],
     trial: Vec<f64>,
     reference: Vec<f64>,
-    change: Vec<f64>,
+    reached: Vec<f64>,
     force: Vec<f64>,
+    memory: Vec<f64>,
     /// Steps taken since the start.
     pub taken: usize,
 }
@@ -39,8 +40,9 @@ impl<'a> RungeKutta<'a> {
             stages: std::array::from_fn(|_| vec![0.0; 2 * modes]),
             trial: vec![0.0; 2 * modes],
             reference: vec![0.0; points],
-            change: vec![0.0; points],
+            reached: vec![0.0; points],
             force: vec![0.0; points],
+            memory: Vec::new(),
             taken: 0,
         }
     }
@@ -87,7 +89,7 @@ impl<'a> RungeKutta<'a> {
         }
         self.trial[..modes].copy_from_slice(&state.displacement);
         self.forces(state);
-        state.force.copy_from_slice(&self.force);
+        self.keep(state);
         self.taken += 1;
     }
 
@@ -111,21 +113,32 @@ impl<'a> RungeKutta<'a> {
             *u = dot(self.system.contact_shape(point), &before.displacement);
         }
         self.forces(before);
-        state.force.copy_from_slice(&self.force);
+        self.keep(&mut state);
         state
+    }
+
+    /// Takes the contact forces at the trial displacements over, with what the laws remember.
+    fn keep(&self, state: &mut State) {
+        state.force.copy_from_slice(&self.force);
+        state.memory.copy_from_slice(&self.memory);
     }
 
     /// Contact forces at the trial displacements, from those at the start of the step.
     fn forces(&mut self, state: &State) {
         let modes = self.system.modes();
         self.force.copy_from_slice(&state.force);
-        for (point, change) in self.change.iter_mut().enumerate() {
-            let u = dot(self.system.contact_shape(point), &self.trial[..modes]);
-            *change = u - self.reference[point];
+        self.memory.clone_from(&state.memory);
+        for (point, u) in self.reached.iter_mut().enumerate() {
+            *u = dot(self.system.contact_shape(point), &self.trial[..modes]);
         }
         for body in self.system.bodies() {
-            let change = &self.change[body.points.clone()];
-            body.law.increment(change, &mut self.force[body.points.clone()], None);
+            let points = body.points.clone();
+            body.law.march(
+                &self.reference[points.clone()],
+                &self.reached[points.clone()],
+                &mut self.memory[body.memory.clone()],
+                &mut self.force[points],
+            );
         }
     }
 

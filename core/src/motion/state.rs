@@ -2,7 +2,7 @@
 
 use super::bodies::Body;
 use super::modal_system::ModalSystem;
-use crate::contact::PointState;
+use crate::contact::{Bound, PointState};
 use crate::error::brief;
 use crate::Error;
 use faer::Mat;
@@ -29,6 +29,8 @@ pub struct State {
     pub velocity: Vec<f64>,
     /// Contact forces \[N\].
     pub force: Vec<f64>,
+    /// What the laws remember whose forces are not their state.
+    pub memory: Vec<f64>,
     /// What each contact point does.
     pub points: Vec<PointState>,
 }
@@ -38,48 +40,58 @@ impl State {
     #[must_use]
     pub fn rest(system: &ModalSystem) -> Self {
         let (modes, points) = (system.modes(), system.points());
-        Self {
+        let memory = system.bodies().last().map_or(0, |body| body.memory.end);
+        let mut state = Self {
             time: 0.0,
             displacement: vec![0.0; modes],
             velocity: vec![0.0; modes],
             force: vec![0.0; points],
+            memory: vec![0.0; memory],
             points: vec![PointState::Stuck; points],
+        };
+        if system.has_normals() || memory > 0 {
+            state.settle_points(system);
         }
+        state
     }
 
-    /// A state from displacements and velocities of the DOFs and contact forces, one after the
-    /// other in `values`.
+    /// A state from displacements and velocities of the DOFs and what the contacts remember, one
+    /// after the other in `values`.
     ///
     /// # Errors
     /// A wrong number of values, values that are not finite, a contact force beyond its limit.
     pub fn from_dofs(system: &ModalSystem, values: &[f64]) -> Result<Self, Error> {
-        let (modes, points) = (system.modes(), system.points());
-        if values.len() != 2 * modes + points {
-            return Err(Error::shape(
-                "state",
-                format!("{} values", 2 * modes + points),
-                values.len(),
-            ));
+        let modes = system.modes();
+        let expected = 2 * modes + system.memories();
+        if values.len() != expected {
+            return Err(Error::shape("state", format!("{expected} values"), values.len()));
         }
         if let Some(value) = values.iter().find(|v| !v.is_finite()) {
             return Err(Error::value("state", *value, "every value must be finite"));
         }
-        let (motion, force) = values.split_at(2 * modes);
+        let (motion, memory) = values.split_at(2 * modes);
         let mut state = Self::rest(system);
         state.displacement = system.to_modes(&motion[..modes]);
         state.velocity = system.to_modes(&motion[modes..]);
         let negligible = CANCELLED * state.largest_force(system);
-        for (point, (f, limit)) in force.iter().zip(system.limits()).enumerate() {
+        state.close(system);
+        state.press(system);
+        state.recall(system, memory);
+        for point in system.bodies().iter().flat_map(|body| body.remembered.iter().copied()) {
+            let (f, limit) = (state.force[point], system.limit(point, &state.force));
             if f.abs() > limit * (1.0 + ROUNDING) + negligible {
                 return Err(Error::value(
                     format!("state: force of contact point {}", point + 1),
-                    *f,
-                    &format!("must lie within its slip limit of {} N", brief(*limit)),
+                    f,
+                    &format!("must lie within its slip limit of {} N", brief(limit)),
                 ));
             }
         }
         for body in system.bodies() {
-            let own = &force[body.points.clone()];
+            let own = &state.force[body.points.clone()];
+            if body.remembered.len() < own.len() {
+                continue;
+            }
             let carried = body.elastic.carried(own);
             let size = own.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
             let most = (PRINTED * size).max(negligible);
@@ -94,9 +106,57 @@ impl State {
                 ));
             }
         }
-        state.force = force.to_vec();
+        let given = state.memory.clone();
         state.settle_points(system);
+        let settled = given.iter().zip(&state.memory).enumerate();
+        for (i, (given, kept)) in settled {
+            if (given - kept).abs() > ROUNDING * given.abs() + negligible {
+                return Err(Error::value(
+                    format!("state: number {i} that the contacts remember"),
+                    *given,
+                    &format!("is none that its contact can have; the nearest is {}", brief(*kept)),
+                ));
+            }
+        }
         Ok(state)
+    }
+
+    /// Takes over what the contacts remember.
+    pub(crate) fn recall(&mut self, system: &ModalSystem, mut values: &[f64]) {
+        for body in system.bodies() {
+            let (forces, rest) = values.split_at(body.remembered.len());
+            let (memory, rest) = rest.split_at(body.memory.len());
+            body.remembered.iter().zip(forces).for_each(|(&i, f)| self.force[i] = *f);
+            self.memory[body.memory.clone()].copy_from_slice(memory);
+            values = rest;
+        }
+    }
+
+    /// Opens and closes contacts as the displacements say.
+    fn close(&mut self, system: &ModalSystem) {
+        self.points.fill(PointState::Stuck);
+        for &point in &system.normals {
+            if system.pressing(point, &self.displacement) <= 0.0 {
+                self.points[point] = PointState::Open;
+                system.pressed_by(point).for_each(|i| self.points[i] = PointState::Open);
+            }
+        }
+    }
+
+    /// Normal forces of the present displacements, and the slip limits of what slips.
+    pub(super) fn press(&mut self, system: &ModalSystem) {
+        for &point in &system.normals {
+            let Bound::Unilateral { balanced, .. } = system.bounds[point] else { continue };
+            let closed = self.points[point] != PointState::Open;
+            let force = if closed { system.pressing(point, &self.displacement) } else { 0.0 };
+            self.force[point] = force - balanced;
+            for slipping in system.pressed_by(point) {
+                let sign = self.points[slipping].sign();
+                if sign != 0.0 {
+                    self.force[slipping] = sign * system.limit(slipping, &self.force);
+                }
+            }
+        }
     }
 
     /// Force that the contacts would have if all parts of their displacements, each at the amplitude
@@ -122,34 +182,48 @@ impl State {
         largest
     }
 
-    /// Displacements and velocities of the DOFs and contact forces, one after the other.
+    /// Displacements and velocities of the DOFs and what the contacts remember, one after the other.
     #[must_use]
     pub fn to_dofs(&self, system: &ModalSystem) -> Vec<f64> {
         let mut values = system.to_dofs(&self.displacement);
         values.extend(system.to_dofs(&self.velocity));
-        values.extend(&self.force);
+        for body in system.bodies() {
+            values.extend(body.remembered.iter().map(|&i| self.force[i]));
+            values.extend(&self.memory[body.memory.clone()]);
+        }
         values
     }
 
     /// Keeps the forces within their limits, and has points at their limit slip if they move on.
-    /// Of every point, whether its force was free to vary there.
-    pub(crate) fn settle_points(&mut self, system: &ModalSystem) -> Vec<bool> {
+    /// Of every point, what its force was held by: nothing where it sticks.
+    pub(crate) fn settle_points(&mut self, system: &ModalSystem) -> Vec<PointState> {
         let speed = system.contact_displacement(&self.velocity);
-        let mut free = vec![true; self.force.len()];
+        let at = system.contact_displacement(&self.displacement);
+        let mut held = vec![PointState::Stuck; self.force.len()];
+        self.close(system);
         for body in system.bodies() {
             let range = body.points.clone();
             let size = range.len();
             let force = &mut self.force[range.clone()];
-            let states = &mut self.points[range.clone()];
+            if body.remembered.is_empty() {
+                let memory = &mut self.memory[body.memory.clone()];
+                body.law.march(&at[range.clone()], &at[range.clone()], memory, force);
+                continue;
+            }
             let mut gain = vec![0.0; size * size];
-            body.law.increment(&vec![0.0; size], force, Some(&mut gain));
-            states.fill(PointState::Stuck);
-            settle(body, force, &speed[range.clone()], &system.limits()[range.clone()], states);
-            for (i, free) in free[range].iter_mut().enumerate() {
-                *free = gain[i * size + i] == 1.0;
+            body.law.increment(&at[range.clone()], &at[range.clone()], force, Some(&mut gain));
+            settle(system, body, &mut self.points, &self.force, &speed);
+            for &point in &body.remembered {
+                let i = point - range.start;
+                if gain[i * size + i] != 1.0 {
+                    held[point] = match self.points[point] {
+                        PointState::Open => PointState::Open,
+                        _ => PointState::slipping(self.force[point]),
+                    };
+                }
             }
         }
-        free
+        held
     }
 
     /// Displacements, velocities and forces.
@@ -165,23 +239,43 @@ impl State {
 }
 
 /// Finds the states that follow from the velocities of a contact's points, one after the other:
-/// at its limit a point slips if its force would grow, and sticks if it would slip against it.
-fn settle(body: &Body, force: &[f64], speed: &[f64], limits: &[f64], states: &mut [PointState]) {
+/// at its limit a point slips if its force would grow beyond it, and sticks if it would slip
+/// against it.
+fn settle(
+    system: &ModalSystem,
+    body: &Body,
+    points: &mut [PointState],
+    force: &[f64],
+    speed: &[f64],
+) {
+    let range = body.points.clone();
     let along = |matrix: &Mat<f64>, i: usize| -> f64 {
-        speed.iter().enumerate().map(|(j, v)| matrix[(i, j)] * v).sum()
+        speed[range.clone()].iter().enumerate().map(|(j, v)| matrix[(i - range.start, j)] * v).sum()
     };
-    for _ in 0..FLIPS * (states.len() + 1) {
-        if (0..force.len()).all(|i| force[i].abs() < limits[i] || limits[i] == 0.0) {
+    let within = |i: usize| {
+        let limit = system.limit(i, force);
+        limit == 0.0 || force[i].abs() < limit
+    };
+    for _ in 0..FLIPS * (range.len() + 1) {
+        if range.clone().all(within) {
             return;
         }
+        let states = &points[range.clone()];
         let (tangent, slip_rate) = (body.law.tangent(states), body.law.slip_rate(states));
-        let contradicts = |i: usize| match states[i] {
-            _ if limits[i] == 0.0 || force[i].abs() < limits[i] => false,
-            PointState::Stuck => along(&tangent, i) * force[i] > 0.0,
+        let contradicts = |i: usize| match points[i] {
+            _ if within(i) => false,
+            PointState::Open => false,
+            PointState::Stuck => {
+                let growth = match system.bounds[i] {
+                    Bound::Friction { friction, normal } => friction * along(&tangent, normal),
+                    _ => 0.0,
+                };
+                along(&tangent, i) * force[i].signum() > growth
+            }
             state => along(&slip_rate, i) * state.sign() < 0.0,
         };
-        let Some(i) = (0..states.len()).find(|&i| contradicts(i)) else { return };
-        states[i] = match states[i] {
+        let Some(i) = range.clone().find(|&i| contradicts(i)) else { return };
+        points[i] = match points[i] {
             PointState::Stuck => PointState::slipping(force[i]),
             _ => PointState::Stuck,
         };

@@ -32,7 +32,10 @@ pub fn transient(
 ) -> Result<History, Error> {
     let began = Instant::now();
     settings.check()?;
-    let system = ModalSystem::new(model)?;
+    let system = match settings.scheme {
+        Scheme::Exact => ModalSystem::new(model)?,
+        Scheme::RungeKutta(_) => ModalSystem::marched(model)?,
+    };
     system.check_pace(model, settings.omega, FASTEST)?;
     Error::check_dofs(observe, system.modes())?;
     let mut state = match start {

@@ -1,11 +1,13 @@
 //! The derivative of the flow in its start state: the transition matrix, through events.
 //!
 //! Between events it is the exponential of the linear equations. At an event the vector field
-//! jumps in the contact forces alone: at the onset of slip the force of the point loses its
-//! dependence on everything, at the return to stick nothing jumps (Leine and Nijmeijer 2004,
-//! saltation matrix).
+//! jumps in the contact forces alone, by `S = I + Δz' ∇h / h'` where h passes zero (Leine and
+//! Nijmeijer 2004, saltation matrix). At the onset of slip, `h = f ∓ μN`, the force of the point
+//! loses its dependence on everything but its limit. At the return to stick nothing jumps. Where a
+//! contact opens or closes, `h = N`: at opening nothing remains of the traction, and one that begins
+//! at closing in stick, `t' = k_t u'`, begins earlier by dv/v', so that `dt = k_t u' dv/v'`.
 
-use super::flow::FlowEvent;
+use super::flow::{Event, FlowEvent};
 use super::modal_system::{ContactState, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
@@ -23,19 +25,22 @@ pub(crate) struct LinearPhase {
     onset: Option<Onset>,
 }
 
-/// What the onset of slip at a point does to the derivative of the forces.
+/// What an event at a point does to the derivative of the forces.
 #[derive(Debug, Clone)]
 struct Onset {
     point: usize,
-    /// Rate of its force before [N/s].
+    /// Derivative of what passes zero in the modal displacements; empty if there is none. Of a
+    /// point that begins to slip the force of the point comes to it.
+    slope: Vec<f64>,
+    /// Rate of what passes zero [N/s].
     rate: f64,
-    /// Jump of all forces per force of that point.
+    /// Jump of all forces per change of what passes zero.
     jump: Vec<f64>,
 }
 
 impl LinearPhase {
     /// Adds what an observer of the flow sees to the phases so far.
-    pub(crate) fn record(phases: &mut Vec<Self>, passage: &FlowEvent<'_>) {
+    pub(crate) fn record(phases: &mut Vec<Self>, system: &ModalSystem, passage: &FlowEvent<'_>) {
         match passage {
             FlowEvent::Segment(segment) => match phases.last_mut() {
                 Some(phase)
@@ -51,13 +56,16 @@ impl LinearPhase {
             },
             // Changes before the first segment find the states to begin with.
             FlowEvent::Event { .. } if phases.is_empty() => {}
+            // That of a point by which another one has changed, too.
+            FlowEvent::Event { before, after, .. } if before.points == after.points => {}
             FlowEvent::Event { event, speed, before, after } => {
                 let rate = |regime: &ContactState, i: usize| -> f64 {
                     speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
                 };
                 let jumps = (0..speed.len()).map(|i| rate(after, i) - rate(before, i));
                 let last = phases.last_mut();
-                if event.state == PointState::Stuck {
+                let opens = system.normal_stiffness(event.point) > 0.0;
+                if event.state == PointState::Stuck && !opens {
                     // Ordinarily the rates do not jump here; at the onset of slip of a coupled
                     // point they do.
                     if let Some(onset) = last.and_then(|phase| phase.onset.as_mut()) {
@@ -68,7 +76,11 @@ impl LinearPhase {
                     }
                     return;
                 }
-                let onset = Some(Onset::new(event.point, rate(before, event.point), before));
+                let onset = Some(if opens {
+                    Onset::of_normal(system, event.point, speed, jumps)
+                } else {
+                    Onset::of_slip(system, event, speed, before)
+                });
                 match last {
                     Some(phase)
                         if phase.onset.is_none() && phase.regime.points == before.points =>
@@ -89,8 +101,13 @@ impl LinearPhase {
 }
 
 impl Onset {
-    /// The jump while other points keep their states: the point's force is taken out of all.
-    fn new(point: usize, rate: f64, before: &ContactState) -> Self {
+    /// The jump while other points keep their states: what the point's force exceeds its limit by is
+    /// taken out of all.
+    fn of_slip(system: &ModalSystem, event: &Event, speed: &[f64], before: &ContactState) -> Self {
+        let (point, sign) = (event.point, event.state.sign());
+        let [own, limit] = system.loading(before, point, speed);
+        let rate = own - sign * limit;
+        let slope = system.limit_slope(point).iter().map(|slope| -sign * slope).collect();
         let own = before.tangent[(point, point)];
         let jump = (0..before.points.len())
             .map(|i| match i {
@@ -99,7 +116,21 @@ impl Onset {
                 _ => 0.0,
             })
             .collect();
-        Self { point, rate, jump }
+        Self { point, slope, rate, jump }
+    }
+
+    /// The jump where a normal force vanishes or comes back.
+    fn of_normal(
+        system: &ModalSystem,
+        point: usize,
+        speed: &[f64],
+        jumps: impl Iterator<Item = f64>,
+    ) -> Self {
+        let stiffness = system.normal_stiffness(point);
+        let rate = stiffness * speed[point];
+        let slope = system.contact_shape(point).iter().map(|b| stiffness * b).collect();
+        let jump = jumps.map(|by| if rate == 0.0 { 0.0 } else { by / rate }).collect();
+        Self { point, slope, rate, jump }
     }
 }
 
@@ -119,7 +150,7 @@ impl<'a> Transition<'a> {
         Self { system, weight }
     }
 
-    pub(super) fn system(&self) -> &ModalSystem {
+    pub(crate) fn system(&self) -> &'a ModalSystem {
         self.system
     }
 
@@ -159,8 +190,8 @@ impl<'a> Transition<'a> {
         y
     }
 
-    /// State of coordinates, and whether the force of each point is free to vary there.
-    pub(crate) fn state(&self, y: &[f64]) -> (State, Vec<bool>) {
+    /// State of coordinates, and what the force of each point was held by: nothing where it sticks.
+    pub(crate) fn state(&self, y: &[f64]) -> (State, Vec<PointState>) {
         let modes = self.weight.len();
         let mut state = State::rest(self.system);
         for j in 0..modes {
@@ -171,8 +202,8 @@ impl<'a> Transition<'a> {
             let strains = &y[2 * modes + body.strains.start..2 * modes + body.strains.end];
             state.force[body.points.clone()].copy_from_slice(&body.elastic.forces(strains));
         }
-        let free = state.settle_points(self.system);
-        (state, free)
+        let held = state.settle_points(self.system);
+        (state, held)
     }
 
     /// Linear forms that a motion conserves whose points `slipped` alone have slipped, each with a
@@ -211,8 +242,8 @@ impl<'a> Transition<'a> {
     }
 
     /// Derivative of the end state in the start state along the phases of a motion.
-    pub(crate) fn along(&self, phases: &[LinearPhase], free: &[bool]) -> Mat<f64> {
-        let mut total = self.start(phases, free);
+    pub(crate) fn along(&self, phases: &[LinearPhase], held: &[PointState]) -> Mat<f64> {
+        let mut total = self.start(phases, held);
         for phase in phases {
             if phase.duration > 0.0 {
                 total = self.exponential(&phase.regime, phase.duration) * total;
@@ -224,18 +255,20 @@ impl<'a> Transition<'a> {
         total
     }
 
-    /// Derivative at the start: points that slip, and forces that their limits hold, do not vary.
-    fn start(&self, phases: &[LinearPhase], free: &[bool]) -> Mat<f64> {
+    /// Derivative at the start: points that slip, and forces that their limits hold, vary with their
+    /// limits alone.
+    fn start(&self, phases: &[LinearPhase], by: &[PointState]) -> Mat<f64> {
         let (size, first) = (self.size(), 2 * self.weight.len());
         let mut total = Mat::<f64>::identity(size, size);
         for body in self.system.bodies() {
-            let slips = |i: usize| {
-                phases.first().is_some_and(|phase| phase.regime.points[i] != PointState::Stuck)
+            let does = |i: usize| match phases.first().map(|phase| phase.regime.points[i]) {
+                Some(PointState::Stuck) | None => by[i],
+                Some(state) => state,
             };
             let held: Vec<bool> = body
                 .points
                 .clone()
-                .map(|i| !free[i] || slips(i) || self.system.limits()[i] == 0.0)
+                .map(|i| does(i) != PointState::Stuck || self.system.limits()[i] == 0.0)
                 .collect();
             if !held.contains(&true) {
                 continue;
@@ -247,11 +280,21 @@ impl<'a> Transition<'a> {
                         basis.iter().map(|w| w[a] * w[b]).sum();
                 }
             }
+            for i in body.points.clone() {
+                let slope = self.system.limit_slope(i);
+                for (a, strain) in body.strains.clone().enumerate() {
+                    let per_limit =
+                        does(i).sign() * body.elastic.inverse()[(a, i - body.points.start)];
+                    for (j, slope) in slope.iter().enumerate() {
+                        total[(first + strain, j)] += per_limit * slope / self.weight[j];
+                    }
+                }
+            }
         }
         total
     }
 
-    /// `S = I + Δf' e_iᵀ / f_i'` from the left, in strains.
+    /// `S = I + Δf' ∇h / h'` from the left, in strains.
     fn jump(&self, onset: &Onset, total: &mut Mat<f64>) {
         let first = 2 * self.weight.len();
         let bodies = self.system.bodies();
@@ -260,11 +303,14 @@ impl<'a> Transition<'a> {
         };
         let row = onset.point - own.points.start;
         for column in 0..total.ncols() {
-            let force: f64 = (0..own.elastic.rank())
+            let mut force: f64 = (0..own.elastic.rank())
                 .map(|a| {
                     own.elastic.root()[(row, a)] * total[(first + own.strains.start + a, column)]
                 })
                 .sum();
+            for (j, slope) in onset.slope.iter().enumerate() {
+                force += slope / self.weight[j] * total[(j, column)];
+            }
             for body in bodies {
                 let jump = body.elastic.strains(&onset.jump[body.points.clone()]);
                 for (a, jump) in body.strains.clone().zip(jump) {
@@ -285,6 +331,15 @@ impl<'a> Transition<'a> {
         for j in 0..modes {
             for i in 0..modes {
                 a[(modes + i, modes + j)] = -duration * self.system.damping.entry(i, j);
+            }
+        }
+        for &point in &self.system.normals {
+            let slope = duration * regime.tangent[(point, point)];
+            let shape = self.system.contact_shape(point);
+            for (j, b) in shape.iter().enumerate().filter(|_| slope != 0.0) {
+                for (i, own) in shape.iter().enumerate() {
+                    a[(modes + i, j)] -= own * slope * b / self.weight[j];
+                }
             }
         }
         for body in self.system.bodies() {

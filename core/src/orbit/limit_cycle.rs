@@ -240,7 +240,7 @@ impl<'a> OrbitCurve<'a> {
         multipliers.remove(phase);
         multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         // Those of forces that no deformation gives, as of a forced orbit.
-        let states = 2 * self.orbits.system.modes() + self.orbits.system.points();
+        let states = 2 * self.orbits.system.modes() + self.orbits.system.memories();
         multipliers.resize(states.saturating_sub(1 + neutral), c64::new(0.0, 0.0));
         Some((multipliers, neutral))
     }

@@ -162,8 +162,8 @@ impl<'a> PeriodicOrbits<'a> {
 
     /// A point that has not been computed.
     pub(super) fn empty(&self, omega: f64, status: PointStatus) -> Orbit {
-        let (observed, points) = (self.observe.len(), self.system.points());
-        let size = 2 * self.system.modes() + points;
+        let observed = self.observe.len();
+        let size = 2 * self.system.modes() + self.system.memories();
         Orbit {
             response: Point::empty(omega, status, observed, self.system.displacements()),
             range: vec![[f64::NAN; 2]; observed],

@@ -39,6 +39,10 @@ pub(super) fn shifted(
         // Rigid-body motion cannot carry a force.
         return None;
     }
+    if system.has_normals() {
+        // A constant force changes slip limits, or opens contacts: sliders stay where they are.
+        return None;
+    }
     let open = open_forces(system, neutral, middle, half_range, state);
     if open.iter().all(|one| one.at_middle.is_none()) {
         return None;
@@ -117,12 +121,11 @@ fn open_forces(
     let u = system.contact_displacement(&state.displacement);
     let mut open = Vec::new();
     for body in system.bodies() {
-        if body.points.len() == 1 {
-            let point = body.points.start;
+        if let [point] = body.remembered[..] {
             if body.elastic.rank() == 0 || !neutral.contains(&point) {
                 continue;
             }
-            let spring = body.elastic.root()[(0, 0)].powi(2);
+            let spring = body.elastic.root()[(point - body.points.start, 0)].powi(2);
             let force = state.force[point] + spring * (middle[point] - u[point]);
             let room = (system.limits()[point] - spring * half_range[point]).max(0.0);
             open.push(Open {

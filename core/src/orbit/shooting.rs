@@ -2,6 +2,7 @@
 //! after half a period.
 
 use super::rotation::Rotation;
+use crate::contact::PointState;
 use crate::motion::{Flow, LinearPhase, ModalSystem, State, Transition};
 use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
@@ -21,7 +22,7 @@ pub(super) struct Shooting<'a> {
     pub(super) flow: Flow<'a>,
     pub(super) coordinates: Transition<'a>,
     limits: &'a [f64],
-    /// Contact points beyond the number of strains.
+    /// Forces that the contacts remember beyond the number of strains.
     idle: usize,
     half_wave: bool,
     /// Symmetry of a travelling wave, and what it does to the coordinates.
@@ -29,10 +30,9 @@ pub(super) struct Shooting<'a> {
     period: f64,
     span: f64,
     interrupted: Option<&'a dyn Fn() -> bool>,
-    /// Of the last evaluation: phases, forces that were free to vary at the start, points that
-    /// have slipped.
+    /// Of the last evaluation: phases, what held the forces at the start, points that have slipped.
     phases: Vec<LinearPhase>,
-    free: Vec<bool>,
+    held: Vec<PointState>,
     slipped: Vec<bool>,
     /// State after the span.
     pub(super) end: Option<State>,
@@ -70,14 +70,14 @@ impl<'a> Shooting<'a> {
             flow,
             coordinates,
             limits: system.limits(),
-            idle: system.points() - system.strains(),
+            idle: system.memories() - system.strains(),
             half_wave,
             rotation: None,
             period,
             span: if half_wave { 0.5 * period } else { period },
             interrupted,
             phases: Vec::new(),
-            free: Vec::new(),
+            held: Vec::new(),
             slipped: Vec::new(),
             end: None,
             derivative: None,
@@ -110,16 +110,18 @@ impl<'a> Shooting<'a> {
 
     /// Coordinates after the span, mirrored under half-wave symmetry.
     pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
-        let (mut state, free) = self.coordinates.state(y);
-        self.free = free;
+        let (mut state, held) = self.coordinates.state(y);
+        self.held = held;
         self.phases.clear();
         self.derivative = None;
-        let phases = &mut self.phases;
-        let run = self
-            .flow
-            .run(&mut state, self.span, &mut |passage| LinearPhase::record(phases, &passage));
+        let (phases, system) = (&mut self.phases, self.coordinates.system());
+        let run = self.flow.run(&mut state, self.span, &mut |passage| {
+            LinearPhase::record(phases, system, &passage);
+        });
         self.slipped = (0..self.limits.len())
-            .map(|i| !self.free[i] || self.phases.iter().any(|phase| phase.slips(i)))
+            .map(|i| {
+                self.held[i] != PointState::Stuck || self.phases.iter().any(|phase| phase.slips(i))
+            })
             .collect();
         if let Some((rotation, _)) = &self.rotation {
             rotation.spread(&mut self.slipped);
@@ -156,7 +158,7 @@ impl<'a> Shooting<'a> {
             return derivative.clone();
         }
         self.matrices += 1;
-        let along = self.coordinates.along(&self.phases, &self.free);
+        let along = self.coordinates.along(&self.phases, &self.held);
         let derivative = match &self.rotation {
             Some((_, matrix)) => matrix * along,
             None if self.half_wave => faer::Scale(-1.0) * along,

@@ -27,7 +27,7 @@ pub(super) fn start_of(
     state.displacement = system.to_modes(&at_start(&|_| c64::new(1.0, 0.0)));
     state.velocity = system.to_modes(&at_start(&|k| c64::new(0.0, k as f64 * point.omega)));
     let table = SampleTable::new(Harmonics::new(point.harmonics, half_wave));
-    let mut first = 0;
+    let mut memory = Vec::new();
     for (law, points) in model.laws().iter().zip(model.points()) {
         let slots = table.harmonics().slots();
         let mut series = vec![0.0; slots * points.len()];
@@ -36,11 +36,10 @@ pub(super) fn start_of(
             table.harmonics().write_series(amplitudes, out);
         }
         let motion = Motion { table: &table, displacement: &series, residual };
-        // The forces of its elements are the state of such a law.
-        let forces = law.state_history(motion, 1);
-        state.force[first..first + forces.len()].copy_from_slice(&forces);
-        first += forces.len();
+        // What its elements remember is the state of such a law.
+        memory.extend(law.state_history(motion, 1));
     }
+    state.recall(system, &memory);
     state.settle_points(system);
     state
 }

@@ -3,7 +3,7 @@
 use super::quadrature::Quadrature;
 use crate::balance::Point;
 use crate::contact::{PointState, PointSummary};
-use crate::motion::{value, Event, Extremes, FlowEvent, FlowSegment, ModalSystem};
+use crate::motion::{ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem};
 use faer::c64;
 use std::f64::consts::TAU;
 
@@ -85,6 +85,7 @@ impl<'a> Survey<'a> {
         let (mut velocity, mut damping, mut load) =
             (vec![0.0; modes], vec![0.0; modes], vec![0.0; modes]);
         let step = if self.half_wave { 2 } else { 1 };
+        let slips = segment.regime.points.iter().any(|state| state.sign() != 0.0);
         for &(x, weight) in self.quadrature.rule(count) {
             let tau = x * segment.length;
             segment.series.motion_at(tau, &mut motion[..modes], &mut velocity);
@@ -100,6 +101,10 @@ impl<'a> Survey<'a> {
             for j in 0..modes {
                 self.viscous += time * damping[j] * velocity[j];
                 self.work += time * load[j] * velocity[j];
+            }
+            if slips {
+                let speed = self.system.contact_displacement(&velocity);
+                add_friction(&mut self.contacts, segment.regime, time, &speed, &motion[modes..]);
             }
             // Half a period of an odd motion counts twice.
             let share = weight * angle / TAU * if self.half_wave { 2.0 } else { 1.0 };
@@ -124,18 +129,12 @@ impl<'a> Survey<'a> {
             if limit == 0.0 {
                 summary.slip_fraction += share;
             }
+            // Of a point that presses: the share of the period in which it is open.
+            let opens = self.system.limits()[point].is_infinite();
             let state = segment.regime.points[point];
-            if state == PointState::Stuck {
-                continue;
+            if state.sign() != 0.0 || (opens && state == PointState::Open) {
+                summary.slip_fraction += share;
             }
-            let travel: f64 = (0..segment.regime.points.len())
-                .map(|other| {
-                    let u = segment.series.contact(other);
-                    segment.regime.slip_rate[(point, other)] * (value(u, segment.length) - u[0])
-                })
-                .sum();
-            summary.slip_fraction += share;
-            summary.dissipation += limit * state.sign() * travel;
         }
     }
 
@@ -204,5 +203,21 @@ impl<'a> Survey<'a> {
     /// What the contact displacements do.
     fn summaries(&self) -> Vec<PointSummary> {
         self.system.contact_summaries(&self.contacts)
+    }
+}
+
+/// Adds the friction work of a short time.
+fn add_friction(
+    contacts: &mut [PointSummary],
+    regime: &ContactState,
+    time: f64,
+    speed: &[f64],
+    force: &[f64],
+) {
+    for (point, summary) in contacts.iter_mut().enumerate() {
+        if regime.points[point].sign() != 0.0 {
+            let slip: f64 = (0..speed.len()).map(|j| regime.slip_rate[(point, j)] * speed[j]).sum();
+            summary.dissipation += time * force[point] * slip;
+        }
     }
 }

@@ -70,7 +70,7 @@ impl ContactLaw for Coupled {
         let mut sticks = [0.0; 2];
         for i in 0..2 {
             let dv = (0..2).map(|j| t[(i, j)] * (after[j] - before[j])).sum();
-            self.elements[i].increment(&[dv], &mut state[i..=i], Some(&mut sticks[i..=i]));
+            self.elements[i].increment(&[0.0], &[dv], &mut state[i..=i], Some(&mut sticks[i..=i]));
         }
         for i in 0..2 {
             force[i] = t[(0, i)] * state[0] + t[(1, i)] * state[1];

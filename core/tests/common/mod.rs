@@ -4,6 +4,7 @@
 pub mod coupled;
 pub mod damper;
 pub mod passive;
+pub mod planar;
 
 use faer::{c64, mat, Mat};
 use stickslip_core::contact::Jenkins;

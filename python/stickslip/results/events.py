@@ -13,9 +13,9 @@ from stickslip.model import Model
 from stickslip.model.configurations import every_point
 from stickslip.results.arrays import Float, Int, constant
 
-KINDS = ("sticks", "slips forward", "slips backward")
+KINDS = ("sticks", "slips forward", "slips backward", "opens")
 """What happens, by the code that the core and files have; forward is du/dt > 0."""
-_DIRECTIONS = (0, 1, -1)
+_DIRECTIONS = (0, 1, -1, 0)
 """Direction of slip by the code of an event; see `KINDS`."""
 
 
@@ -29,7 +29,7 @@ class Event(NamedTuple):
     point: int
     """Point of that contact, counted from 0."""
     kind: str
-    """From then on it "sticks", "slips forward" (du/dt > 0) or "slips backward"."""
+    """From then on it "sticks", "slips forward" (du/dt > 0), "slips backward", or it "opens"."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -70,14 +70,11 @@ def normal_force_range(
     weights[[node.normal for node in nodes if node.normal is not None]] = 0.0 if alone else 1.0
     # Where the sum leaves it open the node decides.
     weights[place] += 1e-6
-    low = _extreme(nodes, force, change, weights)
-    high = _extreme(nodes, force, change, -weights)
-    if high is None and not alone:
-        return normal_force_range(model, force, place, alone=True)
-    return (
-        0.0 if low is None else float(low[place]),
-        np.inf if high is None else float(high[place]),
-    )
+    low, high = (_extreme(nodes, force, change, sign * weights) for sign in (1.0, -1.0))
+    least = 0.0 if low is None else max(float(low[place]), 0.0)
+    if high is None:
+        return least, np.inf if alone else normal_force_range(model, force, place, alone=True)[1]
+    return least, float(high[place])
 
 
 def _nodes(model: Model) -> Iterator[_Node]:
