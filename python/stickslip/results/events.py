@@ -99,11 +99,11 @@ class Events(Sequence[Event]):
 
 
 def _owners(model: Model) -> tuple[NDArray[np.str_], Int]:
-    """Return the contact and the place in it of every contact point of a model."""
+    """Return the contact and the point in it of every relative displacement of a model."""
     pairs = [
-        (name, point)
+        (name, place * contact.points // contact.displacements)
         for name, contact in zip(model.contact_names, model.contacts, strict=True)
-        for point in range(contact.points)
+        for place in range(contact.displacements)
     ]
     names = np.array([name for name, _ in pairs], dtype=np.str_)
     return names, np.array([point for _, point in pairs], dtype=np.int64)
