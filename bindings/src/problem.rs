@@ -145,6 +145,13 @@ impl Problem {
         open.map(|law| law.name()).collect()
     }
 
+    /// Names of the contact laws whose harmonics are those of samples.
+    #[getter]
+    fn laws_sampled(&self) -> Vec<&'static str> {
+        let sampled = self.model.laws().iter().filter(|law| law.closed_form().is_none());
+        sampled.map(|law| law.name()).collect()
+    }
+
     /// Which modes carry the compliance.
     #[getter]
     fn modal_base(&self) -> &'static str {

@@ -6,6 +6,7 @@ from typing import Any, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.model.contact_law import ContactLaw
 from stickslip.settings.balance import BalanceSettings, HarmonicSettings, SteadySettings
 from stickslip.settings.cycles import CycleSettings
 from stickslip.settings.motion import ClassifySettings, TransientSettings
@@ -15,8 +16,9 @@ from stickslip.settings.peaks import DamperSettings, MistuningSettings
 Float = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Parameters = Mapping[str, float | list[float]]
-Contact = tuple[str, Float, Parameters]
-SectorContact = tuple[str, Float, Float, Parameters]
+Law = str | ContactLaw
+Contact = tuple[Law, Float, Parameters]
+SectorContact = tuple[Law, Float, Float, Parameters]
 Residual = str | float
 Progress = Callable[[float], None] | None
 
@@ -60,6 +62,8 @@ class Problem:
     ) -> Float: ...
     @property
     def laws_not_monotone(self) -> list[str]: ...
+    @property
+    def laws_sampled(self) -> list[str]: ...
     @property
     def modal_base(self) -> str: ...
     @property

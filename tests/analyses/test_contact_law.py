@@ -1,5 +1,8 @@
 """A user's own law in Python, against the compiled ones that say the same."""
 
+import signal
+import subprocess
+import sys
 import time
 import traceback
 
@@ -79,7 +82,7 @@ def test_a_jenkins_element_written_in_python():
     element = respond(ss.Jenkins("a", "b", stiffness=8e3, slip_force=10.0))
     assert own.converged.all()
     assert own.half_wave
-    assert own.diagnostics == element.diagnostics
+    assert {one.code for one in own.diagnostics} == {one.code for one in element.diagnostics}
     np.testing.assert_allclose(own.coefficients("a"), element.coefficients("a"), atol=1e-12)
     np.testing.assert_allclose(own.dissipation(0), element.dissipation(0), rtol=1e-9)
     np.testing.assert_allclose(
@@ -139,6 +142,93 @@ def test_a_sector_of_a_disk():
         for one in (own, element)
     ]
     np.testing.assert_allclose(*(one.coefficients("3.a") for one in sectors), atol=1e-12)
+
+
+class Dahl(ss.ContactLaw):
+    """Friction that yields gradually: f' = k u' (1 - sgn(u') f / F)."""
+
+    odd = True
+
+    def __init__(self, *ends, k, limit, **options):
+        super().__init__(*ends, **options)
+        self.k, self.limit = k, limit
+
+    def stiffness(self):
+        return [[self.k]]
+
+    def step(self, before, after, state):
+        du = after - before
+        ahead = np.where(du < 0.0, -self.limit, self.limit)
+        fade = np.exp(-self.k * np.abs(du) / self.limit)
+        force = ahead - (ahead - state) * fade
+        slope = (self.k * (1.0 - force / ahead))[..., None]
+        return force, force, ss.Tangents(fade[..., None], -slope, slope, [[1.0]], [[0.0]])
+
+
+def test_dahls_law_against_time_integration():
+    """x'' + 2 zeta omega_s x' + K x + f = P cos(omega t), f by its own differential equation."""
+    from scipy.integrate import solve_ivp
+
+    k, limit, stiffness, load, omega, damping = 1e4, 5.0, 4e4, 10.0, 205.0, 6.0
+    oscillator = ss.Structure([[1.0]], [[stiffness]], [[damping]], ["tip"])
+    model = ss.Model(oscillator, [Dahl(["tip"], k=k, limit=limit)], [ss.Force("tip", load)])
+    result = ss.forced_response(model, [omega], 9, evaluation="marched", samples=512)
+
+    def rate(time, y):
+        x, v, f = y
+        slope = k * (1.0 - np.sign(v) * f / limit)
+        return [v, load * np.cos(omega * time) - damping * v - stiffness * x - f, slope * v]
+
+    period = 2.0 * np.pi / omega
+    start = [0.0, 0.0, 0.0]
+    for _ in range(4):
+        span = (0.0, 40.0 * period)
+        start = solve_ivp(rate, span, start, rtol=1e-8, atol=1e-12).y[:, -1]
+    times = np.linspace(0.0, period, 401)
+    motion = solve_ivp(rate, (0.0, period), start, rtol=1e-9, atol=1e-13, t_eval=times).y
+    half_range = 0.5 * np.ptp(motion[0])
+    assert result.amplitude("tip")[0] == pytest.approx(half_range, rel=1e-4)
+    lost = np.trapezoid(motion[2] * motion[1], times)
+    assert result.dissipation(0)[0, 0] == pytest.approx(lost, rel=1e-3)
+
+
+def test_ctrl_c_ends_a_law_in_python(tmp_path):
+    """Within a second, and what was solved is kept."""
+    script = tmp_path / "slow.py"
+    script.write_text(SLOW)
+    run = subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True)
+    assert run.stdout.readline() == "started\n"
+    time.sleep(1.0)
+    start = time.monotonic()
+    run.send_signal(signal.SIGINT)
+    said, _ = run.communicate(timeout=30)
+    assert said.startswith(("Interrupted", "KeyboardInterrupt"))
+    assert time.monotonic() < start + 5.0
+
+
+SLOW = """
+import numpy as np
+import stickslip as ss
+
+class Slow(ss.ContactLaw):
+    def stiffness(self):
+        return [[1e4]]
+
+    def step(self, before, after, state):
+        sum(range(20000))
+        force = np.clip(state + 1e4 * (after - before), -1.0, 1.0)
+        slope = 1.0 * (np.abs(force) < 1.0)[..., None]
+        return force, force, ss.Tangents(slope, -1e4 * slope, 1e4 * slope, [[1.0]], [[0.0]])
+
+structure = ss.Structure([[1.0]], [[4e4]], ss.ModalDamping(0.01), ["tip"])
+model = ss.Model(structure, [Slow(["tip"])], [ss.Force("tip", 10.0)])
+_ = model.problem
+print("started", flush=True)
+try:
+    ss.forced_response(model, np.linspace(150.0, 250.0, 200), 5)
+except (ss.Interrupted, KeyboardInterrupt) as error:
+    print(type(error).__name__)
+"""
 
 
 class TestTangents:

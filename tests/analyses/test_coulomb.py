@@ -209,6 +209,39 @@ def test_constant_load_in_one_direction_is_a_jenkins_element(harmonics):
     assert jenkins.slip_fraction(0).any()
 
 
+def test_forces_are_in_equilibrium_with_the_motion():
+    """What the contact and the structure do to the mass is what accelerates it."""
+    turn = rotation((0.4, 0.3, 0.2))
+    normal = turn[:, 2]
+    pad = ss.Coulomb(["x", "y", "z"], normal=normal, friction=0.4, gap=-5e-4, **STIFFNESS)
+    model = plane_mass((0.4, 0.3, 0.2), [pad])
+    result = ss.forced_response(model, [180.0], 31)
+    count = 256
+    theta = 2.0 * np.pi * np.arange(count) / count
+    structure, omega = model.structure, 180.0
+    series = np.stack([result.coefficients(dof)[0] for dof in "xyz"], axis=1)
+    order = np.arange(len(series))[:, None]
+    phases = np.exp(1j * np.outer(theta, order.ravel()))
+    place, speed, rate = (
+        (phases @ (series * (1j * order * omega) ** power)).real for power in range(3)
+    )
+    driven = np.stack([abs(f.coefficient) * np.cos(theta + f.phase) for f in model.forces], axis=1)
+    contact = rate @ structure.mass + speed @ structure.damping + place @ structure.stiffness
+    found = result.resultant("coulomb", 0, count)
+    assert found.shape == (count, 3)
+    # The balance holds up to the harmonic 31; corners of the force lie beyond.
+    np.testing.assert_allclose(found, contact - driven, atol=0.02 * np.abs(found).max())
+
+
+def test_another_level_of_preload():
+    model = plane_mass().scaled(slip_force=2.0)
+    assert model.contacts[0].preload == 80.0
+    gap = ss.Coulomb(["x", "y", "z"], normal=[0, 0, 1], friction=0.4, **STIFFNESS)
+    assert plane_mass(contacts=[gap]).scaled(force=2.0).contacts[0].gap == 0.0
+    with pytest.raises(ss.ModelError, match="a gap has no slip force to multiply"):
+        plane_mass(contacts=[gap]).scaled(slip_force=2.0)
+
+
 def test_unsolved_points_have_no_numbers():
     result = ss.forced_response(plane_mass(), [180.0], 31, max_iterations=1)
     assert not result.arrays.solved.any()

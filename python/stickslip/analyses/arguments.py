@@ -84,8 +84,8 @@ def columns_of(dofs: Iterable[str], model: Model) -> Int:
 
 
 def points_of(model: Model) -> int:
-    """Return the number of contact points."""
-    return sum(contact.points for contact in model.contacts)
+    """Return the number of relative displacements at the contacts."""
+    return sum(contact.displacements for contact in model.contacts)
 
 
 def highest_harmonic(model: Model) -> int:

@@ -49,7 +49,7 @@ def balance_assumptions(
                 not single and _harmonics(settings, arrays, solution.half_wave),
                 _static_traction(model, settings, arrays),
                 _start_of_march(model),
-                bool(model.contacts) and _samples(settings, arrays),
+                bool(model.contacts) and _samples(model, settings, arrays),
                 base in TEXTS and told(base, base=model.problem.modal_base),
                 direct_assumption(model),
                 _frequencies(settings.span, settings.tolerance, arrays, solution, asked),
@@ -177,9 +177,12 @@ def _start_of_march(model: Model) -> Diagnostic | None:
     return told("start-of-march/nodes") if nodes else None
 
 
-def _samples(settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
+def _samples(model: Model, settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
     taken = arrays.samples[arrays.solved]
-    if settings.march is None or not taken.size:
+    if settings.march is None:
+        sampled = list(dict.fromkeys(model.problem.laws_sampled))
+        return told("samples/fixed", _laws=listed(sampled)) if sampled else None
+    if not taken.size:
         return None
     least, most = int(taken.min()), int(taken.max())
     chosen = f", chosen per point to a quarter of the tolerance of {settings.tolerance:g}"

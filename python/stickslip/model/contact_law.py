@@ -209,6 +209,15 @@ class ContactLaw(Contact):
         """Return that analyses vary nothing of a law that they do not know."""
         return {}
 
+    def scaled(self, slip_force: float) -> Self:
+        """Return the contact; there is no slip force that another level would multiply."""
+        if slip_force != 1.0:
+            raise ModelError(
+                f"contact {self.name!r}: the law {self.law!r} has no slip force to multiply; build "
+                "the model with another law instead"
+            )
+        return self
+
     def summary(self) -> str:
         """Return the numbers that were set on the law, in words."""
         values = {key: one for key, one in vars(self).items() if isinstance(one, float | int)}

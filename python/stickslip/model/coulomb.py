@@ -201,6 +201,15 @@ class Coulomb(Contact):
         frames = np.array([_frame(one) for one in self._normals])
         return frames[0] if self.single else frames
 
+    def on_first(self, force: Matrix) -> Matrix:
+        """Return the force that nodes exert on the first body together, in the axes of its dofs.
+
+        `force` are those of the nodes in their frames, (..., points, d); they act against u and v.
+        """
+        frames = self.frame.reshape(self.points, *self.frame.shape[-2:])
+        total: Matrix = -np.einsum("...nc,ncd->...d", force, frames)
+        return total
+
     @property
     def _normals(self) -> Iterator[Matrix | int]:
         """The normal of each node, or the number of directions where there is none."""
@@ -297,6 +306,17 @@ class Coulomb(Contact):
         """Return the contact with other values of a parameter, one, or one per node."""
         one = len(self.adjustable()[parameter]) == 1
         return self._with(parameter, values[0] if one else tuple(values))
+
+    def scaled(self, slip_force: float) -> Self:
+        """Return the contact at another level of preload, by which its slip force is multiplied."""
+        if slip_force == 1.0:
+            return self
+        if self.preload is None:
+            raise ModelError(
+                f"contact {self.name!r}: a gap has no slip force to multiply; give it another gap, "
+                "or scale the forces"
+            )
+        return self.adjusted("preload", [slip_force * one for one in self.adjustable()["preload"]])
 
     def law_parameters(self) -> list[dict[str, Any]]:
         """Return the parameters of the law of each node, in SI units."""

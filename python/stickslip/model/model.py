@@ -167,7 +167,8 @@ class Model:
         """Return the model at another level of excitation or preload.
 
         `force` multiplies every force amplitude, static loads included, `slip_force`, which is not
-        negative, every slip force; contacts that never slip stay so.
+        negative, every slip force, of Coulomb contacts by their preload; contacts that never slip
+        stay so.
         """
         force = real_number(force, "factor on the forces")
         slip_force = real_number(slip_force, "factor on the slip forces")

@@ -10,7 +10,7 @@ import numpy as np
 from stickslip import _core
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
-from stickslip.model import ContactRef, PointRef
+from stickslip.model import ContactRef, Coulomb, PointRef
 from stickslip.results.arrays import Complex, Float, amplitude_of, constant, mean_forces
 from stickslip.results.events import ContactStates, states_at
 from stickslip.results.peaks import Peaks
@@ -72,10 +72,13 @@ class ContactMotion(Peaks):
     def resultant(self, contact: ContactRef, index: int, samples: int = 512) -> Float:
         """Return one period of the sum of the forces of a contact, shape (samples,) [N].
 
-        It vanishes for a damper of several points that nothing else holds.
+        It vanishes for a damper of several points that nothing else holds. Of a `Coulomb` contact
+        it is the force on the first body, in the axes of its degrees of freedom (samples, d).
         """
         number = self.model.contact_index(contact)
-        forces = self.contact_force(number, index, samples)
+        forces, own = self.contact_force(number, index, samples), self.model.contacts[number]
+        if isinstance(own, Coulomb):
+            return constant(own.on_first(forces.reshape(len(forces), own.points, -1)))
         return constant(forces.reshape(len(forces), -1).sum(axis=1))
 
     def contact_states(self, contact: ContactRef, index: int) -> ContactStates:

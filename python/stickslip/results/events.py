@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.model import Model
-from stickslip.model.configurations import every_point
 from stickslip.results.arrays import Float, Int, constant
 
 KINDS = ("sticks", "slips forward", "slips backward", "opens")
@@ -100,10 +99,14 @@ class Events(Sequence[Event]):
 
 
 def _owners(model: Model) -> tuple[NDArray[np.str_], Int]:
-    """Return the contact and the place in it of every contact point of a model."""
-    points = every_point(model)
-    names = np.array([model.contact_names[contact] for contact, _ in points], dtype=np.str_)
-    return names, np.array([point for _, point in points], dtype=np.int64)
+    """Return the contact and the point in it of every relative displacement of a model."""
+    pairs = [
+        (name, place * contact.points // contact.displacements)
+        for name, contact in zip(model.contact_names, model.contacts, strict=True)
+        for place in range(contact.displacements)
+    ]
+    names = np.array([name for name, _ in pairs], dtype=np.str_)
+    return names, np.array([point for _, point in pairs], dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -236,11 +236,16 @@ class ExactResponse(FloquetStability, ForcedResponse):
 
     def contact_waveform(self, contact: PointRef, index: int, samples: int = 512) -> Float:
         """Return one period of the relative displacement at the contacts, along the orbit."""
-        return self._orbit(2, self._places(contact), index, samples)
+        return self._at_contact(2, contact, index, samples)
 
     def contact_force(self, contact: PointRef, index: int, samples: int = 512) -> Float:
         """Return one period of the contact forces, along the orbit."""
-        return self._orbit(3, self._places(contact), index, samples)
+        own = self.model.contacts[self.locate(contact)[0]]
+        moved = self._at_contact(3, contact, index, samples)
+        if not own.components:
+            return moved
+        rest = own.balanced[own.place(self.locate(contact)[1])]
+        return constant(moved + rest.reshape(moved.shape[1:]))
 
     def contact_states(self, contact: ContactRef, index: int) -> ContactStates:
         """Return when the points of a contact stick and slip, by the events of the orbit."""
@@ -283,10 +288,10 @@ class ExactResponse(FloquetStability, ForcedResponse):
             for name in part
         ]
 
-    def _places(self, contact: PointRef) -> slice | int:
+    def _at_contact(self, part: int, contact: PointRef, index: int, samples: int) -> Float:
         number, point = self.locate(contact)
-        columns = self._columns(number, point)
-        return columns if point is None else columns.start
+        motion = self._orbit(part, self._columns(number, point), index, samples)
+        return constant(np.ascontiguousarray(self._shaped(motion, number, point)))
 
     def _orbit(self, part: int, places: slice | int, index: int, samples: int) -> Float:
         """Return displacement, velocity, contact displacement or force (0 to 3) of an orbit."""

@@ -21,6 +21,7 @@ Row: TypeAlias = tuple[str, str]
 """A fact: what it is of, and what it is."""
 
 _SHOWN_PARTS = 6
+_SHOWN_ENDS = 24
 
 
 def tabulated(
@@ -59,7 +60,9 @@ def model_rows(model: Model) -> list[Row]:
         order = f"engine order {model.disk.engine_order}"
         rows.append(("disk", f"{model.sectors} sectors of their own, {order}"))
     for contact in model.contacts[:_SHOWN_PARTS]:
-        place = " - ".join(dof or "ground" for dof in contact.dofs)
+        ends = contact.dofs[:_SHOWN_ENDS]
+        more = " - ..." if len(contact.dofs) > _SHOWN_ENDS else ""
+        place = " - ".join(dof or "ground" for dof in ends) + more
         rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {contact.summary()}"))
     for force in model.forces[:_SHOWN_PARTS]:
         values = f"amplitude {force.amplitude:g} N, phase {force.phase:g} rad"
