@@ -169,6 +169,12 @@ def orbit_history(
     problem: Problem, omega: float, state: Float, observe: NDArray[np.int64], samples: int
 ) -> tuple[Float, Float, Float, Float]: ...
 
+class AtRest:
+    columns: dict[str, NDArray[Any]]
+    steps: int
+
+def static_response(problem: Problem, observe: list[int], progress: Progress) -> AtRest: ...
+
 class Fates:
     """What becomes of n free motions; rows left out by an interruption are not-a-number."""
 
