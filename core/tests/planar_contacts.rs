@@ -9,7 +9,10 @@ use proptest::prelude::*;
 use stickslip_core::balance::PointStatus;
 use stickslip_core::contact::{Closure, ContactLaw, Coulomb, Jenkins, PointState, Residual};
 use stickslip_core::model::{Contact, Model};
-use stickslip_core::motion::{transient, Event, History, Scheme, TransientSettings};
+use stickslip_core::motion::{
+    transient, ClassificationSettings, Classifier, Event, History, Reason, Scheme,
+    TransientSettings,
+};
 use stickslip_core::orbit::{Orbit, OrbitSettings, PeriodicOrbits};
 use stickslip_core::structure::{HarmonicLoad, Structure};
 
@@ -345,4 +348,24 @@ fn two_directions_of_sliding_are_stepped_through() {
     let beyond: Vec<f64> = state[..6].iter().copied().chain([1e3, 0.0]).collect();
     let refused = follow(&short, Some(&beyond)).unwrap_err().to_string();
     assert!(refused.contains("that the contacts remember"), "{refused}");
+}
+
+/// Free motions of a body under load die away in stick, or go on; what is stepped through agrees.
+#[test]
+fn free_motions_die_away_in_stick() {
+    let mut system = block(0.0, [0.0, 0.0]);
+    system.loads.clear();
+    system.pads[0].closure = Closure::Preload(4.0);
+    let (model, wanted) =
+        (system.model(), ClassificationSettings { periods: 400, tolerance: 1e-6 });
+    let prepared = Classifier::new(&model, wanted).unwrap();
+    for start in [[3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [3.0, -2.0, 1.0]] {
+        let state = [start[0], start[1], start[2], 0.0, 0.0];
+        let before = run(&system, &settings(1.0, Scheme::Exact, 40, 8), Some(&state));
+        let found = prepared.of(&state, &|| true).unwrap();
+        assert_eq!(found.reason, Reason::Stuck, "{start:?}");
+        // Stuck for good: neither slips nor opens again.
+        let after = run(&system, &settings(1.0, Scheme::Exact, 40, 8), Some(&found.state));
+        assert!(before.events_met > 0 && after.events_met == 0, "{start:?}");
+    }
 }
