@@ -80,8 +80,8 @@ impl PeriodMap {
         let damping = modes.damping(structure.damping());
         let size = modes.omega_squared.len();
         let full = damping.matrix();
-        let coupled = (!damping.is_diagonal())
-            .then(|| Mat::from_fn(size, size, |i, j| full[(i, j)].re));
+        let coupled =
+            (!damping.is_diagonal()).then(|| Mat::from_fn(size, size, |i, j| full[(i, j)].re));
         let shapes = &ports.rows * &modes.shapes;
         let mut parts = Vec::new();
         let mut states = 0;
@@ -438,9 +438,8 @@ pub fn decide_stability(
             return Ok(());
         }
         let Some(motion) = point.unknowns().filter(|_| point.is_solved()) else { continue };
-        let stable = map
-            .multipliers(point.omega, motion, None)
-            .and_then(|multipliers| multipliers.stable());
+        let stable =
+            map.multipliers(point.omega, motion, None).and_then(|multipliers| multipliers.stable());
         Arc::make_mut(point).stable = stable;
     }
     Ok(())
