@@ -78,7 +78,8 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             return;
         }
         let round = self.march(&samples, false);
-        if !round.slipped {
+        // A law without memory may have a force at rest.
+        if !round.slipped && self.law.state_size() > 0 {
             return;
         }
         out.active = true;

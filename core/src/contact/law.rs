@@ -367,4 +367,11 @@ pub trait SlipElement: Send + Sync + std::fmt::Debug {
     /// Takes the forces through a change `du` of the displacements. `gain`, if asked for, is the
     /// derivative of the new forces in the trial forces `f + D du`, points × points, row by row.
     fn increment(&self, du: &[f64], force: &mut [f64], gain: Option<&mut [f64]>);
+
+    /// As [`SlipElement::increment`], of an element that is sampled and may have its forces from the
+    /// displacements themselves: takes them from the displacements `from` through a change `du`.
+    fn carry(&self, from: &[f64], du: &[f64], force: &mut [f64]) {
+        let _ = from;
+        self.increment(du, force, None);
+    }
 }

@@ -1,6 +1,7 @@
 //! The elements of all contacts, one after the other.
 
-use crate::contact::{Elastic, SlipElement};
+use super::spring::Spring;
+use crate::contact::{Elastic, Element, SlipElement};
 use crate::model::Model;
 use crate::Error;
 use std::ops::Range;
@@ -19,12 +20,21 @@ pub(crate) struct Body {
     pub(crate) elastic: Elastic,
 }
 
-/// The elements of all contacts, and the contact displacement that each of their points acts on.
-pub(super) fn elements(model: &Model) -> Result<(Vec<Body>, Vec<usize>), Error> {
+/// The elements of all contacts, and the contact displacement that each of their points acts on. Laws
+/// without memory have elements where forces are sampled, with the unit that `sampled` gives.
+pub(super) fn elements(
+    model: &Model,
+    sampled: Option<&dyn Fn(usize) -> f64>,
+) -> Result<(Vec<Body>, Vec<usize>), Error> {
     let (mut bodies, mut components) = (Vec::<Body>::new(), Vec::new());
     for (contact, (law, range)) in model.laws().iter().zip(model.points()).enumerate() {
-        let elements = law
-            .elements()
+        let spring = |unit: &dyn Fn(usize) -> f64| {
+            let law = Spring { law: law.with_scaled_forces(1.0), unit: unit(range.start) };
+            vec![Element { components: (0..range.len()).collect(), law: Arc::new(law) }]
+        };
+        let own = law.elements();
+        let elements = own
+            .or_else(|| sampled.filter(|_| law.state_size() == 0).map(spring))
             .ok_or_else(|| Error::NoEvents { contact: contact + 1, law: law.name().to_owned() })?;
         for element in elements {
             let elastic = Elastic::new(element.law.stiffness().as_ref())?;

@@ -15,6 +15,7 @@ mod power_series;
 mod returns;
 mod rigid;
 mod runge_kutta;
+mod spring;
 mod state;
 mod transient;
 mod transition;

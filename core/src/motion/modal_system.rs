@@ -41,6 +41,18 @@ impl ModalSystem {
     /// The eigenvalue iteration fails; the model is one sector of a travelling wave; a contact law
     /// has no events that an exact motion could be followed by.
     pub fn new(model: &Model) -> Result<Self, Error> {
+        Self::of(model, false)
+    }
+
+    /// The modal form of a model whose contact forces are sampled: laws without memory need no events.
+    ///
+    /// # Errors
+    /// As [`ModalSystem::new`].
+    pub fn sampled(model: &Model) -> Result<Self, Error> {
+        Self::of(model, true)
+    }
+
+    fn of(model: &Model, sampled: bool) -> Result<Self, Error> {
         if model.is_travelling_wave() {
             return Err(Error::TravellingWave);
         }
@@ -49,7 +61,13 @@ impl ModalSystem {
         let damping = modes.damping(structure.damping());
         let size = modes.omega_squared.len();
         let rows = &model.ports().rows * &modes.shapes;
-        let (bodies, components) = elements(model)?;
+        let rate = rate_of(model, &damping);
+        // The stiffness that would move the mass at a point at the highest rate.
+        let unit = |point: usize| {
+            let light: f64 = (0..size).map(|j| rows[(point, j)].powi(2)).sum();
+            rate * rate / light.max(f64::MIN_POSITIVE)
+        };
+        let (bodies, components) = elements(model, sampled.then_some(&unit))?;
         let contacts =
             components.iter().flat_map(|&i| (0..size).map(move |j| (i, j))).map(|at| rows[at]);
         let loads = model.ports().loads.iter().map(|load| {
@@ -61,7 +79,7 @@ impl ModalSystem {
         Ok(Self {
             contacts: contacts.collect(),
             loads: loads.filter(|(_, load): &(_, Vec<c64>)| !is_zero(load)).collect(),
-            rate: rate_of(model, &damping),
+            rate,
             damping: Damping::of(&damping),
             to_modes: modes.shapes.transpose() * structure.mass(),
             limits: limits_of(&bodies),
@@ -78,7 +96,7 @@ impl ModalSystem {
     /// # Errors
     /// A contact whose stiffness has no eigenvalues.
     pub(crate) fn undriven(&self, model: &Model, damping: &ModalDamping) -> Result<Self, Error> {
-        let (bodies, components) = elements(model)?;
+        let (bodies, components) = elements(model, None)?;
         Ok(Self {
             loads: Vec::new(),
             rate: rate_of(model, damping),

@@ -32,7 +32,10 @@ pub fn transient(
 ) -> Result<History, Error> {
     let began = Instant::now();
     settings.check()?;
-    let system = ModalSystem::new(model)?;
+    let system = match settings.scheme {
+        Scheme::Exact => ModalSystem::new(model)?,
+        Scheme::RungeKutta(_) => ModalSystem::sampled(model)?,
+    };
     system.check_pace(model, settings.omega, FASTEST)?;
     Error::check_dofs(observe, system.modes())?;
     let mut state = match start {
@@ -46,7 +49,9 @@ pub fn transient(
     let mut integrator = match settings.scheme {
         Scheme::Exact => Integrator::Exact(Flow::new(&system, settings.omega).watched(&ended)),
         Scheme::RungeKutta(steps) => {
-            Integrator::RungeKutta(RungeKutta::new(&system, settings.omega, steps))
+            let mut scheme = RungeKutta::new(&system, settings.omega, steps);
+            scheme.settle(&mut state);
+            Integrator::RungeKutta(scheme)
         }
     };
     let coordinates = Transition::new(&system, settings.omega);
