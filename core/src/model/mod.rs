@@ -235,10 +235,12 @@ impl Model {
         &self.laws
     }
 
-    /// Number of numbers in a state in time: displacements, velocities and what the laws remember.
+    /// Number of numbers in a state in time: displacements, velocities and what the laws remember, or
+    /// their forces if that is nothing.
     #[must_use]
     pub fn states(&self) -> usize {
-        2 * self.structure.dofs() + self.laws.iter().map(|law| law.state_size()).sum::<usize>()
+        let own = self.laws.iter().map(|law| law.state_size().max(law.displacements()));
+        2 * self.structure.dofs() + own.sum::<usize>()
     }
 
     /// Rows of B that belong to each contact.

@@ -150,7 +150,8 @@ def require_held(model: Model, residual: Residual) -> None:
     load = np.zeros(len(model.structure))
     for _, force in static:
         load[model.structure.index(force.dof)] += force.amplitude
-    prescribed = bool(model.contacts) and residual != "from_rest" and bool(load.any())
+    friction = any(contact.slips for contact in model.contacts)
+    prescribed = friction and residual != "from_rest" and bool(load.any())
     _, _, stiffness = model.matrices_at(0)
     if prescribed and not _holds(stiffness.real, load):
         raise ModelError(
