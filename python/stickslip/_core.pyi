@@ -19,7 +19,7 @@ Parameters = Mapping[str, float | list[float]]
 Law = str | ContactLaw
 Contact = tuple[Law, Float, Parameters]
 SectorContact = tuple[Law, Float, Float, Parameters]
-Residual = str | float
+Residual = str | float | None
 Progress = Callable[[float], None] | None
 
 __version__: str

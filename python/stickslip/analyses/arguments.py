@@ -117,7 +117,7 @@ def require_forced(model: Model, settings: HarmonicSettings) -> None:
             )
 
 
-def require_held(model: Model, residual: Residual) -> None:
+def require_held(model: Model, residual: Residual | None) -> None:
     """Refuse a static load that nothing, or only contacts of prescribed mean force, would hold.
 
     Refused as well is a residual force where no contact could hold it: dampers of several points
