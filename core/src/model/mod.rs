@@ -235,12 +235,10 @@ impl Model {
         &self.laws
     }
 
-    /// Number of numbers in a state in time: displacements, velocities and what the laws remember, or
-    /// their forces if that is nothing.
+    /// Number of numbers in a state in time: displacements, velocities and what the laws remember.
     #[must_use]
     pub fn states(&self) -> usize {
-        let own = self.laws.iter().map(|law| law.state_size().max(law.displacements()));
-        2 * self.structure.dofs() + own.sum::<usize>()
+        2 * self.structure.dofs() + self.laws.iter().map(|law| law.state_size()).sum::<usize>()
     }
 
     /// Rows of B that belong to each contact.
