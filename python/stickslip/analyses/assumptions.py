@@ -179,7 +179,7 @@ def _start_of_march(model: Model) -> Diagnostic | None:
 
 def _samples(model: Model, settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
     taken = arrays.samples[arrays.solved]
-    if settings.march is None:
+    if settings.march is None and not taken.any():
         sampled = list(dict.fromkeys(model.problem.laws_sampled))
         return told("samples/fixed", _laws=listed(sampled)) if sampled else None
     if not taken.size:

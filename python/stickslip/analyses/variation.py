@@ -90,7 +90,7 @@ def _chosen(
         raise _without_value(name, parameter)
     if point is None:
         return _points(contact, parameter)
-    if len(known[parameter]) == len(contact.slider_limits):
+    if len(known[parameter]) == contact.sliders:
         return (name,) if len(known[parameter]) == 1 else ((name, point),)
     raise ModelError(
         f"contact {name!r}: its {parameter} is that of the whole contact; name it without a point"

@@ -131,6 +131,11 @@ class Contact(ABC):
         return self.limits
 
     @property
+    def sliders(self) -> int:
+        """Number of parts that have slip limits, and other parameters, of their own."""
+        return self.points if self.by_point else len(self.slider_limits)
+
+    @property
     def slider_shares(self) -> tuple[float, ...]:
         """Share of the force of its stuck point that each of these parts carries."""
         return (1.0,) * len(self.slider_limits)

@@ -229,6 +229,12 @@ class Coulomb(Contact):
         return tuple((friction * np.maximum(self._pressing, 0.0)).tolist())
 
     @property
+    def slider_limits(self) -> tuple[float, ...]:
+        """Largest traction in each direction of each node [N]; inf where the load varies."""
+        limits = self.limits if self.normal is None else (np.inf,) * self.points
+        return tuple(limit for limit in limits for _ in range(self.tangential))
+
+    @property
     def _pressing(self) -> Matrix:
         """Normal force of each node without motion, negative behind an open gap [N]."""
         if self.gap is None:
@@ -281,9 +287,10 @@ class Coulomb(Contact):
     def states(self, force: Matrix) -> NDArray[np.int8]:
         """Return what nodes do by their forces, (..., components); see `ContactStates`."""
         traction = np.linalg.norm(force[..., : self.tangential], axis=-1)
-        slips = traction >= self.friction_limit(force) * (1.0 - _ON_CONE)
+        slips = (traction >= self.friction_limit(force) * (1.0 - _ON_CONE)) & (traction > 0.0)
+        sense = np.sign(force[..., 0]) if self.tangential == 1 else 1.0
         opens = force[..., -1] == 0.0 if self.normal is not None else np.zeros(slips.shape, bool)
-        return np.where(opens, OPEN, 1 * (slips & (traction > 0.0))).astype(np.int8)
+        return np.where(opens, OPEN, slips * sense).astype(np.int8)
 
     def friction_limit(self, force: Matrix) -> Matrix:
         """Return mu N of nodes by their forces, (..., points, components), shape (..., points)."""

@@ -142,9 +142,9 @@ class Model:
     def slider(self, slider: PointRef) -> tuple[int, int]:
         """Return a part of a contact that slips by itself as positions; see `point`.
 
-        Elements in parallel count one by one.
+        Elements in parallel count one by one, nodes as one in whatever directions they slip.
         """
-        return self._place(slider, [len(contact.slider_limits) for contact in self.contacts])
+        return self._place(slider, [one.sliders for one in self.contacts])
 
     def _place(self, point: PointRef, counts: Sequence[int]) -> tuple[int, int]:
         if isinstance(point, tuple | list):

@@ -128,6 +128,11 @@ def _forces(model: Model, values: object) -> Float:
     if isinstance(values, Mapping):
         for reference, value in values.items():
             contact, point = model.slider(reference)
+            if sizes[contact] != model.contacts[contact].sliders:
+                raise ModelError(
+                    f"contact_force of {reference!r}: two tractions per node; give all forces of "
+                    "the model in one list"
+                )
             place = sum(sizes[:contact]) + point
             forces[place] = real_number(value, f"contact_force of {reference!r}")
     elif values is not None:

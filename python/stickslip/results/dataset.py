@@ -51,8 +51,11 @@ def displacement_names(model: Model) -> list[str]:
 
 
 def slider_names(model: Model) -> list[str]:
-    """Return a name for every part that sticks or slips by itself."""
-    return _numbered(model, [len(contact.slider_limits) for contact in model.contacts])
+    """Return a name for every part that sticks or slips by itself, with its direction."""
+    counts = [one.sliders for one in model.contacts]
+    parts = [one.components[: one.tangential] for one in model.contacts for _ in range(one.sliders)]
+    named = zip(_numbered(model, counts), parts, strict=True)
+    return [f"{name}.{part}" if part else name for name, own in named for part in own or [""]]
 
 
 def _numbered(model: Model, counts: Sequence[int]) -> list[str]:

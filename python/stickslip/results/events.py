@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.model import Model
+from stickslip.model.contact import OPEN, Contact
 from stickslip.results.arrays import Float, Int, constant
 
 KINDS = ("sticks", "slips forward", "slips backward", "opens")
 """What happens, by the code that the core and files have; forward is du/dt > 0."""
-_DIRECTIONS = (0, 1, -1, 0)
-"""Direction of slip by the code of an event; see `KINDS`."""
+_DIRECTIONS = (0, 1, -1, OPEN)
+"""Direction of slip, or `OPEN`, by the code of an event; see `KINDS`."""
 
 
 class Event(NamedTuple):
@@ -51,6 +52,23 @@ class Events(Sequence[Event]):
     time: Float
     number: Int
     code: NDArray[np.uint8]
+
+    @classmethod
+    def of(cls, model: Model, time: Float, number: Int, code: NDArray[np.uint8]) -> Events:
+        """Return the events of nodes by those of their displacements, which change together."""
+        starts = np.cumsum([0] + [contact.displacements for contact in model.contacts])
+        first = [
+            start + place // width * width
+            for start, contact in zip(starts, model.contacts, strict=False)
+            for width in (contact.displacements // contact.points,)
+            for place in range(contact.displacements)
+        ]
+        node = np.array(first, dtype=np.int64)[number]
+        # The direction of sliding knows more than the normal one: that it slips when it closes.
+        slides = {(t, n) for t, n, own in zip(time, node, number == node, strict=True) if own}
+        marks = zip(time, node, number == node, strict=True)
+        kept = np.array([own or (t, n) not in slides for t, n, own in marks], dtype=np.bool_)
+        return cls(model, time[kept], node[kept], code[kept])
 
     def __repr__(self) -> str:
         return f"Events({len(self)} between stick and slip)"
@@ -119,7 +137,7 @@ class ContactStates:
         Where each phase begins, as a share of the period; the first at 0, the last ends at 1.
     direction : ndarray of int8, shape (m, points)
         1 where a point slips with positive force, -1 with negative force, 0 where it sticks, 2
-        where it is open. A point that slips in a plane has 1, whatever its direction. A point
+        where it is open. A point that slips in two directions has 1, whatever its way. A point
         without friction counts as sticking: it carries no force.
     """
 
@@ -164,8 +182,8 @@ def states_at(states: NDArray[np.int8]) -> ContactStates:
     return ContactStates(constant(start / len(states)), constant(states[start]))
 
 
-def states_of(events: Events, columns: slice, period: float) -> ContactStates:
-    """Return the states of the contact points `columns` along an orbit, by its events.
+def states_of(events: Events, columns: slice, period: float, contact: Contact) -> ContactStates:
+    """Return the states of a contact, whose displacements are `columns`, by the events of an orbit.
 
     Without an event every point sticks.
     """
@@ -184,7 +202,10 @@ def states_of(events: Events, columns: slice, period: float) -> ContactStates:
             states.append(state.copy())
         else:
             states[-1] = state.copy()
-    return ContactStates(np.array(starts), np.array(states))
+    nodes = np.array(states).reshape(len(states), contact.points, -1)
+    # The normal direction knows whether a node is open, the first tangential one whether it slips.
+    found = np.where((nodes == OPEN).any(axis=2), np.int8(OPEN), nodes[:, :, 0])
+    return ContactStates(np.array(starts), found)
 
 
 def _written(points: tuple[int, ...]) -> str:

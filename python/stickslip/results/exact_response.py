@@ -192,7 +192,7 @@ class ExactResponse(FloquetStability, ForcedResponse):
         position = self.position(index)
         arrays = self.arrays
         of = slice(*(int(place) for place in arrays.event_offset[position : position + 2]))
-        return Events(
+        return Events.of(
             self.model, arrays.event_time[of], arrays.event_point[of], arrays.event_kind[of]
         )
 
@@ -240,17 +240,13 @@ class ExactResponse(FloquetStability, ForcedResponse):
 
     def contact_force(self, contact: PointRef, index: int, samples: int = 512) -> Float:
         """Return one period of the contact forces, along the orbit."""
-        own = self.model.contacts[self.locate(contact)[0]]
-        moved = self._at_contact(3, contact, index, samples)
-        if not own.components:
-            return moved
-        rest = own.balanced[own.place(self.locate(contact)[1])]
-        return constant(moved + rest.reshape(moved.shape[1:]))
+        return self._with_balanced(self._at_contact(3, contact, index, samples), contact)
 
     def contact_states(self, contact: ContactRef, index: int) -> ContactStates:
         """Return when the points of a contact stick and slip, by the events of the orbit."""
-        columns = self._columns(self.model.contact_index(contact), None)
-        return states_of(self.events(index), columns, 2.0 * np.pi / self.omega[index])
+        number = self.model.contact_index(contact)
+        columns, own = self._columns(number, None), self.model.contacts[number]
+        return states_of(self.events(index), columns, 2.0 * np.pi / self.omega[index], own)
 
     def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
         """Return the highest point of the response curve, refined on exact orbits."""

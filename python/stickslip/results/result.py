@@ -19,6 +19,7 @@ from stickslip import _core
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
+from stickslip.results.arrays import constant
 from stickslip.results.dataset import (
     Dataset,
     displacement_names,
@@ -28,7 +29,7 @@ from stickslip.results.dataset import (
 )
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.documented import Frozen
-from stickslip.results.fields import Columns, Shown
+from stickslip.results.fields import Columns, Float, Shown
 from stickslip.settings.settings import Settings
 
 Kind = TypeVar("Kind", bound=np.generic)
@@ -160,6 +161,15 @@ class Result(Frozen, ABC):
         """Return what belongs to the displacements of a contact: see `Contact.shape`."""
         number, point = self.locate(contact)
         return self._shaped(values[..., self._columns(number, point)], number, point)
+
+    def _with_balanced(self, forces: Float, contact: PointRef) -> Float:
+        """Return forces of a contact, in its shape, with what is in balance without motion."""
+        number, point = self.locate(contact)
+        own = self.model.contacts[number]
+        if not own.components:
+            return forces
+        rest = self._shaped(own.balanced[own.place(point)], number, point)
+        return constant(forces + rest)
 
     def _shaped(self, values: NDArray[Kind], contact: int, point: int | None) -> NDArray[Kind]:
         """Return displacements side by side in the shape of their contact, or of its point."""

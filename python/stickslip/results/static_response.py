@@ -71,10 +71,9 @@ class StaticResponse(ColumnResult):
         Of a `Coulomb` contact t1, t2 and the normal force N itself, a preload included; of many
         nodes shape (points, components).
         """
-        number, point = self.locate(contact)
-        own = self.model.contacts[number]
-        forces = self.arrays.contact_force[self._columns(number, point)]
-        return constant(self._shaped(forces + own.balanced[own.place(point)], number, point))
+        return constant(
+            self._with_balanced(self._select(self.arrays.contact_force, contact), contact)
+        )
 
     def normal_force_range(
         self, contact: ContactRef, point: int = 0, *, alone: bool = False

@@ -137,7 +137,7 @@ class Transient(ColumnResult):
     def events(self) -> Events:
         """When contact points began to stick and to slip in the part kept; empty for rk4."""
         arrays = self.arrays
-        return Events(self.model, arrays.event_time, arrays.event_point, arrays.event_kind)
+        return Events.of(self.model, arrays.event_time, arrays.event_point, arrays.event_kind)
 
     def displacement(self, dof: str) -> Float:
         """Return a displacement over `time`, shape (n,) [m]."""
@@ -152,7 +152,7 @@ class Transient(ColumnResult):
 
         Positive against the relative displacement.
         """
-        return self._select(self.arrays.contact_force, contact)
+        return self._with_balanced(self._select(self.arrays.contact_force, contact), contact)
 
     def contact_displacement(self, contact: PointRef) -> Float:
         """Return the relative displacement at the contacts over `time` [m]; see `contact_force`."""

@@ -1,0 +1,94 @@
+"""Coulomb contacts in time: orbits and transients, as results show them, against balances."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip import plot
+
+DAMPING = np.diag([0.346410162, 2.0])
+VALUES = {"friction": 0.85, "tangential_stiffness": 5.0, "normal_stiffness": 21.0}
+
+
+def block(dofs=("t", "n"), normal=(0, 1), static=100.0, **changes):
+    structure = ss.Structure(np.eye(2), np.diag([12.0, 21.0]), DAMPING, ["t", "n"])
+    pad = ss.Coulomb(dofs, normal=normal, **VALUES | changes, name="pad")
+    forces = [ss.Force("t", 40.0), ss.Force("n", 60.0)]
+    still = [ss.Force("n", static, harmonic=0)] if static else []
+    return ss.Model(structure, [pad], forces + still)
+
+
+@pytest.fixture(scope="module")
+def curves():
+    return ss.exact_response(block(), [5.0]), ss.forced_response(block(), [5.0], 61)
+
+
+def test_orbits_and_balances_agree(curves):
+    exact, balance = curves
+    assert exact.converged.all()
+    assert exact.amplitude("n", "max")[0] == pytest.approx(5.665875, rel=1e-5)
+    for of in ("slip_fraction", "open_fraction", "dissipation"):
+        one, other = (getattr(curve, of)("pad") for curve in curves)
+        assert one.shape == other.shape == (1, 1)
+        np.testing.assert_allclose(one, other, rtol=1e-4)
+    force = exact.contact_force("pad", 0, 64)
+    np.testing.assert_allclose(force, balance.contact_force("pad", 0, 64), atol=1e-3)
+    motion = exact.contact_waveform("pad", 0, 64)
+    np.testing.assert_allclose(motion, balance.contact_waveform("pad", 0, 64), atol=1e-3)
+
+
+def test_states_and_events_of_orbits(curves):
+    exact, balance = (curve.contact_states("pad", 0) for curve in curves)
+    np.testing.assert_array_equal(exact.direction, balance.direction)
+    np.testing.assert_allclose(exact.start, balance.start, atol=1e-3)
+    events = curves[0].events(0)
+    assert [event.kind for event in events] == ["slips forward", "opens", "sticks"]
+    assert {(event.contact, event.point) for event in events} == {("pad", 0)}
+    assert len(plot.events(curves[0], 0).get_yticklabels()) == 1
+
+
+def test_a_preload_is_part_of_the_normal_force():
+    model = block([["t", "n"]], preload=50.0, static=0.0)
+    exact, balance = ss.exact_response(model, [5.0]), ss.forced_response(model, [5.0], 61)
+    force = exact.contact_force("pad", 0, 64)
+    assert force.shape == (64, 1, 2)
+    np.testing.assert_allclose(force, balance.contact_force("pad", 0, 64), atol=1e-3)
+    assert exact.contact_force(("pad", 0), 0, 64).shape == (64, 2)
+    run = ss.transient(model, 5.0, 60)
+    pressing = run.contact_force("pad")[..., 1]
+    assert pressing.shape == (run.time.size, 1)
+    assert pressing.min() >= 0.0
+    last = pressing[-128:, 0]
+    assert last.max() == pytest.approx(force[..., 1].max(), rel=2e-2)
+    again = ss.transient(model, 5.0, 2, start=run.final)
+    np.testing.assert_allclose(again.contact_force("pad")[0], run.contact_force("pad")[-1])
+
+
+def test_orbits_survive_storage(curves, tmp_path):
+    curves[0].save(tmp_path / "pad.nc")
+    again = ss.load(tmp_path / "pad.nc")
+    np.testing.assert_array_equal(again.contact_force("pad", 0), curves[0].contact_force("pad", 0))
+    assert list(again.events(0)) == list(curves[0].events(0))
+
+
+def test_two_directions_in_runge_kutta_steps():
+    dofs = ["x", "y", "z"]
+    stiffness, damping = np.diag([4e4, 9e4, 1.6e5]), np.diag([8.0, 10.0, 16.0])
+    values = {"friction": 0.4, "tangential_stiffness": 5e4, "normal_stiffness": 8e4}
+    pad = ss.Coulomb(dofs, normal=[0, 0, 1], **values, preload=40.0)
+    forces = [
+        ss.Force("x", 30.0),
+        ss.Force("y", 25.0, phase=-0.5 * np.pi),
+        ss.Force("z", 20.0, phase=-0.7),
+    ]
+    model = ss.Model(ss.Structure(np.eye(3), stiffness, damping, dofs), [pad], forces)
+    run = ss.transient(model, 180.0, 60, scheme="rk4", steps=400)
+    assert run.contact_force(0).shape == (run.time.size, 3)
+    # The printed maximum of the steady motion, to which the start decays by 1e-5 in 60 periods.
+    last = np.abs(run.displacement("x")[run.time > 58.0 * 2.0 * np.pi / 180.0])
+    assert last.max() == pytest.approx(1.79793e-3, rel=3e-4)
+    start = run.final
+    assert start.contact_force.shape == (2,)
+    assert np.linalg.norm(start.contact_force) <= 0.4 * 80.0
+    with pytest.raises(ss.ModelError, match="two tractions per node; give all forces"):
+        ss.State(model, contact_force={"coulomb": 1.0})
