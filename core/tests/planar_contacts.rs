@@ -6,14 +6,14 @@ mod common;
 use common::planar::{block, planar_system, Pad, Planar};
 use faer::{c64, mat, Mat};
 use proptest::prelude::*;
-use stickslip_core::balance::{ExactOrbits as _, PointStatus};
+use stickslip_core::balance::PointStatus;
 use stickslip_core::contact::{Closure, ContactLaw, Coulomb, Jenkins, PointState, Residual};
 use stickslip_core::model::{Contact, Model};
 use stickslip_core::motion::{
     transient, ClassificationSettings, Classifier, Event, History, Reason, Scheme,
     TransientSettings,
 };
-use stickslip_core::orbit::{Orbit, OrbitInitialGuess, OrbitSettings, PeriodicOrbits};
+use stickslip_core::orbit::{Orbit, OrbitSettings, PeriodicOrbits};
 use stickslip_core::structure::{HarmonicLoad, Structure};
 
 fn settings(omega: f64, scheme: Scheme, periods: usize, samples: usize) -> TransientSettings {
@@ -368,22 +368,4 @@ fn free_motions_die_away_in_stick() {
         let after = run(&system, &settings(1.0, Scheme::Exact, 40, 8), Some(&found.state));
         assert!(before.events_met > 0 && after.events_met == 0, "{start:?}");
     }
-}
-
-/// Harmonic balance is not handed an orbit beside which there may be others.
-#[test]
-fn balance_gets_no_orbit_of_laws_that_are_not_monotone() {
-    let varying = block(100.0, [40.0, 60.0]).model();
-    let progress = |_: f64| true;
-    let of = |model: &Model| {
-        OrbitInitialGuess::new(model, Residual::Centred, &[0], &progress).orbit(5.0, 9).is_some()
-    };
-    assert!(!of(&varying));
-    let constant = Coulomb::new(1, 0.5, 60.0, None, Closure::Preload(3.0)).unwrap();
-    let one = |value: f64| Mat::from_fn(1, 1, |_, _| value);
-    let structure =
-        Structure::new(one(1.0).as_ref(), one(0.2).as_ref(), one(90.0).as_ref()).unwrap();
-    let contacts = vec![Contact { law: Box::new(constant), rows: one(1.0) }];
-    let loads = vec![HarmonicLoad { harmonic: 1, amplitude: vec![c64::new(8.0, 0.0)] }];
-    assert!(of(&Model::new(structure, contacts, loads).unwrap()));
 }

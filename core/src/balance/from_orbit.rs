@@ -62,9 +62,11 @@ impl ForcedBalance<'_> {
         Price { model: &self.model, half_wave: self.half_wave(), slipping, lowest }
     }
 
-    /// The exact orbit, if it costs less than `most` operations with the events of a solution.
+    /// The exact orbit, if it costs less than `most` operations with the events of a solution. Where
+    /// laws are not monotone it may be another motion than that of the solution.
     pub(super) fn orbit_below(&mut self, solved: &Point, most: f64) -> Option<Point> {
-        let orbits = self.rescue.filter(|_| self.control.only_harmonics_climb())?;
+        let wanted = self.control.only_harmonics_climb() && self.model.is_monotone();
+        let orbits = self.rescue.filter(|_| wanted)?;
         let events = self.events(solved);
         let price = orbits.price(solved.omega, events, self.orbit_order())?;
         if price > most {
