@@ -165,7 +165,7 @@ impl Walk<'_, '_> {
             let length = distance(&known, &z);
             let cap = self.longest_step(known[known.len() - 1]);
             let step = (omega - known[known.len() - 1]).abs();
-            if step > 1.5 * cap {
+            if step > 1.5 * cap && length > SHORT * STEPS.longest {
                 self.step_back(curve, walk, before, cap / step);
                 continue;
             }
