@@ -165,7 +165,7 @@ impl Walk<'_, '_> {
             let length = distance(&known, &z);
             let cap = self.longest_step(known[known.len() - 1]);
             let step = (omega - known[known.len() - 1]).abs();
-            if step > 1.5 * cap {
+            if step > 1.5 * cap && length > SHORT * STEPS.longest {
                 self.step_back(curve, walk, before, cap / step);
                 continue;
             }
@@ -277,7 +277,15 @@ impl Walk<'_, '_> {
         }
         match self.balance.judge(point) {
             Decision::Enough => None,
-            Decision::More(more) => Some(more).filter(|more| *more != at),
+            Decision::More(more) => match self.balance.instead_of(more, point) {
+                // An orbit in its place might lie on another branch.
+                Some(dear) if dear.status == PointStatus::EffortLimit => {
+                    point.status = dear.status;
+                    self.balance.control.stay(at);
+                    None
+                }
+                _ => Some(more).filter(|more| *more != at),
+            },
             Decision::Limit(limit) => {
                 point.status = limit;
                 self.balance.control.stay(at);
