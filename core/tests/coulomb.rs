@@ -314,7 +314,13 @@ fn motion_along_a_line_has_one_direction() {
                 (0..slots).map(|k| cos * two.value[k] + sin * two.value[slots + k]).collect();
             let size = largest(&one.value).max(1e-6);
             for k in 0..slots {
-                assert!((along[k] - one.value[k]).abs() < 1e-10 * size, "{n} {k} {residual:?}: {} {} {size} {law:?}", along[k], one.value[k], law = law(2));
+                assert!(
+                    (along[k] - one.value[k]).abs() < 1e-10 * size,
+                    "{n} {k} {residual:?}: {} {} {size} {law:?}",
+                    along[k],
+                    one.value[k],
+                    law = law(2)
+                );
                 assert!(across[k].abs() < 1e-10 * size, "{n} {k} {residual:?}: {}", across[k]);
             }
         }
