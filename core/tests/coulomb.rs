@@ -155,14 +155,15 @@ fn check_marches(directions: usize, seed: u64, cases: usize, samples: usize, gat
     assert!(worst < gate && compared > 2 * cases / 3, "{worst:.1e} in {compared}");
 }
 
-fn check_tangents(directions: usize, seed: u64, cases: usize, gate: f64) {
+/// Share of the cases within 1e-8, and the worst of them: differences have rounding of their own.
+fn check_tangents(directions: usize, seed: u64, cases: usize, share: f64, gate: f64) {
     let mut random = Random(seed);
     let residuals = [Residual::Centred, Residual::FromRest, Residual::Value(0.1)];
     let mut errors: Vec<f64> = (0..cases)
         .map(|n| {
             let case = random_case(&mut random, directions, 1 + n % 9);
             let error = tangent_error(&case, residuals[n % 3]);
-            if error > 10.0 * gate {
+            if error > gate {
                 println!("{n}: {error:.1e} {:?}", case.law);
             }
             error
@@ -171,7 +172,7 @@ fn check_tangents(directions: usize, seed: u64, cases: usize, gate: f64) {
     errors.sort_by(f64::total_cmp);
     let at = |share: f64| errors[((cases - 1) as f64 * share) as usize];
     println!("median {:.1e}, 95 % {:.1e}, worst {:.1e}", at(0.5), at(0.95), at(1.0));
-    assert!(at(0.98) < gate, "{:?}", &errors[cases * 9 / 10..]);
+    assert!(at(share) < 1e-8 && at(1.0) < gate, "{:?}", &errors[cases * 9 / 10..]);
 }
 
 #[test]
@@ -186,12 +187,12 @@ fn two_directions_agree_with_a_fine_march() {
 
 #[test]
 fn the_tangent_in_one_direction_is_that_of_differences() {
-    check_tangents(1, 43, 500, 1e-8);
+    check_tangents(1, 43, 500, 1.0, 1e-8);
 }
 
 #[test]
 fn the_tangent_in_two_directions_is_that_of_differences() {
-    check_tangents(2, 73, 500, 1e-8);
+    check_tangents(2, 73, 500, 0.9, 1e-5);
 }
 
 /// Friction work and mean, first cosine and sine of both tractions along an ellipse: half-axes and

@@ -10,16 +10,14 @@ use super::coulomb_circle::centre;
 use super::coulomb_cycle::{Cycle, State, Stretch};
 use super::coulomb_drive::{Closed, Drive};
 use super::coulomb_plane::{Grid, March, Slider};
-use super::coulomb_slip::Plane;
+use super::coulomb_slip::{Plane, RESOLVED, ROUGHLY};
 use super::{Coulomb, Residual};
 
 /// Laps of the first, coarse march.
 const COARSE_LAPS: usize = 4;
 /// Change of the slider over a coarse lap, relative to the limit, that needs no other.
 const COARSE: f64 = 1e-3;
-/// Correction of the slider, relative to the limit, whose square is rounding.
-const SMALL: f64 = 3e-7;
-/// Correction that leaves derivatives as they are.
+/// Correction of the slider, relative to the limit, that leaves the lap as it is.
 const EXACT: f64 = 1e-10;
 /// Laps by Newton's method; after them, the march alone.
 const NEWTON_LAPS: usize = 12;
@@ -163,9 +161,11 @@ impl Period<'_> {
         least: f64,
     ) -> Option<Cycle> {
         let end = theta + self.drive.harmonics().span();
-        let mut last = false;
+        let (mut last, mut hints) = (false, Vec::new());
         for lap in 0..MOST_LAPS {
             let mut march = March::new(self.drive, plane, grid, self.rates && last);
+            march.resolved = if last { RESOLVED } else { ROUGHLY };
+            march.hints = hints;
             let mut slider = march.begin(position);
             march.follow(theta, end, &mut slider, false);
             if !march.slipped {
@@ -180,14 +180,18 @@ impl Period<'_> {
             }
             let by = inverse.map(|row| row[0] * residual[0] + row[1] * residual[1]);
             let size = by[0].hypot(by[1]).max(residual[0].hypot(residual[1]));
-            let carried = march.coefficients || !self.rates;
-            let small = if self.rates { EXACT } else { SMALL };
-            if carried && (size <= small * plane.scale || lap + 1 == MOST_LAPS) {
+            let carried = last && (march.coefficients || !self.rates);
+            if carried && (size <= EXACT * plane.scale || lap + 1 == MOST_LAPS) {
                 march.correct(by);
                 let start = self.rates.then(|| start_rate(&slider, inverse, width));
                 return Some(march.into_cycle(start));
             }
-            last = size <= EXACT.sqrt() * plane.scale || lap + 2 == MOST_LAPS;
+            // What is left after this step, which the lap then shrinks.
+            let slopes = [0, 1].map(|i| slider.rate[i * width + width - 2..][..2].to_vec());
+            let shrinks = slopes.iter().flatten().fold(0.0_f64, |most, p| most.max(p.abs()));
+            let left = 10.0 * size * size / plane.scale * shrinks.min(1.0);
+            last = left <= EXACT * plane.scale || lap + 2 == MOST_LAPS;
+            hints = march.hints(if last { RESOLVED } else { ROUGHLY });
             let newton = lap < NEWTON_LAPS && by.iter().all(|by| by.is_finite());
             let step = if newton { by } else { residual };
             position = [position[0] + step[0], position[1] + step[1]];

@@ -6,13 +6,15 @@
 
 use super::coulomb_cycle::{Cycle, State, Stretch};
 use super::coulomb_drive::Drive;
-use super::coulomb_slip::{differentiated, Panel, Plane};
+use super::coulomb_slip::{differentiated, Panel, Plane, NODES, RESOLVED};
 use super::transitions::root;
 
 /// Excess over the limit, relative to it, that is none.
 const AT_LIMIT: f64 = 1e-13;
 /// λ, relative to what it can be, below which a contact at its limit sticks.
 const AT_REST: f64 = 1e-9;
+/// Panels as short as this are taken as they are.
+const SHORTEST: f64 = 1e-9;
 /// Most changes between stick and slip per harmonic and period: more are rounding.
 const MOST_CHANGES: usize = 64;
 
@@ -87,6 +89,10 @@ pub(super) struct March<'a> {
     pub(super) coefficients: bool,
     pub(super) stretches: Vec<Stretch>,
     pub(super) slipped: bool,
+    /// What counts as resolved.
+    pub(super) resolved: f64,
+    /// Start and length of the panels that a lap before has had, as long as they may be here.
+    pub(super) hints: Vec<[f64; 2]>,
 }
 
 impl<'a> March<'a> {
@@ -96,7 +102,33 @@ impl<'a> March<'a> {
         grid: &'a Grid,
         coefficients: bool,
     ) -> Self {
-        Self { drive, plane, grid, coefficients, stretches: Vec::new(), slipped: false }
+        Self {
+            drive,
+            plane,
+            grid,
+            coefficients,
+            stretches: Vec::new(),
+            slipped: false,
+            resolved: RESOLVED,
+            hints: Vec::new(),
+        }
+    }
+
+    /// The lengths of the panels, for a march that resolves more or less.
+    pub(super) fn hints(&self, resolved: f64) -> Vec<[f64; 2]> {
+        let by = (resolved / self.resolved).powf(1.0 / NODES as f64);
+        let panels = self.stretches.iter().filter_map(|stretch| match &stretch.state {
+            State::Turning(panel) => Some([stretch.start, by * panel.wanted]),
+            _ => None,
+        });
+        panels.collect()
+    }
+
+    /// Length of a panel to begin with.
+    fn first_length(&self, theta: f64) -> f64 {
+        let after = self.hints.partition_point(|[start, _]| *start <= theta + 1e-2);
+        let hint = after.checked_sub(1).map(|n| self.hints[n][1]);
+        hint.map_or(self.plane.longest, |length| length.min(self.plane.longest))
     }
 
     /// The cycle that has been marched; the derivative of its start, if it depends on that.
@@ -292,7 +324,7 @@ impl<'a> March<'a> {
     fn slip(&mut self, start: f64, end: f64, slider: &mut Slider, closes: bool) -> f64 {
         let (mut angle, mut rate) = self.onset(start, slider, closes);
         let mut theta = start;
-        let mut length = self.plane.longest;
+        let mut length = self.first_length(start);
         let mut ended = false;
         while theta < end && !ended {
             let left = end - theta;
@@ -304,9 +336,10 @@ impl<'a> March<'a> {
                 length *= 0.25;
                 continue;
             };
-            let error = panel.error(self.plane);
-            if error > 1.0 && length > 1e-9 {
-                length *= (0.8 * error.powf(-1.0 / 12.0)).clamp(0.1, 0.8);
+            let error = panel.error(self.plane, self.resolved);
+            let tried = length;
+            if error > 1.0 && length > SHORTEST {
+                length *= (0.8 * error.powf(-1.0 / NODES as f64)).clamp(0.1, 0.8);
                 continue;
             }
             if let Some(share) = panel.ends() {
@@ -324,8 +357,9 @@ impl<'a> March<'a> {
             let from = theta;
             theta = if !ended && length == left { end } else { panel.end() };
             angle = panel.last_angle;
-            length =
-                (length * (0.8 * error.powf(-1.0 / 12.0)).clamp(0.3, 2.0)).min(self.plane.longest);
+            let grown = tried * (0.9 * error.powf(-1.0 / NODES as f64)).clamp(0.3, 2.0);
+            panel.wanted = grown.min(self.plane.longest);
+            length = panel.wanted;
             let state = State::Turning(Box::new(panel));
             self.stretches.push(Stretch { start: from, end: theta, state });
         }

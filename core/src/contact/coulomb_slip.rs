@@ -18,12 +18,16 @@ use std::sync::OnceLock;
 /// Nodes of a panel.
 pub(super) const NODES: usize = 12;
 /// Steps of Newton's method for a panel, which starts close and needs three.
-const STEPS: usize = 8;
-/// Step of Newton's method whose square is rounding.
-const SMALL_STEP: f64 = 2e-8;
+const STEPS: usize = 12;
+/// Error of φ that counts as none.
+const ROUNDING: f64 = 1e-15;
+/// Ratio of two steps of Newton's method below which its matrix is kept.
+const SHRINKING: f64 = 1e-2;
 /// Last coefficients of the polynomial of φ that count as none, relative to the largest limit. Values
 /// at the end and integrals are good to the square of this.
-const RESOLVED: f64 = 2e-10;
+pub(super) const RESOLVED: f64 = 2e-10;
+/// The same where the end alone matters.
+pub(super) const ROUGHLY: f64 = 1e-6;
 /// The same for what a panel can add to an integral, whatever its order.
 const NEGLIGIBLE: f64 = 1e-13;
 
@@ -184,6 +188,8 @@ impl Node {
 pub(super) struct Panel {
     start: f64,
     length: f64,
+    /// As long as a panel might have been here.
+    pub(super) wanted: f64,
     /// φ and M at the nodes, and at the end.
     pub(super) angle: [f64; NODES],
     pub(super) limit: [f64; NODES],
@@ -217,6 +223,7 @@ impl Panel {
         let mut panel = Self {
             start,
             length,
+            wanted: length,
             angle: guess(&nodes, angle, length),
             limit: nodes.map(|node| node.limit),
             last_angle: angle,
@@ -228,19 +235,28 @@ impl Panel {
             basis,
             rate: Block::default(),
         };
+        let mut factors = BlockFactors::default();
+        let (mut last, mut shrunk) = (f64::INFINITY, 1.0);
         for _ in 0..STEPS {
             panel.evaluate();
+            // One matrix serves as long as the steps shrink fast.
+            if !(shrunk < SHRINKING) {
+                factors = panel.factors();
+            }
             let mut step: [f64; NODES] = std::array::from_fn(|i| {
                 let turned = table.integral[i].iter().zip(&panel.turning).map(|(a, g)| a * g);
                 panel.angle[i] - angle - length * turned.sum::<f64>()
             });
-            panel.factors().solve_vector(&mut step);
+            factors.solve_vector(&mut step);
             panel.angle.iter_mut().zip(&step).for_each(|(angle, step)| *angle -= step);
             let largest = step.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
             if !largest.is_finite() {
                 return None;
             }
-            if largest <= SMALL_STEP {
+            // What a step leaves is smaller than itself by as much as it was than the one before.
+            shrunk = if last.is_finite() { largest / last } else { 1.0 };
+            last = largest;
+            if largest * shrunk.min(1.0) <= ROUNDING {
                 panel.evaluate();
                 let turned = table.weight.iter().zip(&panel.turning).map(|(b, g)| b * g);
                 panel.last_angle = angle + length * turned.sum::<f64>();
@@ -277,7 +293,7 @@ impl Panel {
     }
 
     /// How far the panel is from being resolved: 1 and below, it is.
-    pub(super) fn error(&self, plane: &Plane<'_>) -> f64 {
+    pub(super) fn error(&self, plane: &Plane<'_>, resolved: f64) -> f64 {
         let table = Collocation::get();
         let tail = table
             .tail
@@ -285,7 +301,7 @@ impl Panel {
             .map(|row| row.iter().zip(&self.turning).map(|(p, g)| p * g).sum::<f64>().abs());
         let largest = self.limit.iter().fold(0.0_f64, |most, m| most.max(m.abs()));
         let error = tail.sum::<f64>() * self.length / NODES as f64 * largest / plane.scale;
-        (error / RESOLVED).min(error * self.length / NEGLIGIBLE)
+        (error / resolved).min(error * self.length / NEGLIGIBLE * RESOLVED / resolved)
     }
 
     /// Share of the panel after which slip ends, if it does.
