@@ -319,10 +319,13 @@ impl<'a> Flow<'a> {
     fn fill_slip_velocity(&mut self, regime: &ContactState, point: usize, sign: f64, natural: f64) {
         self.scratch.clear();
         self.scratch.resize(DEGREE, 0.0);
+        let rates: Vec<(usize, f64)> = (0..self.system.points())
+            .map(|other| (other, sign * regime.slip_rate[(point, other)]))
+            .filter(|(_, rate)| *rate != 0.0)
+            .collect();
         for (n, a) in self.scratch.iter_mut().enumerate() {
-            let parts = (0..self.system.points()).map(|other| {
-                (sign * regime.slip_rate[(point, other)], self.series.contact(other)[n + 1])
-            });
+            let parts =
+                rates.iter().map(|&(other, rate)| (rate, self.series.contact(other)[n + 1]));
             *a = (n + 1) as f64 * sum_of_products(parts);
         }
         rescale(&mut self.scratch, natural);

@@ -345,6 +345,12 @@ impl ModalSystem {
         }
     }
 
+    /// Whether the displacement of a point has anything to do with forces.
+    pub(super) fn is_felt(&self, point: usize) -> bool {
+        let bound = self.bounds[point];
+        !matches!(bound, Bound::Unilateral { stiffness, .. } if stiffness == 0.0)
+    }
+
     /// Whether slip limits vary, or contacts may open.
     pub(crate) fn has_normals(&self) -> bool {
         !self.normals.is_empty()
