@@ -234,7 +234,7 @@ fn states_that_no_contact_can_have_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
     fn motions_meet_those_of_short_steps(system in planar_system(), omega in 2.0_f64..20.0) {

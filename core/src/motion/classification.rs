@@ -1,7 +1,8 @@
 //! What becomes of a free motion: it dies away, settles on a periodic motion, goes on without
 //! settling, or grows for ever.
 
-use super::flow::{Flow, FlowEvent, Halt};
+use super::flow::Flow;
+use super::flow_event::{FlowEvent, Halt};
 use super::modal_system::ModalSystem;
 use super::output::Extremes;
 use super::phase::{Slipping, Sticking};

@@ -5,6 +5,7 @@
 //! friction begins without force: it sticks if its force grows more slowly than its limit, and else
 //! slips. All of these are zeros of polynomials, located to rounding.
 
+use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
 use super::modal_system::{ContactState, ModalSystem};
 use super::polynomial::first_zero;
 use super::power_series::{sum_of_products, PowerSeries, DEGREE};
@@ -21,69 +22,6 @@ const LOOK: usize = 32;
 const CHANGES: usize = 8;
 /// Share of a step that is no step.
 const INSTANT: f64 = 1e-13;
-
-/// A contact point changes from stick to slip or back, opens or closes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
-    /// Time in the period \[s\].
-    pub time: f64,
-    /// Contact point.
-    pub point: usize,
-    /// What it does from now on.
-    pub state: PointState,
-}
-
-/// A stretch of the motion without events.
-#[derive(Debug)]
-pub struct FlowSegment<'a> {
-    /// Motion as a power series.
-    pub series: &'a PowerSeries,
-    /// Time at its start \[s\].
-    pub start: f64,
-    /// Length in τ of the series.
-    pub length: f64,
-    /// States of the contact points.
-    pub regime: &'a ContactState,
-}
-
-impl FlowSegment<'_> {
-    /// Length \[s\].
-    #[must_use]
-    pub fn duration(&self) -> f64 {
-        self.length / self.series.rate()
-    }
-}
-
-/// What an observer of the flow sees, in order of time.
-#[derive(Debug)]
-pub enum FlowEvent<'a> {
-    /// A stretch without events.
-    Segment(FlowSegment<'a>),
-    /// An event, with the velocity [m/s] of all contact points and the contact states before and after.
-    Event {
-        /// The event.
-        event: Event,
-        /// Relative velocities at the contacts [m/s].
-        speed: &'a [f64],
-        /// Before the event.
-        before: &'a ContactState,
-        /// After it.
-        after: &'a ContactState,
-    },
-}
-
-/// Why a flow ended early.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Halt {
-    /// The motion has grown out of the range of numbers.
-    Unbounded,
-    /// Contacts change state without end at one instant.
-    Contradiction,
-    /// All steps that were granted are taken.
-    Steps,
-    /// The caller has ended the run.
-    Interrupted,
-}
 
 /// What a contact point is to do next.
 enum Next {
@@ -319,10 +257,13 @@ impl<'a> Flow<'a> {
     fn fill_slip_velocity(&mut self, regime: &ContactState, point: usize, sign: f64, natural: f64) {
         self.scratch.clear();
         self.scratch.resize(DEGREE, 0.0);
+        let rates: Vec<(usize, f64)> = (0..self.system.points())
+            .map(|other| (other, sign * regime.slip_rate[(point, other)]))
+            .filter(|(_, rate)| *rate != 0.0)
+            .collect();
         for (n, a) in self.scratch.iter_mut().enumerate() {
-            let parts = (0..self.system.points()).map(|other| {
-                (sign * regime.slip_rate[(point, other)], self.series.contact(other)[n + 1])
-            });
+            let parts =
+                rates.iter().map(|&(other, rate)| (rate, self.series.contact(other)[n + 1]));
             *a = (n + 1) as f64 * sum_of_products(parts);
         }
         rescale(&mut self.scratch, natural);

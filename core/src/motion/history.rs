@@ -1,6 +1,6 @@
 //! A motion in time as the caller asks for it and has it.
 
-use super::flow::{Event, Halt};
+use super::flow_event::{Event, Halt};
 use crate::balance::check_frequency;
 use crate::Error;
 use std::time::Duration;

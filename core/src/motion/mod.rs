@@ -3,9 +3,12 @@
 
 mod basin;
 mod bodies;
+mod bounds;
 mod classification;
 mod damping;
+mod exponential;
 mod flow;
+mod flow_event;
 mod history;
 mod modal_system;
 mod output;
@@ -21,7 +24,8 @@ mod transition;
 
 pub use basin::fates;
 pub use classification::{Classification, ClassificationSettings, Classifier, Reason};
-pub use flow::{Event, Flow, FlowEvent, FlowSegment, Halt};
+pub use flow::Flow;
+pub use flow_event::{Event, FlowEvent, FlowSegment, Halt};
 pub use history::{History, Scheme, Trace, TransientSettings};
 pub use modal_system::{ContactState, ModalSystem};
 pub(crate) use output::Extremes;

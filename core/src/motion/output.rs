@@ -1,6 +1,7 @@
 //! What a time integration hands out: samples, ranges and events, period after period.
 
-use super::flow::{Event, Flow, FlowEvent, FlowSegment, Halt};
+use super::flow::Flow;
+use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
 use super::history::{History, Trace, TransientSettings};
 use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{sign_changes, value};

@@ -135,17 +135,19 @@ impl PowerSeries {
     /// Coefficients of u and f at one power.
     fn expand_contacts(&mut self, system: &ModalSystem, regime: &ContactState, power: usize) {
         let modal = &self.modal[power * self.modes..(power + 1) * self.modes];
-        let points = system.points();
-        for point in 0..points {
+        for point in (0..system.points()).filter(|point| system.is_felt(*point)) {
             self.contact[point * (DEGREE + 1) + power] = dot(system.contact_shape(point), modal);
         }
         if power == 0 {
             return;
         }
-        for i in 0..points {
-            let parts = (0..points)
-                .map(|j| (regime.tangent[(i, j)], self.contact[j * (DEGREE + 1) + power]));
-            self.force[i * (DEGREE + 1) + power] = sum_of_products(parts);
+        for body in system.bodies() {
+            for i in body.points.clone() {
+                let own = body.points.clone();
+                let parts =
+                    own.map(|j| (regime.tangent[(i, j)], self.contact[j * (DEGREE + 1) + power]));
+                self.force[i * (DEGREE + 1) + power] = sum_of_products(parts);
+            }
         }
     }
 

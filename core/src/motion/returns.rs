@@ -3,7 +3,7 @@
 //! The section is the maximum of one coordinate. A free motion has no clock; how long it takes to
 //! come back is its period.
 
-use super::flow::FlowSegment;
+use super::flow_event::FlowSegment;
 use super::modal_system::ModalSystem;
 use super::polynomial::{sign_changes, value};
 use super::state::State;

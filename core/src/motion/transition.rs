@@ -7,14 +7,12 @@
 //! contact opens or closes, `h = N`: at opening nothing remains of the traction, and one that begins
 //! at closing in stick, `t' = k_t u'`, begins earlier by dv/v', so that `dt = k_t u' dv/v'`.
 
-use super::flow::{Event, FlowEvent};
+use super::exponential::exponential;
+use super::flow_event::{Event, FlowEvent};
 use super::modal_system::{ContactState, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
 use faer::Mat;
-
-/// Norm of a matrix times time to which the truncated exponential is applied.
-const SMALL: f64 = 0.5;
 
 /// A stretch of the motion in one regime, and what ends it.
 #[derive(Debug, Clone)]
@@ -363,51 +361,5 @@ impl<'a> Transition<'a> {
             }
         }
         exponential(&a)
-    }
-}
-
-/// Exponential of a matrix: Taylor polynomial of degree 15 in blocks of four, scaled and squared.
-fn exponential(a: &Mat<f64>) -> Mat<f64> {
-    let size = a.nrows();
-    let norm = a.norm_l2();
-    let squarings = (norm / SMALL).log2().ceil().max(0.0);
-    let scaled = faer::Scale(0.5_f64.powf(squarings)) * a;
-    let second = &scaled * &scaled;
-    let third = &second * &scaled;
-    let fourth = &second * &second;
-    let mut factorials = [1.0; 16];
-    for k in 1..16 {
-        factorials[k] = factorials[k - 1] / k as f64;
-    }
-    let block = |first: usize| {
-        let mut sum = faer::Scale(factorials[first + 1]) * &scaled
-            + faer::Scale(factorials[first + 2]) * &second
-            + faer::Scale(factorials[first + 3]) * &third;
-        for i in 0..size {
-            sum[(i, i)] += factorials[first];
-        }
-        sum
-    };
-    let mut value = block(12);
-    for first in [8, 4, 0] {
-        value = &fourth * &value + block(first);
-    }
-    for _ in 0..squarings as usize {
-        value = &value * &value;
-    }
-    value
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_exponential_of_a_rotation_is_exact() {
-        let angle = 7.3_f64;
-        let a = Mat::from_fn(2, 2, |i, j| angle * (i as f64 - j as f64));
-        let e = exponential(&a);
-        assert!((e[(0, 0)] - angle.cos()).abs() < 1e-13);
-        assert!((e[(1, 0)] - angle.sin()).abs() < 1e-13);
     }
 }
