@@ -21,7 +21,7 @@ pub fn residual(given: &Bound<'_, PyAny>) -> PyResult<Residual> {
     if let Ok(force) = given.extract() {
         return Ok(Residual::Value(force));
     }
-    let from_rest = given.extract::<String>()? == "from_rest";
+    let from_rest = given.extract::<Option<String>>()?.is_some_and(|name| name == "from_rest");
     Ok(if from_rest { Residual::FromRest } else { Residual::Centred })
 }
 

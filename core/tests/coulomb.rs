@@ -90,7 +90,8 @@ fn summary(law: &dyn HarmonicForce, motion: Motion<'_>) -> Vec<PointSummary> {
 
 fn shakes_down(case: &Case) -> bool {
     let shares = summary(exact(&case.law), motion(&case.table, &case.displacement));
-    shares.iter().all(|share| share.slip_fraction == 0.0)
+    // Slip that dies out slowly takes a march more laps than it has.
+    shares.iter().all(|share| share.slip_fraction < 0.01)
 }
 
 /// The same contact, marched through many samples of its return map.
@@ -100,12 +101,16 @@ fn marched(case: &Case, samples: usize) -> SlipLoad {
 }
 
 fn tangent_error(case: &Case, residual: Residual) -> f64 {
+    tangent_error_by(case, residual, 1e-5)
+}
+
+fn tangent_error_by(case: &Case, residual: Residual, step: f64) -> f64 {
     let size = case.displacement.len();
     let at = |u: &[f64], tangent: bool| {
         load(exact(&case.law), Motion { residual, ..motion(&case.table, u) }, tangent)
     };
     let tangent = at(&case.displacement, true).tangent;
-    let step = 1e-5 * largest(&case.displacement);
+    let step = step * largest(&case.displacement);
     let mut error = 0.0_f64;
     for j in 0..size {
         let moved = |by: f64| {
@@ -123,38 +128,213 @@ fn tangent_error(case: &Case, residual: Residual) -> f64 {
     error / largest(&tangent)
 }
 
-#[test]
-fn one_direction_agrees_with_a_fine_march() {
-    let mut random = Random(41);
+fn check_marches(directions: usize, seed: u64, cases: usize, samples: usize, gate: f64) {
+    let mut random = Random(seed);
     let mut compared = 0;
-    for n in 0..150 {
-        let case = random_case(&mut random, 1, 1 + n % 15);
+    let mut worst = 0.0_f64;
+    for n in 0..cases {
+        let case = random_case(&mut random, directions, 1 + n % 15);
         let u = motion(&case.table, &case.displacement);
         // What a contact keeps that never slips is assumed; a march has it from its start.
         if shakes_down(&case) {
             continue;
         }
         compared += 1;
-        let found = load(exact(&case.law), u, false);
-        let expected = marched(&case, 1 << 16);
-        assert_close(&found.value, &expected.value, 1e-6, &format!("case {n}"));
+        let found = load(exact(&case.law), u, false).value;
+        let expected = marched(&case, samples).value;
+        let stiffness = case.law.stiffness();
+        let size = largest(&expected).max(stiffness[(0, 0)] * largest(&case.displacement));
+        let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs() / size);
+        let error = error.fold(0.0, f64::max);
+        if error > gate {
+            println!("{n}: {error:.1e} {:?}", case.law);
+        }
+        worst = worst.max(error);
     }
-    assert!(compared > 100, "{compared}");
+    println!("{compared} cases, worst {worst:.1e}");
+    assert!(worst < gate && compared > 2 * cases / 3, "{worst:.1e} in {compared}");
+}
+
+fn check_tangents(directions: usize, seed: u64, cases: usize, gate: f64) {
+    let mut random = Random(seed);
+    let residuals = [Residual::Centred, Residual::FromRest, Residual::Value(0.1)];
+    let mut errors: Vec<f64> = (0..cases)
+        .map(|n| {
+            let case = random_case(&mut random, directions, 1 + n % 9);
+            let error = tangent_error(&case, residuals[n % 3]);
+            if error > 10.0 * gate {
+                println!("{n}: {error:.1e} {:?}", case.law);
+            }
+            error
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    let at = |share: f64| errors[((cases - 1) as f64 * share) as usize];
+    println!("median {:.1e}, 95 % {:.1e}, worst {:.1e}", at(0.5), at(0.95), at(1.0));
+    assert!(at(0.98) < gate, "{:?}", &errors[cases * 9 / 10..]);
+}
+
+#[test]
+fn one_direction_agrees_with_a_fine_march() {
+    check_marches(1, 41, 150, 1 << 16, 1e-6);
+}
+
+#[test]
+fn two_directions_agree_with_a_fine_march() {
+    check_marches(2, 71, 150, 1 << 14, 1e-5);
 }
 
 #[test]
 fn the_tangent_in_one_direction_is_that_of_differences() {
-    let mut random = Random(43);
-    let residuals = [Residual::Centred, Residual::FromRest, Residual::Value(0.1)];
-    let mut errors: Vec<f64> = (0..500)
-        .map(|n| {
-            let case = random_case(&mut random, 1, 1 + n % 9);
-            tangent_error(&case, residuals[n % 3])
-        })
-        .collect();
-    errors.sort_by(f64::total_cmp);
-    println!("median {:.1e}, 95 % {:.1e}, worst {:.1e}", errors[250], errors[475], errors[499]);
-    assert!(errors[490] < 1e-8, "{:?}", &errors[480..]);
+    check_tangents(1, 43, 500, 1e-8);
+}
+
+#[test]
+fn the_tangent_in_two_directions_is_that_of_differences() {
+    check_tangents(2, 73, 500, 1e-8);
+}
+
+/// Friction work and mean, first cosine and sine of both tractions along an ellipse: half-axes and
+/// angle of the first one.
+fn prescribed(half_axes: [f64; 2], angle: f64) -> (f64, [f64; 6]) {
+    let table = SampleTable::new(Harmonics::new(5, false));
+    let slots = table.harmonics().slots();
+    let (sin, cos) = angle.sin_cos();
+    let mut displacement = vec![0.0; 3 * slots];
+    (displacement[1], displacement[slots + 1]) = (half_axes[0] * cos, half_axes[0] * sin);
+    (displacement[2], displacement[slots + 2]) = (-half_axes[1] * sin, half_axes[1] * cos);
+    let law = Coulomb::new(2, 0.4, 2e6, Some(3e6), Closure::Preload(300.0)).unwrap();
+    let u = motion(&table, &displacement);
+    let series = force(&law, u);
+    let work = summary(&law, u).iter().map(|summary| summary.dissipation).sum();
+    let mut found = [0.0; 6];
+    found[..3].copy_from_slice(&series[..3]);
+    found[3..].copy_from_slice(&series[slots..slots + 3]);
+    (work, found)
+}
+
+#[test]
+fn prescribed_motions_have_their_known_forces() {
+    let (r, delta, limit) = (2e-4_f64, 120.0 / 2e6, 120.0);
+    let root = (1.0 - (delta / r).powi(2)).sqrt();
+    let (c, s) = (2e6 * delta * delta / r, -limit * root);
+    let (work, found) = prescribed([r, r], 0.0);
+    assert_close(&[work], &[2.0 * PI * r * limit * root], 1e-10, "circle");
+    assert_close(&found, &[0.0, c, s, 0.0, -s, c], 1e-10, "circle");
+    assert_close(&[work], &[0.14385064], 1e-7, "circle");
+    let (work, found) = prescribed([3e-4, 1e-4], 0.0);
+    assert_close(&[work], &[0.14615667], 1e-7, "ellipse");
+    let expected = [0.0, 59.00718, -127.04818, 0.0, 84.08660, 28.33094];
+    assert_close(&found, &expected, 1e-7, "ellipse");
+    let (work, found) = prescribed([3e-4, 0.0], PI / 6.0);
+    assert_close(&[work], &[4.0 * limit * (3e-4 - delta)], 1e-11, "line");
+    let expected = [0.0, 73.9820, -105.8552, 0.0, 42.7136, -61.1155];
+    assert_close(&found, &expected, 1e-6, "line");
+}
+
+/// The tangential displacements in a frame that is turned by an angle.
+fn turned(case: &Case, angle: f64) -> Vec<f64> {
+    let slots = case.table.harmonics().slots();
+    let (sin, cos) = angle.sin_cos();
+    let mut out = case.displacement.clone();
+    for k in 0..slots {
+        let (x, y) = (case.displacement[k], case.displacement[slots + k]);
+        (out[k], out[slots + k]) = (cos * x - sin * y, sin * x + cos * y);
+    }
+    out
+}
+
+#[test]
+fn no_direction_is_special() {
+    let mut random = Random(79);
+    let mut worst = 0.0_f64;
+    for n in 0..150 {
+        let mut case = random_case(&mut random, 2, 1 + n % 9);
+        let angle = 3.0 * random.next();
+        let value = load(exact(&case.law), motion(&case.table, &case.displacement), false).value;
+        let displacement = turned(&case, angle);
+        let found = load(exact(&case.law), motion(&case.table, &displacement), false).value;
+        case.displacement = value;
+        let expected = turned(&case, angle);
+        let size = largest(&expected);
+        let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs() / size);
+        let error = error.fold(0.0, f64::max);
+        if error > 1e-10 {
+            println!("{n}: {error:.1e} {:?}", case.law);
+        }
+        worst = worst.max(error);
+    }
+    println!("worst {worst:.1e}");
+    assert!(worst < 1e-10, "{worst:.1e}");
+}
+
+#[test]
+fn motion_along_a_line_has_one_direction() {
+    let mut random = Random(83);
+    for n in 0..100 {
+        let mut case = random_case(&mut random, 1, 1 + n % 9);
+        let slots = case.table.harmonics().slots();
+        let (sin, cos) = (3.0 * random.next()).sin_cos();
+        let parameters = case.law.parameters();
+        let closure = match (n % 3, parameters[2].name) {
+            (0, "preload") => Closure::Preload(parameters[2].value),
+            (0, _) => Closure::Gap(parameters[2].value),
+            _ => Closure::Preload(random.between(0.0, 2.0)),
+        };
+        let normal = (n % 3 == 0).then_some(parameters[3].value);
+        if n % 3 == 1 {
+            case.table = SampleTable::new(Harmonics::new(2 * (n % 5) + 1, true));
+        }
+        let slots = case.table.harmonics().slots().min(slots);
+        case.table = SampleTable::new(match case.table.harmonics().half_wave() {
+            true => Harmonics::new(slots - 1, true),
+            false => case.table.harmonics().clone(),
+        });
+        let slots = case.table.harmonics().slots();
+        let (mu, k) = (parameters[0].value, parameters[1].value);
+        let law = |directions| Coulomb::new(directions, mu, k, normal, closure).unwrap();
+        let along = &case.displacement[..slots];
+        let rest: Vec<f64> = match normal {
+            Some(_) => case.displacement[slots..2 * slots].to_vec(),
+            None => Vec::new(),
+        };
+        let one: Vec<f64> = along.iter().chain(&rest).copied().collect();
+        let two: Vec<f64> = along.iter().map(|u| cos * u).collect();
+        let two: Vec<f64> =
+            two.into_iter().chain(along.iter().map(|u| sin * u)).chain(rest).collect();
+        for residual in [Residual::Centred, Residual::FromRest] {
+            let at = |law: &Coulomb, displacement: &[f64]| {
+                let motion = Motion { table: &case.table, displacement, residual };
+                load(exact(law), motion, true)
+            };
+            let (one, two) = (at(&law(1), &one), at(&law(2), &two));
+            let across: Vec<f64> =
+                (0..slots).map(|k| cos * two.value[slots + k] - sin * two.value[k]).collect();
+            let along: Vec<f64> =
+                (0..slots).map(|k| cos * two.value[k] + sin * two.value[slots + k]).collect();
+            let size = largest(&one.value).max(1e-6);
+            for k in 0..slots {
+                assert!(
+                    (along[k] - one.value[k]).abs() < 1e-10 * size,
+                    "{n} {k} {residual:?}: {} {} {size} {law:?}",
+                    along[k],
+                    one.value[k],
+                    law = law(2)
+                );
+                assert!(across[k].abs() < 1e-10 * size, "{n} {k} {residual:?}: {}", across[k]);
+            }
+        }
+    }
+}
+
+#[test]
+fn work_shares_and_histories_in_two_directions() {
+    check_histories(2, 89);
+}
+
+#[test]
+fn parameter_slopes_in_two_directions() {
+    check_parameter_slopes(2, 97);
 }
 
 #[test]
@@ -358,4 +538,27 @@ fn time_in_one_direction() {
         own / jenkins,
         constant / jenkins
     );
+}
+
+#[test]
+#[ignore = "measures time"]
+fn time_in_two_directions() {
+    let mut random = Random(67);
+    let cases: Vec<Case> = (0..40).map(|_| random_case(&mut random, 2, 7)).collect();
+    let time = |of: &dyn Fn(&Case)| {
+        let round = || {
+            let start = std::time::Instant::now();
+            cases.iter().for_each(of);
+            start.elapsed().as_secs_f64() / cases.len() as f64 * 1e6
+        };
+        (0..20).map(|_| round()).fold(f64::INFINITY, f64::min)
+    };
+    let sampled = time(&|case| {
+        let sampled = Aft::new(Box::new(case.law) as Box<dyn ContactLaw>, 64).unwrap();
+        load(&sampled, motion(&case.table, &case.displacement), true);
+    });
+    let own = time(&|case| {
+        load(exact(&case.law), motion(&case.table, &case.displacement), true);
+    });
+    println!("{own:.2} {sampled:.2} us: {:.2}", own / sampled);
 }

@@ -19,7 +19,7 @@ Parameters = Mapping[str, float | list[float]]
 Law = str | ContactLaw
 Contact = tuple[Law, Float, Parameters]
 SectorContact = tuple[Law, Float, Float, Parameters]
-Residual = str | float
+Residual = str | float | None
 Progress = Callable[[float], None] | None
 
 __version__: str
@@ -168,6 +168,12 @@ def exact_peak(
 def orbit_history(
     problem: Problem, omega: float, state: Float, observe: NDArray[np.int64], samples: int
 ) -> tuple[Float, Float, Float, Float]: ...
+
+class AtRest:
+    columns: dict[str, NDArray[Any]]
+    steps: int
+
+def static_response(problem: Problem, observe: list[int], progress: Progress) -> AtRest: ...
 
 class Fates:
     """What becomes of n free motions; rows left out by an interruption are not-a-number."""

@@ -45,11 +45,10 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
     }
     let direction = (to - from).signum();
     let longest = LONGEST * (to - from).abs();
-    let first = balance.solve(from, None)?;
-    if first.is_solved() && !balance.model.is_monotone() {
-        return sweep_branch(balance, first, (from, to));
+    if !balance.model.is_monotone() {
+        return sweep_branch(balance, (from, to));
     }
-    let mut points = vec![Arc::new(first)];
+    let mut points = vec![Arc::new(balance.solve(from, None)?)];
     balance.scale.include(&points[0]);
     keep(balance.kept, &points[0]);
     // What lies outside the range may be narrow, too.

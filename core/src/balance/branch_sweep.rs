@@ -60,25 +60,45 @@ struct Walk<'a, 'b> {
     longest: f64,
 }
 
-/// Follows the curve from `from` to `to` [rad/s].
+/// Follows the curve from `from` to `to` [rad/s]; from the other end where that leads nowhere.
 pub(super) fn sweep_branch(
     mut balance: ForcedBalance<'_>,
-    first: Point,
     (from, to): (f64, f64),
 ) -> Result<Solution, Error> {
     let start = Instant::now();
-    let stops = stops(&mut balance, &first, from, to)?;
+    let (mut points, mut end) = branch(&mut balance, from, to)?;
+    if matches!(end, CurveEnd::Returned | CurveEnd::Stalled) {
+        let (mut others, other_end) = branch(&mut balance, to, from)?;
+        if other_end == CurveEnd::Range {
+            others.reverse();
+            (points, end) = (others, other_end);
+        }
+    }
+    let interrupted = end == CurveEnd::Interrupted;
+    Ok(Solution { end, ..finish(balance, points, interrupted, start) })
+}
+
+/// The branch that begins at one end of a range, and how it ended.
+fn branch(
+    balance: &mut ForcedBalance<'_>,
+    from: f64,
+    to: f64,
+) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
+    let first = balance.solve(from, None)?;
+    if !first.is_solved() {
+        let ended = first.status == PointStatus::NotComputed;
+        let end = if ended { CurveEnd::Interrupted } else { CurveEnd::Stalled };
+        return Ok((vec![Arc::new(first)], end));
+    }
+    let stops = stops(balance, &first, from, to)?;
     balance.scale.include(&first);
     let first = Arc::new(first);
     keep(balance.kept, &first);
     let bounds = (from.min(to), from.max(to));
     let longest = LONGEST * (to - from).abs();
-    let balance_of_walk = &mut balance;
-    let mut walk = Walk { balance: balance_of_walk, points: vec![first], stops, bounds, longest };
+    let mut walk = Walk { balance, points: vec![first], stops, bounds, longest };
     let end = walk.follow(from, to)?;
-    let points = walk.points;
-    let interrupted = end == CurveEnd::Interrupted;
-    Ok(Solution { end, ..finish(balance, points, interrupted, start) })
+    Ok((walk.points, end))
 }
 
 impl Walk<'_, '_> {

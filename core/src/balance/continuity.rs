@@ -1,14 +1,14 @@
 //! Whether two neighbouring points of a sweep lie on one branch, or the sweep has jumped between them.
 //!
 //! Where solutions are not unique Newton's method may lead to another branch. If the tangents at both
-//! points do not explain the way between them the curve is followed by arclength: it reaches the new
-//! frequency without a turn, and the solution there is taken, or it turns back before, and the sweep
-//! jumps.
+//! points do not explain the way between them the curve is followed by arclength, to where it first
+//! meets the new frequency: that solution is taken. If the curve has turned back before, the sweep jumps.
 
 use super::branch_sweep::{distance, STEPS};
 use super::forced::ForcedBalance;
 use super::forced_curve::ForcedCurve;
 use super::solution::{Point, PointStatus};
+use super::unknowns::Unknowns;
 use crate::solve::{between, tangent, Advance, Continuation, Curve as _};
 use crate::Error;
 
@@ -25,79 +25,70 @@ const SAME: f64 = 1e-6;
 enum Reached {
     /// To the same solution.
     Same,
-    /// To another one.
-    Other(Vec<f64>),
-    /// Back, before the frequency.
-    Turned,
+    /// To another one, without a turn on the way or with some.
+    Other(Unknowns, bool),
     /// Not known.
     Lost,
 }
 
 impl ForcedBalance<'_> {
-    /// Replaces a new point by that of the branch of the last one if Newton's method has left it, and
-    /// says so of a point that the branch does not reach.
+    /// Replaces a new point by that of the branch of the last one if Newton's method has left it or
+    /// found none, and says so of a point that lies behind a turn.
     pub(super) fn stay_on_branch(&mut self, last: &Point, point: &mut Point) -> Result<(), Error> {
-        if !last.is_solved() || !point.is_solved() || last.omega == point.omega {
+        let failed = matches!(point.status, PointStatus::Stalled | PointStatus::Singular);
+        if !last.is_solved() || !(point.is_solved() || failed) || last.omega == point.omega {
             return Ok(());
         }
-        match self.reached(last, point)? {
-            Reached::Turned => point.jump = true,
-            Reached::Other(z) => {
-                let table = self.table(point.harmonics);
-                let start =
-                    super::Unknowns::new(table.harmonics().clone(), z[..z.len() - 1].to_vec());
-                let other = self.solve(point.omega, Some(&start))?;
-                if other.is_solved() {
-                    *point = other;
-                } else if other.status == PointStatus::NotComputed {
-                    return Ok(());
-                }
+        if let Reached::Other(start, turned) = self.reached(last, point)? {
+            let other = self.solve(point.omega, Some(&start))?;
+            if other.is_solved() {
+                *point = other;
+                point.jump = turned;
             }
-            Reached::Same | Reached::Lost => {}
         }
         Ok(())
     }
 
     fn reached(&mut self, last: &Point, point: &Point) -> Result<Reached, Error> {
-        let resolution = last.resolution().or_finer(point.resolution());
+        let solved = point.is_solved();
+        let finer = last.resolution().or_finer(point.resolution());
+        let resolution = if solved { finer } else { last.resolution() };
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
         let ask = self.interruption();
         let mut curve = ForcedCurve::new(model, &table, self.settings.residual, &ask);
-        let (Some(known), Some(found)) = (last.unknowns(), point.unknowns()) else {
-            return Ok(Reached::Lost);
-        };
-        let (from, to) = (curve.point(known, last.omega), curve.point(found, point.omega));
-        let reached = followed(&mut curve, &from, &to);
+        let Some(known) = last.unknowns() else { return Ok(Reached::Lost) };
+        let from = curve.point(known, last.omega);
+        let found = point.unknowns().filter(|_| solved);
+        let to = found.map(|found| curve.point(found, point.omega));
+        let reached = followed(&mut curve, &from, to.as_deref(), point.omega);
         self.add_profile(&curve.profile);
         Ok(reached)
     }
 }
 
-/// Where the branch through `from` leads at the frequency of `to`.
-fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: &[f64]) -> Reached {
-    if is_explained(curve, from, to) {
+/// Where the branch through `from` leads at a frequency at which Newton's method has found `to`.
+fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: Option<&[f64]>, end: f64) -> Reached {
+    if to.is_some_and(|to| is_explained(curve, from, to)) {
         return Reached::Same;
     }
-    let (start, end) = (from[from.len() - 1], to[to.len() - 1]);
-    let sign = (end - start).signum();
+    let sign = (end - from[from.len() - 1]).signum();
     let Some(mut walk) = Continuation::new(curve, from.to_vec(), sign, STEPS) else {
         return Reached::Lost;
     };
-    let mut before = from.to_vec();
+    let (mut before, mut turned) = (from.to_vec(), false);
     for _ in 0..MOST {
         if !matches!(walk.advance(curve), Advance::Point) {
             return Reached::Lost;
         }
         let omega = walk.point[walk.point.len() - 1];
-        if (omega - before[before.len() - 1]) * sign < 0.0 {
-            return Reached::Turned;
-        }
+        turned |= (omega - before[before.len() - 1]) * sign < 0.0;
         if (omega - end) * sign >= 0.0 {
             let Some((z, _)) = between(curve, &before, &walk.point, end) else {
                 return Reached::Lost;
             };
-            return if distance(&z, to) < SAME { Reached::Same } else { Reached::Other(z) };
+            let same = !turned && to.is_some_and(|to| distance(&z, to) < SAME);
+            return if same { Reached::Same } else { Reached::Other(curve.series(&z), turned) };
         }
         before.clone_from(&walk.point);
     }

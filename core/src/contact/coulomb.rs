@@ -60,11 +60,11 @@ pub struct Coulomb {
 }
 
 /// How a step went.
-struct Passage<T> {
-    traction: [T; 2],
+pub(super) struct Passage<T> {
+    pub(super) traction: [T; 2],
     /// Shares of the step in which the contact is open, and slips.
     open: f64,
-    slipping: f64,
+    pub(super) slipping: f64,
 }
 
 impl Coulomb {
@@ -163,7 +163,13 @@ impl Coulomb {
     }
 
     /// Takes the traction along a straight step: see the head of this file.
-    fn step<T: Real>(&self, traction: [T; 2], du: [T; 2], before: T, after: T) -> Passage<T> {
+    pub(super) fn step<T: Real>(
+        &self,
+        traction: [T; 2],
+        du: [T; 2],
+        before: T,
+        after: T,
+    ) -> Passage<T> {
         let (mu, k) = (T::from(self.friction), T::from(self.tangential_stiffness));
         let zero = T::from(0.0);
         if after.value() <= 0.0 {
@@ -448,6 +454,6 @@ impl ContactLaw for Coulomb {
     }
 
     fn closed_form(&self) -> Option<&dyn HarmonicForce> {
-        (self.directions == 1).then_some(self as &dyn HarmonicForce)
+        Some(self)
     }
 }

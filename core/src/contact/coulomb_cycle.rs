@@ -13,9 +13,11 @@
 //! move add nothing to derivatives.
 
 use super::coulomb_drive::Drive;
+use super::coulomb_slip::{Panel, NODES};
 use super::slider_integrals::Bounds;
 use super::{Phase, PointState, PointSummary};
 use crate::fourier::IntervalSums;
+use crate::solve::Block;
 use std::f64::consts::TAU;
 
 /// What a contact does over a stretch of the period.
@@ -28,8 +30,10 @@ pub(super) enum State {
         /// Its derivative in the coefficients of K and M, direction after direction, if wanted.
         rate: Vec<f64>,
     },
-    /// It slips in the only direction that there is, with this sign.
+    /// It slips in the only direction that there is, with this sign; without friction the sign is 0.
     Along(f64),
+    /// It slips in the plane.
+    Turning(Box<Panel>),
 }
 
 /// A stretch of the period.
@@ -42,6 +46,10 @@ pub(super) struct Stretch {
 /// One period, from any angle on.
 pub(super) struct Cycle {
     pub(super) stretches: Vec<Stretch>,
+    /// Numbers that its states are differentiated in.
+    pub(super) columns: usize,
+    /// Derivative of the slider's start, which are the last two of these numbers if there are so many.
+    pub(super) start_rate: Option<Vec<f64>>,
 }
 
 /// Integrals of the slip load over the period, times 2 over its length, and their derivatives.
@@ -57,8 +65,9 @@ pub(super) struct Response {
 }
 
 impl Cycle {
-    pub(super) fn new(stretches: Vec<Stretch>) -> Self {
-        Self { stretches }
+    /// A cycle without a past, differentiated in so many numbers.
+    pub(super) fn new(stretches: Vec<Stretch>, columns: usize) -> Self {
+        Self { stretches, columns, start_rate: None }
     }
 
     fn has(&self, of: impl Fn(&State) -> bool) -> bool {
@@ -88,7 +97,7 @@ impl Cycle {
     /// Integrals of the slip load; of their derivatives, too, where the cycle has `rates`.
     pub(super) fn response(&self, drive: &Drive<'_>, rates: bool) -> Response {
         let harmonics = drive.harmonics();
-        let (slots, width) = (harmonics.slots(), drive.columns());
+        let (slots, width) = (harmonics.slots(), self.columns);
         let tangential = drive.pull.len();
         let mut slider = vec![0.0; tangential];
         let mut rate = vec![0.0; if rates { tangential * width } else { 0 }];
@@ -121,16 +130,42 @@ impl Cycle {
             });
         }
         self.add_stuck(drive, &mut slider, &mut rate);
-        let moves = self.has(|state| match state {
-            State::Stuck { rate, .. } => rate.iter().any(|rate| *rate != 0.0),
-            _ => true,
-        });
+        self.add_turning(drive, &mut slider, &mut rate);
+        let own = drive.columns();
+        let varies = |rate: &[f64]| rate.iter().any(|rate| *rate != 0.0);
+        let moves = self.start_rate.as_ref().is_some_and(|rate| varies(rate))
+            || self.has(|state| match state {
+                State::Stuck { rate, .. } => {
+                    rate.chunks_exact(self.columns).any(|row| varies(&row[..own]))
+                }
+                _ => true,
+            });
+        let rate = self.with_start(rate, own);
         Response { slider, rate, open, moves }
+    }
+
+    /// Derivatives in the coefficients alone: the start depends on them.
+    fn with_start(&self, rate: Vec<f64>, own: usize) -> Vec<f64> {
+        if self.columns == own {
+            return rate;
+        }
+        let mut out = Vec::with_capacity(rate.len());
+        for row in rate.chunks_exact(self.columns) {
+            let first = out.len();
+            out.extend_from_slice(&row[..own]);
+            for (by, start) in row[own..]
+                .iter()
+                .zip(self.start_rate.iter().flat_map(|rate| rate.chunks_exact(own)))
+            {
+                out[first..].iter_mut().zip(start).for_each(|(out, start)| *out += by * start);
+            }
+        }
+        out
     }
 
     fn add_stuck(&self, drive: &Drive<'_>, value: &mut [f64], out: &mut [f64]) {
         let harmonics = drive.harmonics();
-        let (slots, width) = (harmonics.slots(), drive.columns());
+        let (slots, width) = (harmonics.slots(), self.columns);
         let weight = 2.0 / harmonics.span();
         let mut bounds = Bounds::new(harmonics);
         let mut integral = vec![0.0; slots];
@@ -141,13 +176,60 @@ impl Cycle {
             for (row, value) in value.iter_mut().enumerate() {
                 *value += integral[row % slots] * slider[row / slots];
             }
-            if rate.is_empty() {
+            if out.is_empty() {
                 continue;
             }
             for (row, out) in out.chunks_exact_mut(width).enumerate() {
                 let integral = integral[row % slots];
                 let rate = &rate[row / slots * width..];
                 out.iter_mut().zip(rate).for_each(|(out, rate)| *out += integral * rate);
+            }
+        }
+    }
+
+    /// The traction M e of slip in the plane, by the quadrature of its panels.
+    fn add_turning(&self, drive: &Drive<'_>, value: &mut [f64], out: &mut [f64]) {
+        let slots = drive.harmonics().slots();
+        let (width, varies) = (self.columns, drive.pressing.is_some());
+        let weight = 2.0 / drive.harmonics().span();
+        let mut sum = Block::zeros(2 * slots, width);
+        let mut by_limit = Block::zeros(2 * slots, drive.limit_columns());
+        let mut any = false;
+        for stretch in &self.stretches {
+            let State::Turning(panel) = &stretch.state else { continue };
+            let mut across = Block::zeros(2 * slots, NODES);
+            let mut along = Block::zeros(2 * slots, NODES);
+            let mut limits = Block::zeros(NODES, drive.limit_columns());
+            for (n, own) in panel.weights().into_iter().enumerate() {
+                let (sin, cos) = panel.angle[n].sin_cos();
+                let limit = panel.limit[n];
+                let basis = &panel.basis[n * slots..(n + 1) * slots];
+                for (k, b) in basis.iter().enumerate() {
+                    let b = weight * own * b;
+                    value[k] -= b * limit * cos;
+                    value[slots + k] -= b * limit * sin;
+                    across[(k, n)] = -b * limit * sin;
+                    across[(slots + k, n)] = b * limit * cos;
+                    along[(k, n)] = b * cos;
+                    along[(slots + k, n)] = b * sin;
+                }
+                if varies {
+                    limits.row_mut(n)[..slots].copy_from_slice(basis);
+                } else {
+                    limits[(n, 0)] = 1.0;
+                }
+            }
+            if !out.is_empty() {
+                any = true;
+                sum.subtract_product(&across, &panel.rate);
+                by_limit.subtract_product(&along, &limits);
+            }
+        }
+        if any {
+            for (row, out) in out.chunks_exact_mut(width).enumerate() {
+                out.iter_mut().zip(sum.row(row)).for_each(|(out, sum)| *out += sum);
+                let limit = out[2 * slots..].iter_mut();
+                limit.zip(by_limit.row(row)).for_each(|(out, sum)| *out += sum);
             }
         }
     }
@@ -173,6 +255,10 @@ impl Cycle {
                 (traction, [0.0; 2])
             }
             State::Along(sign) => ([sign * limit, 0.0], [*sign, 0.0]),
+            State::Turning(panel) => {
+                let direction = panel.direction(theta);
+                (direction.map(|e| limit * e), direction)
+            }
         }
     }
 
@@ -217,6 +303,12 @@ impl Cycle {
         }
         if self.has(|state| matches!(state, State::Along(_))) {
             tangential[0].dissipation = (self.work_along(drive) / stiffness).max(0.0);
+        }
+        for stretch in &self.stretches {
+            if let State::Turning(panel) = &stretch.state {
+                let work = panel.work().map(|work| work / stiffness * TAU / span);
+                tangential.iter_mut().zip(work).for_each(|(own, work)| own.dissipation += work);
+            }
         }
         PointSummary { slip_fraction: open, dissipation: 0.0 }
     }

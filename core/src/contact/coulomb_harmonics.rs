@@ -7,8 +7,8 @@
 use super::coulomb_constant::Constant;
 use super::coulomb_cycle::{Cycle, Response};
 use super::coulomb_drive::Drive;
-use super::coulomb_play;
 use super::law::HarmonicForce;
+use super::{coulomb_period, coulomb_play};
 use super::{Closure, ContactLaw as _, Coulomb};
 use super::{Motion, Phase, PointSummary, SlipLoad};
 use std::f64::consts::TAU;
@@ -20,8 +20,11 @@ impl Coulomb {
     }
 
     fn cycle(&self, drive: &Drive<'_>, motion: Motion<'_>, rates: bool) -> Cycle {
-        let rest = self.slider().map(|w| self.tangential_stiffness * w);
-        coulomb_play::cycle(drive, motion.residual, rest[0], rates)
+        if self.directions == 2 {
+            return coulomb_period::cycle(self, drive, motion.residual, rates);
+        }
+        let rest = self.tangential_stiffness * self.slider()[0];
+        coulomb_play::cycle(drive, motion.residual, rest, rates)
     }
 
     /// Writes the slip load of a cycle.
@@ -126,7 +129,7 @@ impl HarmonicForce for Coulomb {
             return constant.slip_load(tangent, out);
         }
         let drive = Drive::new(self, motion, self.varies());
-        let cycle = self.cycle(&drive, motion, true);
+        let cycle = self.cycle(&drive, motion, tangent);
         self.write(&drive, &cycle.response(&drive, tangent), out);
     }
 

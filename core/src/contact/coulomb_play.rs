@@ -97,10 +97,11 @@ pub(super) fn cycle(drive: &Drive<'_>, residual: Residual, rest: f64, rates: boo
     let span = drive.harmonics().span();
     let closed = drive.closed();
     if let Closed::Never = closed {
-        return Cycle::new(vec![Stretch { start: 0.0, end: span, state: State::Open }]);
+        let state = State::Open;
+        return Cycle::new(vec![Stretch { start: 0.0, end: span, state }], drive.columns());
     }
     let walls = [Wall::new(drive, 1.0), Wall::new(drive, -1.0)];
-    let mut play = Play { drive, walls, rates, cycle: Cycle::new(Vec::new()) };
+    let mut play = Play { drive, walls, rates, cycle: Cycle::new(Vec::new(), drive.columns()) };
     match closed {
         Closed::During(windows) => {
             for (index, [start, end]) in windows.iter().enumerate() {
@@ -118,6 +119,8 @@ pub(super) fn cycle(drive: &Drive<'_>, residual: Residual, rest: f64, rates: boo
                 let (start, anchor) = (lower.theta, Anchor::Turn(1.0, lower.theta));
                 play.follow(start, start + span, lower.value, anchor);
             } else {
+                // Whether it depends on the motion is always told.
+                play.rates = true;
                 let state = play.held(residual, rest, lower, upper);
                 play.push(0.0, span, state);
             }

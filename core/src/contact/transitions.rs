@@ -138,7 +138,7 @@ impl March<'_> {
 
 /// Zero of a function that falls from its first to its second angle, with its slope: Newton's
 /// method kept inside the bracket.
-fn root([mut low, mut high]: [f64; 2], of: &dyn Fn(f64) -> [f64; 2]) -> f64 {
+pub(super) fn root([mut low, mut high]: [f64; 2], of: &dyn Fn(f64) -> [f64; 2]) -> f64 {
     let mut theta = 0.5 * (low + high);
     for _ in 0..STEPS {
         let [value, slope] = of(theta);

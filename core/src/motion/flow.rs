@@ -288,19 +288,12 @@ impl<'a> Flow<'a> {
             };
         }
         let force = self.series.force(point);
-        let (limit, size) = match friction {
-            None => (constant, constant),
-            Some((friction, normal)) => (
-                constant + friction * self.series.force(normal)[0],
-                friction * self.normal_size(normal),
-            ),
-        };
-        let mut scale = 1.0;
-        let mut reach = 0.0;
-        for (power, f) in force.iter().enumerate().skip(1) {
-            scale *= length;
-            let moves = friction.map_or(0.0, |(mu, at)| mu * self.series.force(at)[power].abs());
-            reach += (f.abs() + moves) * scale;
+        let (mut limit, mut size, mut reach) = (constant, constant, reach_of(force, length));
+        if let Some((friction, normal)) = friction {
+            let pressing = self.series.force(normal);
+            limit += friction * pressing[0];
+            reach += friction * reach_of(pressing, length);
+            size = friction * self.normal_size(normal);
         }
         if reach < limit - force[0].abs() {
             return Next::Stay;
@@ -407,6 +400,16 @@ impl<'a> Flow<'a> {
         rescale(a, share);
         first_zero(a).map(|x| x * share)
     }
+}
+
+/// Most that a polynomial can move away from its start over a length.
+fn reach_of(a: &[f64], length: f64) -> f64 {
+    let (mut scale, mut reach) = (1.0, 0.0);
+    for a in &a[1..] {
+        scale *= length;
+        reach += a.abs() * scale;
+    }
+    reach
 }
 
 /// `Σ a_n (length x)ⁿ`.

@@ -59,6 +59,17 @@ impl<'a> RungeKutta<'a> {
         self.step
     }
 
+    /// Gives a state the forces of laws that have them from the displacements.
+    pub fn settle(&mut self, state: &mut State) {
+        let modes = self.system.modes();
+        for (point, u) in self.reference.iter_mut().enumerate() {
+            *u = dot(self.system.contact_shape(point), &state.displacement);
+        }
+        self.trial[..modes].copy_from_slice(&state.displacement);
+        self.forces(state);
+        state.force.copy_from_slice(&self.force);
+    }
+
     /// Takes the step of number `index` in the period.
     pub fn advance(&mut self, state: &mut State, index: usize) {
         let modes = self.system.modes();

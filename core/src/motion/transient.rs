@@ -49,7 +49,9 @@ pub fn transient(
     let mut integrator = match settings.scheme {
         Scheme::Exact => Integrator::Exact(Flow::new(&system, settings.omega).watched(&ended)),
         Scheme::RungeKutta(steps) => {
-            Integrator::RungeKutta(RungeKutta::new(&system, settings.omega, steps))
+            let mut scheme = RungeKutta::new(&system, settings.omega, steps);
+            scheme.settle(&mut state);
+            Integrator::RungeKutta(scheme)
         }
     };
     let coordinates = Transition::new(&system, settings.omega);

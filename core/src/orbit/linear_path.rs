@@ -8,17 +8,21 @@ use std::f64::consts::TAU;
 
 /// Instants between which a change of state is looked for, beside the turning points.
 const INSTANTS: usize = 128;
-/// Angle that shows what a law does at an instant.
-const SHORT: f64 = 1e-7;
+/// Angle that shows what a law does at an instant. About a turning point a shorter one would show
+/// rounding.
+const SHORT: f64 = 1e-8;
 /// Angle to which an event is located.
-const LOCATED: f64 = 1e-11;
+const LOCATED: f64 = 1e-10;
+/// Distance of an event from a turning point, which is known exactly, at which it is the same.
+const AT_TURN: f64 = 1e-6;
 /// Share of a change that one half of an interval has if the change is a jump: of one that is smooth
 /// each has about a half.
 const JUMP: f64 = 0.8;
 /// Change of a derivative, relative to the largest, that counts.
 const CHANGE: f64 = 1e-6;
-/// Distance from an event, as a share of the way to the next, at which a law is asked: on its own side.
-const ASIDE: f64 = 1e-8;
+/// Distance from an event at which a law is asked, on its own side: as a share of the way to the next,
+/// at least, and at most.
+const ASIDE: [f64; 3] = [1e-6, 4.0 * SHORT, 0.25];
 /// Rounds until a state has to repeat.
 const MOST_ROUNDS: usize = 200;
 /// Change of a state over a round, relative to the largest, that counts as none.
@@ -79,7 +83,8 @@ impl PartPath {
     pub(super) fn new(part: &Part, u: &Displacements<'_>) -> Option<Self> {
         let mut angles: Vec<f64> =
             (0..INSTANTS).map(|n| TAU * n as f64 / INSTANTS as f64).collect();
-        angles.extend(u.turns(part));
+        let turns = u.turns(part);
+        angles.extend(&turns);
         angles.sort_by(f64::total_cmp);
         angles.push(TAU);
         angles.dedup_by(|b, a| *b - *a < SHORT);
@@ -99,7 +104,11 @@ impl PartPath {
         for pair in known.windows(2) {
             search.between(&pair[0], &pair[1]);
         }
-        Some(Self { start, events: search.events, linear })
+        let nearest = |event: f64| {
+            turns.iter().copied().find(|turn| (turn - event).abs() < AT_TURN).unwrap_or(event)
+        };
+        let events = search.events.iter().map(|event| nearest(*event)).collect();
+        Some(Self { start, events, linear })
     }
 }
 
@@ -217,6 +226,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 
 /// Angles inside a stretch, beside the events at its ends.
 pub(super) fn inside(start: f64, end: f64, theta: f64) -> f64 {
-    let aside = ASIDE * (end - start);
+    let length = end - start;
+    let aside = (ASIDE[0] * length).max(ASIDE[1]).min(ASIDE[2] * length);
     theta.clamp(start + aside, end - aside)
 }

@@ -1,5 +1,6 @@
 //! Exact orbits for a harmonic balance: a start where Newton's method fails, and the answer where
-//! more harmonics would cost more. A passive system always has one.
+//! more harmonics would cost more. A passive system always has one. Where laws are not monotone there
+//! may be others beside the one that the balance is about to find: they are left to it.
 
 use super::periodic::PeriodicOrbits;
 use super::settings::OrbitSettings;
@@ -47,6 +48,9 @@ impl<'a> OrbitInitialGuess<'a> {
     fn with<T>(&self, work: impl FnOnce(&mut PeriodicOrbits<'a>) -> Option<T>) -> Option<T> {
         let mut prepared = self.orbits.borrow_mut();
         let orbits = prepared.get_or_insert_with(|| {
+            if !self.model.laws().iter().all(|law| law.is_monotone()) {
+                return None;
+            }
             let settings = OrbitSettings { residual: self.residual, ..OrbitSettings::default() };
             let orbits = PeriodicOrbits::new(self.model, settings, self.observe).ok()?;
             let steps = orbits.steps_for(PATIENCE);

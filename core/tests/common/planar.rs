@@ -90,10 +90,10 @@ impl Planar {
             let rate = |t: f64, y: &[f64]| -> Vec<f64> {
                 let mut sliders = sliders.clone();
                 let mut force = self.contact_forces(y, &mut sliders);
-                for i in 0..n {
-                    for j in 0..n {
-                        force[i] += self.stiffness[(i, j)] * y[j] + self.damping[(i, j)] * y[n + j];
-                    }
+                for (i, force) in force.iter_mut().enumerate() {
+                    let own =
+                        |j: usize| self.stiffness[(i, j)] * y[j] + self.damping[(i, j)] * y[n + j];
+                    *force += (0..n).map(own).sum::<f64>();
                 }
                 for &(dof, harmonic, amplitude, phase) in &self.loads {
                     force[dof] -= amplitude * (harmonic as f64 * omega * t + phase).cos();

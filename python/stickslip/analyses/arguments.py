@@ -117,7 +117,7 @@ def require_forced(model: Model, settings: HarmonicSettings) -> None:
             )
 
 
-def require_held(model: Model, residual: Residual) -> None:
+def require_held(model: Model, residual: Residual | None) -> None:
     """Refuse a static load that nothing, or only contacts of prescribed mean force, would hold.
 
     Refused as well is a residual force where no contact could hold it: dampers of several points
@@ -150,7 +150,8 @@ def require_held(model: Model, residual: Residual) -> None:
     load = np.zeros(len(model.structure))
     for _, force in static:
         load[model.structure.index(force.dof)] += force.amplitude
-    prescribed = bool(model.contacts) and residual != "from_rest" and bool(load.any())
+    friction = any(contact.slips for contact in model.contacts)
+    prescribed = friction and residual != "from_rest" and bool(load.any())
     _, _, stiffness = model.matrices_at(0)
     if prescribed and not _holds(stiffness.real, load):
         raise ModelError(

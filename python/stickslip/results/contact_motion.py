@@ -18,7 +18,7 @@ from stickslip.results.peaks import Peaks
 if TYPE_CHECKING:
     from stickslip import _core
 
-    _Evaluation: TypeAlias = tuple[_core.Problem, int, Complex, str | float, int | None]
+    _Evaluation: TypeAlias = tuple[_core.Problem, int, Complex, str | float | None, int | None]
 
 
 _INSTANTS = 4096

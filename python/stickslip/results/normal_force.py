@@ -22,7 +22,7 @@ from stickslip.results.fields import Float
 
 _FACETS = 8
 """Planes around a cone at the beginning."""
-_OUTSIDE = 1e-11
+_OUTSIDE = 1e-9
 """Distance from a cone, relative to the largest force, that is none."""
 _MOST_CUTS = 100
 

@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from stickslip.errors import ModelError
+from stickslip.model import Model
 from stickslip.settings.entries import (
     ONE_OF,
     Count,
@@ -55,13 +56,21 @@ class PointSettings(Settings):
 class SteadySettings(PointSettings):
     """What a steady state leaves open."""
 
-    residual: Residual = Field(
-        default="centred",
+    residual: Residual | None = Field(
+        default=None,
         description="Force [N] that a contact holds at mid-range of its displacement if it never "
-        "slips; the steady state alone does not determine it. See "
-        "`ForcedResponse.residual_bounds`.",
+        'slips; the steady state alone does not determine it. "centred" is none, "from_rest" what '
+        "is left of loads raised slowly from nothing. Default: centred, and from rest as soon as a "
+        "static load acts. See `ForcedResponse.residual_bounds`.",
         examples=["from_rest", "10 N"],
     )
+
+    def suited(self, model: Model) -> Self:
+        """Return the settings with what the loads decide."""
+        if self.residual is not None:
+            return self
+        static = any(force.harmonic == 0 and force.amplitude for force in model.forces)
+        return self.model_copy(update={"residual": "from_rest" if static else "centred"})
 
 
 class HarmonicSettings(SteadySettings):

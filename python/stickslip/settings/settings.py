@@ -16,7 +16,7 @@ from stickslip import numpydoc
 from stickslip.calls import misfit
 from stickslip.checks import brief
 from stickslip.errors import CallError, ModelError
-from stickslip.model.model import require_model
+from stickslip.model.model import Model, require_model
 from stickslip.settings.entries import CALL, Table
 from stickslip.settings.ranges import Or
 from stickslip.settings.refusal import refusal
@@ -44,6 +44,10 @@ class Settings(Table):
         if cls.model_fields and not known:
             raise KeyError("settings")
         return cls.of(**known)
+
+    def suited(self, model: Model) -> Self:
+        """Return the settings with what a model decides, where they leave it to it."""
+        return self
 
     def part(self, kind: type[Settings]) -> dict[str, Any]:
         """Return the values of those keys that other settings have as well."""
@@ -114,8 +118,10 @@ def configured(
 
         @wraps(function)
         def call(*args: Any, **keywords: Any) -> _Result:
-            if isinstance(keywords.get("settings"), kind):
-                return function(*args, **keywords)
+            known = keywords.get("settings")
+            if isinstance(known, kind):
+                suited = known.suited(args[0]) if isinstance(args[0], Model) else known
+                return function(*args, **keywords | {"settings": suited})
             try:
                 given = signature.bind(*args, **keywords).arguments
             except TypeError:
@@ -124,7 +130,9 @@ def configured(
                 if name in given:
                     check(given[name])
             settings = kind.of(**{name: given.pop(name) for name in keys if name in given})
-            return function(**given, settings=settings)
+            first = next(iter(given.values()))
+            suited = settings.suited(first) if isinstance(first, Model) else settings
+            return function(**given, settings=suited)
 
         call.__signature__ = signature  # type: ignore[attr-defined]
         call.__settings__ = kind  # type: ignore[attr-defined]

@@ -1,0 +1,183 @@
+"""Curves of several solutions: folds, jumps and stability, against independent computation."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import stickslip as ss
+from stickslip.model.state import State
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from sprung import Balance, Sprung, chain, duffing, stopped
+
+CASES = {
+    "hardening": (duffing(1.0), (0.3, 4.0), 25, 2),
+    "softening": (duffing(-0.05, load=0.12, damping=0.05), (1.5, 0.5), 15, 2),
+    "stop": (stopped(), (0.5, 2.5), 25, 2),
+    "interference": (stopped(gap=-0.2, load=0.6), (6.0, 2.0), 25, None),
+    "chain hardening": (chain([("cubic", (1, None), 2.0)]), (0.4, 2.6), 15, None),
+    "chain softening": (
+        chain([("cubic", (0, 1), -0.3)], (0.25, 0.0, 0.0)),
+        (1.4, 0.4),
+        11,
+        None,
+    ),
+    "chain stop": (chain([("stop", (2, None), 6.0, 0.8)]), (0.5, 1.6), 25, None),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_folds_are_those_of_a_fine_continuation(name):
+    system, (start, stop), harmonics, count = CASES[name]
+    expected, _ = Balance(system, harmonics).folds(start, stop)
+    frf = ss.forced_response(system.model(), (start, stop), harmonics, stability=False)
+    assert frf.converged.all()
+    assert frf.folds.size == len(expected) == (count if count is not None else len(expected))
+    assert frf.omega[-1] == stop or frf.omega[-1] == start
+    balance = Balance(system, harmonics)
+    for at, z in zip(frf.folds, expected, strict=True):
+        assert frf.omega[at] == pytest.approx(z[-1], rel=1e-4)
+        for dof, named in enumerate(frf.dofs):
+            amplitude = balance.amplitude(z, dof)
+            assert frf.amplitude(named)[at] == pytest.approx(amplitude, rel=1e-4)
+
+
+def test_single_harmonic_folds_of_duffing_are_those_of_the_closed_form():
+    alpha, load, damping = 1.0, 1.0, 0.1
+
+    def square(a, side):
+        k = 1.0 + 0.75 * alpha * a**2
+        root = (load / a) ** 2 - damping**2 * k + 0.25 * damping**4
+        return k - 0.5 * damping**2 + side * np.sqrt(root)
+
+    def slope(a, side):
+        return square(a + 1e-6, side) - square(a - 1e-6, side)
+
+    frf = ss.forced_response(duffing(alpha).model(), (0.3, 4.0), 1)
+    upper, lower = frf.folds
+    # Upper fold on the falling side of the resonance near its top, lower one on the same side.
+    for at, guess in ((upper, 3.3), (lower, 0.87)):
+        a = brentq(slope, 0.99 * guess, 1.012 * guess if guess < 1 else 1.0003 * guess, args=(1.0,))
+        assert frf.amplitude("x0")[at] == pytest.approx(a, rel=1e-5)
+        assert frf.omega[at] == pytest.approx(np.sqrt(square(a, 1.0)), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["hardening", "softening", "stop"])
+def test_sweeps_jump_at_the_folds_in_their_direction(name):
+    system, span, harmonics, _ = CASES[name]
+    model = system.model()
+    curve = ss.forced_response(model, span, harmonics, stability=False)
+    low, high = sorted(curve.omega[curve.folds])
+    grid = np.linspace(*sorted(span), 120)
+    for omega, expected in ((grid, high), (grid[::-1], low)):
+        sweep = ss.forced_response(model, omega, harmonics)
+        (jump,) = sweep.jumps
+        before, after = sweep.omega[jump - 1], sweep.omega[jump]
+        assert min(before, after) <= expected <= max(before, after)
+        (told,) = [one for one in sweep.diagnostics if one.code == "jump"]
+        assert ("upward" if omega[0] < omega[1] else "downward") in told.text
+        assert (sweep.stability == "stable").sum() > 0.9 * sweep.omega.size
+
+
+def state_of(model, frf, index):
+    orders = np.arange(frf.coefficients("x0").shape[1])
+    series = np.stack([frf.coefficients(dof)[index] for dof in frf.dofs])
+    x = series.sum(axis=1).real
+    v = (1j * orders * frf.omega[index] * series).sum(axis=1).real
+    force = np.concatenate([frf.contact_force(n, index, 4)[0] for n in range(len(model.contacts))])
+    return np.concatenate([x, v, force])
+
+
+def drift(model, frf, index, periods, steps=400):
+    """Return how far a push has grown at most, and at the end, over some periods of Runge-Kutta."""
+    start = state_of(model, frf, index)
+    pushed = start.copy()
+    size = np.abs(start[: len(frf.dofs)]).max()
+    pushed[: len(frf.dofs)] += 1e-4 * size * np.cos(1.0 + np.arange(len(frf.dofs)))
+    runs = [
+        ss.transient(
+            model,
+            omega=float(frf.omega[index]),
+            periods=periods,
+            scheme="rk4",
+            steps=steps,
+            samples=16,
+            keep=1,
+            start=State.of_vector(model, values),
+        )
+        for values in (start, pushed)
+    ]
+    ends = [run.arrays.poincare[:, : 2 * len(frf.dofs)] for run in runs]
+    weights = np.repeat([1.0, 1.0 / frf.omega[index]], len(frf.dofs))
+    apart = np.linalg.norm((ends[1] - ends[0]) * weights, axis=1)
+    return apart.max() / apart[0], apart[-1] / apart[0]
+
+
+@pytest.mark.parametrize("name", ["hardening", "softening", "stop"])
+def test_stable_motions_stay_and_unstable_ones_are_left(name):
+    system, span, _, _ = CASES[name]
+    model = system.model()
+    frf = ss.forced_response(model, span, tolerance=1e-4)
+    first, last = sorted(frf.folds)
+    assert (frf.stability[first + 1 : last] == "unstable").all()
+    around = [at for fold in (first, last) for at in (fold - 1, fold + 1)]
+    chosen = np.linspace(2, frf.omega.size - 3, 14).astype(int)
+    for at in chosen:
+        if at in around or at in frf.folds:
+            continue
+        most, left = drift(model, frf, at, 60)
+        assert left < 0.5 if frf.stable[at] else most > 1.5, (at, most, left)
+
+
+def random_system(rng):
+    size = int(rng.integers(1, 7))
+    springs = rng.uniform(0.5, 3.0, size)
+    stiffness = np.diag(springs + np.append(springs[1:], 0.0))
+    stiffness -= np.diag(springs[1:], 1) + np.diag(springs[1:], -1)
+    mass = np.diag(rng.uniform(0.5, 2.0, size))
+    damping = rng.uniform(0.01, 0.04) * stiffness + rng.uniform(0.0, 0.05) * mass
+    load = np.zeros(size)
+    load[rng.integers(size)] = rng.uniform(0.1, 1.0)
+    found = []
+    for _ in range(int(rng.integers(1, 4))):
+        one = int(rng.integers(size))
+        other = None if one == 0 or rng.random() < 0.5 else one - 1
+        if rng.random() < 0.5:
+            found.append(("stop", (one, other), rng.uniform(1.0, 10.0), rng.uniform(-0.1, 0.8)))
+        else:
+            found.append(("cubic", (one, other), rng.uniform(-0.02, 1.0)))
+    return Sprung(mass, damping, stiffness, load, found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(24))
+def test_random_systems_are_followed_and_judged(seed):
+    rng = np.random.default_rng(seed)
+    system = random_system(rng)
+    model = system.model()
+    frf = ss.forced_response(model, (0.3, 2.5), 21)
+    assert frf.arrays.solved.all()
+    ended = [one for one in frf.diagnostics if one.code == "branch-end"]
+    assert ended or frf.omega[-1] == 2.5
+    assert not ended, ended[0].text
+    balance = Balance(system, 21)
+    for at in np.linspace(0, frf.omega.size - 1, 12).astype(int):
+        z = balance.of_response(frf, at)
+        assert np.linalg.norm(balance.residual(z, slope=False)) < 1e-5 * np.linalg.norm(system.load)
+    known, doubtful = 0, 0
+    for at in rng.choice(frf.omega.size, 5, replace=False):
+        if frf.stable[at] is None:
+            doubtful += 1
+            continue
+        most, left = drift(model, frf, int(at), 30, steps=300)
+        if left > 0.5 and most < 20.0:
+            doubtful += 1
+            continue
+        known += 1
+        assert frf.stable[at] == (left < 0.5 and most < 20.0), (seed, at, most, left)
+    assert known >= doubtful

@@ -1,0 +1,114 @@
+"""Structures at rest: with the history of friction, and what Coulomb leaves open."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.results.status import RestStatus
+
+
+def wedge(friction: float, load: float = 240.0, angle: float = 40.0) -> ss.Model:
+    """Return a wedge between fixed faces, held by its contacts alone."""
+    a = np.deg2rad(angle)
+    faces = [
+        ss.Coulomb(
+            ["x", "y"],
+            normal=[side * np.sin(a), np.cos(a)],
+            friction=friction,
+            tangential_stiffness=3e5,
+            normal_stiffness=3e5,
+            name=name,
+        )
+        for name, side in (("left", -1.0), ("right", 1.0))
+    ]
+    body = ss.Structure(0.1 * np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), ["x", "y"])
+    return ss.Model(body, faces, [ss.Force("y", load, harmonic=0)])
+
+
+def test_wedge_statics_and_their_range():
+    at_rest = ss.static_response(wedge(0.6))
+    assert at_rest.status == RestStatus.CONVERGED
+    least, greatest = at_rest.normal_force_range("left")
+    assert least == pytest.approx(104.19226170, abs=1e-8)
+    assert greatest == pytest.approx(315.48073651, abs=1e-8)
+    # A wedge pressed in for the first time moves in.
+    assert at_rest.contact_force("left")[1] == pytest.approx(least, rel=1e-9)
+    alone = at_rest.normal_force_range("left", alone=True)
+    assert alone[0] < least
+    assert alone[1] >= greatest - 1e-9
+    assert ss.static_response(wedge(0.0)).normal_force_range("right") == pytest.approx(
+        (156.64887472, 156.64887472), abs=1e-8
+    )
+
+
+def test_wedge_that_locks():
+    least, greatest = ss.static_response(wedge(1.2)).normal_force_range("right")
+    assert greatest == np.inf
+    a = np.deg2rad(40.0)
+    assert least == pytest.approx(120.0 / (np.cos(a) + 1.2 * np.sin(a)), rel=1e-9)
+
+
+def test_range_in_space_agrees_with_the_plane():
+    """A node between two springs, pushed in a direction of the plane that is no axis."""
+    for turn in (0.0, 0.3, 1.1):
+        u = np.array([np.cos(turn), np.sin(turn), 0.0])
+        # Pulling along u presses the node: the structure couples the two.
+        stiffness = 1e4 * np.eye(3) - 4e3 * (np.outer(u, [0, 0, 1]) + np.outer([0, 0, 1], u))
+        body = ss.Structure(np.eye(3), stiffness, np.zeros((3, 3)), ["x", "y", "z"])
+        pad = ss.Coulomb(
+            ["x", "y", "z"],
+            normal=[0, 0, 1],
+            friction=0.5,
+            tangential_stiffness=2e4,
+            normal_stiffness=3e4,
+        )
+        forces = [ss.Force("z", 100.0, harmonic=0)]
+        found = ss.static_response(ss.Model(body, [pad], forces)).normal_force_range(0)
+        flat = ss.Structure(
+            np.eye(2), np.array([[1e4, -4e3], [-4e3, 1e4]]), np.zeros((2, 2)), ["t", "z"]
+        )
+        line = ss.Coulomb(
+            ["t", "z"],
+            normal=[0, 1],
+            friction=0.5,
+            tangential_stiffness=2e4,
+            normal_stiffness=3e4,
+        )
+        expected = ss.static_response(ss.Model(flat, [line], forces)).normal_force_range(0)
+        assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_body_that_comes_free_says_so():
+    pulled = ss.static_response(wedge(0.6, load=-1.0))
+    assert pulled.status == RestStatus.FREE
+    assert pulled.share < 1e-6
+    with pytest.raises(ss.ModelError, match="loading ended as free"):
+        pulled.normal_force_range("left")
+
+
+def test_motions_begin_with_the_history_of_static_loads():
+    body = ss.Structure(np.eye(2), np.diag([4e4, 9e4]), np.diag([8.0, 10.0]), ["t", "n"])
+    pad = ss.Coulomb(
+        ["t", "n"], normal=[0, 1], friction=0.4, tangential_stiffness=5e4, normal_stiffness=8e4
+    )
+    forces = [ss.Force("n", 200.0, harmonic=0), ss.Force("t", 1e-6)]
+    model = ss.Model(body, [pad], [*forces, ss.Force("t", 30.0, harmonic=0)])
+    at_rest = ss.static_response(model)
+    moving = ss.forced_response(model, [50.0], harmonics=3)
+    assert moving.settings.residual == "from_rest"
+    assert moving.coefficients("t")[0, 0].real == pytest.approx(at_rest.displacement("t"), rel=1e-6)
+    np.testing.assert_allclose(
+        moving.contact_force(0, 0, 16).mean(axis=0), at_rest.contact_force(0), rtol=1e-6
+    )
+    assert ss.forced_response(ss.Model(body, [pad], forces[1:]), [50.0]).settings.residual == (
+        "centred"
+    )
+
+
+def test_files_and_pictures(tmp_path):
+    result = ss.static_response(wedge(0.6))
+    result.save(tmp_path / "rest.nc")
+    again = ss.load(tmp_path / "rest.nc")
+    np.testing.assert_array_equal(again.contact_force("left"), result.contact_force("left"))
+    heights = sorted(bar.get_height() for bar in result.plot().patches)
+    assert heights[0] == pytest.approx(heights[-1])
