@@ -69,8 +69,9 @@ def test_frames_do_not_matter(response, turn):
     force, straight = turned.contact_force(0, 1), response.contact_force(0, 1)
     inside = force @ turned.model.contacts[0].frame @ rotation(turn)
     np.testing.assert_allclose(inside, straight, atol=1e-8 * np.abs(straight).max())
+    # Instants are located to the accuracy of the slip equation, which forces do not feel.
     np.testing.assert_allclose(
-        turned.slip_fraction("coulomb"), response.slip_fraction("coulomb"), rtol=1e-8
+        turned.slip_fraction("coulomb"), response.slip_fraction("coulomb"), rtol=1e-6
     )
 
 
