@@ -56,6 +56,8 @@ class Events(Sequence[Event]):
     @classmethod
     def of(cls, model: Model, time: Float, number: Int, code: NDArray[np.uint8]) -> Events:
         """Return the events of nodes by those of their displacements, which change together."""
+        if not any(contact.components for contact in model.contacts):
+            return cls(model, time, number, code)
         starts = np.cumsum([0] + [contact.displacements for contact in model.contacts])
         first = [
             start + place // width * width
