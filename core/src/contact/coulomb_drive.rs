@@ -102,7 +102,7 @@ impl<'a> Drive<'a> {
         // Without a number in it nothing opens: the caller sees it diverge.
         if series[0] <= -swing {
             return Closed::Never;
-        } else if !(series[0] < swing) {
+        } else if series[0] >= swing || series[0].is_nan() || swing.is_nan() {
             return Closed::Always;
         }
         let mut turns = Vec::new();

@@ -129,7 +129,7 @@ impl Period<'_> {
                 if slipped && !slips {
                     found = Some((n, [0, 1].map(|i| pull(n)[i] - traction[i])));
                 }
-                slipped = slips || (slipped && found.is_some() && slips);
+                slipped = slips;
                 if slips && found.is_none() {
                     found = Some((count, [0.0; 2]));
                 }
@@ -175,7 +175,7 @@ impl Period<'_> {
             slider.rate.iter_mut().for_each(|rate| *rate *= self.mirror());
             let residual = [after[0] - position[0], after[1] - position[1]];
             let (inverse, determinant) = fixed_point(&slider.rate, width);
-            if !(determinant > least) {
+            if determinant.is_nan() || determinant <= least {
                 return None;
             }
             let by = inverse.map(|row| row[0] * residual[0] + row[1] * residual[1]);

@@ -236,11 +236,11 @@ impl Panel {
             rate: Block::default(),
         };
         let mut factors = BlockFactors::default();
-        let (mut last, mut shrunk) = (f64::INFINITY, 1.0);
+        let (mut last, mut shrunk) = (f64::INFINITY, 1.0_f64);
         for _ in 0..STEPS {
             panel.evaluate();
             // One matrix serves as long as the steps shrink fast.
-            if !(shrunk < SHRINKING) {
+            if shrunk.is_nan() || shrunk >= SHRINKING {
                 factors = panel.factors();
             }
             let mut step: [f64; NODES] = std::array::from_fn(|i| {
@@ -453,7 +453,7 @@ fn crossing(of: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let mut side = 0;
     for _ in 0..60 {
         let middle = (low * below - high * above) / (below - above);
-        if !(high - low > 1e-12) || middle <= low || middle >= high {
+        if high - low <= 1e-12 || middle.is_nan() || middle <= low || middle >= high {
             break;
         }
         let value = of(middle);
