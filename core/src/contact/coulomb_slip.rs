@@ -236,7 +236,7 @@ impl Panel {
             rate: Block::default(),
         };
         let mut factors = BlockFactors::default();
-        let (mut last, mut shrunk) = (f64::INFINITY, 1.0);
+        let (mut last, mut shrunk) = (f64::INFINITY, 1.0_f64);
         for _ in 0..STEPS {
             panel.evaluate();
             // One matrix serves as long as the steps shrink fast.
