@@ -93,7 +93,7 @@ def test_it_is_a_forced_response(exact):
     assert isinstance(exact, ss.ForcedResponse)
     assert exact.coefficients("tip").shape == (40, 33)
     assert exact.harmonics.tolist() == [32] * 40
-    assert exact.settings == ExactSettings()
+    assert exact.settings == ExactSettings(residual="centred")
     assert exact.half_wave
     assert repr(exact).startswith("ExactResponse(40 points from 150 to 250 rad/s (all solved)")
     row = exact.summary("tip")[0]

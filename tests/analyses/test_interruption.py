@@ -87,6 +87,7 @@ def test_interruption_before_the_first_point():
         slip_fraction=np.full((n, 1), np.nan),
         dissipation=np.full((n, 1), np.nan),
         fold=np.zeros(n, np.bool_),
+        jump=np.zeros(n, np.bool_),
         stability=np.full(n, 2, np.uint8),
     )
     frf = replace(ss.forced_response(model, [1.0], 1), arrays=empty, interrupted=True)

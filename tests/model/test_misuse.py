@@ -254,7 +254,7 @@ def run(*changes, tail=""):
             [('"jenkins"', '"dahl"')],
             "",
             "contact 1: unknown law 'dahl'; known: 'jenkins', 'parallel-jenkins', 'structural', "
-            "'coulomb' (slip limits are slip_force of 'jenkins' and slip_forces of "
+            "'coulomb', 'stop', 'cubic' (slip limits are slip_force of 'jenkins' and slip_forces of "
             "'parallel-jenkins' and slip_forces of 'structural')",
         ),
         (

@@ -16,8 +16,9 @@ use crate::Error;
 const UNEXPLAINED: f64 = 0.05;
 /// … and distance, relative to the motion, below which nothing has to be explained.
 const CLOSE: f64 = 1e-5;
-/// Steps along a curve from one frequency to the next.
-const MOST: usize = 400;
+/// Newton iterations along a curve from one frequency to the next: over a longer way, or one with
+/// more corners, a sweep that coarse does not say which branch it is on.
+const MOST: usize = 150;
 /// Distance of two solutions that are the same.
 const SAME: f64 = 1e-6;
 
@@ -77,7 +78,7 @@ fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: Option<&[f64]>, end: 
         return Reached::Lost;
     };
     let (mut before, mut turned) = (from.to_vec(), false);
-    for _ in 0..MOST {
+    while walk.iterations < MOST {
         if !matches!(walk.advance(curve), Advance::Point) {
             return Reached::Lost;
         }

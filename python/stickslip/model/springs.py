@@ -26,6 +26,11 @@ class _Spring(TwoEnds):
         return (float("inf"),)
 
     @property
+    def slider_limits(self) -> tuple[float, ...]:
+        """Nothing sticks or slips."""
+        return ()
+
+    @property
     @abstractmethod
     def _at_rest(self) -> float:
         """Stiffness at rest [N/m]."""
