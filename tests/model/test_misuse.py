@@ -254,8 +254,8 @@ def run(*changes, tail=""):
             [('"jenkins"', '"dahl"')],
             "",
             "contact 1: unknown law 'dahl'; known: 'jenkins', 'parallel-jenkins', 'structural', "
-            "'coulomb', 'stop', 'cubic' (slip limits are slip_force of 'jenkins' and slip_forces of "
-            "'parallel-jenkins' and slip_forces of 'structural')",
+            "'coulomb', 'stop', 'cubic' (slip limits are slip_force of 'jenkins' and "
+            "slip_forces of 'parallel-jenkins' and slip_forces of 'structural')",
         ),
         (
             [('"forced-response"', '"exact-response"')],
