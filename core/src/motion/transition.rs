@@ -34,6 +34,8 @@ struct Onset {
     rate: f64,
     /// Jump of all forces per change of what passes zero.
     jump: Vec<f64>,
+    /// Points of which no force remains.
+    released: Vec<usize>,
 }
 
 impl LinearPhase {
@@ -75,7 +77,7 @@ impl LinearPhase {
                     return;
                 }
                 let onset = Some(if opens {
-                    Onset::of_normal(system, event.point, speed, jumps)
+                    Onset::of_normal(system, event, speed, jumps)
                 } else {
                     Onset::of_slip(system, event, speed, before)
                 });
@@ -114,21 +116,24 @@ impl Onset {
                 _ => 0.0,
             })
             .collect();
-        Self { point, slope, rate, jump }
+        Self { point, slope, rate, jump, released: Vec::new() }
     }
 
     /// The jump where a normal force vanishes or comes back.
     fn of_normal(
         system: &ModalSystem,
-        point: usize,
+        event: &Event,
         speed: &[f64],
         jumps: impl Iterator<Item = f64>,
     ) -> Self {
+        let point = event.point;
         let stiffness = system.normal_stiffness(point);
         let rate = stiffness * speed[point];
         let slope = system.contact_shape(point).iter().map(|b| stiffness * b).collect();
         let jump = jumps.map(|by| if rate == 0.0 { 0.0 } else { by / rate }).collect();
-        Self { point, slope, rate, jump }
+        let opens = event.state == PointState::Open;
+        let released = system.pressed_by(point).filter(|_| opens).collect();
+        Self { point, slope, rate, jump, released }
     }
 }
 
@@ -313,6 +318,13 @@ impl<'a> Transition<'a> {
                 let jump = body.elastic.strains(&onset.jump[body.points.clone()]);
                 for (a, jump) in body.strains.clone().zip(jump) {
                     total[(first + a, column)] += jump * force;
+                }
+            }
+            // The strains of what a normal force presses are those of single points.
+            for point in &onset.released {
+                let row = point - own.points.start;
+                for a in (0..own.elastic.rank()).filter(|a| own.elastic.root()[(row, *a)] != 0.0) {
+                    total[(first + own.strains.start + a, column)] = 0.0;
                 }
             }
         }
