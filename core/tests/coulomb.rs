@@ -419,13 +419,13 @@ fn check_histories(directions: usize, seed: u64) {
         let stiffness = case.law.stiffness()[(0, 0)];
         let pull = stiffness * largest(&case.displacement[..directions * slots]);
         let size = (largest(&series) + pull) * largest(&case.displacement);
-        for i in 0..directions {
+        for (i, point) in summary[..directions].iter().enumerate() {
             let own = i * slots..(i + 1) * slots;
             let expected = work(&series[own.clone()], &case.displacement[own]);
-            let found = summary[i].dissipation;
+            let found = point.dissipation;
             assert!((found - expected).abs() < 1e-9 * size, "{n}: {found} {expected}");
             assert!(found >= 0.0);
-            assert!((0.0..=1.0 + 1e-12).contains(&summary[i].slip_fraction));
+            assert!((0.0..=1.0 + 1e-12).contains(&point.slip_fraction));
         }
         assert!((0.0..=1.0 + 1e-12).contains(&summary[directions].slip_fraction));
         assert_eq!(summary[directions].dissipation, 0.0);

@@ -269,9 +269,9 @@ impl<'a> Loading<'a> {
             }
         }
         let q = slip_load(self.model, level);
-        for i in 0..size {
+        for (i, residual) in residual.iter_mut().enumerate() {
             let response: f64 = (0..size).map(|j| self.receptance[(i, j)] * q[j]).sum();
-            residual[i] = level.u[i] - level.share * self.stuck[i] - response;
+            *residual = level.u[i] - level.share * self.stuck[i] - response;
         }
         if let Some(matrix) = matrix {
             *matrix = Mat::<f64>::identity(size, size) - &self.receptance * slopes;
