@@ -65,6 +65,7 @@ from stickslip.results.limit_cycles import StabilityMap as StabilityMap
 from stickslip.results.mistuning import MistuningStudy as MistuningStudy
 from stickslip.results.motion_class import MotionClass as MotionClass
 from stickslip.results.optimal_damper import OptimalDamper as OptimalDamper
+from stickslip.results.static_response import StaticResponse
 from stickslip.results.store import load as load
 from stickslip.results.transient import Transient as Transient
 from stickslip.settings.variation import Contacts
@@ -105,7 +106,7 @@ def damper_curve(
     common: Literal["value", "factor"] = "value",
     contacts: Contacts | None = None,
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float = "centred",
+    residual: Literal["centred", "from_rest"] | float | None = None,
     harmonics: int | Literal["auto"] = "auto",
     tolerance: float = 0.001,
     max_harmonics: int = 255,
@@ -128,7 +129,7 @@ def exact_response(
     *,
     observe: Iterable[str] | str | None = None,
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float = "centred",
+    residual: Literal["centred", "from_rest"] | float | None = None,
     harmonics: int = 32,
     tolerance: float = 0.001,
     progress: Progress = None,
@@ -141,7 +142,7 @@ def forced_response(
     observe: Iterable[str] | str | None = None,
     stability: bool = True,
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float = "centred",
+    residual: Literal["centred", "from_rest"] | float | None = None,
     tolerance: float = 0.001,
     max_harmonics: int = 255,
     method: Literal["newton", "broyden"] = "newton",
@@ -176,7 +177,7 @@ def mistuning_study(
     *,
     omega: tuple[float, float],
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float = "centred",
+    residual: Literal["centred", "from_rest"] | float | None = None,
     harmonics: int | Literal["auto"] = "auto",
     tolerance: float = 0.001,
     max_harmonics: int = 255,
@@ -197,7 +198,7 @@ def optimal_damper(
     common: Literal["value", "factor"] = "value",
     contacts: Contacts | None = None,
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float = "centred",
+    residual: Literal["centred", "from_rest"] | float | None = None,
     harmonics: int | Literal["auto"] = "auto",
     tolerance: float = 0.001,
     max_harmonics: int = 255,
@@ -239,6 +240,12 @@ def stability_map(
     slip_force: ArrayLike | None = None,
     progress: Progress = None,
 ) -> StabilityMap: ...
+def static_response(
+    model: Model,
+    *,
+    observe: Iterable[str] | str | None = None,
+    progress: Progress = None,
+) -> StaticResponse: ...
 def transient(
     model: Model,
     omega: float,
