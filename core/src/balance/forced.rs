@@ -4,7 +4,7 @@ use super::condensed::{Condensed, Path};
 use super::evaluation::{Evaluated, Evaluations};
 use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
-use super::settings::{Method, Resolution, Settings};
+use super::settings::{resolving, Method, Resolution, Settings};
 use super::solution::{Point, PointStatus};
 use super::statics::with_history;
 use super::unknowns::Unknowns;
@@ -21,6 +21,9 @@ use std::sync::Arc;
 /// Contact displacements over those of the stuck structure at which an undamped resonance counts as
 /// one that friction does not bound.
 const UNBOUNDED: f64 = 1e12;
+
+/// Samples per period by which a motion is tried that exact integrals do not lead to.
+const BLURRED: usize = 512;
 
 /// The harmonic balance of a model under its loads, from point to point.
 pub struct ForcedBalance<'a> {
@@ -188,7 +191,18 @@ impl<'a> ForcedBalance<'a> {
         }
         let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
         self.add_profile(&equations.profile);
+        if solved.status == PointStatus::Stalled && resolution.samples.is_none() && !self.follows()
+        {
+            // Samples blur the edges between states at which an exact law may hold Newton's method up.
+            let samples = Some(resolving(resolution.harmonics).max(BLURRED));
+            return self.solve_with(Resolution { samples, ..resolution }, omega, start);
+        }
         Ok(solved)
+    }
+
+    /// Whether a homotopy leads to the solution: it does where there is one alone.
+    fn follows(&self) -> bool {
+        self.model.is_monotone()
     }
 
     /// A point that was not computed.
@@ -233,7 +247,8 @@ impl<'a> ForcedBalance<'a> {
         let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
         // Where harmonics are chosen an orbit is the answer.
         let answered = orbit && self.control.only_harmonics_climb();
-        if has_failed(&report) && !answered && patient {
+        let follows = samples.is_some() || self.follows();
+        if has_failed(&report) && !answered && patient && follows {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
         }
