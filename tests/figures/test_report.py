@@ -21,6 +21,7 @@ from stickslip.views.tables import tabulated
 
 BEAM = ss.reference.snecma_beam(20.313)
 FLUTTER = ss.destabilised(ss.reference.single_dof(), ss.Rayleigh(mass=-20.0))
+LOAD = ss.Force("tip", 20.0, harmonic=0)
 
 
 def names_of(figure):
@@ -50,6 +51,7 @@ def results():
         "boundary": ss.stability_map(*ss.reference.flutter_mass(), stiffness=[1.2e7, 2.4e7]),
         "settled": ss.classify(FLUTTER, {"mass": 5e-5}),
         "starts": ss.basin_map(FLUTTER, {"mass": [1e-5, 1e-4], 0: [2e-5, 2e-4]}),
+        "rest": ss.static_response(ss.Model(BEAM.structure, BEAM.contacts, [LOAD])),
     }
 
 
