@@ -181,6 +181,28 @@ impl<'a> ForcedBalance<'a> {
         omega: f64,
         start: Option<&Unknowns>,
     ) -> Result<Point, Error> {
+        let solved = self.attempt(resolution, omega, start)?;
+        let held_up = solved.status == PointStatus::Stalled && resolution.samples.is_none();
+        if !held_up || self.follows() {
+            return Ok(solved);
+        }
+        // Samples blur the edges between states at which an exact law may hold Newton's method up.
+        let samples = Some(resolving(resolution.harmonics).max(BLURRED));
+        let blurred = self.attempt(Resolution { samples, ..resolution }, omega, start)?;
+        if !blurred.is_solved() {
+            return Ok(solved);
+        }
+        let sharp = self.attempt(resolution, omega, blurred.unknowns.as_ref())?;
+        Ok(if sharp.is_solved() { sharp } else { blurred })
+    }
+
+    /// The chosen method from a start, and what follows where it fails.
+    fn attempt(
+        &mut self,
+        resolution: Resolution,
+        omega: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Point, Error> {
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
         let interrupted = self.interruption();
@@ -191,12 +213,6 @@ impl<'a> ForcedBalance<'a> {
         }
         let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
         self.add_profile(&equations.profile);
-        if solved.status == PointStatus::Stalled && resolution.samples.is_none() && !self.follows()
-        {
-            // Samples blur the edges between states at which an exact law may hold Newton's method up.
-            let samples = Some(resolving(resolution.harmonics).max(BLURRED));
-            return self.solve_with(Resolution { samples, ..resolution }, omega, start);
-        }
         Ok(solved)
     }
 
