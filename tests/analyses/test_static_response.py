@@ -86,6 +86,67 @@ def test_a_body_that_comes_free_says_so():
         pulled.normal_force_range("left")
 
 
+def test_what_statics_refuses_names_it():
+    at_rest = ss.static_response(wedge(0.6))
+    with pytest.raises(ss.ModelError, match="'up'"):
+        at_rest.normal_force_range("up")
+    with pytest.raises(ss.ModelError, match="point"):
+        at_rest.normal_force_range("left", 1)
+    with pytest.raises(ss.ModelError, match="dof"):
+        at_rest.displacement("z")
+    body = ss.Structure(np.eye(2), 1e4 * np.eye(2), np.zeros((2, 2)), ["x", "y"])
+    away = ss.Coulomb(
+        ["x", "y"],
+        normal=[0, 1],
+        friction=0.3,
+        tangential_stiffness=1e4,
+        normal_stiffness=1e4,
+        gap=1e-3,
+        name="away",
+    )
+    rubs = ss.Jenkins("x", stiffness=1e3, slip_force=1.0)
+    loads = [ss.Force("y", -1.0, harmonic=0)]
+    apart = ss.static_response(ss.Model(body, [away, rubs], loads))
+    with pytest.raises(ss.ModelError, match="node 0 of contact 'away' is open"):
+        apart.normal_force_range("away")
+    with pytest.raises(ss.ModelError, match="'jenkins' has no normal force"):
+        apart.normal_force_range("jenkins")
+    floating = ss.Structure(np.eye(1), np.zeros((1, 1)), np.zeros((1, 1)), ["x"])
+    with pytest.raises(ss.ModelError, match="singular although all contacts stick"):
+        ss.static_response(ss.Model(floating, [], [ss.Force("x", 1.0, harmonic=0)]))
+
+
+def test_statics_of_a_disk_are_those_of_all_its_sectors():
+    body = ss.Structure(np.eye(2), 1e4 * np.eye(2), np.zeros((2, 2)), ["x", "y"])
+    shroud = ss.Coulomb(
+        ["x", "y"],
+        ["next.x", "next.y"],
+        normal=[0.6, 0.8],
+        friction=0.3,
+        tangential_stiffness=1e4,
+        normal_stiffness=1e4,
+        preload=3.0,
+    )
+    disk = ss.BladedDisk(
+        body, sectors=4, contacts=[shroud], forces=[ss.Force("x", 1.0)], engine_order=1
+    )
+    with pytest.raises(ss.ModelError, match=r"ask the whole disk, disk\.mistuned"):
+        ss.static_response(disk).normal_force_range(0)
+    at_rest = ss.static_response(disk.mistuned(np.zeros(4)))
+    low, high = at_rest.normal_force_range(3)
+    assert at_rest.contact_force(3)[1] == 3.0
+    assert low <= 3.0 <= high
+
+
+def test_without_static_loads_nothing_moves():
+    body = ss.Structure(np.eye(1), 1e4 * np.eye(1), np.zeros((1, 1)), ["x"])
+    rubs = ss.Jenkins("x", stiffness=1e3, slip_force=1.0)
+    for contacts in ([], [rubs]):
+        at_rest = ss.static_response(ss.Model(body, contacts, [ss.Force("x", 1.0)]))
+        assert at_rest.status == RestStatus.CONVERGED
+        assert at_rest.displacement("x") == 0.0
+
+
 def test_motions_begin_with_the_history_of_static_loads():
     body = ss.Structure(np.eye(2), np.diag([4e4, 9e4]), np.diag([8.0, 10.0]), ["t", "n"])
     pad = ss.Coulomb(

@@ -4,14 +4,14 @@
 //! What is followed is the branch that begins at the first end of the range. The frequency may turn
 //! back on the way; the curve ends where it leaves the range, at either end.
 
-use super::adaptive::{stops, LONGEST};
 use super::forced::ForcedBalance;
 use super::forced_curve::ForcedCurve;
 use super::keep;
 use super::resolution_control::Decision;
 use super::scale::OF_STEPS;
 use super::settings::Resolution;
-use super::solution::{Point, PointStatus, Solution};
+use super::solution::{CurveEnd, Point, PointStatus, Solution};
+use super::stops::{stops, LONGEST};
 use super::sweep::finish;
 use crate::solve::{across, between, Advance, Branch, Continuation, Curve as _, Steps};
 use crate::Error;
@@ -30,25 +30,8 @@ pub(super) const STEPS: Steps =
 const NEAR: f64 = 0.5;
 /// Shortest step, as a share of the longest, that is refused for the bend of the curve.
 const SHORT: f64 = 1e-4;
-
 /// Distance of points of a curve that are the same.
 const SAME: f64 = 1e-9;
-
-/// How a curve over a range ended.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum CurveEnd {
-    /// At the far end of the range.
-    #[default]
-    Range,
-    /// At the end of the range where it began.
-    Returned,
-    /// No point ahead was found.
-    Stalled,
-    /// As many points as allowed.
-    Points,
-    /// The caller ended the analysis.
-    Interrupted,
-}
 
 /// A curve on its way.
 struct Walk<'a, 'b> {

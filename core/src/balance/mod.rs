@@ -30,11 +30,11 @@ mod settings;
 mod single_harmonic;
 mod solution;
 mod statics;
+mod stops;
 mod sweep;
 mod unknowns;
 
 pub use adaptive::sweep_range;
-pub use branch_sweep::CurveEnd;
 pub use cycle_start::Onset;
 pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
@@ -46,7 +46,7 @@ pub use settings::{
     Evaluation, HarmonicChoice, Method, Resolution, SampleChoice, Settings, HIGHEST_ORDER,
 };
 pub use single_harmonic::single_harmonic;
-pub use solution::{Point, PointStatus, Solution};
+pub use solution::{CurveEnd, Point, PointStatus, Solution};
 pub use statics::{static_response, AtRest, RestStatus};
 pub use sweep::sweep;
 pub(crate) use sweep::{check_bracket, check_frequency, over_frequencies};

@@ -1,6 +1,5 @@
 //! What a forced response returns.
 
-use super::branch_sweep::CurveEnd;
 use super::settings::Resolution;
 use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
@@ -127,6 +126,22 @@ impl Point {
             unknowns: None,
         }
     }
+}
+
+/// How a curve over a range ended.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum CurveEnd {
+    /// At the far end of the range.
+    #[default]
+    Range,
+    /// At the end of the range where it began.
+    Returned,
+    /// No point ahead was found.
+    Stalled,
+    /// As many points as allowed.
+    Points,
+    /// The caller ended the analysis.
+    Interrupted,
 }
 
 /// A whole curve.

@@ -1,8 +1,7 @@
 //! A curve over given frequencies.
 
-use super::branch_sweep::CurveEnd;
 use super::forced::ForcedBalance;
-use super::solution::{Point, PointStatus, Solution};
+use super::solution::{CurveEnd, Point, PointStatus, Solution};
 use super::unknowns::Unknowns;
 use super::{keep, Kept};
 use crate::timing::Profile;

@@ -19,7 +19,7 @@
 
 use super::dual::{Dual, Real};
 use super::law::{Element, HarmonicForce, ReturnMapJacobian};
-use super::parameter::numbers;
+use super::parameter::number;
 use super::{ContactLaw, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;
@@ -29,7 +29,6 @@ use std::sync::Arc;
 const INPUTS: usize = 6;
 /// Distance from the cone, relative to it, that is none.
 const ON_CONE: f64 = 1e-12;
-
 /// Least share of an angle that is told from none.
 const FADED: f64 = 1e-100;
 
@@ -116,10 +115,7 @@ impl Coulomb {
     }
 
     pub(super) fn from_parameters(parameters: &Parameters) -> Result<Self, Error> {
-        let one = |name: &str| match numbers("coulomb", parameters, name)? {
-            [value] => Ok(*value),
-            several => Err(Error::shape(&format!("coulomb: {name}"), "one number", several.len())),
-        };
+        let one = |name: &str| number("coulomb", parameters, name);
         let given = |name: &str| parameters.contains_key(name);
         let closure = if given("gap") {
             Closure::Gap(one("gap")?)
@@ -211,7 +207,6 @@ impl Coulomb {
         } else {
             let c = if on_cone { zero } else { c };
             let root = (b * b - a * c).sqrt();
-
             if b.value() > 0.0 {
                 -c / (b + root)
             } else {

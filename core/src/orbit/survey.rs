@@ -126,13 +126,13 @@ impl<'a> Survey<'a> {
         let share = self.omega * segment.duration() / TAU;
         for (point, summary) in self.contacts.iter_mut().enumerate() {
             let limit = self.system.limits()[point];
-            if limit == 0.0 {
-                summary.slip_fraction += share;
-            }
-            // Of a point that presses: the share of the period in which it is open.
-            let opens = self.system.limits()[point].is_infinite();
             let state = segment.regime.points[point];
-            if state.sign() != 0.0 || (opens && state == PointState::Open) {
+            let counts = match state {
+                // Of a point that presses: the share of the period in which it is open.
+                PointState::Open => limit.is_infinite(),
+                _ => limit == 0.0 || state.sign() != 0.0,
+            };
+            if counts {
                 summary.slip_fraction += share;
             }
         }

@@ -121,9 +121,12 @@ class Contact(ABC):
         """Largest force of each contact point [N]."""
         return (self.parameters().get("slip_force", np.inf),) * self.points
 
-    def friction_at(self, point: int, force: Matrix) -> float:
-        """Return the largest traction that friction allows at the force of a point [N]."""
-        return self.limits[point]
+    def friction_limit(self, force: Matrix) -> Matrix:
+        """Return the largest traction of each point, shape (..., points) [N].
+
+        `force` has shape (..., points, components), normal forces whole.
+        """
+        return np.broadcast_to(np.array(self.limits), force.shape[:-1])
 
     @property
     def slider_limits(self) -> tuple[float, ...]:

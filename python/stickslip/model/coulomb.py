@@ -258,11 +258,6 @@ class Coulomb(Contact):
         load = float(self._per_node("preload")[node]) if self.normal is None else 0.0
         return float(self._per_node("friction")[node]), load
 
-    def friction_at(self, point: int, force: Matrix) -> float:
-        """Return what friction allows at a force of a node; see `Contact.friction_at`."""
-        friction, load = self.node_friction(point)
-        return friction * (load if self.normal is None else float(force[-1]))
-
     @property
     def stuck_stiffness(self) -> Matrix:
         """Stiffness while every node sticks and is closed [N/m], shape (n_u, n_u)."""
@@ -293,7 +288,7 @@ class Coulomb(Contact):
         return np.where(opens, OPEN, slips * sense).astype(np.int8)
 
     def friction_limit(self, force: Matrix) -> Matrix:
-        """Return mu N of nodes by their forces, (..., points, components), shape (..., points)."""
+        """Return mu N of nodes by their forces; see `Contact.friction_limit`."""
         normal = force[..., -1] if self.normal is not None else self._pressing
         return np.broadcast_to(self._per_node("friction") * normal, force.shape[:-1])
 

@@ -259,9 +259,10 @@ def _loops(
     u, f = (_closed(of(contact, index, samples).reshape(samples, len(lost), -1)) for of in sides)
     for point, work in enumerate(lost):
         label = f"{style.prefixed(float(work), 'J')} per cycle" if work else "sticks"
+        if work and own.tangential > 1:
+            label += " in all directions"
         label = f"point {point}: {label}" if len(lost) > 1 else label
         for part in range(own.tangential):
-            # The work is that of all directions.
             named = f"{own.components[part]}, {label}" if own.components else label
             yield u[:, point, part], f[:, point, part], named
 

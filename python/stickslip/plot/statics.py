@@ -19,12 +19,12 @@ def static_forces(ax: Axes, /, result: StaticResponse, **options: Unpack[Drawing
     """Draw the traction of every contact point at rest, and what its friction allows, as bars."""
     names, tractions, allowed = [], [], []
     for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
-        for point in range(contact.points):
-            force = np.atleast_1d(result.contact_force((name, point)))
-            has_normal = "N" in contact.components
-            names.append(name if contact.points == 1 else f"{name} {point}")
-            tractions.append(float(np.linalg.norm(force[:-1] if has_normal else force)))
-            allowed.append(contact.friction_at(point, force))
+        forces = result.contact_force(name).reshape(contact.points, -1)
+        tangential = forces[:, :-1] if "N" in contact.components else forces
+        tractions.extend(np.linalg.norm(tangential, axis=1).tolist())
+        allowed.extend(contact.friction_limit(forces).tolist())
+        many = range(contact.points) if contact.points > 1 else [""]
+        names.extend(f"{name} {point}".rstrip() for point in many)
     if not names:
         raise ModelError("static_forces: the model has no contact")
     place = np.arange(len(names))

@@ -120,7 +120,7 @@ def configured(
         def call(*args: Any, **keywords: Any) -> _Result:
             known = keywords.get("settings")
             if isinstance(known, kind):
-                suited = known.suited(args[0]) if isinstance(args[0], Model) else known
+                suited = known.suited(args[0]) if args and isinstance(args[0], Model) else known
                 return function(*args, **keywords | {"settings": suited})
             try:
                 given = signature.bind(*args, **keywords).arguments
