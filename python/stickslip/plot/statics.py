@@ -17,7 +17,9 @@ from stickslip.results.static_response import StaticResponse
 @figure
 def static_forces(ax: Axes, /, result: StaticResponse, **options: Unpack[Drawing]) -> None:
     """Draw the traction of every contact point at rest, and what its friction allows, as bars."""
-    names, tractions, allowed = [], [], []
+    names: list[str] = []
+    tractions: list[float] = []
+    allowed: list[float] = []
     for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
         forces = result.contact_force(name).reshape(contact.points, -1)
         tangential = forces[:, :-1] if "N" in contact.components else forces
