@@ -52,6 +52,10 @@ from stickslip.model import slip_configurations as slip_configurations
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import destabilised as destabilised
 from stickslip.model.destabilised import modal_damping as modal_damping
+from stickslip.model.measurement import Measured
+from stickslip.model.measurement import MeasuredLoop as MeasuredLoop
+from stickslip.model.measurement import MeasuredPeak as MeasuredPeak
+from stickslip.model.measurement import Measurement as Measurement
 from stickslip.model.state import State as State
 from stickslip.results import ForcedResponse as ForcedResponse
 from stickslip.results import Status as Status
@@ -60,6 +64,9 @@ from stickslip.results.damper_curve import DamperCurve as DamperCurve
 from stickslip.results.diagnostic import Diagnostic as Diagnostic
 from stickslip.results.diagnostic import Severity as Severity
 from stickslip.results.exact_response import ExactResponse as ExactResponse
+from stickslip.results.fit import Fit as Fit
+from stickslip.results.fit import FitComparison as FitComparison
+from stickslip.results.fit import compare_fits as compare_fits
 from stickslip.results.limit_cycles import LimitCycles as LimitCycles
 from stickslip.results.limit_cycles import StabilityMap as StabilityMap
 from stickslip.results.mistuning import MistuningStudy as MistuningStudy
@@ -134,6 +141,22 @@ def exact_response(
     tolerance: float = 0.001,
     progress: Progress = None,
 ) -> ExactResponse: ...
+def fit(
+    model: Model,
+    measured: Iterable[Measured],
+    *,
+    parameters: Mapping[str, tuple[float, float]],
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float | None = None,
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 0.0001,
+    max_harmonics: int = 255,
+    starts: int = 16,
+    intervals: Literal["profile", "covariance"] = "profile",
+    confidence: float = 0.95,
+    max_evaluations: int = 200,
+    progress: Progress = None,
+) -> Fit: ...
 def forced_response(
     model: Model,
     omega: ArrayLike | tuple[float, float],

@@ -71,6 +71,29 @@ TEXTS = {
     "truncation/cycles": "The discarded harmonics could still change amplitudes by up to "
     "{share:.1e}; try {_finer}.",
     "harmonics-limit": "{count} {_noun} at the limit of harmonics; raise max_harmonics.",
+    # fits
+    "intervals/profile": "Intervals hold the true value with {confidence:.4g} if the errors are "
+    "normal and independent: the misfit, least over the other parameters, rises to its limit at "
+    "their ends.",
+    "intervals/covariance": "Intervals hold the true value with {confidence:.4g} if the errors are "
+    "normal and independent, and the model bends little over them: they follow from the "
+    "covariance at the best fit.",
+    "noise-estimated": "The noise was not given. It was estimated from the misfit, to "
+    "{scatter:.3g} of the measured numbers, so that the misfit says nothing of how well the model "
+    "fits.",
+    "not-determined": "The data do not determine {parameter!r}: its interval, from {low:.6g} to "
+    "{high:.6g}, {_said}. Measure where it acts, at other levels or frequencies, or fix its value.",
+    "tied": "The data know {one!r} and {other!r} only together (correlation {correlation:.3f}): "
+    "fix one of them, or measure where they act differently.",
+    "at-bound": "{parameter!r} lies at its bound {bound:.6g}; widen the bounds if it may lie "
+    "beyond.",
+    "other-minimum": "Another minimum fits about as well, with {parameter!r} at {value:.6g}; "
+    "narrow the bounds, or measure more.",
+    "misfit-above-noise": "The model does not fit within the noise: the residuals of the {numbers} "
+    "numbers scatter by {scatter:.3g} standard deviations. Another law may fit better, or the "
+    "noise is larger than given.",
+    "predictions-missing": "{count} of {total} numbers could not be predicted by the best fit and "
+    "count as zero; look at the forced response of the fitted model.",
     # the model
     "static-traction": "A contact that never slips was taken to hold {_held} "
     "(residual={residual!r}, of effect at {points} of {_solved} points); residual_bounds gives "

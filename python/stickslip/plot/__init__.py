@@ -8,6 +8,7 @@ from stickslip.plot.curves import curves, slip
 from stickslip.plot.cycles import limit_cycles, stability_map
 from stickslip.plot.damper import damper
 from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
+from stickslip.plot.fit import fit, fit_intervals, fit_residuals
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.multipliers import cycle_multipliers, multipliers
 from stickslip.plot.statics import static_forces
@@ -26,6 +27,9 @@ __all__ = [
     "damper",
     "distribution",
     "events",
+    "fit",
+    "fit_intervals",
+    "fit_residuals",
     "history",
     "hysteresis",
     "limit_cycles",

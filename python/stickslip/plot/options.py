@@ -101,6 +101,12 @@ class CurveOptions(Several, Amplitude, total=False):
     ]
 
 
+class FitOptions(Frame, Swept, total=False):
+    """Keywords of `fit`."""
+
+    log: Annotated[bool, True, "Logarithmic amplitude axis."]
+
+
 class DamperOptions(Several, total=False):
     """Keywords of `damper`."""
 

@@ -32,6 +32,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "basin_map": ("stickslip.results.basin_map", "BasinMap"),
     "mistuning_study": ("stickslip.results.mistuning", "MistuningStudy"),
     "static_response": ("stickslip.results.static_response", "StaticResponse"),
+    "fit": ("stickslip.results.fit", "Fit"),
     "stability_map": ("stickslip.results.limit_cycles", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""

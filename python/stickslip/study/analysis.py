@@ -15,6 +15,7 @@ from stickslip.analyses.basin_map import basin_map
 from stickslip.analyses.certify import certify
 from stickslip.analyses.damper_curve import damper_curve
 from stickslip.analyses.exact_response import exact_response
+from stickslip.analyses.fit import fit
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.analyses.mistuning_study import mistuning_study
@@ -24,10 +25,12 @@ from stickslip.analyses.static_response import static_response
 from stickslip.analyses.transient import transient
 from stickslip.checks import real_matrix
 from stickslip.model import Model
+from stickslip.model.measurement import Measured
 from stickslip.results.result import Result
 from stickslip.settings.balance import BalanceKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import Factor, Some, Table, chosen_by
+from stickslip.settings.fit import FitSettings
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys
@@ -38,6 +41,7 @@ from stickslip.study.matrices import (
     damping_of,
     matrix_of,
 )
+from stickslip.study.measurement_table import MeasurementTable
 
 # Share of the progress that the balance is given before it is certified.
 _BALANCE = 0.5
@@ -210,6 +214,30 @@ class LimitCyclesTable(CycleKeys, AnalysisTable):
         return limit_cycles(model, negative, settings=self, progress=progress)
 
 
+class FitTable(FitSettings, AnalysisTable):
+    """Parameters of contacts and damping, fitted to measurements."""
+
+    kind: Literal["fit"] = Field(description="The analysis.")
+    dof_keys = ()
+    measurement: Some[MeasurementTable] = Field(
+        description="The tests, one table [[analysis.measurement]] each.",
+        examples=[[{"file": "level-1.csv", "dof": "tip", "relative_noise": 0.02}]],
+    )
+    _read: tuple[Measured, ...] = ()
+
+    def with_matrices(self, folder: Path) -> Self:
+        """Return the table with the numbers of the files of its measurements."""
+        made = self.model_copy()
+        made._read = tuple(one.read(folder) for one in self.measurement)
+        return made
+
+    def run(self, model: Model, progress: Progress, shown: Sequence[str] = ()) -> Any:
+        """Compute the fit."""
+        pairs = zip(self._read, self.measurement, strict=True)
+        tests = [test.on(table.model_of(model)) for test, table in pairs]
+        return fit(model, tests, settings=self, progress=progress)
+
+
 KINDS: Mapping[str, type[AnalysisTable]] = {
     get_args(table.model_fields["kind"].annotation)[0]: table
     for table in (
@@ -223,6 +251,7 @@ KINDS: Mapping[str, type[AnalysisTable]] = {
         BasinMapTable,
         MistuningStudyTable,
         LimitCyclesTable,
+        FitTable,
     )
 }
 """Each further analysis has a table of its own here."""

@@ -25,6 +25,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "basin_map": ("stickslip.views.motions", "BasinView"),
     "mistuning_study": ("stickslip.views.mistuning", "MistuningView"),
     "static_response": ("stickslip.views.statics", "StaticView"),
+    "fit": ("stickslip.views.fits", "FitView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
 }

@@ -1,0 +1,297 @@
+"""Parameters of contacts and damping that measurements ask for, with intervals."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+
+import numpy as np
+
+from stickslip.analyses.arguments import known_dofs, require_forced, require_held
+from stickslip.analyses.fit_assumptions import fit_assumptions
+from stickslip.analyses.fit_parameters import FitParameter, applied
+from stickslip.analyses.misfit import (
+    Misfit,
+    covariance,
+    covariance_ends,
+    profile_ends,
+)
+from stickslip.analyses.run import Progress, Run, share
+from stickslip.checks import brief, members
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.model.measurement import Measured, MeasuredLoop, MeasuredPeak, Measurement
+from stickslip.results.arrays import Float
+from stickslip.results.fit import KINDS, Fit, FitArrays
+from stickslip.settings.fit import FitSettings
+from stickslip.settings.settings import configured
+
+_FOLLOWED = 8
+"""Most starts that are followed to their ends, the best first."""
+_AGREED = 3
+"""How many of them have to lead to the least misfit."""
+_COARSE = 3
+"""Harmonics with which starts are compared: errors of some percent do not matter there."""
+_SAME = 1e-3
+"""Distance between two minima, in scaled parameters, within which they are one."""
+_INSIDE = 1e-9
+"""Distance of starts from the bounds."""
+_SEARCH = 0.6
+"""Share of the progress that the best fit is given."""
+
+
+@configured(FitSettings)
+def fit(
+    model: Model,
+    measured: Iterable[Measured],
+    *,
+    settings: FitSettings,
+    progress: Progress = None,
+) -> Fit:
+    """Fit parameters to measured response curves, peaks and hysteresis loops.
+
+    The sum of the squared differences between prediction and measurement, each over its standard
+    deviation, is made least, at several levels and tests at once. Its derivatives are those of the
+    balance itself: exact in parameters of contacts and in the level. Several starts between the
+    bounds keep the fit from a local minimum beside a resonance.
+
+    Parameters
+    ----------
+    model : Model
+        What the parameters belong to, and of which measurements without a model of their own are.
+    measured : iterable of Measurement, MeasuredPeak or MeasuredLoop
+        The tests. A parameter is applied to the model of each of them.
+
+    Returns
+    -------
+    Fit
+        The values, their intervals, and which of them the data do not determine.
+
+    Raises
+    ------
+    ModelError
+        If a model lacks a parameter, there are fewer numbers than parameters, or nothing could be
+        solved from any start.
+    Interrupted
+        Its `result` holds the best values so far, without intervals.
+
+    References
+    ----------
+    Venzon and Moolgavkar (1988): intervals by profiles of the likelihood.
+    """
+    settings = FitSettings.of(**settings.part(FitSettings))
+    tests = _tests(measured)
+    parameters = [FitParameter(name, *ends) for name, ends in settings.parameters.items()]
+    for test in tests:
+        _require(test, model if test.model is None else test.model, parameters, settings)
+    numbers = sum(test.observed.size for test in tests)
+    if numbers < len(parameters):
+        raise ModelError(
+            f"measured: {numbers} numbers for {len(parameters)} parameters; measure more, or fit "
+            "fewer parameters"
+        )
+    start = time.perf_counter()
+    with Run("fit", progress) as run:
+        misfit = Misfit(tests, model, parameters, settings, run.heed)
+        search = _Search(misfit, settings)
+        interrupted = False
+        try:
+            with run.at_once():
+                search.run(share(run, 0.0, _SEARCH))
+                result = _result(search, settings, start, share(run, _SEARCH, 1.0))
+        except KeyboardInterrupt:
+            if search.best is None:
+                raise
+            interrupted = True
+            result = _result(search, settings, start, None, interrupted=True)
+        if interrupted:
+            return run.ended(result, f"{misfit.evaluations} evaluations")
+        return run.completed(result, "fit")
+
+
+class _Search:
+    """The least misfit, from several starts."""
+
+    def __init__(self, misfit: Misfit, settings: FitSettings) -> None:
+        self.misfit, self._settings = misfit, settings
+        self.best: Float | None = None
+        self.minima: list[tuple[float, Float]] = []
+        """Misfit and place of the minima that were found, the least first."""
+
+    def run(self, progress: Progress) -> None:
+        """Look from all starts with few harmonics, and follow the best with all."""
+        tell = progress if progress is not None else lambda _: None
+        coarse = self.misfit.coarse(_COARSE)
+        starts = _starts(len(coarse.parameters), self._settings.starts)
+        heights = []
+        for number, one in enumerate(starts):
+            here = coarse.at(one)
+            found = any(test.solved.any() for test in here.predictions)
+            heights.append(here.misfit if found else np.inf)
+            tell(0.3 * (number + 1) / len(starts))
+        if not np.isfinite(min(heights)):
+            raise ModelError(
+                "fit: no prediction could be solved from any start; narrow the bounds of the "
+                "parameters, or look at the forced response of the model"
+            )
+        self.best = starts[int(np.argmin(heights))]
+        ends: list[tuple[float, Float]] = []
+        for at in np.argsort(heights)[:_FOLLOWED]:
+            ends.append(self._followed(coarse, starts[at]))
+            self.best = min(ends, key=lambda one: one[0])[1]
+            if sum(np.abs(end - self.best).max() < _SAME for _, end in ends) == _AGREED:
+                break
+        ends.sort(key=lambda one: one[0])
+        tell(0.6)
+        for place, (_, end) in enumerate(ends[:_AGREED]):
+            if all(np.abs(end - other).max() > _SAME for _, other in ends[:place]):
+                self.minima.append(self._followed(self.misfit, end))
+        self.minima.sort(key=lambda one: one[0])
+        self.best = self.minima[0][1]
+        tell(1.0)
+
+    def _followed(self, misfit: Misfit, start: Float) -> tuple[float, Float]:
+        """Return the misfit and the place of the minimum that a start leads to."""
+        from scipy.optimize import least_squares
+
+        def residuals(at: Float) -> Float:
+            return misfit.at(at).residuals
+
+        def jacobian(at: Float) -> Float:
+            return misfit.at(at).jacobian
+
+        found = least_squares(
+            residuals,
+            np.clip(start, _INSIDE, 1.0 - _INSIDE),
+            jac=jacobian,
+            bounds=(0.0, 1.0),
+            xtol=1e-8,
+            max_nfev=self._settings.max_evaluations,
+        )
+        return 2.0 * float(found.cost), np.array(found.x)
+
+
+def _starts(count: int, number: int) -> list[Float]:
+    """Return places between the bounds: the middle, and a low-discrepancy sequence.
+
+    Multiples of the powers of 1/g modulo 1, with g^(k+1) = g + 1, which fill k dimensions evenly
+    (Roberts 2018).
+    """
+    g = 2.0
+    for _ in range(40):
+        g = (1.0 + g) ** (1.0 / (count + 1))
+    steps = g ** -np.arange(1.0, count + 1.0)
+    return [(0.5 + place * steps) % 1.0 for place in range(number)]
+
+
+def _result(
+    search: _Search,
+    settings: FitSettings,
+    start: float,
+    progress: Progress,
+    *,
+    interrupted: bool = False,
+) -> Fit:
+    """Return what the best fit says."""
+    from scipy.special import ndtri, stdtrit
+
+    misfit, best = search.misfit, np.array(search.best)
+    here = misfit.at(best)
+    freedom = here.residuals.size - best.size
+    known = misfit.measured[0].noise_known
+    tail = 0.5 * (1.0 + settings.confidence)
+    variance, quantile = 1.0, float(ndtri(tail))
+    if not known:
+        variance = here.misfit / freedom if freedom else np.nan
+        quantile = float(stdtrit(freedom, tail)) if freedom else np.nan
+    spread = covariance(here.jacobian, variance)
+    ends = covariance_ends(best, spread, quantile)
+    if not interrupted and settings.intervals == "profile" and np.isfinite(variance * quantile):
+        tell = progress if progress is not None else lambda _: None
+        ends = profile_ends(misfit, best, variance, quantile, tell)
+    values = misfit.values(best)
+    predicted = [one.values for one in here.predictions]
+    arrays = FitArrays(
+        value=values,
+        interval=np.stack([misfit.values(ends.low), misfit.values(ends.high)], axis=1),
+        open_end=~ends.found,
+        correlation=_correlation(spread),
+        abscissa=np.concatenate([one.abscissa for one in misfit.measured]),
+        observed=np.concatenate([one.observed for one in misfit.measured]),
+        deviation=np.concatenate([one.deviation for one in misfit.measured]),
+        predicted=np.concatenate(predicted),
+        solved=np.concatenate([one.solved for one in here.predictions]),
+        test_kind=np.array([KINDS.index(one.kind) for one in misfit.measured], np.uint8),
+        test=np.repeat(np.arange(len(predicted)), [one.size for one in predicted]),
+        minimum=np.array([least for least, _ in search.minima]),
+        minimum_value=np.stack([misfit.values(place) for _, place in search.minima])
+        if search.minima
+        else np.zeros((0, best.size)),
+    )
+    return Fit(
+        model=applied(misfit.model, misfit.parameters, values),
+        dofs=tuple(
+            dict.fromkeys(one.of for one in misfit.measured if not isinstance(one, MeasuredLoop))
+        ),
+        settings=settings,
+        arrays=arrays,
+        noise_known=known,
+        names=tuple(_name(one, number) for number, one in enumerate(misfit.measured, 1)),
+        interrupted=interrupted,
+        timings={"total": time.perf_counter() - start},
+        counters={"evaluations": misfit.evaluations},
+        diagnostics=fit_assumptions(arrays, settings, noise_known=known, freedom=freedom),
+    )
+
+
+def _correlation(spread: Float) -> Float:
+    scale = np.sqrt(np.diag(spread))
+    scale[scale == 0.0] = 1.0
+    found: Float = np.clip(spread / np.outer(scale, scale), -1.0, 1.0)
+    return found
+
+
+def _name(test: Measured, number: int) -> str:
+    return f"{number}: {test.of}" if test.name is None else test.name
+
+
+def _tests(measured: Iterable[Measured]) -> tuple[Measured, ...]:
+    tests = (
+        (measured,)
+        if isinstance(measured, Measured)
+        else members(measured, "measured", "[ss.Measurement(...), ...]")
+    )
+    if not tests:
+        raise ModelError("measured: empty; give at least one measurement")
+    for number, one in enumerate(tests, 1):
+        if not isinstance(one, Measured):
+            raise ModelError(
+                f"measured: entry {number}: {brief(one)} is no measurement; give ss.Measurement, "
+                "ss.MeasuredPeak or ss.MeasuredLoop"
+            )
+    if len({one.noise_known for one in tests}) > 1:
+        unknown = next(n for n, one in enumerate(tests, 1) if not one.noise_known)
+        raise ModelError(
+            f"measured: entry {unknown}: its noise is not known and that of others is; give the "
+            "noise of all, or of none"
+        )
+    return tests
+
+
+def _require(
+    test: Measured, model: Model, parameters: Iterable[FitParameter], settings: FitSettings
+) -> None:
+    """Refuse a test that the model does not fit."""
+    for one in parameters:
+        one.require(model)
+    if isinstance(test, Measurement | MeasuredPeak):
+        known_dofs([test.dof], f"{test.kind}: dof", "dof", model)
+        require_forced(model, settings)
+        require_held(model, settings.residual)
+    elif isinstance(test, MeasuredLoop):
+        contact = model.contacts[model.contact_index(test.contact)]
+        if contact.displacements != 1:
+            raise ModelError(
+                f"measured loop: contact {contact.name!r} has {contact.displacements} "
+                "displacements; loops are fitted of contacts with one"
+            )

@@ -1,0 +1,125 @@
+"""The parameters of a fit: which numbers of models they are, and how they are scaled."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stickslip.checks import unknown
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.model.contact import Contact
+from stickslip.model.damping import ModalDamping, Rayleigh
+from stickslip.model.structure import Structure
+from stickslip.results.arrays import Float
+
+DAMPING = "damping"
+LEVEL = "level"
+
+_DAMPING_KEYS = {ModalDamping: ("ratio",), Rayleigh: ("mass", "stiffness")}
+
+
+@dataclass(frozen=True)
+class FitParameter:
+    """A number that is fitted, between two bounds.
+
+    Attributes
+    ----------
+    name : str
+        "pad.friction"; "friction", of all contacts that have it; "damping.ratio", "damping.mass",
+        "damping.stiffness", of the law of the structure's damping; "level", a factor on all forces.
+    low, high : float
+        Bounds.
+    """
+
+    name: str
+    low: float
+    high: float
+
+    @property
+    def owner(self) -> str:
+        """The contact, "damping", or nothing."""
+        return self.name.rpartition(".")[0]
+
+    @property
+    def key(self) -> str:
+        """The name of the parameter as its owner has it."""
+        return self.name.rpartition(".")[2]
+
+    @property
+    def is_damping(self) -> bool:
+        """Whether it belongs to the damping of the structure."""
+        return self.owner == DAMPING
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether its logarithm is fitted: of numbers that are above 0."""
+        return self.low > 0.0
+
+    def value(self, scaled: float) -> float:
+        """Return the value of a number between 0 and 1."""
+        if self.logarithmic:
+            return float(self.low * (self.high / self.low) ** scaled)
+        return self.low + (self.high - self.low) * scaled
+
+    def scaled(self, value: float) -> float:
+        """Return the number that a value stands for, 0 and 1 at the bounds."""
+        if self.logarithmic:
+            return float(np.log(value / self.low) / np.log(self.high / self.low))
+        return (value - self.low) / (self.high - self.low)
+
+    def rate(self, value: float) -> float:
+        """Return the derivative of the value in the scaled number."""
+        if self.logarithmic:
+            return float(value * np.log(self.high / self.low))
+        return self.high - self.low
+
+    def require(self, model: Model) -> None:
+        """Refuse a model that has no such parameter, or none that takes both bounds."""
+        for value in (self.low, self.high):
+            self.apply(model, value)
+
+    def apply(self, model: Model, value: float) -> Model:
+        """Return the model at a value of the parameter."""
+        try:
+            if self.name == LEVEL:
+                return model.scaled(force=value)
+            if self.is_damping:
+                return model.with_structure(_damped(model.structure, self.key, value))
+            return model.replaced(contacts=self._changed(model, value))
+        except ModelError as error:
+            raise ModelError(f"parameters: {self.name!r}: {error}") from None
+
+    def _changed(self, model: Model, value: float) -> list[Contact]:
+        owners = [one for one in model.contacts if self.owner in ("", one.name)]
+        if not owners:
+            raise ModelError(unknown("contact", self.owner, [*model.contact_names, DAMPING]))
+        having = [one for one in owners if self.key in one.adjustable()]
+        if not having:
+            known = dict.fromkeys(key for one in owners for key in one.adjustable())
+            raise ModelError(unknown("parameter", self.key, known))
+
+        def changed(one: Contact) -> Contact:
+            return one.adjusted(self.key, [value] * len(one.adjustable()[self.key]))
+
+        return [changed(one) if one in having else one for one in model.contacts]
+
+
+def applied(model: Model, parameters: Sequence[FitParameter], values: Float) -> Model:
+    """Return the model at values of all parameters."""
+    for parameter, value in zip(parameters, values, strict=True):
+        model = parameter.apply(model, float(value))
+    return model
+
+
+def _damped(structure: Structure, key: str, value: float) -> Structure:
+    law = structure.damping_law
+    known = _DAMPING_KEYS.get(type(law), ()) if law is not None else ()
+    if law is None or key not in known:
+        made = "a matrix, which has no parameters" if law is None else type(law).__name__
+        reason = unknown("parameter", key, known) if known else "give ModalDamping or Rayleigh"
+        raise ModelError(f"the damping of the structure is {made}; {reason}")
+    changed = replace(law, **{key: value})  # type: ignore[arg-type]
+    return Structure(structure.mass, structure.stiffness, changed, structure.dofs)

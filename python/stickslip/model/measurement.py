@@ -1,0 +1,423 @@
+"""What tests have measured of a structure: response curves, peaks and hysteresis loops."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.checks import brief, choice, real_number, set_fields, text
+from stickslip.errors import EntryError, ModelError
+from stickslip.model.model import ContactRef, Model, require_model
+
+if TYPE_CHECKING:
+    from stickslip.io.frf import Frf
+
+_MEASURES = ("half_range", "max", "fundamental")
+_FEWEST = 8
+"""Samples of a loop from which its harmonics are known."""
+_ENDS = 2
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Measured(ABC):
+    """What every measurement has: numbers, how far they are to be trusted, and its own model.
+
+    A kind of measurement is a subclass here, with a line in `PREDICTIONS` of
+    `stickslip.analyses.prediction`.
+    """
+
+    kind: ClassVar[str]
+    """Name in messages."""
+
+    relative_noise: float | None
+    noise: float | None
+    model: Model | None
+    name: str | None
+
+    def _keep(
+        self,
+        *,
+        relative_noise: float | None,
+        noise: float | None,
+        model: Model | None,
+        name: str | None,
+        **own: Any,
+    ) -> None:
+        if relative_noise is not None and noise is not None:
+            raise ModelError(f"{self.kind}: relative_noise and noise are given; give one of them")
+        if model is not None:
+            require_model(model)
+        set_fields(
+            self,
+            relative_noise=_positive(relative_noise, f"{self.kind}: relative_noise"),
+            noise=_positive(noise, f"{self.kind}: noise"),
+            model=model,
+            name=None if name is None else text(name, f"{self.kind}: name"),
+            **own,
+        )
+
+    def __repr__(self) -> str:
+        named = "" if self.name is None else f"{self.name!r}, "
+        return f"{type(self).__name__}({named}{self.observed.size} number(s) of {self.of})"
+
+    def on(self, model: Model) -> Self:
+        """Return the measurement with a model of its own."""
+        made = copy(self)
+        set_fields(made, model=model)
+        return made
+
+    @property
+    @abstractmethod
+    def of(self) -> str:
+        """The degree of freedom or the contact that was measured."""
+
+    @property
+    @abstractmethod
+    def abscissa(self) -> NDArray[np.float64]:
+        """What each number belongs to: a frequency [rad/s], or the displacement of a loop [m]."""
+
+    @property
+    @abstractmethod
+    def observed(self) -> NDArray[np.float64]:
+        """The numbers that are compared, shape (n,)."""
+
+    @property
+    def noise_known(self) -> bool:
+        """Whether standard deviations are known; else the fit estimates them from its misfit."""
+        return self.noise is not None or self.relative_noise is not None
+
+    @property
+    def deviation(self) -> NDArray[np.float64]:
+        """Standard deviation of each number; where it is not known, up to a common factor."""
+        if self.noise is not None:
+            return np.full(self.observed.shape, self.noise)
+        return (1.0 if self.relative_noise is None else self.relative_noise) * self._size
+
+    @property
+    def _size(self) -> NDArray[np.float64]:
+        """What relative noise is relative to."""
+        return np.abs(self.observed)
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Measurement(Measured):
+    """A response curve that was measured at one level of the forces.
+
+    Parameters
+    ----------
+    omega : array_like of float, shape (n,)
+        Angular frequencies [rad/s], in the order in which they were swept.
+    dof : str
+        The degree of freedom that was measured.
+    amplitude : array_like of float, shape (n,)
+        Amplitudes, above 0 [m].
+    measure : {"half_range", "max", "fundamental"}, optional
+        What was called amplitude; of a frequency analyser "fundamental".
+    relative_noise : float, optional
+        Standard deviation of each amplitude over itself, 0.02 for 2 %.
+    noise : float, optional
+        Instead: standard deviation of all amplitudes [m]. Default: unknown, and estimated by the
+        fit as a share of the amplitudes.
+    model : Model, optional
+        The model of this test, at its own level or preload. Default: that of the fit.
+    name : str, optional
+        What tables and pictures call it.
+
+    Raises
+    ------
+    ModelError
+        If the lists differ in length, or a number is not finite or not above 0.
+    """
+
+    kind: ClassVar[str] = "measurement"
+
+    omega: NDArray[np.float64]
+    dof: str
+    amplitude: NDArray[np.float64]
+    measure: Any
+
+    def __init__(
+        self,
+        omega: ArrayLike,
+        dof: str,
+        amplitude: ArrayLike,
+        measure: str = "half_range",
+        relative_noise: float | None = None,
+        noise: float | None = None,
+        model: Model | None = None,
+        name: str | None = None,
+    ) -> None:
+        grid = _numbers(omega, "measurement: omega", above=0.0)
+        values = _numbers(amplitude, "measurement: amplitude", above=0.0)
+        if grid.shape != values.shape:
+            raise ModelError(
+                f"measurement: {grid.size} frequencies for {values.size} amplitudes; give one "
+                "amplitude per frequency"
+            )
+        self._keep(
+            omega=grid,
+            dof=text(dof, "measurement: dof"),
+            amplitude=values,
+            measure=choice(measure, "measurement: measure", _MEASURES),
+            relative_noise=relative_noise,
+            noise=noise,
+            model=model,
+            name=name,
+        )
+
+    @classmethod
+    def of_frf(cls, frf: Frf, dof: str, force: float = 1.0, **more: Any) -> Measurement:
+        """Return the curve of a frequency response function, as `read_frf` reads it.
+
+        Parameters
+        ----------
+        frf : Frf
+            Motion per force, of displacements, velocities or accelerations.
+        dof : str
+            The degree of freedom of the model that it was measured at.
+        force : float, optional
+            Amplitude of the force in the test [N].
+        **more
+            Noise, model and name.
+        """
+        level = real_number(force, "measurement: force")
+        kept = frf.omega > 0.0
+        omega, amplitude = frf.omega[kept], abs(level) * np.abs(frf.receptance()[kept])
+        return cls(omega, dof, amplitude, "fundamental", **more)
+
+    @property
+    def of(self) -> str:
+        """The degree of freedom."""
+        return self.dof
+
+    @property
+    def abscissa(self) -> NDArray[np.float64]:
+        """The frequencies [rad/s]."""
+        return self.omega
+
+    @property
+    def observed(self) -> NDArray[np.float64]:
+        """The amplitudes [m]."""
+        return self.amplitude
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class MeasuredPeak(Measured):
+    """The peak of a response curve: its height, and where it lies if that is known.
+
+    Parameters
+    ----------
+    dof : str
+        The degree of freedom that was measured.
+    amplitude : float
+        Height of the peak [m].
+    omega : float, optional
+        Angular frequency of the peak [rad/s].
+    span : tuple of float
+        Range of frequencies in which it is the highest point [rad/s].
+    frequency_noise : float, optional
+        Standard deviation of the frequency over itself, 0.001 for 0.1 %; needed with `omega`.
+    measure, relative_noise, noise, model, name
+        See `Measurement`. With `omega` the noise of the height has to be known.
+
+    Raises
+    ------
+    ModelError
+        If a number is not finite or not above 0, the range has no two ends, or the noise of a
+        frequency is not known.
+    """
+
+    kind: ClassVar[str] = "measured peak"
+
+    dof: str
+    values: NDArray[np.float64]
+    span: tuple[float, float]
+    measure: Any
+    frequency_noise: float | None
+
+    def __init__(
+        self,
+        dof: str,
+        amplitude: float,
+        omega: float | None = None,
+        *,
+        span: tuple[float, float],
+        measure: str = "half_range",
+        relative_noise: float | None = None,
+        frequency_noise: float | None = None,
+        noise: float | None = None,
+        model: Model | None = None,
+        name: str | None = None,
+    ) -> None:
+        ends = _numbers(span, "measured peak: span", above=0.0)
+        if ends.size != _ENDS or ends[0] == ends[1]:
+            raise ModelError(f"measured peak: span: {brief(span)}; give (from, to) in rad/s")
+        heights = [amplitude] if omega is None else [amplitude, omega]
+        known = noise is not None or relative_noise is not None
+        if omega is not None and (frequency_noise is None or not known):
+            raise ModelError(
+                "measured peak: omega without its noise; give frequency_noise, and relative_noise "
+                "or noise of the height, or leave omega out"
+            )
+        self._keep(
+            dof=text(dof, "measured peak: dof"),
+            values=_numbers(heights, "measured peak", above=0.0),
+            span=(float(ends.min()), float(ends.max())),
+            measure=choice(measure, "measured peak: measure", _MEASURES),
+            frequency_noise=_positive(frequency_noise, "measured peak: frequency_noise"),
+            relative_noise=relative_noise,
+            noise=noise,
+            model=model,
+            name=name,
+        )
+
+    @property
+    def of(self) -> str:
+        """The degree of freedom."""
+        return self.dof
+
+    @property
+    def abscissa(self) -> NDArray[np.float64]:
+        """The frequency [rad/s], not-a-number if it is not known."""
+        return np.full(self.values.size, self.values[1] if self.values.size > 1 else np.nan)
+
+    @property
+    def observed(self) -> NDArray[np.float64]:
+        """The height [m], and behind it the frequency [rad/s] if it is known."""
+        return self.values
+
+    @property
+    def deviation(self) -> NDArray[np.float64]:
+        """Standard deviation of height and frequency."""
+        found = np.array(super().deviation)
+        if self.frequency_noise is not None and found.size > 1:
+            found[1] = self.frequency_noise * self.values[1]
+        return found
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class MeasuredLoop(Measured):
+    """A hysteresis loop: the force of a contact under a displacement that repeats itself.
+
+    Parameters
+    ----------
+    contact : int or str
+        The contact; it has one displacement.
+    displacement : array_like of float, shape (n,)
+        Relative displacement at equidistant instants of one period [m].
+    force : array_like of float, shape (n,)
+        The force against it at these instants [N].
+    harmonics : int, optional
+        Highest harmonic of the displacement; what lies above is taken for noise.
+    relative_noise : float, optional
+        Standard deviation of the forces over the largest one.
+    noise : float, optional
+        Instead: standard deviation of the forces [N].
+    model, name
+        See `Measurement`.
+
+    Raises
+    ------
+    ModelError
+        If the lists differ in length, have fewer than eight entries, or a number is not finite.
+    """
+
+    kind: ClassVar[str] = "measured loop"
+
+    contact: ContactRef
+    displacement: NDArray[np.float64]
+    force: NDArray[np.float64]
+    harmonics: int
+
+    def __init__(
+        self,
+        contact: ContactRef,
+        displacement: ArrayLike,
+        force: ArrayLike,
+        *,
+        harmonics: int = 5,
+        relative_noise: float | None = None,
+        noise: float | None = None,
+        model: Model | None = None,
+        name: str | None = None,
+    ) -> None:
+        u = _numbers(displacement, "measured loop: displacement")
+        f = _numbers(force, "measured loop: force")
+        if u.shape != f.shape or u.size < _FEWEST:
+            raise ModelError(
+                f"measured loop: {u.size} displacements for {f.size} forces; give one force per "
+                f"displacement, at least {_FEWEST}"
+            )
+        if not isinstance(harmonics, int) or not 1 <= harmonics < u.size // 2:
+            raise ModelError(
+                f"measured loop: harmonics: {brief(harmonics)}; give a whole number from 1 to "
+                f"{u.size // 2 - 1}, below half of the {u.size} instants"
+            )
+        self._keep(
+            contact=contact,
+            displacement=u,
+            force=f,
+            harmonics=harmonics,
+            relative_noise=relative_noise,
+            noise=noise,
+            model=model,
+            name=name,
+        )
+
+    @property
+    def of(self) -> str:
+        """The contact."""
+        return str(self.contact)
+
+    @property
+    def abscissa(self) -> NDArray[np.float64]:
+        """The displacements [m]."""
+        return self.displacement
+
+    @property
+    def observed(self) -> NDArray[np.float64]:
+        """The forces [N]."""
+        return self.force
+
+    @property
+    def _size(self) -> NDArray[np.float64]:
+        return np.full(self.force.shape, np.abs(self.force).max())
+
+    @property
+    def series(self) -> NDArray[np.complex128]:
+        """Harmonics of the displacement, u(t) = Re sum_k U_k exp(i k omega t), shape (H+1,) [m]."""
+        found = np.fft.rfft(self.displacement)[: self.harmonics + 1] / self.displacement.size
+        found[1:] *= 2.0
+        return found
+
+
+def _numbers(
+    values: ArrayLike | Sequence[float], entry: str, above: float = -np.inf
+) -> NDArray[np.float64]:
+    try:
+        found = np.atleast_1d(np.array(values, dtype=np.float64))
+    except (TypeError, ValueError):
+        raise ModelError(f"{entry}: {brief(values)} holds no real numbers; give a list") from None
+    if found.ndim != 1 or not found.size:
+        raise ModelError(f"{entry}: shape {found.shape}; give a list of numbers")
+    bad = np.flatnonzero(~(np.isfinite(found) & (found > above)))
+    if bad.size:
+        more = "" if above == -np.inf else f" above {above:g}"
+        raise ModelError(f"{entry}[{bad[0]}] is {found[bad[0]]:g}; give finite numbers{more}")
+    found.flags.writeable = False
+    return found
+
+
+def _positive(value: float | None, entry: str) -> float | None:
+    if value is None:
+        return None
+    number = real_number(value, entry)
+    if not number > 0.0:
+        raise EntryError(entry, f": {number:g}; give a number above 0")
+    return number

@@ -1,0 +1,72 @@
+"""How parameters are fitted to measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from stickslip.checks import brief, real_number, text
+from stickslip.errors import EntryError
+from stickslip.settings.balance import HarmonicSettings
+from stickslip.settings.entries import ONE_OF, Count, Tolerance, Within, percent
+from stickslip.settings.ranges import Or
+
+
+def _bounds(given: object) -> dict[str, tuple[float, float]]:
+    if not isinstance(given, Mapping) or not given:
+        raise EntryError("", f": {brief(given)}; give {{'friction': (0.1, 1.0), ...}}")
+    found = {}
+    for name, ends in given.items():
+        text(name, "parameters: name")
+        if not isinstance(ends, tuple | list) or len(ends) != 2:
+            raise EntryError("", f"[{name!r}]: {brief(ends)}; give two bounds, (lowest, highest)")
+        low, high = (real_number(end, f"parameters[{name!r}]") for end in ends)
+        if not low < high:
+            raise EntryError("", f"[{name!r}]: ({low:g}, {high:g}); give lowest < highest")
+        found[str(name)] = (low, high)
+    return found
+
+
+_Bounds = Annotated[
+    dict[str, tuple[float, float]],
+    Or(
+        Annotated[dict[str, Any], BeforeValidator(_bounds)],
+        "Mapping[str, tuple[float, float]]",
+        "mapping of str to (float, float)",
+        _bounds,
+    ),
+]
+
+
+class FitSettings(HarmonicSettings):
+    """How parameters are fitted."""
+
+    parameters: _Bounds = Field(
+        description='Names of the parameters with their bounds: "pad.friction" of one contact; '
+        '"friction" of all contacts that have it; "damping.ratio", "damping.mass" and '
+        '"damping.stiffness" of the damping law of the structure; "level", a factor on all '
+        "forces. Where the lower bound is above 0 the logarithm is fitted.",
+        examples=[{"pad.friction": [0.1, 1.0]}],
+    )
+    tolerance: Tolerance = Field(
+        default=1e-4,
+        description="Relative accuracy of automatic harmonics, from 1e-8 to 0.5.",
+    )
+    starts: Count = Field(
+        default=16,
+        description="From how many places between the bounds the fit is tried; the best are "
+        "followed to their ends, until three lead to the same.",
+    )
+    intervals: Annotated[Literal["profile", "covariance"], ONE_OF] = Field(
+        default="profile",
+        description="How intervals are found: by the profile of the likelihood, which bends as the "
+        "model does, or by the covariance at the best fit.",
+    )
+    confidence: Annotated[float, Within(0.5, 0.9999), percent] = Field(
+        default=0.95, description="Probability with which an interval is to hold the true value."
+    )
+    max_evaluations: Count = Field(
+        default=200, description="Evaluations of all measurements per start before it is left."
+    )
