@@ -21,6 +21,7 @@ _NAMES = {
     "analyses.forced_response": "forced_response",
     "analyses.limit_cycles": "limit_cycles",
     "analyses.mistuning_study": "mistuning_study",
+    "analyses.pattern_store": "merge_stores",
     "analyses.optimal_damper": "optimal_damper",
     "analyses.single_harmonic": "single_harmonic",
     "analyses.stability_map": "stability_map",

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Literal
 
+from distributed import Client
 from numpy.typing import ArrayLike
 
 from stickslip import fe as fe
@@ -13,6 +14,7 @@ from stickslip import study as study
 from stickslip._core import __version__ as __version__
 from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle
 from stickslip.analyses.flutter_formulas import single_harmonic_cycles as single_harmonic_cycles
+from stickslip.analyses.pattern_store import merge_stores as merge_stores
 from stickslip.analyses.run import Progress
 from stickslip.disk import BladedDisk as BladedDisk
 from stickslip.disk import Coupling as Coupling
@@ -211,7 +213,9 @@ def mistuning_study(
     store: str | PathLike[str] | None = None,
     seed: int = 0,
     distribution: Literal["normal", "uniform"] = "normal",
+    portion: tuple[int, int] = (0, 1),
     threads: int | None = None,
+    client: Client | None = None,
     progress: Progress = None,
 ) -> MistuningStudy: ...
 def optimal_damper(

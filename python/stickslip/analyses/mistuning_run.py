@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
+from stickslip.analyses.cluster import Batch, compute_on
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.analyses.peak_assumptions import mistuning_assumptions
 from stickslip.analyses.run import Run, refusals
@@ -21,6 +22,10 @@ from stickslip.results.arrays import Float
 from stickslip.results.mistuning import MistuningArrays, MistuningStudy
 from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningSettings
+
+if TYPE_CHECKING:
+    # Installed with the extra "dask".
+    from distributed import Client  # type: ignore[import-not-found, unused-ignore]
 
 EDGE = 1e-9
 """How far rounding may put a peak outside the range of frequencies, relative."""
@@ -118,13 +123,21 @@ class Work:
         for name, value in row._replace(blade=blade)._asdict().items():
             self.arrays[name][place] = value
 
-    def run(self, threads: int | None, run: Run, store: PatternStore | None) -> bool:
-        """Compute what is missing; False if Ctrl-C has ended it."""
+    def run(
+        self,
+        threads: int | None,
+        part: tuple[int, int],
+        run: Run,
+        store: PatternStore | None,
+        client: Client | None,
+    ) -> bool:
+        """Compute what is missing of a part; False if Ctrl-C has ended it."""
         missing = np.argwhere(~self.known)
+        missing = missing[missing[:, 2] % part[1] == part[0]]
         if not missing.size:
             return True
 
-        def deliver(index: int, found: list[_core.Summit], points: int) -> None:
+        def deliver(index: int, found: Sequence[_core.Summit], points: int) -> None:
             d, c, p = (int(at) for at in missing[index])
             rows = [Row(*row) for row in found]
             if store is not None:
@@ -137,15 +150,26 @@ class Work:
             self._take((d, c, p), enumerate(rows), points)
             run.reached(self.done / self.total)
 
+        work = Batch(
+            disks=tuple(one.disk for one in self.series),
+            settings=self.settings,
+            groups=[[self.disk.structure.index(dof)] for dof in self.dofs],
+            orders=[max(row.harmonics for row in one.tuned) for one in self.series],
+            which=missing[:, 1].tolist(),
+            deviations=self.deviations[missing[:, 0], np.newaxis] * self.patterns[missing[:, 2]],
+            numbers=list(range(len(missing))),
+        )
+        if client is not None:
+            return compute_on(client, work, run, deliver)
         with refusals(self.disk):
             return _core.mistuning_study(
-                [tuned_disk(one.disk) for one in self.series],
-                missing[:, 1].tolist(),
-                self.deviations[missing[:, 0], np.newaxis] * self.patterns[missing[:, 2]],
-                [[self.disk.structure.index(dof)] for dof in self.dofs],
+                [tuned_disk(one) for one in work.disks],
+                work.which,
+                work.deviations,
+                work.groups,
                 self.settings,
                 self.settings,
-                [max(row.harmonics for row in one.tuned) for one in self.series],
+                work.orders,
                 threads or 0,
                 deliver,
                 lambda _: run.heed(),

@@ -7,6 +7,7 @@ import os
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,10 +30,18 @@ from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningKeys, MistuningSettings, PeakSettings
 from stickslip.settings.settings import configured
 
+if TYPE_CHECKING:
+    # Installed with the extra "dask".
+    from distributed import Client  # type: ignore[import-not-found, unused-ignore]
+
 
 @configured(MistuningKeys, "deviation")
 def mistuning_study(
-    disk: BladedDisk, *, settings: MistuningKeys, progress: Progress = None
+    disk: BladedDisk,
+    *,
+    settings: MistuningKeys,
+    client: Client | None = None,
+    progress: Progress = None,
 ) -> MistuningStudy:
     """Amplification factors of disks whose blades deviate at random, and their distribution.
 
@@ -46,6 +55,9 @@ def mistuning_study(
     ----------
     disk : BladedDisk
         The tuned disk.
+    client : distributed.Client, optional
+        A Dask cluster that computes the disks, in batches; the numbers are the same as without.
+        Rows go into the store of this program as they come.
 
     Returns
     -------
@@ -94,14 +106,14 @@ def mistuning_study(
     work = Work(disk, kept, names, deviations, series, rows)
     with Run("mistuning study", progress) as run:
         if settings.store is None:
-            complete = work.run(settings.threads, run, None)
+            complete = work.run(settings.threads, settings.portion, run, None, client)
         else:
             identity = _identity_of(
                 disk, kept, names, rows, given=settings.coupling_stiffness is not None
             )
             with PatternStore(settings.store, identity, run.heed) as kept_rows:
                 work.recall(kept_rows)
-                complete = work.run(settings.threads, run, kept_rows)
+                complete = work.run(settings.threads, settings.portion, run, kept_rows, client)
         result = work.result(time.perf_counter() - start, interrupted=not complete)
         rest = "" if settings.store is None else f"; {os.fspath(settings.store)} goes on from there"
         return run.ended(result, f"{work.done} of {work.total} disks", rest)

@@ -10,15 +10,18 @@ import hashlib
 import json
 import math
 import sqlite3
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
 from time import monotonic, sleep
 from typing import Any, NamedTuple, TypeAlias
+from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import brief, file_path, is_file
+from stickslip.checks import brief, file_path, is_file, members
 from stickslip.errors import ModelError
 from stickslip.files import require_place
 
@@ -147,6 +150,19 @@ class PatternStore:
         ]
         with self._named(), self._transaction():
             self._insert(found)
+
+    def take(self, other: PatternStore) -> int:
+        """Take over the rows of another store of the same study; return how many."""
+        found = []
+        with other._named():
+            rows = other._execute("SELECT * FROM summit").fetchall()
+        for *values, mark in rows:
+            if mark != other._digest(values):
+                raise other.damaged(values[0], values[2], "its digest differs")
+            found.append(values)
+        with self._named(), self._transaction():
+            self._insert(found)
+        return len(found)
 
     def damaged(self, deviation: object, pattern: object, cause: str) -> ModelError:
         """Return the error that names a row which cannot be right."""
@@ -279,6 +295,53 @@ class PatternStore:
                 f"{self.path}: no store, or a damaged one ({cause}); give another name, or remove "
                 "it to begin anew"
             ) from None
+
+
+def merge_stores(
+    target: str | PathLike[str], sources: Iterable[str | PathLike[str]]
+) -> dict[str, int]:
+    """Put the rows of several stores of one study together, as runs of its parts made them.
+
+    Parameters
+    ----------
+    target : path-like
+        The store that takes all rows; made if there is none. One that is there may be a part, too.
+    sources : iterable of path-like
+        The other stores, which are left as they are.
+
+    Returns
+    -------
+    dict of int
+        How many rows each source held.
+
+    Raises
+    ------
+    ModelError
+        If a store is missing, damaged, or of another study.
+    """
+    files = [file_path(one, "store") for one in members(sources, "sources", "[...]")]
+    counts: dict[str, int] = {}
+    for file in files:
+        if not is_file(file):
+            raise ModelError(f"{file}: no such store")
+        same = stored_identity(file)
+        with PatternStore(file, same) as source, PatternStore(target, same) as whole:
+            counts[str(file)] = whole.take(source)
+    return counts
+
+
+def stored_identity(file: Path) -> Identity:
+    """Return what makes the study of a store, or refuse a file that is none."""
+    try:
+        base = sqlite3.connect(f"file:{quote(str(file.resolve()))}?mode=ro", uri=True)
+        try:
+            found = dict(base.execute("SELECT name, value FROM identity"))
+        finally:
+            base.close()
+        return {name: json.loads(value) for name, value in found.items()}
+    except (sqlite3.Error, ValueError, TypeError) as error:
+        cause = " ".join(str(error).split())
+        raise ModelError(f"{file}: no store, or a damaged one ({cause})") from None
 
 
 def _kept(value: float) -> float | None:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Self, get_args
 import numpy as np
 from pydantic import BeforeValidator, Field, PlainValidator, Strict, model_validator
 
-from stickslip.checks import brief, real_number
+from stickslip.checks import brief, real_number, whole_number
 from stickslip.errors import EntryError, ModelError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import (
@@ -61,6 +61,15 @@ def _bounds(bounds: object) -> tuple[float, float]:
     return low, high
 
 
+def _portion(part: object) -> tuple[int, int]:
+    if not isinstance(part, tuple | list) or len(part) != 2:
+        raise EntryError("", f": {brief(part)}; give (number, of), (0, 4) for the first of four")
+    number, of = (whole_number(one, "") for one in part)
+    if number >= of:
+        raise EntryError("", f": part {number} of {of}; count from 0 to {max(of, 1) - 1}")
+    return number, of
+
+
 def _unsigned(remedy: str) -> Callable[[Any], Float]:
     """Return what reads one or several finite numbers, none of them negative, each once."""
 
@@ -75,6 +84,7 @@ def _unsigned(remedy: str) -> Callable[[Any], Float]:
     return read
 
 
+_Portion = Annotated[tuple[int, int], Or(Some[Index], "tuple[int, int]", "(int, int)", _portion)]
 _SEVERAL = "ArrayLike", "float or array_like"
 _Deviations = Annotated[Float, Or(ListOr[Ratio, Ratio], *_SEVERAL, _unsigned("0.05 for 5 %"))]
 _Couplings = Annotated[Float, Or(Some[StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m"))]
@@ -230,6 +240,12 @@ class MistuningKeys(PeakSettings):
     distribution: _Distribution = Field(
         default="normal",
         description="Distribution of zero mean and unit deviation of the patterns drawn.",
+    )
+    portion: _Portion = Field(
+        default=(0, 1),
+        description="Which part of the patterns this run computes, (0, 4) the first of four: for "
+        "job arrays, with a store each. `merge_stores` joins them.",
+        examples=[[0, 4]],
     )
     threads: Count | None = Field(
         default=None, description="Threads. Default: as many as there are processors."
