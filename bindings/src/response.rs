@@ -137,7 +137,7 @@ pub fn forced_response<'py>(
             Frequencies::Grid(grid) => sweep(balance, &grid),
         }?;
         if stability && !model.is_monotone() {
-            decide_stability(model, &mut found, look)?;
+            decide_stability(model, settings.residual, &mut found, look)?;
         }
         Ok(found)
     })

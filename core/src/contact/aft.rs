@@ -9,7 +9,8 @@
 use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::samples::Samples;
 use super::{
-    ContactLaw, Describing, Element, Motion, Parameter, Phase, PointSummary, Residual, SlipLoad,
+    AssumedStart, ContactLaw, Describing, Element, Motion, Parameter, Phase, PointSummary,
+    Residual, SlipLoad,
 };
 use crate::Error;
 use faer::Mat;
@@ -79,7 +80,8 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             }
             return;
         }
-        let round = self.march(&samples, false);
+        let begun = self.begin(motion);
+        let round = self.march(&samples, &begun, false);
         let stiffness = self.law.stiffness();
         let lost = |n: usize, i: usize| {
             let u = samples.at(n);
@@ -105,7 +107,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             }
         }
         if tangent {
-            self.differentiate(&samples, &round.averaged, slots, &mut out.tangent);
+            self.differentiate(&samples, &begun, &round.averaged, slots, &mut out.tangent);
         }
         out.halve_means(harmonics);
     }
@@ -129,7 +131,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
         if self.stuck(&samples, motion.residual).is_some() {
             return;
         }
-        let round = self.march(&samples, true);
+        let round = self.march(&samples, &self.begin(motion), true);
         let spans = (self.samples / samples.count) as f64;
         // Without slip all work is elastic, and only rounding is left of it.
         let slips = round.slipping.iter().any(|share| *share > 0.0);
@@ -203,6 +205,7 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         limits() -> Vec<f64>;
         onsets() -> Vec<f64>;
         beginning() -> (Vec<f64>, Vec<f64>);
+        assumed(motion: Motion<'_>) -> Option<AssumedStart>;
         return_map(before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64],
             jacobian: Option<&mut ReturnMapJacobian>);
         stuck_load(residual: Residual, low: f64, high: f64) -> Option<[f64; 3]>;

@@ -5,7 +5,7 @@ use super::law::ReturnMapJacobian;
 use super::march_rate::{follows, is_elastic, FrictionWork, Rate};
 use super::periodic_march::SLOW;
 use super::samples::Samples;
-use super::{Aft, ContactLaw, Motion, Residual};
+use super::{Aft, AssumedStart, ContactLaw, Motion, Residual};
 use std::f64::consts::TAU;
 use std::ops::Deref;
 
@@ -75,9 +75,17 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         Some((load, [(low, by_low), (high, by_high)]))
     }
 
+    /// Where a motion begins: where its law assumes it, or without history.
+    pub(super) fn begin(&self, motion: Motion<'_>) -> AssumedStart {
+        self.law.assumed(motion).unwrap_or_else(|| {
+            let (displacement, state) = self.law.beginning();
+            AssumedStart { displacement, state, rate: Vec::new() }
+        })
+    }
+
     /// The first instant, reached without any slip as far as the law admits it.
-    pub(super) fn start(&self, samples: &Samples) -> Step {
-        let (before, state) = self.law.beginning();
+    pub(super) fn start(&self, samples: &Samples, begun: &AssumedStart) -> Step {
+        let (before, state) = (&begun.displacement, begun.state.clone());
         let mut step = Step {
             state,
             force: vec![0.0; before.len()],
@@ -85,7 +93,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             after: samples.at(0).to_vec(),
         };
         let Step { state, force, jacobian, after } = &mut step;
-        self.law.return_map(&before, after, state, force, Some(jacobian));
+        self.law.return_map(before, after, state, force, Some(jacobian));
         step
     }
 
@@ -99,21 +107,22 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     }
 
     /// Marches until the state repeats; with `account` of the friction work.
-    pub(super) fn march(&self, samples: &Samples, account: bool) -> Round {
+    pub(super) fn march(&self, samples: &Samples, begun: &AssumedStart, account: bool) -> Round {
         let (count, size) = (self.law.displacements(), self.law.state_size());
         let (stiffness, state_stiffness) = (self.law.stiffness(), self.law.state_stiffness());
         let departs = |step: &Step| {
             !(is_elastic(&step.jacobian, &state_stiffness)
                 && follows(&step.jacobian, &stiffness, &state_stiffness))
         };
-        let mut step = self.start(samples);
+        let mut step = self.start(samples, begun);
         let mut round = Round {
             state: vec![0.0; samples.count * size],
             force: vec![0.0; samples.count * count],
             averaged: vec![false],
             slipping: Vec::new(),
             work: Vec::new(),
-            slipped: departs(&step),
+            // What a contact keeps that follows the motion varies as slip does.
+            slipped: departs(&step) || begun.moves(&step.jacobian),
         };
         let friction =
             account.then(|| FrictionWork::new(self.law.stiffness(), self.law.elements().is_some()));
@@ -162,16 +171,18 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     pub(super) fn differentiate(
         &self,
         samples: &Samples,
+        begun: &AssumedStart,
         rounds: &[bool],
         slots: usize,
         out: &mut [f64],
     ) {
         let stiffness = self.law.stiffness();
         let state_stiffness = self.law.state_stiffness();
-        let mut step = self.start(samples);
+        let mut step = self.start(samples, begun);
         let basis = |n: usize| &samples.basis[(n % samples.count) * slots..][..slots];
         let mut rate = Rate::new(stiffness, state_stiffness.clone(), slots);
         rate.follow(&step.jacobian, None, basis(0));
+        rate.begin(&step.jacobian, &begun.rate);
         let weight = 2.0 / samples.count as f64;
         let mut sum = vec![0.0; slots];
         let mut before = (step.state.clone(), rate.clone());
@@ -232,7 +243,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let size = self.law.state_size();
         let grid = Samples::of(motion, self.samples);
         let stuck = self.stuck(&grid, motion.residual);
-        let round = self.march(&grid, false);
+        let round = self.march(&grid, &self.begin(motion), false);
         let (mut states, mut forces) = (Vec::new(), Vec::new());
         for m in 0..samples {
             let theta = TAU * m as f64 / samples as f64;

@@ -20,7 +20,7 @@
 use super::dual::{Dual, Real};
 use super::law::{Element, HarmonicForce, ReturnMapJacobian};
 use super::parameter::number;
-use super::{ContactLaw, Parameter, Parameters};
+use super::{AssumedStart, ContactLaw, Motion, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
@@ -385,6 +385,10 @@ impl ContactLaw for Coulomb {
     fn beginning(&self) -> (Vec<f64>, Vec<f64>) {
         let (displacement, traction) = &self.beginning;
         (displacement[..self.displacements()].to_vec(), traction[..self.directions].to_vec())
+    }
+
+    fn assumed(&self, motion: Motion<'_>) -> Option<AssumedStart> {
+        self.assumed_start(motion)
     }
 
     fn with_history(&self, displacement: &[f64], state: &[f64]) -> Option<Box<dyn ContactLaw>> {

@@ -75,6 +75,17 @@ impl<'a> Drive<'a> {
         (pull, pressing)
     }
 
+    /// Where the first direction of K is least, and where it is largest.
+    pub(super) fn extremes(&self) -> [TurningPoint; 2] {
+        let mut turns = Vec::new();
+        self.table.turning_points(self.pull(0), &mut turns);
+        let still = TurningPoint { theta: 0.0, value: self.pull[0] };
+        let by_value = |a: &&TurningPoint, b: &&TurningPoint| a.value.total_cmp(&b.value);
+        let trough = turns.iter().min_by(by_value).copied().unwrap_or(still);
+        let crest = turns.iter().max_by(by_value).copied().unwrap_or(still);
+        [trough, crest]
+    }
+
     /// Series of M, its mean included; a single number if it is constant.
     pub(super) fn limit(&self) -> Vec<f64> {
         match &self.pressing {

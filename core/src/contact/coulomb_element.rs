@@ -68,6 +68,10 @@ impl SlipElement for Coulomb {
         })
     }
 
+    fn slider_at_rest(&self) -> f64 {
+        self.slider()[0]
+    }
+
     fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
         let (size, sign) = (self.displacements(), points[0].sign());
         let by_normal = self.friction * self.normal() / self.tangential_stiffness;

@@ -4,12 +4,14 @@
 //! `k_n v − (N − balanced)`: constant while the contact is closed, and in addition
 //! `N₀ + k_n v < 0` while it is open.
 
+use super::coulomb_circle::centre;
 use super::coulomb_constant::Constant;
 use super::coulomb_cycle::{Cycle, Response};
 use super::coulomb_drive::Drive;
+use super::coulomb_plane::Grid;
 use super::law::HarmonicForce;
 use super::{coulomb_period, coulomb_play};
-use super::{Closure, ContactLaw as _, Coulomb};
+use super::{AssumedStart, Closure, ContactLaw as _, Coulomb};
 use super::{Motion, Phase, PointSummary, SlipLoad};
 use std::f64::consts::TAU;
 
@@ -25,6 +27,46 @@ impl Coulomb {
         }
         let rest = self.tangential_stiffness * self.slider()[0];
         coulomb_play::cycle(drive, motion.residual, rest, rates)
+    }
+
+    /// See [`super::residual`]. The normal displacement is that of the start of the period.
+    pub(super) fn assumed_start(&self, motion: Motion<'_>) -> Option<AssumedStart> {
+        let harmonics = motion.table.harmonics();
+        let slots = harmonics.slots();
+        if harmonics.half_wave() || self.friction * self.tangential_stiffness == 0.0 {
+            return None;
+        }
+        let (count, size) = (self.displacements(), motion.displacement.len());
+        let drive = Drive::new(self, motion, false);
+        let rest = self.slider().map(|w| self.tangential_stiffness * w);
+        let mut rate = vec![0.0; count * size];
+        let slider = if !motion.residual.follows_middle() {
+            rest
+        } else if self.directions == 1 {
+            let ends = drive.extremes();
+            for end in ends {
+                let mut basis = vec![0.0; slots];
+                harmonics.basis(end.theta, &mut basis);
+                rate.iter_mut().zip(&basis).for_each(|(rate, b)| *rate += 0.5 * b);
+            }
+            let middle = 0.5 * (ends[0].value + ends[1].value);
+            let [slider] = motion.residual.slider([middle], [rest[0]]);
+            [slider, 0.0]
+        } else {
+            let (middle, by_pull) = centre(&drive, &Grid::new(&drive));
+            for (own, by_pull) in rate.chunks_exact_mut(size).zip(by_pull.chunks(drive.columns())) {
+                own[..2 * slots].copy_from_slice(&by_pull[..2 * slots]);
+            }
+            motion.residual.slider(middle, rest)
+        };
+        let mut displacement: Vec<f64> =
+            slider[..self.directions].iter().map(|s| s / self.tangential_stiffness).collect();
+        if count > self.directions {
+            let normal = size - slots;
+            harmonics.basis(0.0, &mut rate[self.directions * size + normal..][..slots]);
+            displacement.push(harmonics.jet(&motion.displacement[normal..], 0.0)[0]);
+        }
+        Some(AssumedStart { displacement, state: vec![0.0; self.directions], rate })
     }
 
     /// Writes the slip load of a cycle.

@@ -206,6 +206,7 @@ impl Period<'_> {
         let (position, rate) = self.assumed(grid);
         let mut first = March::new(self.drive, plane, grid, true);
         let mut slider = first.begin(position);
+        first.confine(0.0, &mut slider);
         for lap in 0..MOST_LAPS {
             let before = slider.position;
             first.follow(0.0, span, &mut slider, false);
@@ -234,14 +235,12 @@ impl Period<'_> {
         if self.drive.harmonics().half_wave() {
             return ([0.0; 2], Vec::new());
         }
-        if self.residual == Residual::FromRest {
-            return (self.law.slider().map(|w| self.law.tangential_stiffness * w), Vec::new());
+        let rest = self.law.slider().map(|w| self.law.tangential_stiffness * w);
+        if !self.residual.follows_middle() {
+            return (rest, Vec::new());
         }
-        let (mut position, rate) = centre(self.drive, grid);
-        if let Residual::Value(force) = self.residual {
-            position[0] -= force;
-        }
-        (position, rate)
+        let (middle, rate) = centre(self.drive, grid);
+        (self.residual.slider(middle, rest), rate)
     }
 }
 

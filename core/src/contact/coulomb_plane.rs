@@ -191,6 +191,17 @@ impl<'a> March<'a> {
         Slider { position: [pull[0][0], pull[1][0]], rate }
     }
 
+    /// Takes a slider from which the cone does not reach to the nearest from which it does.
+    pub(super) fn confine(&self, theta: f64, slider: &mut Slider) {
+        let (pull, [pressing, _]) = self.drive.at(theta);
+        let limit = self.drive.friction * pressing;
+        let size = (pull[0][0] - slider.position[0]).hypot(pull[1][0] - slider.position[1]);
+        if size > limit {
+            let (angle, rate) = self.onset(theta, slider, false);
+            self.leave(theta, angle, &rate, slider);
+        }
+    }
+
     /// Follows a slider from one angle to another while the contact is closed.
     pub(super) fn follow(&mut self, start: f64, end: f64, slider: &mut Slider, closes: bool) {
         let (pull, pressing) = self.drive.at(start);

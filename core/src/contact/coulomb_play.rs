@@ -197,18 +197,9 @@ impl Play<'_> {
         lower: TurningPoint,
         upper: TurningPoint,
     ) -> State {
-        let mut turns = Vec::new();
-        self.drive.table.turning_points(&self.drive.pull, &mut turns);
-        let still = TurningPoint { theta: 0.0, value: self.drive.pull[0] };
-        let by_value = |a: &&TurningPoint, b: &&TurningPoint| a.value.total_cmp(&b.value);
-        let crest = turns.iter().max_by(by_value).copied().unwrap_or(still);
-        let trough = turns.iter().min_by(by_value).copied().unwrap_or(still);
+        let [trough, crest] = self.drive.extremes();
         let middle = 0.5 * (crest.value + trough.value);
-        let wanted = match residual {
-            Residual::Centred => middle,
-            Residual::FromRest => rest,
-            Residual::Value(force) => middle - force,
-        };
+        let [wanted] = residual.slider([middle], [rest]);
         let mut rate = vec![0.0; if self.rates { self.drive.columns() } else { 0 }];
         let slider = if wanted < lower.value {
             self.add_rate(lower.theta, 1.0, -1.0, &mut rate);
@@ -217,7 +208,7 @@ impl Play<'_> {
             self.add_rate(upper.theta, 1.0, 1.0, &mut rate);
             upper.value
         } else {
-            if residual != Residual::FromRest {
+            if residual.follows_middle() {
                 self.add_rate(crest.theta, 0.5, 0.0, &mut rate);
                 self.add_rate(trough.theta, 0.5, 0.0, &mut rate);
             }

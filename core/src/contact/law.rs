@@ -4,41 +4,11 @@
 //! which is what slip takes off it. The stuck structure carries D, so that the balance has to
 //! find q alone; it vanishes while a contact sticks.
 
-use super::{Describing, Parameter};
+use super::{AssumedStart, Describing, Parameter, Residual};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
-
-/// Force at mid-range of a contact that never slips. Its steady motion does not determine it: it
-/// is what the past has left, and has to be assumed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Residual {
-    /// The force swings about zero.
-    Centred,
-    /// The load was raised slowly from rest with an unloaded contact.
-    FromRest,
-    /// A given force \[N\], reduced where it would make the contact slip.
-    Value(f64),
-}
-
-impl Residual {
-    /// Whether a motion with half-wave symmetry keeps it under this assumption.
-    #[must_use]
-    pub fn is_symmetric(self) -> bool {
-        !matches!(self, Self::Value(value) if value != 0.0)
-    }
-
-    /// Refuses a force that is not finite.
-    pub(crate) fn check(self) -> Result<(), Error> {
-        match self {
-            Self::Value(force) if !force.is_finite() => {
-                Err(Error::value("residual", force, "must be a finite force in N"))
-            }
-            _ => Ok(()),
-        }
-    }
-}
 
 /// One period of the relative displacements at the points of a contact.
 #[derive(Debug, Clone, Copy)]
@@ -269,6 +239,13 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
         (vec![0.0; self.displacements()], vec![0.0; self.state_size()])
     }
 
+    /// Where a periodic motion begins whose residual traction is assumed by [`Residual`]; nothing of a
+    /// law that has no such rule, or under half-wave symmetry, which leaves nothing to assume: it
+    /// begins at its [`Self::beginning`].
+    fn assumed(&self, _motion: Motion<'_>) -> Option<AssumedStart> {
+        None
+    }
+
     /// The same law with motions that begin elsewhere, as under static loads; nothing of a law whose
     /// friction does not depend on it beyond its residual force.
     fn with_history(&self, _displacement: &[f64], _state: &[f64]) -> Option<Box<dyn ContactLaw>> {
@@ -404,6 +381,12 @@ pub trait SlipElement: Send + Sync + std::fmt::Debug {
 
     /// `∂f/∂u` while the points are in these states, points × points [N/m].
     fn tangent(&self, points: &[PointState]) -> Mat<f64>;
+
+    /// Displacement at which the force of its first point vanishes, where it has not slipped since the
+    /// static loads were raised \[m\].
+    fn slider_at_rest(&self) -> f64 {
+        0.0
+    }
 
     /// Slip per relative displacement, `s' = R u'`, while the points are in these states,
     /// points × points; rows of points that do not slip are zero.

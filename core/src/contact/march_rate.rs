@@ -68,6 +68,19 @@ impl Rate {
         self.value = next;
     }
 
+    /// Adds what the displacements from which the first step leads vary by: rows in all coefficients,
+    /// or nothing.
+    pub(super) fn begin(&mut self, jacobian: &ReturnMapJacobian, before: &[f64]) {
+        let count = self.stiffness.nrows();
+        let size = count * self.slots;
+        for (i, row) in self.value.chunks_exact_mut(size).enumerate() {
+            for (l, before) in before.chunks_exact(size).enumerate() {
+                let by_before = jacobian.by_before[i * count + l];
+                row.iter_mut().zip(before).for_each(|(row, b)| *row -= by_before * b);
+            }
+        }
+    }
+
     /// Adds the outer product with the summed basis to a tangent, and clears the sum.
     pub(super) fn add_to(&self, force_by_state: &[f64], sum: &mut [f64], out: &mut [f64]) {
         let (states, size) = (self.state_stiffness.nrows(), self.stiffness.nrows() * self.slots);

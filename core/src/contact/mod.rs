@@ -28,6 +28,7 @@ mod march_rate;
 mod parameter;
 mod periodic_march;
 mod registry;
+mod residual;
 mod samples;
 mod slider;
 mod slider_integrals;
@@ -48,11 +49,12 @@ pub use describing::Describing;
 pub use elastic::Elastic;
 pub use jenkins::Jenkins;
 pub use law::{
-    Bound, ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary, Residual,
+    Bound, ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary,
     ReturnMapJacobian, SlipElement, SlipLoad,
 };
 pub use parameter::{Parameter, Parameters};
 pub use registry::law;
+pub use residual::{AssumedStart, Residual};
 pub use slider::Slider;
 pub use stop::Stop;
 pub use structural::StructuralDamper;

@@ -61,10 +61,21 @@ impl ModalSystem {
 
     /// Derivative of the slip limit of a point in the modal displacements while it is closed; empty
     /// if it is constant.
-    pub(super) fn limit_slope(&self, point: usize) -> Vec<f64> {
+    pub(crate) fn limit_slope(&self, point: usize) -> Vec<f64> {
         let Bound::Friction { friction, normal } = self.bounds[point] else { return Vec::new() };
         let slope = friction * self.normal_stiffness(normal);
         self.contact_shape(normal).iter().map(|b| slope * b).collect()
+    }
+
+    /// Slip limit of a point without any displacement while it is closed \[N\].
+    pub(crate) fn limit_at_rest(&self, point: usize) -> f64 {
+        match self.bounds[point] {
+            Bound::Friction { friction, normal } => match self.bounds[normal] {
+                Bound::Unilateral { at_rest, .. } => friction * at_rest,
+                _ => 0.0,
+            },
+            _ => self.limits[point],
+        }
     }
 
     /// k_n of a point that is bounded on one side [N/m].

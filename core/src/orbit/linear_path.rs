@@ -1,7 +1,7 @@
 //! The linearised contact laws along a given periodic motion: their events, and step by step their
 //! derivatives, by the return map alone.
 
-use crate::contact::{ContactLaw, ReturnMapJacobian};
+use crate::contact::{AssumedStart, ContactLaw, Motion, Residual, ReturnMapJacobian};
 use crate::fourier::{Harmonics, SampleTable};
 use faer::Mat;
 use std::f64::consts::TAU;
@@ -40,9 +40,19 @@ pub(super) struct Part {
 pub(super) struct Displacements<'a> {
     pub(super) harmonics: &'a Harmonics,
     pub(super) series: &'a [f64],
+    /// What contacts keep that never slip in both senses.
+    pub(super) residual: Residual,
 }
 
 impl Displacements<'_> {
+    /// Where a part begins by the rule of [`Residual`]; nothing of a law that has none.
+    fn assumed(&self, part: &Part) -> Option<AssumedStart> {
+        let (slots, table) = (self.harmonics.slots(), SampleTable::new(self.harmonics.clone()));
+        let last = part.first + part.law.displacements();
+        let displacement = &self.series[part.first * slots..last * slots];
+        part.law.assumed(Motion { table: &table, displacement, residual: self.residual })
+    }
+
     /// Those of a part at an angle.
     fn at(&self, part: &Part, theta: f64) -> Vec<f64> {
         let slots = self.harmonics.slots();
@@ -76,6 +86,9 @@ pub(super) struct PartPath {
     pub(super) events: Vec<f64>,
     /// Whether it is a spring of its stiffness for good.
     pub(super) linear: bool,
+    /// Whether it is one that has slipped before: it touches its limit, and has another derivative on
+    /// the other side.
+    pub(super) touches: bool,
 }
 
 impl PartPath {
@@ -88,7 +101,7 @@ impl PartPath {
         angles.sort_by(f64::total_cmp);
         angles.push(TAU);
         angles.dedup_by(|b, a| *b - *a < SHORT);
-        let start = periodic(part, u, &angles)?;
+        let (start, slipped) = periodic(part, u, &angles)?;
         let mut search = Search { part, u, scale: 0.0, events: Vec::new() };
         let (mut state, mut linear) = (start.clone(), true);
         let mut known = Vec::with_capacity(angles.len());
@@ -108,7 +121,7 @@ impl PartPath {
             turns.iter().copied().find(|turn| (turn - event).abs() < AT_TURN).unwrap_or(event)
         };
         let events = search.events.iter().map(|event| nearest(*event)).collect();
-        Some(Self { start, events, linear })
+        Some(Self { start, events, linear, touches: linear && slipped })
     }
 }
 
@@ -127,24 +140,30 @@ pub(super) fn step(
     jacobian
 }
 
-/// State at the start of the period, which repeats.
-fn periodic(part: &Part, u: &Displacements<'_>, angles: &[f64]) -> Option<Vec<f64>> {
+/// State at the start of the period, which repeats, and whether the part has slipped on the way to it.
+fn periodic(part: &Part, u: &Displacements<'_>, angles: &[f64]) -> Option<(Vec<f64>, bool)> {
     let count = part.law.displacements();
-    let mut state = vec![0.0; part.law.state_size()];
+    let assumed = u.assumed(part);
+    // Of a law without that rule nothing is known but that it repeats.
+    let told = assumed.is_some();
+    let begun = assumed.map(|begun| (begun.displacement, begun.state));
+    let (before, mut state) = begun.unwrap_or_else(|| part.law.beginning());
+    let (mut force, mut jacobian) = (vec![0.0; count], ReturnMapJacobian::default());
     let first = u.at(part, 0.0);
-    part.law.return_map(&vec![0.0; count], &first, &mut state, &mut vec![0.0; count], None);
+    part.law.return_map(&before, &first, &mut state, &mut force, Some(&mut jacobian));
+    let mut slipped = !jacobian.sticks();
     let displacements: Vec<Vec<f64>> = angles.iter().map(|theta| u.at(part, *theta)).collect();
-    let mut force = vec![0.0; count];
     for _ in 0..MOST_ROUNDS {
         let before = state.clone();
         let mut largest = 0.0_f64;
         for pair in displacements.windows(2) {
-            part.law.return_map(&pair[0], &pair[1], &mut state, &mut force, None);
+            part.law.return_map(&pair[0], &pair[1], &mut state, &mut force, Some(&mut jacobian));
+            slipped |= !jacobian.sticks();
             largest = state.iter().fold(largest, |most, z| most.max(z.abs()));
         }
         let change = state.iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         if change <= PERIODIC * largest {
-            return Some(state);
+            return Some((state, slipped && told));
         }
     }
     None

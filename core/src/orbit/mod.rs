@@ -17,6 +17,7 @@ mod segments;
 mod settings;
 mod shooting;
 mod sides;
+mod sliders;
 mod stability;
 mod start;
 mod survey;

@@ -7,8 +7,8 @@
 //! extrapolated (Romberg), and what the last halving has changed is the error.
 
 use super::linear_path::{inside, step, Displacements, Part, PartPath};
-use crate::balance::{Progress, Solution, Unknowns};
-use crate::contact::ReturnMapJacobian;
+use crate::balance::{with_history, Progress, Solution, Unknowns};
+use crate::contact::{Residual, ReturnMapJacobian};
 use crate::model::Model;
 use crate::structure::modes;
 use crate::Error;
@@ -40,6 +40,7 @@ pub struct PeriodMap {
     rows: Vec<Vec<f64>>,
     parts: Vec<Part>,
     states: usize,
+    residual: Residual,
 }
 
 /// Floquet multipliers with their error.
@@ -106,12 +107,21 @@ impl PeriodMap {
                 .collect(),
             parts,
             states,
+            residual: Residual::Centred,
         })
+    }
+
+    /// The map of motions whose contacts keep another residual traction.
+    #[must_use]
+    pub fn assuming(mut self, residual: Residual) -> Self {
+        self.residual = residual;
+        self
     }
 
     /// Multipliers of a motion of frequency ω [rad/s], given by its contact displacements; the steps are
     /// halved until the largest is known to `tolerance`, or without one until it is known on which side
-    /// of 1 it lies. Nothing where the contacts do not repeat what they do, or the steps are too many.
+    /// of 1 it lies. Nothing where the contacts do not repeat what they do, where one has slipped until it
+    /// touches its limit, so that the map has no derivative, or where the steps are too many.
     #[must_use]
     pub fn multipliers(
         &self,
@@ -119,10 +129,14 @@ impl PeriodMap {
         motion: &Unknowns,
         tolerance: Option<f64>,
     ) -> Option<Multipliers> {
-        let u = Displacements { harmonics: motion.harmonics(), series: motion.values() };
+        let u = Displacements {
+            harmonics: motion.harmonics(),
+            series: motion.values(),
+            residual: self.residual,
+        };
         let paths: Option<Vec<PartPath>> =
             self.parts.iter().map(|part| PartPath::new(part, &u)).collect();
-        let paths = paths?;
+        let paths = paths.filter(|paths| !paths.iter().any(|path| path.touches))?;
         let mut ends: Vec<f64> = paths
             .iter()
             .filter(|path| !path.linear)
@@ -419,20 +433,25 @@ fn add(out: &mut [f64], factor: f64, row: &[f64]) {
     }
 }
 
-/// Decides the stability of the points of a curve, as far as the map tells it; those of a travelling
+/// Decides the stability of the points of a curve under the residual assumed by its balance, as far as the map tells it; those of a travelling
 /// wave stay undecided.
 ///
 /// # Errors
 /// As [`PeriodMap::new`], but for a wave.
 pub fn decide_stability(
     model: &Model,
+    residual: Residual,
     solution: &mut Solution,
     progress: &Progress<'_>,
 ) -> Result<(), Error> {
     if model.is_travelling_wave() {
         return Ok(());
     }
-    let map = PeriodMap::new(model)?;
+    let history = match residual {
+        Residual::FromRest => with_history(model)?,
+        Residual::Centred | Residual::Value(_) => None,
+    };
+    let map = PeriodMap::new(history.as_ref().unwrap_or(model))?.assuming(residual);
     for point in &mut solution.points {
         if !progress(1.0) {
             return Ok(());

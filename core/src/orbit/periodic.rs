@@ -5,9 +5,13 @@ use super::residual::shifted;
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::{Shooting, STEPS};
+use super::sliders::{choose, Chosen};
 use super::start::start_of;
 use super::survey::Survey;
-use crate::balance::{ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings};
+use crate::balance::{
+    with_history, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings,
+};
+use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::{Event, ModalSystem, State};
 use crate::solve::{newton, NewtonSettings, Outcome, System as _};
@@ -55,6 +59,8 @@ pub struct Orbit {
 /// Exact orbits of a model, from frequency to frequency.
 pub struct PeriodicOrbits<'a> {
     model: &'a Model,
+    /// The model with friction that has its history, where it is asked for.
+    with_history: Option<Model>,
     system: Arc<ModalSystem>,
     settings: OrbitSettings,
     observe: &'a [usize],
@@ -82,10 +88,15 @@ impl<'a> PeriodicOrbits<'a> {
         observe: &'a [usize],
     ) -> Result<Self, Error> {
         settings.check()?;
-        let system = Arc::new(ModalSystem::new(model)?);
+        let with_history = match settings.residual {
+            Residual::FromRest => with_history(model)?,
+            Residual::Centred | Residual::Value(_) => None,
+        };
+        let system = Arc::new(ModalSystem::new(with_history.as_ref().unwrap_or(model))?);
         Error::check_dofs(observe, system.modes())?;
         Ok(Self {
             model,
+            with_history,
             everywhere: (0..system.modes()).collect(),
             system,
             settings,
@@ -192,15 +203,23 @@ impl<'a> PeriodicOrbits<'a> {
             shooting.rotate(rotation, &system);
         }
         let solved = self.shoot(&mut shooting, omega, neighbour);
+        let solved = solved.map(|(mut y, mut iterations)| {
+            let (residual, newton) = (self.settings.residual, self.newton());
+            let chosen = choose(&mut shooting, residual, &mut y, newton, &mut iterations);
+            (y, iterations, chosen)
+        });
         self.profile.evaluations += shooting.flow.steps;
-        let Some((mut y, iterations)) = solved else {
+        let Some((mut y, iterations, chosen)) = solved else {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         };
+        if chosen == Chosen::Lost && shooting.interrupted() {
+            return Ok(self.empty(omega, PointStatus::NotComputed));
+        }
         let mut residual = vec![0.0; y.len()];
         shooting.residual(&y, &mut residual);
         let size = crate::solve::norm(&y).max(f64::MIN_POSITIVE);
         let closing = crate::solve::norm(&residual) / size;
-        if closing.is_nan() || closing > CLOSED {
+        if closing.is_nan() || closing > CLOSED || chosen == Chosen::Lost {
             let spent = shooting.flow.is_spent();
             let status = if spent { PointStatus::StepsLimit } else { PointStatus::Stalled };
             let mut orbit = self.empty(omega, status);
@@ -215,6 +234,7 @@ impl<'a> PeriodicOrbits<'a> {
         let known =
             match self.rotation {
                 Some(_) => None,
+                None if chosen == Chosen::Touching => None,
                 None => Some(shooting.multipliers().ok_or_else(|| {
                     Error::Eigenvalues("transition matrix of the orbit".to_owned())
                 })?),
@@ -230,6 +250,10 @@ impl<'a> PeriodicOrbits<'a> {
         Ok(orbit)
     }
 
+    fn newton(&self) -> NewtonSettings {
+        NewtonSettings { tolerance: 1e-13, max_iterations: self.settings.max_iterations }
+    }
+
     /// Newton's method from the neighbour, from harmonic balance, and at last from where the
     /// motion itself leads. `None` if the caller has ended the analysis.
     fn shoot(
@@ -238,8 +262,7 @@ impl<'a> PeriodicOrbits<'a> {
         omega: f64,
         neighbour: Option<&State>,
     ) -> Option<(Vec<f64>, usize)> {
-        let settings =
-            NewtonSettings { tolerance: 1e-13, max_iterations: self.settings.max_iterations };
+        let settings = self.newton();
         let mut iterations = 0;
         let mut y = match neighbour {
             Some(state) => shooting.coordinates.coordinates(state),
@@ -294,7 +317,7 @@ impl<'a> PeriodicOrbits<'a> {
         balance = balance.watched(self.progress);
         match balance.solve(omega, None) {
             Ok(point) if point.status == PointStatus::Converged => start_of(
-                self.model,
+                self.with_history.as_ref().unwrap_or(self.model),
                 &self.system,
                 self.settings.residual,
                 &point,

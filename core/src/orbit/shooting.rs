@@ -3,7 +3,7 @@
 
 use super::rotation::Rotation;
 use crate::contact::PointState;
-use crate::motion::{Flow, LinearPhase, ModalSystem, State, Transition};
+use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, State, Transition};
 use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
@@ -136,6 +136,15 @@ impl<'a> Shooting<'a> {
             y.iter_mut().for_each(|y| *y = -*y);
         }
         Some(y)
+    }
+
+    /// Follows a state through the whole period; `false` where that fails.
+    pub(super) fn follow_period(
+        &mut self,
+        state: &mut State,
+        observe: &mut dyn FnMut(FlowEvent<'_>),
+    ) -> bool {
+        self.flow.run(state, self.period, observe).is_ok()
     }
 
     /// Follows the motion itself over some spans: passive systems settle by themselves.

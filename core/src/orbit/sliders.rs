@@ -1,0 +1,218 @@
+//! The slider positions of contacts that never slip in both senses, under normal loads that vary.
+//!
+//! Every position that Coulomb allows closes an orbit of its own: with the traction that it keeps the
+//! mean, the normal loads and with them the vibration change. The one of
+//! [`crate::contact::Residual`] is found by Newton's method on the positions. Its outer equations are
+//! those of the assumption; the derivative of the orbit in a position follows from the transition
+//! matrix, with the conserved slip as right-hand side.
+
+use super::shooting::Shooting;
+use crate::contact::Residual;
+use crate::motion::{Extremes, FlowEvent, ModalSystem};
+use crate::solve::{newton, norm, NewtonSettings, Outcome};
+use faer::linalg::solvers::Solve as _;
+use faer::Mat;
+
+/// Newton steps on the positions.
+const STEPS: usize = 30;
+/// Halvings of a step after which the orbit does not close.
+const HALVINGS: i32 = 8;
+/// Distance from the assumed position that is none, …
+const SETTLED: f64 = 1e-10;
+/// … distance from a limit that it keeps, so that rounding does not push it, …
+const CLEAR: f64 = 1e-9;
+/// … distance at which it touches it, …
+const TOUCHES: f64 = 1e-7;
+/// … and step of differences, all relative to the contact's forces.
+const DIFFERENCE: f64 = 1e-6;
+
+/// A contact of one point whose slider an orbit leaves where it is; positions are scaled by the spring,
+/// in N.
+struct Kept {
+    point: usize,
+    /// Root of the spring's stiffness.
+    root: f64,
+    position: f64,
+    /// Positions that Coulomb allows for the whole period.
+    allowed: [f64; 2],
+    /// The one that is assumed, if it could be chosen freely.
+    wanted: f64,
+    /// Size of the contact's forces.
+    scale: f64,
+}
+
+/// How the search for the assumed positions has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Chosen {
+    /// No contact leaves a choice, or all of them are where they are assumed.
+    Inside,
+    /// Some touch their limit: the flow has other derivatives on either side of the orbit.
+    Touching,
+    /// No orbit with the assumed positions was found.
+    Lost,
+}
+
+impl Kept {
+    /// The assumed position, as far as Coulomb allows it.
+    fn target(&self) -> f64 {
+        let clear = (CLEAR * self.scale).min(0.25 * (self.allowed[1] - self.allowed[0]));
+        self.wanted.clamp(self.allowed[0] + clear, self.allowed[1] - clear)
+    }
+
+    fn miss(&self) -> f64 {
+        self.target() - self.position
+    }
+
+    fn touches(&self) -> bool {
+        let room = TOUCHES * self.scale;
+        self.position < self.allowed[0] + room || self.position > self.allowed[1] - room
+    }
+}
+
+/// Moves a closed orbit to the one whose contacts keep what is assumed of them; its iterations are
+/// added. Systems of constant limits have their own way, see [`super::residual`].
+pub(super) fn choose(
+    shooting: &mut Shooting<'_>,
+    residual: Residual,
+    y: &mut Vec<f64>,
+    settings: NewtonSettings,
+    iterations: &mut usize,
+) -> Chosen {
+    let system = shooting.coordinates.system();
+    if !system.has_normals() || !system.rigid_modes().is_empty() {
+        return Chosen::Inside;
+    }
+    for _ in 0..STEPS {
+        let Some(kept) = kept(shooting, residual, y) else { return Chosen::Lost };
+        if kept.iter().all(|one| one.miss().abs() <= SETTLED * one.scale) {
+            let touches = kept.iter().any(Kept::touches);
+            return if touches { Chosen::Touching } else { Chosen::Inside };
+        }
+        let Some(step) = step(shooting, residual, y, &kept) else { return Chosen::Lost };
+        let found = (0..HALVINGS).find_map(|n| {
+            let share = 0.5_f64.powi(n);
+            let mut next: Vec<f64> = y.iter().zip(&step).map(|(y, by)| y + share * by).collect();
+            let report = newton(shooting, &mut next, settings);
+            *iterations += report.iterations;
+            (report.outcome == Outcome::Converged).then_some(next)
+        });
+        let Some(next) = found else { return Chosen::Lost };
+        *y = next;
+    }
+    Chosen::Lost
+}
+
+/// Change of the orbit that leads the sliders to the assumed positions, to first order.
+fn step(
+    shooting: &mut Shooting<'_>,
+    residual: Residual,
+    y: &[f64],
+    kept: &[Kept],
+) -> Option<Vec<f64>> {
+    let (size, count) = (y.len(), kept.len());
+    let moved = responses(shooting, y, kept)?;
+    let mut matrix = Mat::<f64>::identity(count, count);
+    for (j, one) in kept.iter().enumerate() {
+        // Inwards, where nothing slips.
+        let inwards = 0.5 * (one.allowed[0] + one.allowed[1]) - one.position;
+        let by = (DIFFERENCE * one.scale).min(inwards.abs()).max(SETTLED * one.scale);
+        let by = by.copysign(inwards);
+        let aside: Vec<f64> = y.iter().enumerate().map(|(i, y)| y + by * moved[(i, j)]).collect();
+        let aside = self::kept(shooting, residual, &aside)?;
+        for (i, own) in kept.iter().enumerate() {
+            let Some(other) = aside.iter().find(|other| other.point == own.point) else { continue };
+            matrix[(i, j)] -= (other.target() - own.target()) / by;
+        }
+    }
+    let mut change = Mat::from_fn(count, 1, |i, _| kept[i].miss());
+    matrix.partial_piv_lu().solve_in_place(&mut change);
+    let step: Vec<f64> =
+        (0..size).map(|i| (0..count).map(|j| change[(j, 0)] * moved[(i, j)]).sum()).collect();
+    (norm(&step).is_finite()).then_some(step)
+}
+
+/// Derivative of the closed orbit in the positions of the sliders, column by column.
+fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Mat<f64>> {
+    shooting.image(y)?;
+    let mut matrix = shooting.derivative();
+    let size = matrix.nrows();
+    (0..size).for_each(|i| matrix[(i, i)] -= 1.0);
+    let mut slipped = shooting.slipped().to_vec();
+    kept.iter().for_each(|one| slipped[one.point] = false);
+    let coordinates = &shooting.coordinates;
+    let strain = |point: usize| {
+        let mut bodies = coordinates.system().bodies().iter();
+        let body = bodies.find(|body| body.points.contains(&point));
+        body.map(|body| size - coordinates.system().strains() + body.strains.start)
+    };
+    let mut right = Mat::zeros(size, kept.len());
+    for (target, row) in coordinates.conserved(&slipped) {
+        for (j, value) in row.iter().enumerate() {
+            matrix[(target, j)] = *value;
+        }
+        for (column, one) in kept.iter().enumerate() {
+            right[(target, column)] =
+                if strain(one.point) == Some(target) { 1.0 / one.root } else { 0.0 };
+        }
+    }
+    matrix.partial_piv_lu().solve_in_place(&mut right);
+    Some(right)
+}
+
+/// The contacts that an orbit leaves a choice: never open, and never pushed from both sides. `None` if
+/// the motion cannot be followed.
+fn kept(shooting: &mut Shooting<'_>, residual: Residual, y: &[f64]) -> Option<Vec<Kept>> {
+    let system = shooting.coordinates.system();
+    let (mut state, _) = shooting.coordinates.state(y);
+    let displacement = system.contact_displacement(&state.displacement);
+    let (mut found, mut shapes) = (Vec::new(), Vec::new());
+    for body in system.bodies() {
+        let [point] = body.remembered[..] else { continue };
+        if body.elastic.rank() == 0 || system.limits()[point] == 0.0 {
+            continue;
+        }
+        let root = body.elastic.root()[(point - body.points.start, 0)];
+        let spring = root * root;
+        let mut slope = system.limit_slope(point);
+        slope.resize(system.modes(), 0.0);
+        let pull: Vec<f64> = system.contact_shape(point).iter().map(|b| spring * b).collect();
+        let wall = |sign: f64| pull.iter().zip(&slope).map(|(k, m)| k + sign * m).collect();
+        shapes.extend([wall(0.0), wall(-1.0), wall(1.0), slope.clone()]);
+        let position = spring * displacement[point] - state.force[point];
+        let rest = spring * body.law.slider_at_rest();
+        found.push((point, root, position, rest));
+    }
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; shapes.len()];
+    let mut extremes = Extremes::default();
+    let followed = shooting.follow_period(&mut state, &mut |passage| {
+        if let FlowEvent::Segment(segment) = &passage {
+            extremes.follow(segment, &shapes, &mut ranges);
+        }
+    });
+    followed.then(|| {
+        let all = found.into_iter().zip(ranges.chunks_exact(4));
+        let kept = all.filter_map(|((point, root, position, rest), range)| {
+            one(system, residual, (point, root, position, rest), range)
+        });
+        kept.collect()
+    })
+}
+
+/// A contact by the ranges of K, K − M, K + M and M, the last three without what M is at rest; nothing if
+/// it leaves no choice.
+fn one(
+    system: &ModalSystem,
+    residual: Residual,
+    (point, root, position, rest): (usize, f64, f64, f64),
+    range: &[[f64; 2]],
+) -> Option<Kept> {
+    let at_rest = system.limit_at_rest(point);
+    let [pull, lower, upper, limit] = [0, 1, 2, 3].map(|i| range[i]);
+    let allowed = [lower[1] - at_rest, upper[0] + at_rest];
+    let [wanted] = residual.slider([0.5 * (pull[0] + pull[1])], [rest]);
+    let scale = pull[1] - pull[0] + at_rest.abs() + limit[1] - limit[0];
+    let closed = limit[0] + at_rest >= 0.0;
+    // One that cannot slip at all is a spring.
+    let chooses = closed && allowed[0] <= allowed[1] && scale > 0.0 && scale < f64::MAX;
+    chooses.then_some(Kept { point, root, position, allowed, wanted, scale })
+}
