@@ -234,7 +234,6 @@ impl<'a> PeriodicOrbits<'a> {
         let known =
             match self.rotation {
                 Some(_) => None,
-                None if chosen == Chosen::Touching => None,
                 None => Some(shooting.multipliers().ok_or_else(|| {
                     Error::Eigenvalues("transition matrix of the orbit".to_owned())
                 })?),
@@ -245,7 +244,11 @@ impl<'a> PeriodicOrbits<'a> {
         orbit.response.iterations = iterations;
         orbit.response.error_estimate = self.left_error(&shooting, &system, &left);
         if let Some((multipliers, neutral)) = known {
-            (orbit.multipliers, orbit.neutral) = (multipliers, neutral);
+            orbit.neutral = neutral;
+            // Where a limit is touched they are those of one side alone.
+            if chosen != Chosen::Touching {
+                orbit.multipliers = multipliers;
+            }
         }
         Ok(orbit)
     }

@@ -15,6 +15,10 @@ use faer::Mat;
 
 /// Newton steps on the positions.
 const STEPS: usize = 30;
+/// Newton iterations that close the orbit again after a step; one that needs more is too long.
+const CLOSING: usize = 12;
+/// Steps that are taken in full.
+const FULL: usize = 8;
 /// Halvings of a step after which the orbit does not close.
 const HALVINGS: i32 = 8;
 /// Distance from the assumed position that is none, …
@@ -63,6 +67,11 @@ impl Kept {
         self.target() - self.position
     }
 
+    /// Way to the middle of what Coulomb allows: there nothing slips.
+    fn inwards(&self) -> f64 {
+        0.5 * (self.allowed[0] + self.allowed[1]) - self.position
+    }
+
     fn touches(&self) -> bool {
         let room = TOUCHES * self.scale;
         self.position < self.allowed[0] + room || self.position > self.allowed[1] - room
@@ -79,17 +88,21 @@ pub(super) fn choose(
     iterations: &mut usize,
 ) -> Chosen {
     let system = shooting.coordinates.system();
+    let most = settings.max_iterations.min(CLOSING);
+    let settings = NewtonSettings { max_iterations: most, ..settings };
     if !system.has_normals() || !system.rigid_modes().is_empty() {
         return Chosen::Inside;
     }
-    for _ in 0..STEPS {
+    for number in 0..STEPS {
         let Some(kept) = kept(shooting, residual, y) else { return Chosen::Lost };
         if kept.iter().all(|one| one.miss().abs() <= SETTLED * one.scale) {
             let touches = kept.iter().any(Kept::touches);
             return if touches { Chosen::Touching } else { Chosen::Inside };
         }
         let Some(step) = step(shooting, residual, y, &kept) else { return Chosen::Lost };
-        let found = (0..HALVINGS).find_map(|n| {
+        // Where the states on the way go round in circles a shorter step ends that.
+        let first = i32::from(number >= FULL);
+        let found = (first..HALVINGS).find_map(|n| {
             let share = 0.5_f64.powi(n);
             let mut next: Vec<f64> = y.iter().zip(&step).map(|(y, by)| y + share * by).collect();
             let report = newton(shooting, &mut next, settings);
@@ -111,17 +124,29 @@ fn step(
 ) -> Option<Vec<f64>> {
     let (size, count) = (y.len(), kept.len());
     let moved = responses(shooting, y, kept)?;
+    // Differences are taken where nothing slips: away from the limits that are touched.
+    let inwards = |one: &Kept| {
+        let by = (DIFFERENCE * one.scale).min(one.inwards().abs()).max(SETTLED * one.scale);
+        by.copysign(one.inwards())
+    };
+    let mut inside = y.to_vec();
+    for (j, one) in kept.iter().enumerate().filter(|(_, one)| one.touches()) {
+        inside.iter_mut().enumerate().for_each(|(i, y)| *y += inwards(one) * moved[(i, j)]);
+    }
+    let here = self::kept(shooting, residual, &inside)?;
+    let target = |of: &[Kept], point: usize| {
+        of.iter().find(|one| one.point == point).map_or(f64::NAN, Kept::target)
+    };
     let mut matrix = Mat::<f64>::identity(count, count);
     for (j, one) in kept.iter().enumerate() {
-        // Inwards, where nothing slips.
-        let inwards = 0.5 * (one.allowed[0] + one.allowed[1]) - one.position;
-        let by = (DIFFERENCE * one.scale).min(inwards.abs()).max(SETTLED * one.scale);
-        let by = by.copysign(inwards);
-        let aside: Vec<f64> = y.iter().enumerate().map(|(i, y)| y + by * moved[(i, j)]).collect();
+        let by = inwards(one);
+        let aside: Vec<f64> =
+            inside.iter().enumerate().map(|(i, y)| y + by * moved[(i, j)]).collect();
         let aside = self::kept(shooting, residual, &aside)?;
         for (i, own) in kept.iter().enumerate() {
-            let Some(other) = aside.iter().find(|other| other.point == own.point) else { continue };
-            matrix[(i, j)] -= (other.target() - own.target()) / by;
+            let slope = (target(&aside, own.point) - target(&here, own.point)) / by;
+            // One that leaves no choice there answers to nothing.
+            matrix[(i, j)] -= if slope.is_finite() { slope } else { 0.0 };
         }
     }
     let mut change = Mat::from_fn(count, 1, |i, _| kept[i].miss());
@@ -133,18 +158,25 @@ fn step(
 
 /// Derivative of the closed orbit in the positions of the sliders, column by column.
 fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Mat<f64>> {
-    shooting.image(y)?;
+    let (size, system) = (y.len(), shooting.coordinates.system());
+    let strain = |point: usize| {
+        let body = system.bodies().iter().find(|body| body.points.contains(&point));
+        body.map(|body| size - system.strains() + body.strains.start)
+    };
+    // On the side on which nothing slips.
+    let mut aside = y.to_vec();
+    for one in kept.iter().filter(|one| one.touches()) {
+        let by = (DIFFERENCE * one.scale).min(one.inwards().abs()).copysign(one.inwards());
+        if let Some(strain) = strain(one.point) {
+            aside[strain] -= by / one.root;
+        }
+    }
+    shooting.image(&aside)?;
     let mut matrix = shooting.derivative();
-    let size = matrix.nrows();
     (0..size).for_each(|i| matrix[(i, i)] -= 1.0);
     let mut slipped = shooting.slipped().to_vec();
     kept.iter().for_each(|one| slipped[one.point] = false);
     let coordinates = &shooting.coordinates;
-    let strain = |point: usize| {
-        let mut bodies = coordinates.system().bodies().iter();
-        let body = bodies.find(|body| body.points.contains(&point));
-        body.map(|body| size - coordinates.system().strains() + body.strains.start)
-    };
     let mut right = Mat::zeros(size, kept.len());
     for (target, row) in coordinates.conserved(&slipped) {
         for (j, value) in row.iter().enumerate() {

@@ -10,7 +10,7 @@ import numpy as np
 from stickslip import _core
 from stickslip.analyses.texts import TEXTS, told
 from stickslip.checks import listed
-from stickslip.model import Model, StructuralDamper, natural_frequencies
+from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
 from stickslip.results.arrays import STABILITY, Arrays, Float, amplitude_of
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
@@ -48,6 +48,7 @@ def balance_assumptions(
                 single and told("method/single"),
                 not single and _harmonics(settings, arrays, solution.half_wave),
                 _static_traction(model, settings, arrays),
+                _node_traction(model, settings, arrays),
                 _start_of_march(model),
                 bool(model.contacts) and _samples(model, settings, arrays),
                 base in TEXTS and told(base, base=model.problem.modal_base),
@@ -83,6 +84,7 @@ def orbit_assumptions(
                 told("half-period/half" if solution.half_wave else "half-period"),
                 told("harmonics/orbits", most=settings.harmonics),
                 _static_traction(model, settings, arrays),
+                _node_traction(model, settings, arrays),
                 _start_of_march(model),
                 settings.span is not None
                 and told("frequencies/balance", tolerance=settings.tolerance, _low=low, _high=high),
@@ -162,6 +164,34 @@ def _static_traction(
     )
 
 
+def _node_traction(
+    model: Model, settings: ForcedSettings | ExactSettings, arrays: Arrays
+) -> Diagnostic | None:
+    """Say what nodes of Coulomb contacts that never slip in both senses were taken to hold."""
+    shares = arrays.slip_fraction[arrays.solved]
+    stuck = np.zeros(len(shares), np.bool_)
+    first = 0
+    for contact in model.contacts:
+        own = shares[:, first : first + contact.displacements]
+        first += contact.displacements
+        if isinstance(contact, Coulomb):
+            nodes = own.reshape(len(own), contact.points, len(contact.components))
+            stuck |= (nodes == 0.0).all(axis=2).any(axis=1)
+    if not stuck.any():
+        return None
+    held = {
+        "centred": "no traction at mid-range of their displacement",
+        "from_rest": "the traction that the static loads have left",
+    }.get(str(settings.residual), f"{settings.residual} N along t or t1 at mid-range")
+    return told(
+        "static-traction/nodes",
+        residual=settings.residual,
+        points=int(stuck.sum()),
+        _held=held,
+        _solved=stuck.size,
+    )
+
+
 def _start_of_march(model: Model) -> Diagnostic | None:
     """Say how contacts of several displacements begin, and what holds dampers."""
     several = [one for one in model.contacts if isinstance(one, StructuralDamper)]
@@ -173,7 +203,7 @@ def _start_of_march(model: Model) -> Diagnostic | None:
     )
     if several:
         return told("start-of-march", _held="".join(held))
-    nodes = any(one.components for one in model.contacts)
+    nodes = any(one.components and not isinstance(one, Coulomb) for one in model.contacts)
     return told("start-of-march/nodes") if nodes else None
 
 

@@ -98,11 +98,14 @@ TEXTS = {
     "static-traction": "A contact that never slips was taken to hold {_held} "
     "(residual={residual!r}, of effect at {points} of {_solved} points); residual_bounds gives "
     "what it could hold.",
+    "static-traction/nodes": "Nodes of a Coulomb contact that never slip in both senses were taken "
+    "to hold {_held} (residual={residual!r}, of effect at {points} of {_solved} points), as far as "
+    "the motion leaves it: under a normal load that varies the vibration depends on it.",
     "static-traction/peaks": "A contact that never slips was taken to hold residual={residual!r}.",
     "start-of-march": "The march through a damper of several points begins without slip, so that "
     "points which never slip hold what they built up from zero displacement, and no mean force "
     "where the motion is half-wave symmetric{_held}.",
-    "start-of-march/nodes": "The march through a contact with components begins without slip, so "
+    "start-of-march/nodes": "The march through a contact law of your own begins without slip, so "
     "that nodes which never slip hold the traction that they built up from zero displacement.",
     # transients and free motions
     "start": "The run starts from {_begun}.",
