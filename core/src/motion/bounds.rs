@@ -38,9 +38,9 @@ impl ModalSystem {
 
     /// Keeps forces within their bounds.
     pub(super) fn confine(&self, force: &mut [f64]) {
-        for point in 0..force.len() {
-            if let Bound::Unilateral { balanced, .. } = self.bounds[point] {
-                force[point] = force[point].max(-balanced);
+        for (bound, force) in self.bounds.iter().zip(&mut *force) {
+            if let Bound::Unilateral { balanced, .. } = bound {
+                *force = force.max(-balanced);
             }
         }
         for point in 0..force.len() {

@@ -58,7 +58,7 @@ pub(super) struct Slide {
     rate: f64,
     limit: Coefficients,
     turn: Coefficients,
-    pub(super) along: [Coefficients; 2],
+    along: [Coefficients; 2],
     /// λ; the last coefficient is not known.
     pull: Coefficients,
 }
