@@ -173,6 +173,7 @@ impl<'py> Columns<'py> {
             PointState::Forward => 1,
             PointState::Backward => 2,
             PointState::Open => 3,
+            PointState::Sliding => 4,
         };
         self.one("event_time", events.clone().map(|event| event.time))?;
         self.one("event_point", events.clone().map(|event| event.point as i64))?;

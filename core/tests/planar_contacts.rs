@@ -309,8 +309,8 @@ proptest! {
     }
 }
 
-/// One mass on a plane: exact orbits refuse two directions of sliding by name, Runge-Kutta steps take
-/// their return map and settle on the values of two codes.
+/// One mass on a plane: Runge-Kutta steps take the return map of two directions of sliding and settle on
+/// the values of two codes.
 #[test]
 fn two_directions_of_sliding_are_stepped_through() {
     let diagonal = |d: [f64; 3]| Mat::from_fn(3, 3, |i, j| if i == j { d[i] } else { 0.0 });
@@ -333,9 +333,6 @@ fn two_directions_of_sliding_are_stepped_through() {
     let follow = |settings: &TransientSettings, start: Option<&[f64]>| {
         transient(&model, settings, start, &[0, 1, 2], &|_| true)
     };
-    let exact = settings(260.0, Scheme::Exact, 1, 8);
-    let refused = follow(&exact, None).unwrap_err().to_string();
-    assert!(refused.contains("coulomb"), "{refused}");
     let history = follow(&wanted, None).unwrap();
     assert!(history.settled);
     let last = &history.range[history.range.len() - 3..];
@@ -350,7 +347,7 @@ fn two_directions_of_sliding_are_stepped_through() {
     assert!(next.change[0] < 1e-8, "{:?}", next.change);
     let beyond: Vec<f64> = state[..6].iter().copied().chain([1e3, 0.0]).collect();
     let refused = follow(&short, Some(&beyond)).unwrap_err().to_string();
-    assert!(refused.contains("that the contacts remember"), "{refused}");
+    assert!(refused.contains("slip limit"), "{refused}");
 }
 
 /// Free motions of a body under load die away in stick, or go on; what is stepped through agrees.

@@ -71,7 +71,7 @@ def test_orbits_survive_storage(curves, tmp_path):
     assert list(again.events(0)) == list(curves[0].events(0))
 
 
-def test_two_directions_in_runge_kutta_steps():
+def mass_on_a_plane():
     dofs = ["x", "y", "z"]
     stiffness, damping = np.diag([4e4, 9e4, 1.6e5]), np.diag([8.0, 10.0, 16.0])
     values = {"friction": 0.4, "tangential_stiffness": 5e4, "normal_stiffness": 8e4}
@@ -81,7 +81,34 @@ def test_two_directions_in_runge_kutta_steps():
         ss.Force("y", 25.0, phase=-0.5 * np.pi),
         ss.Force("z", 20.0, phase=-0.7),
     ]
-    model = ss.Model(ss.Structure(np.eye(3), stiffness, damping, dofs), [pad], forces)
+    return ss.Model(ss.Structure(np.eye(3), stiffness, damping, dofs), [pad], forces)
+
+
+def test_two_directions_are_followed_exactly():
+    model = mass_on_a_plane()
+    exact = ss.exact_response(model, [180.0, 260.0])
+    balance = ss.forced_response(model, [260.0], 61)
+    assert exact.converged.all()
+    assert exact.stable.all()
+    expected = [[1.79793e-3, 3.20807e-4, 9.63298e-5], [1.39417e-3, 8.77593e-4, 1.159755e-4]]
+    found = np.transpose([exact.amplitude(dof, "max") for dof in "xyz"])
+    np.testing.assert_allclose(found, expected, rtol=3e-5)
+    for of in ("slip_fraction", "dissipation"):
+        one, other = getattr(exact, of)(0)[1], getattr(balance, of)(0)[0]
+        np.testing.assert_allclose(one, other, rtol=1e-3)
+    kinds = {event.kind for event in exact.events(1)}
+    assert kinds == {"slides", "sticks"}
+    assert exact.contact_states(0, 1).slipping(0) in ((), (0,))
+    assert len(plot.events(exact, 1).get_yticklabels()) == 1
+    run = ss.transient(model, 260.0, 40)
+    last = np.abs(run.displacement("y")[run.time > 38.0 * 2.0 * np.pi / 260.0])
+    assert last.max() == pytest.approx(8.77593e-4, rel=3e-3)
+    free = ss.Model(model.structure, model.contacts)
+    assert ss.classify(free, {"x": 2e-3, "y": 1e-3}).reason == "held"
+
+
+def test_two_directions_in_runge_kutta_steps():
+    model = mass_on_a_plane()
     run = ss.transient(model, 180.0, 60, scheme="rk4", steps=400)
     assert run.contact_force(0).shape == (run.time.size, 3)
     # The printed maximum of the steady motion, to which the start decays by 1e-5 in 60 periods.

@@ -5,7 +5,7 @@ use super::law::ReturnMapJacobian;
 use super::march_rate::{follows, is_elastic, FrictionWork, Rate};
 use super::periodic_march::SLOW;
 use super::samples::Samples;
-use super::{Aft, AssumedStart, ContactLaw, Motion, Residual};
+use super::{Aft, AssumedStart, ContactLaw, Element, Motion, Residual};
 use std::f64::consts::TAU;
 use std::ops::Deref;
 
@@ -124,8 +124,9 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             // What a contact keeps that follows the motion varies as slip does.
             slipped: departs(&step) || begun.moves(&step.jacobian),
         };
-        let friction =
-            account.then(|| FrictionWork::new(self.law.stiffness(), self.law.elements().is_some()));
+        let couples = |element: &Element| element.law.planes().is_empty();
+        let coupled = self.law.elements().is_some_and(|elements| elements.iter().all(couples));
+        let friction = account.then(|| FrictionWork::new(self.law.stiffness(), coupled));
         let mut last_change = f64::INFINITY;
         loop {
             round.slipping = vec![0.0; count];

@@ -416,10 +416,9 @@ impl ContactLaw for Coulomb {
         Box::new(Self { closure, beginning, ..*self })
     }
 
-    /// Slip in one direction alone is linear between events.
     fn elements(&self) -> Option<Vec<Element>> {
         let components = (0..self.displacements()).collect();
-        (self.directions == 1).then(|| vec![Element { components, law: Arc::new(*self) }])
+        Some(vec![Element { components, law: Arc::new(*self) }])
     }
 
     fn parameters(&self) -> Vec<Parameter> {

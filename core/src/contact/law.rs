@@ -73,16 +73,24 @@ pub enum PointState {
     Forward,
     /// It slips with negative force.
     Backward,
+    /// It is one of two points that slip in a plane, in a direction that turns.
+    Sliding,
     /// It is open: there is no force.
     Open,
 }
 
 impl PointState {
-    /// Direction of slip: 1, −1, or 0 without slip.
+    /// Whether it slips.
+    #[must_use]
+    pub fn slips(self) -> bool {
+        matches!(self, Self::Forward | Self::Backward | Self::Sliding)
+    }
+
+    /// Direction of slip: 1, −1, or 0 without slip or where slip turns.
     #[must_use]
     pub fn sign(self) -> f64 {
         match self {
-            Self::Stuck | Self::Open => 0.0,
+            Self::Stuck | Self::Sliding | Self::Open => 0.0,
             Self::Forward => 1.0,
             Self::Backward => -1.0,
         }
@@ -92,7 +100,7 @@ impl PointState {
     #[must_use]
     pub fn mirrored(self) -> Self {
         match self {
-            Self::Stuck | Self::Open => self,
+            Self::Stuck | Self::Sliding | Self::Open => self,
             Self::Forward => Self::Backward,
             Self::Backward => Self::Forward,
         }
@@ -364,8 +372,19 @@ pub enum Bound {
     },
 }
 
+/// Two points of an element whose forces are one traction: the length of the vector is bounded by the
+/// limit that both points have, and what slips moves along it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlipPlane {
+    /// The points, in directions across each other.
+    pub points: [usize; 2],
+    /// Stiffness against each other while they stick, the same in all directions [N/m].
+    pub stiffness: f64,
+}
+
 /// An element that is linear between events: each of its points sticks, or slips at its limit, or is
-/// open. Forces that are bounded by slip are its state.
+/// open. Forces that are bounded by slip are its state. Slip in a plane alone is not linear: there the
+/// traction turns, as the slip equation says.
 pub trait SlipElement: Send + Sync + std::fmt::Debug {
     /// Stiffness of the stuck element, points × points [N/m].
     fn stiffness(&self) -> Mat<f64>;
@@ -379,7 +398,13 @@ pub trait SlipElement: Send + Sync + std::fmt::Debug {
         self.limits().into_iter().map(Bound::Constant).collect()
     }
 
-    /// `∂f/∂u` while the points are in these states, points × points [N/m].
+    /// Pairs of points that slip in a plane.
+    fn planes(&self) -> Vec<SlipPlane> {
+        Vec::new()
+    }
+
+    /// `∂f/∂u` while the points are in these states, points × points [N/m]; rows of points that slip in a
+    /// plane are zero.
     fn tangent(&self, points: &[PointState]) -> Mat<f64>;
 
     /// Displacement at which the force of its first point vanishes, where it has not slipped since the

@@ -50,7 +50,7 @@ pub use elastic::Elastic;
 pub use jenkins::Jenkins;
 pub use law::{
     Bound, ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary,
-    ReturnMapJacobian, SlipElement, SlipLoad,
+    ReturnMapJacobian, SlipElement, SlipLoad, SlipPlane,
 };
 pub use parameter::{Parameter, Parameters};
 pub use registry::law;

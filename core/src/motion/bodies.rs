@@ -1,6 +1,6 @@
 //! The elements of all contacts, one after the other.
 
-use crate::contact::{Bound, ContactLaw, Elastic, PointState, SlipElement};
+use crate::contact::{Bound, ContactLaw, Elastic, PointState, SlipElement, SlipPlane};
 use crate::model::Model;
 use crate::Error;
 use faer::Mat;
@@ -106,6 +106,19 @@ impl Bodies {
             .filter(|(_, bound)| matches!(bound, Bound::Unilateral { stiffness, .. } if *stiffness > 0.0))
             .map(|(point, _)| point)
             .collect()
+    }
+
+    /// Pairs of points that slip in a plane.
+    pub(super) fn planes(&self) -> Vec<SlipPlane> {
+        let of = |body: &Body| {
+            let first = body.points.start;
+            let placed = move |plane: SlipPlane| SlipPlane {
+                points: plane.points.map(|point| first + point),
+                ..plane
+            };
+            body.law.planes().into_iter().map(placed).collect::<Vec<_>>()
+        };
+        self.all.iter().flat_map(of).collect()
     }
 
     /// What bounds the forces of all points, which are counted over all elements.

@@ -2,7 +2,7 @@
 //! normal forces, which cannot pull.
 
 use super::modal_system::{dot, ContactState, ModalSystem};
-use crate::contact::Bound;
+use crate::contact::{Bound, PointState, SlipPlane};
 
 impl ModalSystem {
     /// Slip limit of a point under these forces, none where it is open \[N\].
@@ -38,13 +38,98 @@ impl ModalSystem {
 
     /// Keeps forces within their bounds.
     pub(super) fn confine(&self, force: &mut [f64]) {
+        for (bound, force) in self.bounds.iter().zip(&mut *force) {
+            if let Bound::Unilateral { balanced, .. } = bound {
+                *force = force.max(-balanced);
+            }
+        }
         for point in 0..force.len() {
-            if let Bound::Unilateral { balanced, .. } = self.bounds[point] {
-                force[point] = force[point].max(-balanced);
-            } else {
+            if !matches!(self.bounds[point], Bound::Unilateral { .. }) {
                 let limit = self.limit(point, force);
                 force[point] = force[point].clamp(-limit, limit);
             }
+        }
+        for plane in &self.planes {
+            let limit = self.limit(plane.points[0], force);
+            if self.traction(plane, force) > limit {
+                self.lengthen(plane, force);
+            }
+        }
+    }
+
+    /// The pairs of points that slip in a plane.
+    pub(crate) fn planes(&self) -> &[SlipPlane] {
+        &self.planes
+    }
+
+    /// The plane in which a point slips, if it does so in one.
+    pub(super) fn plane_of(&self, point: usize) -> Option<&SlipPlane> {
+        self.planes.iter().find(|plane| plane.points.contains(&point))
+    }
+
+    /// Length of the traction in a plane \[N\].
+    pub(super) fn traction(&self, plane: &SlipPlane, force: &[f64]) -> f64 {
+        force[plane.points[0]].hypot(force[plane.points[1]])
+    }
+
+    /// Gives the traction in a plane the length of its limit.
+    pub(super) fn lengthen(&self, plane: &SlipPlane, force: &mut [f64]) {
+        let length = self.traction(plane, force);
+        let limit = self.limit(plane.points[0], force);
+        for point in plane.points.into_iter().filter(|_| length > 0.0) {
+            force[point] *= limit / length;
+        }
+    }
+
+    /// What the slip rate of a contact that slides, `λ/k_t`, is made of: traction over its length and
+    /// the rate λ \[N/s\] at which the stuck contact would leave its limit.
+    pub(crate) fn pull(&self, plane: &SlipPlane, force: &[f64], speed: &[f64]) -> ([f64; 2], f64) {
+        let length = self.traction(plane, force);
+        let along = plane.points.map(|i| if length > 0.0 { force[i] / length } else { speed[i] });
+        let size = along[0].hypot(along[1]).max(f64::MIN_POSITIVE);
+        let along = along.map(|e| e / size);
+        let [u, v] = plane.points.map(|i| speed[i]);
+        let growth = match self.bounds[plane.points[0]] {
+            Bound::Friction { friction, normal } => {
+                friction * self.normal_stiffness(normal) * speed[normal]
+            }
+            _ => 0.0,
+        };
+        (along, plane.stiffness * (along[0] * u + along[1] * v) - growth)
+    }
+
+    /// Rates of all forces in given states [N/s].
+    pub(super) fn force_rates(
+        &self,
+        regime: &ContactState,
+        force: &[f64],
+        speed: &[f64],
+    ) -> Vec<f64> {
+        let linear =
+            |i: usize| speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum();
+        let mut rates: Vec<f64> = (0..speed.len()).map(linear).collect();
+        let slides = |plane: &&SlipPlane| regime.points[plane.points[0]] == PointState::Sliding;
+        for plane in self.planes.iter().filter(slides) {
+            let (along, pull) = self.pull(plane, force, speed);
+            for (i, e) in plane.points.into_iter().zip(along) {
+                rates[i] = plane.stiffness * speed[i] - pull * e;
+            }
+        }
+        rates
+    }
+
+    /// What the rounding of a normal force counts against.
+    pub(super) fn normal_size(&self, point: usize, modal: &[f64]) -> f64 {
+        let Bound::Unilateral { at_rest, stiffness, .. } = self.bounds[point] else { return 0.0 };
+        let parts = self.contact_shape(point).iter().zip(modal).map(|(b, x)| (b * x).abs());
+        at_rest.abs() + stiffness * parts.sum::<f64>()
+    }
+
+    /// What the rounding of a slip limit counts against.
+    pub(super) fn limit_size(&self, point: usize, modal: &[f64]) -> f64 {
+        match self.bounds[point] {
+            Bound::Friction { friction, normal } => friction * self.normal_size(normal, modal),
+            _ => self.limits[point],
         }
     }
 

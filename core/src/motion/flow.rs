@@ -3,14 +3,16 @@
 //! A point that sticks begins to slip where its force reaches its limit; a point that slips sticks
 //! where its slip velocity vanishes. A contact opens where its normal force vanishes. Where it closes
 //! friction begins without force: it sticks if its force grows more slowly than its limit, and else
-//! slips. All of these are zeros of polynomials, located to rounding.
+//! slips. A traction in a plane reaches its limit by its length, and slides until its slip velocity
+//! vanishes. All of these are zeros of polynomials, located to rounding.
 
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
 use super::modal_system::{ContactState, ModalSystem};
 use super::polynomial::first_zero;
 use super::power_series::{sum_of_products, PowerSeries, DEGREE};
+use super::sliding::Slide;
 use super::state::State;
-use crate::contact::{Bound, PointState};
+use crate::contact::{Bound, PointState, SlipPlane};
 
 /// Leading coefficient, relative to the largest, that counts as zero: a point is at its limit.
 const AT_LIMIT: f64 = 1e-14;
@@ -153,7 +155,7 @@ impl<'a> Flow<'a> {
             let after = ContactState::new(self.system, &state.points);
             // Friction comes and goes with the normal force.
             let mut before = &regime;
-            for point in std::iter::once(point).chain(self.system.pressed_by(point)) {
+            for point in self.changed_with(point) {
                 self.events += 1;
                 observe(FlowEvent::Event {
                     event: Event { time: state.time, point, state: state.points[point] },
@@ -174,10 +176,22 @@ impl<'a> Flow<'a> {
         state.time += length / self.series.rate();
     }
 
+    /// The points that change with one.
+    fn changed_with(&self, point: usize) -> Vec<usize> {
+        match self.system.plane_of(point) {
+            Some(plane) => plane.points.to_vec(),
+            None => std::iter::once(point).chain(self.system.pressed_by(point)).collect(),
+        }
+    }
+
     /// Changes the state of a point, at its limit, and of those whose friction it presses.
     fn change(&self, state: &mut State, speed: &[f64], point: usize, to: PointState) {
         let system = self.system;
         let side = if to == PointState::Stuck { state.force[point] } else { to.sign() };
+        if let Some(plane) = system.plane_of(point) {
+            plane.points.iter().for_each(|&i| state.points[i] = to);
+            return system.lengthen(plane, &mut state.force);
+        }
         state.points[point] = to;
         if !matches!(system.bounds[point], Bound::Unilateral { .. }) {
             state.force[point] = system.limit(point, &state.force).copysign(side);
@@ -194,7 +208,12 @@ impl<'a> Flow<'a> {
         let stuck = ContactState::new(system, &state.points);
         for friction in system.pressed_by(point) {
             let [own, limit] = system.loading(&stuck, friction, speed);
-            if own.abs() >= limit {
+            if let Some(plane) = system.plane_of(friction) {
+                let [u, v] = plane.points.map(|i| system.loading(&stuck, i, speed)[0]);
+                if u.hypot(v) >= limit {
+                    state.points[friction] = PointState::Sliding;
+                }
+            } else if own.abs() >= limit {
                 state.points[friction] = PointState::slipping(own);
             }
         }
@@ -203,6 +222,14 @@ impl<'a> Flow<'a> {
     /// What a point does within `length` of τ, and whether it can begin the step as it is.
     fn next(&mut self, regime: &ContactState, point: usize, natural: f64, length: f64) -> Next {
         let state = regime.points[point];
+        if let Some(plane) = self.system.plane_of(point).copied() {
+            return match state {
+                _ if plane.points[0] != point || self.system.limits()[point] == 0.0 => Next::Stay,
+                PointState::Open => Next::Stay,
+                PointState::Stuck => self.begins_to_slide(plane, natural, length),
+                _ => self.ends_to_slide(plane, natural, length),
+            };
+        }
         let (constant, friction) = match self.system.bounds[point] {
             Bound::Constant(limit) if limit > 0.0 && limit.is_finite() => (limit, None),
             Bound::Friction { friction, normal } if state != PointState::Open => {
@@ -215,15 +242,7 @@ impl<'a> Flow<'a> {
         };
         if state != PointState::Stuck {
             self.fill_slip_velocity(regime, point, state.sign(), natural);
-            // Another point's onset of slip turns it back at once.
-            if self.scratch[0] < -AT_REST * self.scratch[1..].iter().map(|a| a.abs()).sum::<f64>() {
-                return Next::Now(PointState::Stuck);
-            }
-            return match self.leaves(length / natural, 0.0) {
-                Some(0.0) => Next::Now(PointState::Stuck),
-                Some(share) => Next::At(share * natural, PointState::Stuck),
-                None => Next::Stay,
-            };
+            return self.comes_to_rest(natural, length);
         }
         let force = self.series.force(point);
         let (mut limit, mut size, mut reach) = (constant, constant, reach_of(force, length));
@@ -231,7 +250,7 @@ impl<'a> Flow<'a> {
             let pressing = self.series.force(normal);
             limit += friction * pressing[0];
             reach += friction * reach_of(pressing, length);
-            size = friction * self.normal_size(normal);
+            size = self.system.limit_size(point, self.series.displacement());
         }
         if reach < limit - force[0].abs() {
             return Next::Stay;
@@ -251,6 +270,68 @@ impl<'a> Flow<'a> {
             }
         }
         first
+    }
+
+    /// Whether the slip velocity at hand vanishes.
+    fn comes_to_rest(&mut self, natural: f64, length: f64) -> Next {
+        // Another point's onset of slip turns it back at once.
+        if self.scratch[0] < -AT_REST * self.scratch[1..].iter().map(|a| a.abs()).sum::<f64>() {
+            return Next::Now(PointState::Stuck);
+        }
+        match self.leaves(length / natural, 0.0) {
+            Some(0.0) => Next::Now(PointState::Stuck),
+            Some(share) => Next::At(share * natural, PointState::Stuck),
+            None => Next::Stay,
+        }
+    }
+
+    /// Whether the traction in a plane comes to its limit: `M² − |t|²` vanishes.
+    fn begins_to_slide(&mut self, plane: SlipPlane, natural: f64, length: f64) -> Next {
+        let [a, b] = plane.points;
+        let [t, s] = plane.points.map(|point| self.series.force(point));
+        let limit = self.limit_series(a);
+        let now = t[0].hypot(s[0]);
+        let reach = reach_of(t, length) + reach_of(s, length) + reach_of(&limit, length);
+        if reach < limit[0] - now {
+            return Next::Stay;
+        }
+        self.scratch.clear();
+        self.scratch.resize(2 * DEGREE + 1, 0.0);
+        for (series, sign) in [(&limit[..], 1.0), (t, -1.0), (s, -1.0)] {
+            for (j, a) in series.iter().enumerate() {
+                let (a, to) = (sign * a, &mut self.scratch[j..]);
+                to.iter_mut().zip(series).for_each(|(sum, b)| *sum += a * b);
+            }
+        }
+        rescale(&mut self.scratch, natural);
+        let size = limit[0] * self.system.limit_size(b, self.series.displacement());
+        match self.leaves(length / natural, size) {
+            Some(0.0) => Next::Now(PointState::Sliding),
+            Some(share) => Next::At(share * natural, PointState::Sliding),
+            None => Next::Stay,
+        }
+    }
+
+    /// Whether a contact that slides in a plane comes to rest.
+    fn ends_to_slide(&mut self, plane: SlipPlane, natural: f64, length: f64) -> Next {
+        let own = |slide: &Slide| slide.plane == plane;
+        let Some(slide) = self.series.slides().iter().position(own) else { return Next::Stay };
+        self.series.fill_pull(slide, &mut self.scratch);
+        rescale(&mut self.scratch, natural);
+        self.comes_to_rest(natural, length)
+    }
+
+    /// The slip limit of a point.
+    fn limit_series(&self, point: usize) -> Vec<f64> {
+        let Bound::Friction { friction, normal } = self.system.bounds[point] else {
+            let mut series = vec![0.0; DEGREE + 1];
+            series[0] = self.system.limits()[point];
+            return series;
+        };
+        let mut series: Vec<f64> = self.series.force(normal).to_vec();
+        series[0] += self.system.balanced(normal);
+        series.iter_mut().for_each(|a| *a *= friction);
+        series
     }
 
     /// Slip velocity in the direction of slip, on the unit interval.
@@ -286,22 +367,12 @@ impl<'a> Flow<'a> {
         self.scratch.extend(self.series.contact(point).iter().map(|u| stiffness * u));
         self.scratch[0] = side * self.system.pressing(point, self.series.displacement());
         rescale(&mut self.scratch, natural);
-        let size = self.normal_size(point);
+        let size = self.system.normal_size(point, self.series.displacement());
         match self.leaves(length / natural, size) {
             Some(0.0) => Next::Now(to),
             Some(share) => Next::At(share * natural, to),
             None => Next::Stay,
         }
-    }
-
-    /// What the rounding of a normal force counts against.
-    fn normal_size(&self, point: usize) -> f64 {
-        let Bound::Unilateral { at_rest, stiffness, .. } = self.system.bounds[point] else {
-            return 0.0;
-        };
-        let shape = self.system.contact_shape(point).iter();
-        let parts = shape.zip(self.series.displacement()).map(|(b, x)| (b * x).abs());
-        at_rest.abs() + stiffness * parts.sum::<f64>()
     }
 
     /// Distance of the force from its limit on one side.

@@ -18,6 +18,7 @@ mod power_series;
 mod returns;
 mod rigid;
 mod runge_kutta;
+mod sliding;
 mod state;
 mod transient;
 mod transition;

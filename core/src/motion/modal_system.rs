@@ -2,7 +2,7 @@
 
 use super::bodies::{Bodies, Body};
 use super::damping::Damping;
-use crate::contact::{Bound, PointState, PointSummary};
+use crate::contact::{Bound, PointState, PointSummary, SlipPlane};
 use crate::model::Model;
 use crate::structure::{modes, ModalDamping, RealModes};
 use crate::Error;
@@ -34,6 +34,8 @@ pub struct ModalSystem {
     pub(super) bounds: Vec<Bound>,
     /// Points whose force follows from their displacement, varies and may vanish.
     pub(super) normals: Vec<usize>,
+    /// Pairs of points that slip in a plane.
+    pub(super) planes: Vec<SlipPlane>,
     /// The elements of the contacts.
     bodies: Vec<Body>,
 }
@@ -85,6 +87,7 @@ impl ModalSystem {
             to_modes: modes.shapes.transpose() * structure.mass(),
             limits: bodies.limits(),
             normals: bodies.normals(),
+            planes: bodies.planes(),
             bounds: bodies.bounds(),
             components: bodies.components,
             bodies: bodies.all,
@@ -106,6 +109,7 @@ impl ModalSystem {
             damping: Damping::of(damping),
             limits: bodies.limits(),
             normals: bodies.normals(),
+            planes: bodies.planes(),
             bounds: bodies.bounds(),
             components: bodies.components,
             bodies: bodies.all,

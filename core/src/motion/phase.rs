@@ -272,7 +272,14 @@ impl Sticking {
             let limit = system.limits()[i];
             let closed = !system.normals.contains(&i) || lowest[i] + system.balanced(i) > 0.0;
             let limit = if limit == f64::MAX { system.limit(i, &lowest) } else { limit };
-            closed && (limit == 0.0 || mean[i].abs() + swing(i) < limit)
+            let most = match system.plane_of(i) {
+                Some(plane) => {
+                    let [u, v] = plane.points.map(|i| mean[i].abs() + swing(i));
+                    u.hypot(v)
+                }
+                None => mean[i].abs() + swing(i),
+            };
+            closed && (limit == 0.0 || most < limit)
         })
     }
 

@@ -1,20 +1,23 @@
 //! The motion between two events as a power series in time, exact to rounding.
 //!
-//! Between events the equations are linear, and each coefficient of the series follows from the
-//! ones before. The series needs no decomposition per set of sticking contacts, has no defective
+//! Between events the equations are linear but for contacts that slide in a plane, and each coefficient
+//! of the series follows from the ones before. The series needs no decomposition per set of sticking contacts, has no defective
 //! cases, and hands displacements and forces over as polynomials whose zeros are the events.
 
 use super::damping::Damping;
 use super::modal_system::{dot, ContactState, ModalSystem};
 use super::polynomial;
+use super::sliding::{Slide, Swing};
 use super::state::State;
 
 /// Highest power kept.
 pub(super) const DEGREE: usize = 32;
 /// Longest step in units of the fastest rate: beyond it rounding errors of fast modes would grow.
 const LONGEST: f64 = 12.0;
+/// The same where contacts slide: disturbances, which may be faster than the motion, take the same steps.
+const LONGEST_SLIDING: f64 = 4.0;
 /// Truncation error of a step relative to the motion in it.
-const TRUNCATION: f64 = 1e-17;
+pub(super) const TRUNCATION: f64 = 1e-17;
 
 /// Sum relative to its parts that is rounding.
 const CANCELLED: f64 = 1e-14;
@@ -24,8 +27,9 @@ const CANCELLED: f64 = 1e-14;
 #[derive(Debug, Clone)]
 pub struct PowerSeries {
     modes: usize,
-    /// ρ [1/s].
+    /// ρ [1/s], and what it is unless a contact that slides is faster.
     rate: f64,
+    slowest: f64,
     /// η, power after power.
     modal: Vec<f64>,
     /// u and f, contact point after contact point.
@@ -34,23 +38,38 @@ pub struct PowerSeries {
     /// Ω²/ρ² and, if diagonal, damping over ρ.
     stiffness: Vec<f64>,
     damping: Vec<f64>,
+    /// Contacts that slide in a plane.
+    slides: Vec<Slide>,
 }
 
 impl PowerSeries {
     pub(super) fn new(system: &ModalSystem, omega: f64) -> Self {
         let rate = system.rate(omega);
         let (modes, points) = (system.modes(), system.points());
-        Self {
+        let mut series = Self {
             modes,
-            rate,
+            rate: f64::NAN,
+            slowest: rate,
             modal: vec![0.0; modes * (DEGREE + 1)],
             contact: vec![0.0; points * (DEGREE + 1)],
             force: vec![0.0; points * (DEGREE + 1)],
-            stiffness: system.omega_squared.iter().map(|w| w / (rate * rate)).collect(),
-            damping: match &system.damping {
-                Damping::Diagonal(damping) => damping.iter().map(|c| c / rate).collect(),
-                Damping::Full(_) => Vec::new(),
-            },
+            stiffness: vec![0.0; modes],
+            damping: vec![0.0; if system.is_diagonally_damped() { modes } else { 0 }],
+            slides: Vec::new(),
+        };
+        series.set_rate(system, rate);
+        series
+    }
+
+    fn set_rate(&mut self, system: &ModalSystem, rate: f64) {
+        if self.rate == rate {
+            return;
+        }
+        self.rate = rate;
+        let squares = self.stiffness.iter_mut().zip(&system.omega_squared);
+        squares.for_each(|(own, w)| *own = w / (rate * rate));
+        if let Damping::Diagonal(damping) = &system.damping {
+            self.damping.iter_mut().zip(damping).for_each(|(own, c)| *own = c / rate);
         }
     }
 
@@ -67,14 +86,10 @@ impl PowerSeries {
         omega: f64,
         state: &State,
     ) {
-        let (n, rate) = (self.modes, self.rate);
-        self.modal[..n].copy_from_slice(&state.displacement);
-        for (c, v) in self.modal[n..2 * n].iter_mut().zip(&state.velocity) {
-            *c = v / rate;
-        }
-        for (point, f) in state.force.iter().enumerate() {
-            self.force[point * (DEGREE + 1)] = *f;
-        }
+        self.slides = Slide::all(system, regime, state, self.slowest);
+        let rate = self.slides.iter().map(Slide::rate).fold(self.slowest, f64::max);
+        self.set_rate(system, rate);
+        self.begin([&state.displacement, &state.velocity, &state.force]);
         // exp(ikω t) in powers of τ: (ikω/ρ)^m / m! times its value at the start.
         let mut loads: Vec<(f64, [f64; 2])> = system
             .loads
@@ -86,48 +101,106 @@ impl PowerSeries {
             .collect();
         for power in 0..=DEGREE {
             self.expand_contacts(system, regime, power);
-            if power + 2 > DEGREE {
-                continue;
+            let mut slides = std::mem::take(&mut self.slides);
+            for slide in &mut slides {
+                let traction = slide.advance(power, &self.contact);
+                self.set_forces(slide.plane.points, power, traction);
             }
-            let (known, rest) = self.modal.split_at_mut((power + 2) * n);
-            let next = &mut rest[..n];
-            let (here, ahead) = (&known[power * n..(power + 1) * n], &known[(power + 1) * n..]);
-            next.fill(0.0);
-            for ((_, load), (_, [re, im])) in system.loads.iter().zip(&loads) {
-                for (next, p) in next.iter_mut().zip(load) {
-                    *next += p.re * re - p.im * im;
-                }
-            }
-            for point in 0..system.points() {
-                let f = self.force[point * (DEGREE + 1) + power];
-                if f != 0.0 {
-                    for (next, b) in next.iter_mut().zip(system.contact_shape(point)) {
-                        *next -= b * f;
-                    }
-                }
-            }
-            let order = (power + 1) as f64;
-            let share = 1.0 / (order * (order + 1.0));
-            if let Damping::Full(damping) = &system.damping {
-                for (j, v) in ahead.iter().enumerate() {
-                    for (i, next) in next.iter_mut().enumerate() {
-                        *next -= rate * order * damping[(i, j)] * v;
-                    }
-                }
-                for ((next, x), w) in next.iter_mut().zip(here).zip(&self.stiffness) {
-                    *next = share * (*next / (rate * rate) - w * x);
-                }
-            } else {
-                for j in 0..n {
-                    next[j] = share
-                        * (next[j] / (rate * rate)
-                            - self.stiffness[j] * here[j]
-                            - order * self.damping[j] * ahead[j]);
-                }
-            }
+            self.slides = slides;
+            self.expand_modes(system, &loads, power);
             for (frequency, [re, im]) in &mut loads {
                 let step = *frequency / (power + 1) as f64;
                 (*re, *im) = (-step * *im, step * *re);
+            }
+        }
+    }
+
+    /// Expands a small disturbance `(η, η', f)` of a motion without that of its loads.
+    pub(super) fn disturb(
+        &mut self,
+        system: &ModalSystem,
+        regime: &ContactState,
+        motion: &Self,
+        [displacement, velocity, force]: [&[f64]; 3],
+    ) {
+        self.slides.clear();
+        self.set_rate(system, motion.rate);
+        self.begin([displacement, velocity, force]);
+        for &point in &system.normals {
+            let change = dot(system.contact_shape(point), displacement);
+            self.force[point * (DEGREE + 1)] = regime.tangent[(point, point)] * change;
+        }
+        let moved = |point: usize| dot(system.contact_shape(point), displacement);
+        let mut swings: Vec<Swing<'_>> =
+            motion.slides.iter().map(|slide| Swing::new(slide, force, moved)).collect();
+        for power in 0..=DEGREE {
+            self.expand_contacts(system, regime, power);
+            for swing in &mut swings {
+                let traction = swing.advance(power, &self.contact);
+                self.set_forces(swing.points(), power, traction);
+            }
+            self.expand_modes(system, &[], power);
+        }
+    }
+
+    /// The coefficients of a state.
+    fn begin(&mut self, [displacement, velocity, force]: [&[f64]; 3]) {
+        let (n, rate) = (self.modes, self.rate);
+        self.modal[..n].copy_from_slice(displacement);
+        for (c, v) in self.modal[n..2 * n].iter_mut().zip(velocity) {
+            *c = v / rate;
+        }
+        for (point, f) in force.iter().enumerate() {
+            self.force[point * (DEGREE + 1)] = *f;
+        }
+    }
+
+    fn set_forces(&mut self, points: [usize; 2], power: usize, forces: [f64; 2]) {
+        for (point, force) in points.into_iter().zip(forces) {
+            self.force[point * (DEGREE + 1) + power] = force;
+        }
+    }
+
+    /// Coefficients of η two powers up.
+    fn expand_modes(&mut self, system: &ModalSystem, loads: &[(f64, [f64; 2])], power: usize) {
+        let (n, rate) = (self.modes, self.rate);
+        if power + 2 > DEGREE {
+            return;
+        }
+        let (known, rest) = self.modal.split_at_mut((power + 2) * n);
+        let next = &mut rest[..n];
+        let (here, ahead) = (&known[power * n..(power + 1) * n], &known[(power + 1) * n..]);
+        next.fill(0.0);
+        for ((_, load), (_, [re, im])) in system.loads.iter().zip(loads) {
+            for (next, p) in next.iter_mut().zip(load) {
+                *next += p.re * re - p.im * im;
+            }
+        }
+        for point in 0..system.points() {
+            let f = self.force[point * (DEGREE + 1) + power];
+            if f != 0.0 {
+                for (next, b) in next.iter_mut().zip(system.contact_shape(point)) {
+                    *next -= b * f;
+                }
+            }
+        }
+        let order = (power + 1) as f64;
+        let share = 1.0 / (order * (order + 1.0));
+        if let Damping::Full(damping) = &system.damping {
+            for (j, v) in ahead.iter().enumerate() {
+                for (i, next) in next.iter_mut().enumerate() {
+                    *next -= rate * order * damping[(i, j)] * v;
+                }
+            }
+            for ((next, x), w) in next.iter_mut().zip(here).zip(&self.stiffness) {
+                *next = share * (*next / (rate * rate) - w * x);
+            }
+        } else {
+            for j in 0..n {
+                next[j] = share
+                    * (next[j] / (rate * rate)
+                        - self.stiffness[j] * here[j]
+                        - order * self.damping[j] * ahead[j]);
             }
         }
     }
@@ -171,7 +244,23 @@ impl PowerSeries {
                 .fold(0.0, f64::max);
             reach = reach.min(longest);
         }
-        reach
+        let most = if self.slides.is_empty() { reach } else { reach.min(LONGEST_SLIDING) };
+        self.slides.iter().map(|slide| slide.reach(&self.force)).fold(most, f64::min)
+    }
+
+    /// Whether a contact slides in a plane.
+    pub(super) fn slides_in_a_plane(&self) -> bool {
+        !self.slides.is_empty()
+    }
+
+    /// The contacts that slide in a plane.
+    pub(super) fn slides(&self) -> &[Slide] {
+        &self.slides
+    }
+
+    /// λ of a contact that slides, with all its powers.
+    pub(super) fn fill_pull(&self, slide: usize, out: &mut Vec<f64>) {
+        self.slides[slide].fill_pull(&self.contact, out);
     }
 
     /// Modal displacements and velocities [1/s] at τ.

@@ -78,7 +78,9 @@ impl State {
         state.press(system);
         state.recall(system, memory);
         for point in system.bodies().iter().flat_map(|body| body.remembered.iter().copied()) {
-            let (f, limit) = (state.force[point], system.limit(point, &state.force));
+            let plane = system.plane_of(point).map(|plane| system.traction(plane, &state.force));
+            let f = plane.unwrap_or(state.force[point]);
+            let limit = system.limit(point, &state.force);
             if f.abs() > limit * (1.0 + ROUNDING) + negligible {
                 return Err(Error::value(
                     format!("state: force of contact point {}", point + 1),
@@ -157,6 +159,11 @@ impl State {
                 }
             }
         }
+        for plane in system.planes() {
+            if self.points[plane.points[0]] == PointState::Sliding {
+                system.lengthen(plane, &mut self.force);
+            }
+        }
     }
 
     /// Force that the contacts would have if all parts of their displacements, each at the amplitude
@@ -223,6 +230,11 @@ impl State {
                 }
             }
         }
+        for plane in system.planes() {
+            if plane.points.iter().any(|&i| held[i].slips()) {
+                plane.points.iter().for_each(|&i| held[i] = PointState::Sliding);
+            }
+        }
         held
     }
 
@@ -252,9 +264,18 @@ fn settle(
     let along = |matrix: &Mat<f64>, i: usize| -> f64 {
         speed[range.clone()].iter().enumerate().map(|(j, v)| matrix[(i - range.start, j)] * v).sum()
     };
+    for plane in system.planes().iter().filter(|plane| range.contains(&plane.points[0])) {
+        let limit = system.limit(plane.points[0], force);
+        if limit > 0.0
+            && system.traction(plane, force) >= limit
+            && system.pull(plane, force, speed).1 > 0.0
+        {
+            plane.points.iter().for_each(|&i| points[i] = PointState::Sliding);
+        }
+    }
     let within = |i: usize| {
         let limit = system.limit(i, force);
-        limit == 0.0 || force[i].abs() < limit
+        limit == 0.0 || force[i].abs() < limit || system.plane_of(i).is_some()
     };
     for _ in 0..FLIPS * (range.len() + 1) {
         if range.clone().all(within) {

@@ -6,10 +6,15 @@
 //! loses its dependence on everything but its limit. At the return to stick nothing jumps. Where a
 //! contact opens or closes, `h = N`: at opening nothing remains of the traction, and one that begins
 //! at closing in stick, `t' = k_t u'`, begins earlier by dv/v', so that `dt = k_t u' dv/v'`.
+//!
+//! Where a contact slides in a plane the equations are not linear, and disturbances are power series like
+//! the motion itself. At the onset the traction loses what is along it but the change of its limit.
 
+use super::bodies::Body;
 use super::exponential::exponential;
 use super::flow_event::{Event, FlowEvent};
 use super::modal_system::{ContactState, ModalSystem};
+use super::power_series::PowerSeries;
 use super::state::State;
 use crate::contact::PointState;
 use faer::Mat;
@@ -21,6 +26,8 @@ pub(crate) struct LinearPhase {
     /// Duration \[s\].
     duration: f64,
     onset: Option<Onset>,
+    /// Of a stretch in which contacts slide in a plane, its series and its length in τ.
+    slide: Option<(PowerSeries, f64)>,
 }
 
 /// What an event at a point does to the derivative of the forces.
@@ -44,7 +51,10 @@ impl LinearPhase {
         match passage {
             FlowEvent::Segment(segment) => match phases.last_mut() {
                 Some(phase)
-                    if phase.onset.is_none() && phase.regime.points == segment.regime.points =>
+                    if phase.onset.is_none()
+                        && phase.slide.is_none()
+                        && !segment.series.slides_in_a_plane()
+                        && phase.regime.points == segment.regime.points =>
                 {
                     phase.duration += segment.duration();
                 }
@@ -52,12 +62,19 @@ impl LinearPhase {
                     regime: segment.regime.clone(),
                     duration: segment.duration(),
                     onset: None,
+                    slide: segment
+                        .series
+                        .slides_in_a_plane()
+                        .then(|| (segment.series.clone(), segment.length)),
                 }),
             },
             // Changes before the first segment find the states to begin with.
             FlowEvent::Event { .. } if phases.is_empty() => {}
             // That of a point by which another one has changed, too.
             FlowEvent::Event { before, after, .. } if before.points == after.points => {}
+            // What slides in a plane says itself what remains of a disturbance, and nothing jumps where
+            // it comes to rest.
+            FlowEvent::Event { event, .. } if system.plane_of(event.point).is_some() => {}
             FlowEvent::Event { event, speed, before, after } => {
                 let rate = |regime: &ContactState, i: usize| -> f64 {
                     speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
@@ -87,7 +104,10 @@ impl LinearPhase {
                     {
                         phase.onset = onset;
                     }
-                    _ => phases.push(Self { regime: (*before).clone(), duration: 0.0, onset }),
+                    _ => {
+                        let regime = (*before).clone();
+                        phases.push(Self { regime, duration: 0.0, onset, slide: None });
+                    }
                 }
             }
         }
@@ -184,9 +204,7 @@ impl<'a> Transition<'a> {
         let displacement = state.velocity.iter().zip(&self.weight).map(|(v, w)| w * v);
         let velocity = system.acceleration(&state.displacement, &state.velocity, &state.force);
         let mut y: Vec<f64> = displacement.chain(velocity).collect();
-        let force =
-            |i: usize| speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum();
-        let force: Vec<f64> = (0..speed.len()).map(force).collect();
+        let force = system.force_rates(regime, &state.force, &speed);
         for body in system.bodies() {
             y.extend(body.elastic.strains(&force[body.points.clone()]));
         }
@@ -244,11 +262,19 @@ impl<'a> Transition<'a> {
         forms
     }
 
-    /// Derivative of the end state in the start state along the phases of a motion.
-    pub(crate) fn along(&self, phases: &[LinearPhase], held: &[PointState]) -> Mat<f64> {
-        let mut total = self.start(phases, held);
+    /// Derivative of the end state in the start state along the phases of a motion that begins with
+    /// these forces.
+    pub(crate) fn along(
+        &self,
+        phases: &[LinearPhase],
+        held: &[PointState],
+        force: &[f64],
+    ) -> Mat<f64> {
+        let mut total = self.start(phases, held, force);
         for phase in phases {
-            if phase.duration > 0.0 {
+            if let Some((series, length)) = &phase.slide {
+                self.slide(&phase.regime, series, *length, &mut total);
+            } else if phase.duration > 0.0 {
                 total = self.exponential(&phase.regime, phase.duration) * total;
             }
             if let Some(onset) = &phase.onset {
@@ -260,7 +286,7 @@ impl<'a> Transition<'a> {
 
     /// Derivative at the start: points that slip, and forces that their limits hold, vary with their
     /// limits alone.
-    fn start(&self, phases: &[LinearPhase], by: &[PointState]) -> Mat<f64> {
+    fn start(&self, phases: &[LinearPhase], by: &[PointState], force: &[f64]) -> Mat<f64> {
         let (size, first) = (self.size(), 2 * self.weight.len());
         let mut total = Mat::<f64>::identity(size, size);
         for body in self.system.bodies() {
@@ -274,6 +300,10 @@ impl<'a> Transition<'a> {
                 .map(|i| does(i) != PointState::Stuck || self.system.limits()[i] == 0.0)
                 .collect();
             if !held.contains(&true) {
+                continue;
+            }
+            if does(body.points.start) == PointState::Sliding {
+                self.hold_in_plane(body, force, &mut total);
                 continue;
             }
             let basis = body.elastic.unmoved(&held);
@@ -295,6 +325,69 @@ impl<'a> Transition<'a> {
             }
         }
         total
+    }
+
+    /// Holds the traction of an element that slips in a plane at its limit: across itself it may vary.
+    fn hold_in_plane(&self, body: &Body, force: &[f64], total: &mut Mat<f64>) {
+        let first = 2 * self.weight.len();
+        let Some(plane) = self.system.plane_of(body.points.start) else { return };
+        let still = vec![0.0; force.len()];
+        let (along, _) = self.system.pull(plane, force, &still);
+        let slope = self.system.limit_slope(plane.points[0]);
+        for column in 0..total.ncols() {
+            let strains: Vec<f64> =
+                body.strains.clone().map(|a| total[(first + a, column)]).collect();
+            let mut own = body.elastic.forces(&strains);
+            let [x, y] = plane.points.map(|i| i - body.points.start);
+            let across = along[0] * own[y] - along[1] * own[x];
+            let displaced = slope.iter().zip(&self.weight).enumerate();
+            let limit: f64 = displaced.map(|(j, (slope, w))| slope / w * total[(j, column)]).sum();
+            own[x] = limit * along[0] - across * along[1];
+            own[y] = limit * along[1] + across * along[0];
+            for (a, strain) in body.strains.clone().zip(body.elastic.strains(&own)) {
+                total[(first + a, column)] = strain;
+            }
+        }
+    }
+
+    /// Takes disturbances along a stretch in which contacts slide in a plane.
+    fn slide(
+        &self,
+        regime: &ContactState,
+        series: &PowerSeries,
+        length: f64,
+        total: &mut Mat<f64>,
+    ) {
+        let (system, modes) = (self.system, self.weight.len());
+        let mut disturbance = series.clone();
+        let (mut x, mut v) = (vec![0.0; modes], vec![0.0; modes]);
+        let mut force = vec![0.0; system.points()];
+        for column in 0..total.ncols() {
+            for j in 0..modes {
+                x[j] = total[(j, column)] / self.weight[j];
+                v[j] = total[(modes + j, column)];
+            }
+            for body in system.bodies() {
+                let own = body.strains.clone().map(|a| total[(2 * modes + a, column)]);
+                let own = body.elastic.forces(&own.collect::<Vec<_>>());
+                force[body.points.clone()].copy_from_slice(&own);
+            }
+            disturbance.disturb(system, regime, series, [&x, &v, &force]);
+            disturbance.motion_at(length, &mut x, &mut v);
+            for (point, force) in force.iter_mut().enumerate() {
+                *force = disturbance.force_at(point, length);
+            }
+            for j in 0..modes {
+                total[(j, column)] = x[j] * self.weight[j];
+                total[(modes + j, column)] = v[j];
+            }
+            for body in system.bodies() {
+                let own = body.elastic.strains(&force[body.points.clone()]);
+                for (a, strain) in body.strains.clone().zip(own) {
+                    total[(2 * modes + a, column)] = strain;
+                }
+            }
+        }
     }
 
     /// `S = I + Δf' ∇h / h'` from the left, in strains.

@@ -144,7 +144,7 @@ fn renew(state: &mut State, start: &State, side: f64) {
         own.iter_mut().zip(new).for_each(|(own, new)| *own = side * new);
     }
     for ((own, new), point) in state.force.iter_mut().zip(&start.force).zip(&state.points) {
-        if *point == PointState::Stuck {
+        if matches!(*point, PointState::Stuck | PointState::Sliding) {
             *own = side * new;
         }
     }

@@ -4,13 +4,17 @@
 use super::rotation::Rotation;
 use crate::contact::PointState;
 use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, State, Transition};
-use crate::solve::System;
+use crate::solve::{norm, System};
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
+use std::f64::consts::FRAC_PI_2;
 
 /// Least pivot, relative to the transition matrix, of a closing condition that determines the
 /// orbit: at a resonance that nothing bounds it does not.
 const SINGULAR: f64 = 1e-13;
+
+/// Change of a linear form over a period, relative to it, that is none.
+const KEPT: f64 = 1e-9;
 
 /// Steps of the flow that an orbit is granted: some thousand periods of a motion of a hundred modes, or
 /// minutes of one of many more. What needs more has hardly any mass somewhere, or no orbit.
@@ -33,6 +37,8 @@ pub(super) struct Shooting<'a> {
     /// Of the last evaluation: phases, what held the forces at the start, points that have slipped.
     phases: Vec<LinearPhase>,
     held: Vec<PointState>,
+    /// The forces at the start.
+    begun: Vec<f64>,
     slipped: Vec<bool>,
     /// State after the span.
     pub(super) end: Option<State>,
@@ -78,6 +84,7 @@ impl<'a> Shooting<'a> {
             interrupted,
             phases: Vec::new(),
             held: Vec::new(),
+            begun: Vec::new(),
             slipped: Vec::new(),
             end: None,
             derivative: None,
@@ -112,6 +119,7 @@ impl<'a> Shooting<'a> {
     pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
         let (mut state, held) = self.coordinates.state(y);
         self.held = held;
+        self.begun.clone_from(&state.force);
         self.phases.clear();
         self.derivative = None;
         let (phases, system) = (&mut self.phases, self.coordinates.system());
@@ -167,7 +175,7 @@ impl<'a> Shooting<'a> {
             return derivative.clone();
         }
         self.matrices += 1;
-        let along = self.coordinates.along(&self.phases, &self.held);
+        let along = self.coordinates.along(&self.phases, &self.held, &self.begun);
         let derivative = match &self.rotation {
             Some((_, matrix)) => matrix * along,
             None if self.half_wave => faer::Scale(-1.0) * along,
@@ -199,11 +207,57 @@ impl<'a> Shooting<'a> {
         Some((rest.eigenvalues().ok()?, neutral))
     }
 
+    /// Linear forms that the motion conserves while the points `slipped` alone slip, each with a
+    /// coordinate that it determines: the slip of contacts that never do, and of one that but touches its
+    /// limit in a plane, the part across.
+    fn conserved(&self, matrix: &Mat<f64>, slipped: &[bool]) -> Vec<(usize, Vec<f64>)> {
+        let mut forms = self.coordinates.conserved(slipped);
+        let system = self.coordinates.system();
+        let side = if self.half_wave { -1.0 } else { 1.0 };
+        for plane in system.planes().iter().filter(|plane| slipped[plane.points[0]]) {
+            let others: Vec<bool> =
+                (0..slipped.len()).map(|i| !plane.points.contains(&i)).collect();
+            let [(target, one), (_, other)] = &self.coordinates.conserved(&others)[..] else {
+                continue;
+            };
+            // What a period changes of a form.
+            let change = |form: &[f64]| -> Vec<f64> {
+                let after = |j: usize| -> f64 {
+                    form.iter().enumerate().map(|(i, f)| f * matrix[(i, j)]).sum()
+                };
+                (0..form.len()).map(|j| side * after(j) - form[j]).collect()
+            };
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let unit = |form: &[f64]| form.iter().map(|f| f / norm(form)).collect::<Vec<f64>>();
+            let one = unit(one);
+            let share = dot(&one, other);
+            let other =
+                unit(&other.iter().zip(&one).map(|(f, e)| f - share * e).collect::<Vec<_>>());
+            let (a, b) = (change(&one), change(&other));
+            // The combination that changes least.
+            let angle = 0.5 * (2.0 * dot(&a, &b)).atan2(dot(&a, &a) - dot(&b, &b)) + FRAC_PI_2;
+            let (sin, cos) = angle.sin_cos();
+            let mixed = |a: &[f64], b: &[f64]| -> Vec<f64> {
+                a.iter().zip(b).map(|(a, b)| cos * a + sin * b).collect()
+            };
+            if norm(&mixed(&a, &b)) <= KEPT {
+                let form = mixed(&one, &other);
+                let first = 2 * system.modes();
+                let size = |i: usize| form[i].abs();
+                let pivot =
+                    (first..form.len())
+                        .fold(*target, |most, i| if size(i) > size(most) { i } else { most });
+                forms.push((pivot, form));
+            }
+        }
+        forms
+    }
+
     /// A transition matrix without what is neutral while the points `slipped` alone slip, and the
     /// number of the multipliers that are 1 for it: a contact that never slips keeps its slip, and
     /// nothing answers to some rigid-body motions.
     pub(super) fn without_neutral(&self, matrix: &Mat<f64>, slipped: &[bool]) -> (Mat<f64>, usize) {
-        let conserved = self.coordinates.conserved(slipped);
+        let conserved = self.conserved(matrix, slipped);
         let size = matrix.nrows();
         let mut change = Mat::<f64>::identity(size, size);
         for (target, row) in &conserved {
@@ -257,6 +311,7 @@ impl System for Shooting<'_> {
 
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
         let mut matrix = self.derivative();
+        let conserved = self.conserved(&matrix, &self.slipped);
         let size = matrix.nrows();
         let scale = 1.0 + matrix.norm_max();
         for i in 0..size {
@@ -265,7 +320,7 @@ impl System for Shooting<'_> {
         let mut right = Mat::from_fn(size, 1, |i, _| rhs[i]);
         if !self.half_wave {
             // The slip of a contact that never slips is free: it stays as it is.
-            for (target, row) in self.coordinates.conserved(&self.slipped) {
+            for (target, row) in conserved {
                 for (j, value) in row.iter().enumerate() {
                     matrix[(target, j)] = *value;
                 }

@@ -85,7 +85,7 @@ impl<'a> Survey<'a> {
         let (mut velocity, mut damping, mut load) =
             (vec![0.0; modes], vec![0.0; modes], vec![0.0; modes]);
         let step = if self.half_wave { 2 } else { 1 };
-        let slips = segment.regime.points.iter().any(|state| state.sign() != 0.0);
+        let slips = segment.regime.points.iter().any(|state| state.slips());
         for &(x, weight) in self.quadrature.rule(count) {
             let tau = x * segment.length;
             segment.series.motion_at(tau, &mut motion[..modes], &mut velocity);
@@ -104,7 +104,14 @@ impl<'a> Survey<'a> {
             }
             if slips {
                 let speed = self.system.contact_displacement(&velocity);
-                add_friction(&mut self.contacts, segment.regime, time, &speed, &motion[modes..]);
+                let force = &motion[modes..];
+                add_friction(
+                    self.system,
+                    segment.regime,
+                    time,
+                    [&speed, force],
+                    &mut self.contacts,
+                );
             }
             // Half a period of an odd motion counts twice.
             let share = weight * angle / TAU * if self.half_wave { 2.0 } else { 1.0 };
@@ -130,7 +137,7 @@ impl<'a> Survey<'a> {
             let counts = match state {
                 // Of a point that presses: the share of the period in which it is open.
                 PointState::Open => limit.is_infinite(),
-                _ => limit == 0.0 || state.sign() != 0.0,
+                _ => limit == 0.0 || state.slips(),
             };
             if counts {
                 summary.slip_fraction += share;
@@ -206,18 +213,27 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// Adds the friction work of a short time.
+/// Adds the friction work of a short time with these velocities and forces of the points.
 fn add_friction(
-    contacts: &mut [PointSummary],
+    system: &ModalSystem,
     regime: &ContactState,
     time: f64,
-    speed: &[f64],
-    force: &[f64],
+    [speed, force]: [&[f64]; 2],
+    contacts: &mut [PointSummary],
 ) {
     for (point, summary) in contacts.iter_mut().enumerate() {
         if regime.points[point].sign() != 0.0 {
             let slip: f64 = (0..speed.len()).map(|j| regime.slip_rate[(point, j)] * speed[j]).sum();
             summary.dissipation += time * force[point] * slip;
+        }
+    }
+    for plane in system.planes() {
+        if regime.points[plane.points[0]] == PointState::Sliding {
+            let (along, pull) = system.pull(plane, force, speed);
+            for (point, e) in plane.points.into_iter().zip(along) {
+                let slip = e * pull / plane.stiffness;
+                contacts[point].dissipation += time * force[point] * slip;
+            }
         }
     }
 }

@@ -13,9 +13,10 @@ from stickslip.model import Model
 from stickslip.model.contact import OPEN, Contact
 from stickslip.results.arrays import Float, Int, constant
 
-KINDS = ("sticks", "slips forward", "slips backward", "opens")
-"""What happens, by the code that the core and files have; forward is du/dt > 0."""
-_DIRECTIONS = (0, 1, -1, OPEN)
+KINDS = ("sticks", "slips forward", "slips backward", "opens", "slides")
+"""What happens, by the code that the core and files have; forward is du/dt > 0, and a node that
+slides slips in a plane."""
+_DIRECTIONS = (0, 1, -1, OPEN, 1)
 """Direction of slip, or `OPEN`, by the code of an event; see `KINDS`."""
 
 
@@ -29,7 +30,8 @@ class Event(NamedTuple):
     point: int
     """Point of that contact, counted from 0."""
     kind: str
-    """From then on it "sticks", "slips forward" (du/dt > 0), "slips backward", or it "opens"."""
+    """From then on it "sticks", "slips forward" (du/dt > 0), "slips backward", "opens", or, in a
+    plane, "slides"."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
