@@ -266,7 +266,7 @@ fn the_march_comes_near_the_integrals() {
             let size = unit * 10f64.powf(random.between(-0.5, 0.5));
             let u = series(&mut random, &table, size);
             let exact = load(&law, &table, &u, Residual::FromRest);
-            let errors = [256, 1024].map(|samples| {
+            let errors = [1024, 4096].map(|samples| {
                 let sampled = Aft::new(law.with_scaled_forces(1.0), samples).unwrap();
                 let own = load(&sampled, &table, &u, Residual::FromRest);
                 let apart = |a: &[f64], b: &[f64]| {
@@ -277,8 +277,8 @@ fn the_march_comes_near_the_integrals() {
                     apart(&own.tangent, &exact.tangent) / largest(&exact.tangent),
                 ]
             });
-            assert!(errors[1][0] < 2e-3 && errors[1][1] < 0.02, "{} {errors:?}", law.name());
-            assert!(errors[1][0] < 0.3 * errors[0][0] + 1e-9, "{} {errors:?}", law.name());
+            assert!(errors[0][0] < 2e-3 && errors[0][1] < 0.02, "{} {errors:?}", law.name());
+            assert!(errors[1][0] < 1e-4 && errors[1][1] < 0.005, "{} {errors:?}", law.name());
         }
     }
 }
@@ -423,7 +423,8 @@ fn tiny_and_huge_motions_keep_their_digits() {
         let inner = 0.5 * 0.25 * end * end - 0.25 * end * end / ((chi + 2.0) * (chi + 3.0));
         let exact = 8.0 * (inner + 0.2 * (a - end)) - 4.0 * a * 0.2;
         let [force, work, _] = cosine(&law, a, 3);
-        near(force, 0.2, 1e-15);
+        // The difference of k u and the slip load, which are larger.
+        near(force, 0.2, 1e-15 * 0.25 * a / 0.2);
         near(work, exact, 1e-9);
     }
 }

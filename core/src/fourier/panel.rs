@@ -91,9 +91,10 @@ impl Interval {
         out: &mut Vec<Self>,
     ) {
         let most = LENGTH / harmonics.highest().max(4) as f64;
+        let both = if powers.contains(&1) { 1.0 } else { 0.5 };
         let stretched = |power: i32| match power {
             1 => 0.0,
-            power => (most / f64::from(power)).min(0.5 * (end - start)),
+            power => (most / f64::from(power)).min(both * (end - start)),
         };
         let [first, last] = powers.map(stretched);
         let (from, to) = (start + first, end - last);
