@@ -25,7 +25,7 @@ use std::sync::{Arc, OnceLock};
 const MEMORY: usize = 64;
 
 /// Share of the slip force at which a contact that always slips has hardly begun to.
-const LITTLE: f64 = 1e-3;
+const LITTLE: f64 = 1e-12;
 
 /// A contact given by its backbone.
 #[derive(Debug, Clone, PartialEq)]
