@@ -191,15 +191,15 @@ class MasingTable(EndsTable):
 
     def build(self) -> Masing:
         """Return the contact."""
-        table = (self.displacement, self.force)
-        if (self.backbone is None) == (None in table):
+        table = () if None in (self.displacement, self.force) else (self.displacement, self.force)
+        if (self.backbone is None) == (not table):
             raise ModelError(
                 "give either 'backbone', the name of a shape, or 'displacement' and 'force'"
             )
         values = {
             key: getattr(self, key) for key in ("stiffness", "slip_force", "shear_lag", "name")
         }
-        return Masing(*self.touched, backbone=self.backbone or table, **values)
+        return Masing(*self.touched, backbone=self.backbone or table, **values)  # type: ignore[arg-type]
 
 
 class BoucWenTable(EndsTable):
