@@ -32,8 +32,9 @@ _NAMES = {
     "fe": "Reduction Solid craig_bampton",
     "html.report": "report",
     "io": "Frf read_dofs read_frf read_matrix write_frf",
-    "model": "ContactLaw Coulomb Cubic Force Jenkins ModalDamping Model ParallelJenkins Rayleigh "
-    "Stop StructuralDamper Structure Tangents join natural_frequencies slip_configurations",
+    "model": "BoucWen ContactLaw Coulomb Cubic Force Iwan Jenkins Masing ModalDamping Model "
+    "ParallelJenkins Rayleigh Stop StructuralDamper Structure Tangents join natural_frequencies "
+    "slip_configurations",
     "model.destabilised": "destabilised modal_damping",
     "model.measurement": "MeasuredLoop MeasuredPeak Measurement",
     "model.state": "State",

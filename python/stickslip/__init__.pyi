@@ -35,11 +35,14 @@ from stickslip.io import read_dofs as read_dofs
 from stickslip.io import read_frf as read_frf
 from stickslip.io import read_matrix as read_matrix
 from stickslip.io import write_frf as write_frf
+from stickslip.model import BoucWen as BoucWen
 from stickslip.model import ContactLaw as ContactLaw
 from stickslip.model import Coulomb as Coulomb
 from stickslip.model import Cubic as Cubic
 from stickslip.model import Force as Force
+from stickslip.model import Iwan as Iwan
 from stickslip.model import Jenkins as Jenkins
+from stickslip.model import Masing as Masing
 from stickslip.model import ModalDamping as ModalDamping
 from stickslip.model import Model as Model
 from stickslip.model import ParallelJenkins as ParallelJenkins

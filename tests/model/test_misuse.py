@@ -253,9 +253,10 @@ def run(*changes, tail=""):
         (
             [('"jenkins"', '"dahl"')],
             "",
-            "contact 1: unknown law 'dahl'; known: 'jenkins', 'parallel-jenkins', 'structural', "
-            "'coulomb', 'stop', 'cubic' (slip limits are slip_force of 'jenkins' and "
-            "slip_forces of 'parallel-jenkins' and slip_forces of 'structural')",
+            "contact 1: unknown law 'dahl'; known: 'jenkins', 'parallel-jenkins', 'iwan', "
+            "'masing', 'bouc-wen', 'structural', 'coulomb', 'stop', 'cubic' (slip limits are "
+            "slip_force of 'jenkins', 'iwan', 'masing', 'bouc-wen' and slip_forces of "
+            "'parallel-jenkins', 'structural')",
         ),
         (
             [('"forced-response"', '"exact-response"')],

@@ -17,8 +17,9 @@ const ITERATIONS: usize = 40;
 /// First ratios, relative to the excess over the onset that is asked for, down to which a start is
 /// looked for: closer to the onset the stuck mode is nearer to the solution.
 const NEARER: [f64; 7] = [1.0, 0.5, 0.2, 0.05, 0.01, 1e-3, 1e-4];
-/// Doublings of the excess over the onset up to which friction is asked to balance a guess.
-const FURTHER: u32 = 12;
+/// Doublings of the excess over the onset up to which friction is asked to balance a guess: laws that
+/// always slip have their onset at next to no force.
+const FURTHER: i32 = 50;
 /// Contact displacement, relative to the largest of all modes, that counts as none.
 const STILL: f64 = 1e-9;
 
@@ -149,7 +150,7 @@ impl Onset {
         // The dissipation of one element grows with the excess up to twice the amplitude at its
         // onset; that of several ones further.
         let left = |excess: f64| mode.omega * damping + stroke * stroke * force(excess).im;
-        let mut reached = (0..FURTHER).map(|doubled| f64::from(1 << doubled));
+        let mut reached = (0..FURTHER).map(|doubled| 2f64.powi(doubled));
         let mut high = reached.find(|excess| left(*excess) >= 0.0)?;
         let mut low = 0.0;
         for _ in 0..100 {

@@ -207,6 +207,12 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// Number m of numbers that the law remembers.
     fn state_size(&self) -> usize;
 
+    /// The same law with so many places for what it remembers, if it has a choice: a transient has more
+    /// reversals than a period.
+    fn with_memory(&self, _places: usize) -> Option<Box<dyn ContactLaw>> {
+        None
+    }
+
     /// Stiffness D of the stuck contact, n × n, symmetric positive semidefinite [N/m].
     fn stiffness(&self) -> Mat<f64>;
 

@@ -3,6 +3,8 @@
 mod active_set;
 mod aft;
 mod aft_march;
+mod backbone;
+mod bouc_wen;
 mod coulomb;
 mod coulomb_circle;
 mod coulomb_constant;
@@ -25,6 +27,10 @@ mod jenkins;
 mod jets;
 mod law;
 mod march_rate;
+mod masing;
+mod masing_integrals;
+mod masing_loops;
+mod masing_memory;
 mod parameter;
 mod periodic_march;
 mod registry;
@@ -42,6 +48,8 @@ mod structural_parameters;
 mod transitions;
 
 pub use aft::Aft;
+pub use backbone::{Backbone, Table};
+pub use bouc_wen::BoucWen;
 pub use coulomb::{Closure, Coulomb};
 pub use cubic::Cubic;
 pub(crate) use described::Described;
@@ -52,6 +60,7 @@ pub use law::{
     Bound, ContactLaw, Element, HarmonicForce, Motion, Phase, PointState, PointSummary,
     ReturnMapJacobian, SlipElement, SlipLoad, SlipPlane,
 };
+pub use masing::Masing;
 pub use parameter::{Parameter, Parameters};
 pub use registry::law;
 pub use residual::{AssumedStart, Residual};

@@ -1,15 +1,20 @@
 //! The registry: laws by the names that study files and Python give them.
 
-use super::{ContactLaw, Coulomb, Cubic, Jenkins, Parameters, Stop, StructuralDamper};
+use super::{
+    BoucWen, ContactLaw, Coulomb, Cubic, Jenkins, Masing, Parameters, Stop, StructuralDamper,
+};
 use crate::Error;
 
 type Maker = fn(&Parameters) -> Result<Box<dyn ContactLaw>, Error>;
 
 /// Every law by its name.
-const LAWS: [(&str, Maker); 6] = [
+const LAWS: [(&str, Maker); 9] = [
+    ("bouc-wen", |given| Ok(Box::new(BoucWen::from_parameters(given)?))),
     ("coulomb", |given| Ok(Box::new(Coulomb::from_parameters(given)?))),
     ("cubic", |given| Ok(Box::new(Cubic::from_parameters(given)?))),
+    ("iwan", |given| Ok(Box::new(Masing::iwan_from_parameters(given)?))),
     ("jenkins", |given| Ok(Box::new(Jenkins::from_parameters(given)?))),
+    ("masing", |given| Ok(Box::new(Masing::from_parameters(given)?))),
     ("parallel-jenkins", |given| Ok(Box::new(Jenkins::from_parameters(given)?))),
     ("stop", |given| Ok(Box::new(Stop::from_parameters(given)?))),
     ("structural", |given| Ok(Box::new(StructuralDamper::from_parameters(given)?))),

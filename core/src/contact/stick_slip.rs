@@ -62,6 +62,29 @@ impl<'a> Path<'a> {
     pub(super) fn half_range(&self) -> f64 {
         0.5 * (self.crest.value - self.trough.value)
     }
+
+    /// Adds multiples of the basis at crest and trough to the first row of a tangent, if there is one.
+    pub(super) fn add_extremes(&self, [high, low]: [f64; 2], tangent: &mut [f64]) {
+        let size = self.harmonics.slots();
+        if tangent.is_empty() {
+            return;
+        }
+        let mut basis = vec![0.0; size];
+        for (factor, point) in [(high, self.crest), (low, self.trough)] {
+            self.harmonics.basis(point.theta, &mut basis);
+            tangent[..size].iter_mut().zip(&basis).for_each(|(slope, b)| *slope += factor * b);
+        }
+    }
+
+    /// The angle of the span that the path covers at which the motion is as at `theta`, and the sign
+    /// of its image there.
+    pub(super) fn fold(&self, theta: f64) -> (f64, f64) {
+        let (start, span) =
+            (self.turns.first().map_or(0.0, |turn| turn.theta), self.harmonics.span());
+        let turns = ((theta - start) / span).floor();
+        let mirror = self.harmonics.half_wave() && turns.rem_euclid(2.0) != 0.0;
+        (theta - turns * span, if mirror { -1.0 } else { 1.0 })
+    }
 }
 
 /// The cycle of an element over the span its series is followed.

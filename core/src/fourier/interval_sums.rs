@@ -3,6 +3,7 @@
 //! All products of two basis functions follow from `∫ cos mθ` and `∫ sin mθ`, m ≤ 2H: their matrix
 //! is Toeplitz plus Hankel, at O(intervals·H + H²) instead of O(samples·H²).
 
+use super::panel::{rotate, Lanes, NODES};
 use super::Harmonics;
 
 /// `C_m = Σ ∫ cos mθ dθ` and `S_m = Σ ∫ sin mθ dθ` over intervals.
@@ -60,6 +61,16 @@ impl IntervalSums {
             self.cos[order] += weight * cos;
             self.sin[order] += weight * sin;
             (cos, sin) = (cos * cos_step - sin * sin_step, sin * cos_step + cos * sin_step);
+        }
+    }
+
+    /// Adds instants whose step of angle has these cosines and sines, each with its weight.
+    pub(super) fn add_lanes(&mut self, cos_step: &Lanes, sin_step: &Lanes, weight: &Lanes) {
+        let (mut cos, mut sin) = (*weight, [0.0; NODES]);
+        for order in (0..self.cos.len()).step_by(self.step) {
+            self.cos[order] += cos.iter().sum::<f64>();
+            self.sin[order] += sin.iter().sum::<f64>();
+            rotate(&mut cos, &mut sin, cos_step, sin_step);
         }
     }
 

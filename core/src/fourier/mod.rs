@@ -3,11 +3,13 @@
 mod gradient;
 mod harmonics;
 mod interval_sums;
+mod panel;
 mod turning_points;
 
 pub use gradient::amplitude_gradient;
 pub use harmonics::Harmonics;
 pub use interval_sums::IntervalSums;
+pub use panel::{Interval, Lanes, Panel, NODES};
 pub use turning_points::{SampleTable, TurningPoint};
 
 /// Which scalar stands for the size of a periodic motion.

@@ -7,6 +7,9 @@ use faer::Mat;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Places for the reversals that a law remembers in a transient.
+const PLACES: usize = 512;
+
 /// An element of a contact: its law, its points and what deforms in it.
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
@@ -45,8 +48,10 @@ impl Bodies {
                     }
                 }
                 None if marched => {
-                    let whole = Arc::new(Marched(law.with_scaled_stiffness(1.0)));
-                    bodies.add(contact, range.clone(), whole, Some(law.state_size()))?;
+                    let own = law.with_memory(PLACES);
+                    let own = own.unwrap_or_else(|| law.with_scaled_stiffness(1.0));
+                    let size = own.state_size();
+                    bodies.add(contact, range.clone(), Arc::new(Marched(own)), Some(size))?;
                 }
                 None => {
                     let law = law.name().to_owned();

@@ -49,8 +49,11 @@ pub fn limit_cycles(
         stopped.get()
     };
     let onset = Onset::new(&given, settings.mode, ratio)?;
-    let orbits = CycleOrbits::new(&family)?;
     // Without orbits a balance goes without its stability.
+    let orbits = match CycleOrbits::new(&family) {
+        Err(Error::NoEvents { .. }) if !settings.exact => None,
+        orbits => orbits?,
+    };
     let orbits = match orbits.map(|orbits| orbits.paced(onset.mode.omega)).transpose() {
         Err(_) if !settings.exact => None,
         orbits => orbits?,

@@ -11,19 +11,23 @@ from stickslip.model.contact_law import ContactLaw, Tangents
 from stickslip.model.coulomb import Coulomb
 from stickslip.model.force import Force
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
+from stickslip.model.microslip import BoucWen, Iwan, Masing
 from stickslip.model.model import ContactRef, Model, PointRef
 from stickslip.model.springs import Cubic, Stop
 from stickslip.model.structural import StructuralDamper
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 __all__ = [
+    "BoucWen",
     "Contact",
     "ContactLaw",
     "ContactRef",
     "Coulomb",
     "Cubic",
     "Force",
+    "Iwan",
     "Jenkins",
+    "Masing",
     "ModalDamping",
     "Model",
     "ParallelJenkins",

@@ -45,6 +45,9 @@ class Contact(ABC):
     slips: ClassVar[bool] = True
     """Whether its points stick and slip; a spring without friction remembers no force."""
 
+    one_spring: ClassVar[bool] = True
+    """Whether what has a stiffness and a slip force is one spring in series with one slider."""
+
     core_phases: ClassVar[bool] = True
     """Whether the core tells when its points stick and slip; else `states` does, if it can."""
 

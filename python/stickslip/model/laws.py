@@ -11,22 +11,35 @@ from stickslip.model.contact import Contact
 from stickslip.model.coulomb import Coulomb
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
+from stickslip.model.microslip import BoucWen, Iwan, Masing
 from stickslip.model.springs import Cubic, Stop
 from stickslip.model.structural import StructuralDamper
 
 LAWS: Mapping[str, type[Contact]] = {
-    law.law: law for law in (Jenkins, ParallelJenkins, StructuralDamper, Coulomb, Stop, Cubic)
+    law.law: law
+    for law in (
+        Jenkins,
+        ParallelJenkins,
+        Iwan,
+        Masing,
+        BoucWen,
+        StructuralDamper,
+        Coulomb,
+        Stop,
+        Cubic,
+    )
 }
 """Every law by its name."""
+
+_LIMITS = ("slip_force", "slip_forces")
 
 
 def unknown_law(law: object) -> str:
     """Word an unknown law, with all laws and where each has its slip limits."""
+    keys = dict.fromkeys(key for kind in LAWS.values() for key in kind.keys if key in _LIMITS)
     limits = " and ".join(
-        f"{key} of {brief(name)}"
-        for name, kind in LAWS.items()
-        for key in kind.keys
-        if key.startswith("slip_force")
+        f"{key} of {', '.join(brief(name) for name, kind in LAWS.items() if key in kind.keys)}"
+        for key in keys
     )
     return f"{unknown('law', law, LAWS)} (slip limits are {limits})"
 

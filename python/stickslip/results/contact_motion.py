@@ -161,11 +161,12 @@ class ContactMotion(Peaks):
         Raises ModelError if its law has no single stiffness and slip force.
         """
         number, _ = self.locate(contact)
-        parameters = self.model.contacts[number].parameters()
-        if not {"stiffness", "slip_force"} <= set(parameters):
+        owner = self.model.contacts[number]
+        parameters = owner.parameters()
+        if not (owner.one_spring and {"stiffness", "slip_force"} <= set(parameters)):
             raise ModelError(
                 f"contact {self.model.contact_names[number]!r}: residual bounds need one stiffness "
-                f"and one slip force, which the law {self.model.contacts[number].law!r} has not"
+                f"and one slip force, which the law {owner.law!r} has not"
             )
         stiffness, slip_force = parameters["stiffness"], parameters["slip_force"]
         return self._by_point(contact, lambda u: mean_forces(u, stiffness, slip_force))
@@ -182,7 +183,8 @@ class ContactMotion(Peaks):
     def _spring(self, contact: PointRef) -> tuple[float, float]:
         """Return stiffness and slip force of a contact whose law has one of each."""
         number, _ = self.locate(contact)
-        parameters = self.model.contacts[number].parameters()
+        owner = self.model.contacts[number]
+        parameters = owner.parameters() if owner.one_spring else {}
         if not {"stiffness", "slip_force"} <= set(parameters) or not parameters["stiffness"]:
             raise ModelError(
                 f"contact {self.model.contact_names[number]!r}: the deflection of its spring needs "

@@ -17,10 +17,13 @@ from pydantic import (
 from stickslip.checks import brief
 from stickslip.errors import EntryError, ModelError
 from stickslip.model import (
+    BoucWen,
     Coulomb,
     Cubic,
     Force,
+    Iwan,
     Jenkins,
+    Masing,
     ParallelJenkins,
     Stop,
     StructuralDamper,
@@ -147,6 +150,67 @@ class ParallelJenkinsTable(EndsTable):
     slip_forces: Some[SlipForce] = Field(
         description="Slip limit of each element; inf: it never slips.", examples=[["5 N", 20]]
     )
+
+
+class IwanTable(EndsTable):
+    """Segalman's four-parameter Iwan model: microslip up to gross slip."""
+
+    makes = Iwan
+    law: Literal["iwan"] = Field(description="Friction law.")
+    stiffness: StiffnessValue = Field(description="Stiffness K_T at rest.")
+    slip_force: SlipForce = Field(description="Force F_S of gross slip; inf: it never slips.")
+    chi: Number = Field(description="Exponent of the distribution, above -1 and at most 0.")
+    beta: Number = Field(default=0.0, description="Weight of the elements that slip last.")
+
+
+class MasingTable(EndsTable):
+    """A contact by its backbone, the force of its first loading."""
+
+    makes = Masing
+    law: Literal["masing"] = Field(description="Friction law.")
+    stiffness: StiffnessValue | None = Field(
+        default=None, description="Stiffness at rest; left out: that of a table's first row."
+    )
+    slip_force: SlipForce | None = Field(
+        default=None, description="Force never exceeded; left out: that of a table's last row."
+    )
+    backbone: Annotated[Literal["exponential", "shear-layer"], ONE_OF] | None = Field(
+        default=None, description="Shape; left out: the table of displacement and force."
+    )
+    shear_lag: Number | None = Field(
+        default=None, description="sqrt(k / EA) L of a shear layer, which needs it."
+    )
+    displacement: Some[Length] | None = Field(
+        default=None,
+        description="Displacements of a tabulated backbone.",
+        examples=[["1 um", 5e-6]],
+    )
+    force: Some[SlipForce] | None = Field(
+        default=None, description="As many forces.", examples=[["20 N", 70]]
+    )
+
+    def build(self) -> Masing:
+        """Return the contact."""
+        table = () if None in (self.displacement, self.force) else (self.displacement, self.force)
+        if (self.backbone is None) == (not table):
+            raise ModelError(
+                "give either 'backbone', the name of a shape, or 'displacement' and 'force'"
+            )
+        values = {
+            key: getattr(self, key) for key in ("stiffness", "slip_force", "shear_lag", "name")
+        }
+        return Masing(*self.touched, backbone=self.backbone or table, **values)  # type: ignore[arg-type]
+
+
+class BoucWenTable(EndsTable):
+    """The Bouc-Wen law: hysteresis by one differential equation."""
+
+    makes = BoucWen
+    law: Literal["bouc-wen"] = Field(description="Friction law.")
+    stiffness: StiffnessValue = Field(description="Stiffness at rest.")
+    slip_force: SlipForce = Field(description="Force that it comes near.")
+    exponent: Number = Field(default=1.0, description="Sharpness n of the knee, at least 1.")
+    beta: Number = Field(default=0.5, description="Share of the term with the direction, 0.5 to 1.")
 
 
 class StopTable(EndsTable):
@@ -277,11 +341,25 @@ class ForceTable(Table):
 ContactTable = Annotated[
     Annotated[JenkinsTable, Tag("<jenkins>")]
     | Annotated[ParallelJenkinsTable, Tag("<parallel-jenkins>")]
+    | Annotated[IwanTable, Tag("<iwan>")]
+    | Annotated[MasingTable, Tag("<masing>")]
+    | Annotated[BoucWenTable, Tag("<bouc-wen>")]
     | Annotated[StructuralTable, Tag("<structural>")]
     | Annotated[CoulombTable, Tag("<coulomb>")]
     | Annotated[StopTable, Tag("<stop>")]
     | Annotated[CubicTable, Tag("<cubic>")],
-    chosen_by("law", "jenkins", "parallel-jenkins", "structural", "coulomb", "stop", "cubic"),
+    chosen_by(
+        "law",
+        "jenkins",
+        "parallel-jenkins",
+        "iwan",
+        "masing",
+        "bouc-wen",
+        "structural",
+        "coulomb",
+        "stop",
+        "cubic",
+    ),
 ]
 """Each further friction law joins this union with a table of its own."""
 

@@ -1,0 +1,290 @@
+//! Gauss panels: integrals of smooth functions times the basis over an interval of angles.
+
+use super::{Harmonics, IntervalSums};
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// Nodes of a panel.
+pub const NODES: usize = 24;
+
+/// A number at every node.
+pub type Lanes = [f64; NODES];
+
+/// Largest product of the highest harmonic and the length of a panel at which the rule integrates
+/// products of two basis functions and a function that it resolves.
+const LENGTH: f64 = 13.0;
+
+/// The rule of Gauss and Legendre.
+struct Rule {
+    node: Lanes,
+    weight: Lanes,
+    /// Weights that give the last two coefficients of a function's Legendre series.
+    tail: [Lanes; 2],
+}
+
+impl Rule {
+    fn get() -> &'static Self {
+        static RULE: OnceLock<Rule> = OnceLock::new();
+        RULE.get_or_init(|| {
+            let (mut node, mut weight) = ([0.0; NODES], [0.0; NODES]);
+            let mut tail = [[0.0; NODES]; 2];
+            for i in 0..NODES {
+                let mut x = -((i as f64 + 0.75) / (NODES as f64 + 0.5) * PI).cos();
+                for _ in 0..10 {
+                    let [.., before, own] = legendre(x);
+                    x -= own * (x * x - 1.0) / (NODES as f64 * (x * own - before));
+                }
+                let [last, before, own] = legendre(x);
+                let slope = NODES as f64 * (x * own - before) / (x * x - 1.0);
+                node[i] = x;
+                weight[i] = 2.0 / ((1.0 - x * x) * slope * slope);
+                for (tail, (value, degree)) in
+                    tail.iter_mut().zip([(last, NODES - 2), (before, NODES - 1)])
+                {
+                    tail[i] = weight[i] * value * (degree as f64 + 0.5);
+                }
+            }
+            Self { node, weight, tail }
+        })
+    }
+}
+
+/// The Legendre polynomials of the degrees `NODES − 2`, `NODES − 1` and `NODES`.
+fn legendre(x: f64) -> [f64; 3] {
+    let mut last = [0.0, 1.0, x];
+    for n in 2..=NODES {
+        let n = n as f64;
+        let next = ((2.0 * n - 1.0) * x * last[2] - (n - 1.0) * last[1]) / n;
+        last = [last[1], last[2], next];
+    }
+    last
+}
+
+/// How a function behaves at an end of an interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Root {
+    /// Smooth at both.
+    None,
+    /// The interval is stretched by this power at its start.
+    Start(i32),
+    /// The same at its end.
+    End(i32),
+}
+
+/// An interval of angles, or a part of it in the stretched variable.
+#[derive(Debug, Clone, Copy)]
+pub struct Interval {
+    start: f64,
+    end: f64,
+    root: Root,
+    /// Part of it, between 0 and 1.
+    part: [f64; 2],
+}
+
+impl Interval {
+    /// Cuts an interval so that panels resolve the harmonics. Functions may have a root at its start
+    /// or its end, to be stretched by a power, or none where the power is 1.
+    pub fn cut(
+        harmonics: &Harmonics,
+        [start, end]: [f64; 2],
+        powers: [i32; 2],
+        out: &mut Vec<Self>,
+    ) {
+        let most = LENGTH / harmonics.highest().max(4) as f64;
+        let both = if powers.contains(&1) { 1.0 } else { 0.5 };
+        let stretched = |power: i32| match power {
+            1 => 0.0,
+            power => (most / f64::from(power)).min(both * (end - start)),
+        };
+        let [first, last] = powers.map(stretched);
+        let (from, to) = (start + first, end - last);
+        let whole = |start: f64, end: f64, root: Root| Self { start, end, root, part: [0.0, 1.0] };
+        if first > 0.0 {
+            out.push(whole(start, from, Root::Start(powers[0])));
+        }
+        if last > 0.0 {
+            out.push(whole(to, end, Root::End(powers[1])));
+        }
+        let count = ((to - from) / most).ceil();
+        for n in 0..count as usize {
+            let at = |n: usize| from + (to - from) * n as f64 / count;
+            out.push(whole(at(n), at(n + 1), Root::None));
+        }
+    }
+
+    /// Its length in the stretched variable, in units of the angle.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        (self.end - self.start) * (self.part[1] - self.part[0])
+    }
+
+    /// Its two halves.
+    #[must_use]
+    pub fn halves(&self) -> [Self; 2] {
+        let [low, high] = self.part;
+        let middle = 0.5 * (low + high);
+        [[low, middle], [middle, high]].map(|part| Self { part, ..*self })
+    }
+}
+
+/// The basis at the nodes of an interval.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    /// Weights `dθ`.
+    pub weight: Lanes,
+    /// What the variable is stretched by.
+    stretch: Lanes,
+    cos: Lanes,
+    sin: Lanes,
+    /// Cosines and sines of the harmonics k >= 1, in the order of the coefficients.
+    basis: Vec<Lanes>,
+}
+
+impl Panel {
+    /// Memory for a set of harmonics.
+    #[must_use]
+    pub fn new(harmonics: &Harmonics) -> Self {
+        let zero = [0.0; NODES];
+        let basis = vec![zero; 2 * harmonics.oscillating().len()];
+        Self { weight: zero, stretch: zero, cos: zero, sin: zero, basis }
+    }
+
+    /// Goes to an interval.
+    pub fn place(&mut self, harmonics: &Harmonics, interval: &Interval) {
+        let rule = Rule::get();
+        let [low, high] = interval.part;
+        let length = interval.end - interval.start;
+        for i in 0..NODES {
+            let t = low + (high - low) * 0.5 * (1.0 + rule.node[i]);
+            let (theta, stretch) = match interval.root {
+                Root::None => (interval.start + length * t, 1.0),
+                Root::Start(power) => {
+                    let factor = t.powi(power - 1);
+                    (interval.start + length * factor * t, f64::from(power) * factor)
+                }
+                Root::End(power) => {
+                    let factor = (1.0 - t).powi(power - 1);
+                    (interval.end - length * factor * (1.0 - t), f64::from(power) * factor)
+                }
+            };
+            self.stretch[i] = stretch;
+            self.weight[i] = 0.5 * rule.weight[i] * (high - low) * length * stretch;
+            (self.sin[i], self.cos[i]) = theta.sin_cos();
+        }
+        let (mut cos, mut sin) = (self.cos, self.sin);
+        let [cos_step, sin_step] = if harmonics.half_wave() {
+            doubled(&self.cos, &self.sin)
+        } else {
+            [self.cos, self.sin]
+        };
+        for row in self.basis.chunks_exact_mut(2) {
+            (row[0], row[1]) = (cos, sin);
+            rotate(&mut cos, &mut sin, &cos_step, &sin_step);
+        }
+    }
+
+    /// Values of a series.
+    #[must_use]
+    pub fn series(&self, harmonics: &Harmonics, series: &[f64]) -> Lanes {
+        let mut value = [harmonics.mean(series); NODES];
+        for (row, coefficient) in self.basis.iter().zip(&series[harmonics.offset()..]) {
+            for i in 0..NODES {
+                value[i] += coefficient * row[i];
+            }
+        }
+        value
+    }
+
+    /// Adds `∫ f basis dθ`, with the weights in f.
+    pub fn add_integrals(&self, harmonics: &Harmonics, weighted: &Lanes, out: &mut [f64]) {
+        if harmonics.has_mean() {
+            out[0] += weighted.iter().sum::<f64>();
+        }
+        for (row, out) in self.basis.iter().zip(&mut out[harmonics.offset()..]) {
+            let mut lanes = [0.0; 4];
+            for (f, b) in weighted.chunks_exact(4).zip(row.chunks_exact(4)) {
+                for i in 0..4 {
+                    lanes[i] += f[i] * b[i];
+                }
+            }
+            *out += lanes.iter().sum::<f64>();
+        }
+    }
+
+    /// Adds `∫ f cos mθ dθ` and `∫ f sin mθ dθ`, with the weights in f.
+    pub fn add_products(&self, harmonics: &Harmonics, weighted: &Lanes, sums: &mut IntervalSums) {
+        let [cos, sin] = if harmonics.half_wave() {
+            doubled(&self.cos, &self.sin)
+        } else {
+            [self.cos, self.sin]
+        };
+        sums.add_lanes(&cos, &sin, weighted);
+    }
+
+    /// Size of the last terms of the Legendre series of f in the stretched variable.
+    #[must_use]
+    pub fn tail(&self, f: &Lanes) -> f64 {
+        let term = |tail: &Lanes| -> f64 {
+            (0..NODES).map(|i| tail[i] * self.stretch[i] * f[i]).sum::<f64>().abs()
+        };
+        Rule::get().tail.iter().map(term).sum()
+    }
+}
+
+fn doubled(cos: &Lanes, sin: &Lanes) -> [Lanes; 2] {
+    let mut out = [[0.0; NODES]; 2];
+    for i in 0..NODES {
+        out[0][i] = (cos[i] - sin[i]) * (cos[i] + sin[i]);
+        out[1][i] = 2.0 * sin[i] * cos[i];
+    }
+    out
+}
+
+/// Turns every lane by its step.
+pub(super) fn rotate(cos: &mut Lanes, sin: &mut Lanes, cos_step: &Lanes, sin_step: &Lanes) {
+    for i in 0..NODES {
+        let (c, s) = (cos[i], sin[i]);
+        cos[i] = c * cos_step[i] - s * sin_step[i];
+        sin[i] = s * cos_step[i] + c * sin_step[i];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panel_integrates_polynomials_and_roots() {
+        let harmonics = Harmonics::new(5, false);
+        let mut panel = Panel::new(&harmonics);
+        for (powers, exponent) in [([1, 1], 5.0), ([8, 1], 0.13), ([1, 2], 0.5)] {
+            let mut intervals = Vec::new();
+            Interval::cut(&harmonics, [0.3, 1.9], powers, &mut intervals);
+            let (mut sum, mut length) = (0.0, 0.0);
+            for interval in &intervals {
+                panel.place(&harmonics, interval);
+                for i in 0..NODES {
+                    let theta = panel.sin[i].atan2(panel.cos[i]);
+                    let from = if powers[1] > 1 { 1.9 - theta } else { theta - 0.3 };
+                    sum += panel.weight[i] * from.max(0.0).powf(exponent);
+                    length += panel.weight[i];
+                }
+            }
+            let exact = 1.6_f64.powf(exponent + 1.0) / (exponent + 1.0);
+            assert!((length - 1.6).abs() < 1e-13);
+            assert!((sum - exact).abs() < 1e-10, "{powers:?}: {sum} {exact}");
+        }
+    }
+
+    #[test]
+    fn the_tail_tells_what_is_resolved() {
+        let harmonics = Harmonics::new(5, true);
+        let mut panel = Panel::new(&harmonics);
+        let mut intervals = Vec::new();
+        Interval::cut(&harmonics, [0.0, 2.0], [1, 1], &mut intervals);
+        panel.place(&harmonics, &intervals[0]);
+        let smooth = panel.sin.map(f64::exp);
+        let rough = panel.sin.map(|s| (s - 0.3).abs());
+        assert!(panel.tail(&smooth) < 1e-12 && panel.tail(&rough) > 1e-4);
+    }
+}

@@ -1,0 +1,232 @@
+"""Laws without sliders in every analysis, against sums of sliders and independent integration."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import stickslip as ss
+
+OMEGA = np.linspace(95.0, 125.0, 13)
+LAW = {"stiffness": 3e3, "slip_force": 4.0}
+
+
+def structure(size=2, damping=0.003):
+    stiffness = 1.2e4 * np.eye(size) - 2e3 * (np.eye(size, k=1) + np.eye(size, k=-1))
+    return ss.Structure(np.eye(size), stiffness, ss.ModalDamping(damping), list("abcd")[:size])
+
+
+def iwan(*ends, chi=-0.5, beta=0.0, **options):
+    return ss.Iwan(*(ends or ("a",)), **LAW | options, chi=chi, beta=beta)
+
+
+def exponential(*ends, **options):
+    return ss.Masing(*(ends or ("a",)), **LAW | options, backbone="exponential")
+
+
+def model(*contacts, force=3.0, more=(), **options):
+    return ss.Model(structure(**options), [*contacts], [ss.Force("b", force), *more])
+
+
+def sliders(law, count=400):
+    """Give elements in parallel that stand for a law: chords of its backbone."""
+    if law.law == "iwan":
+        end = law.gross_slip_displacement
+        u = end * (np.arange(1, count + 1) / count) ** (2.0 / (law.chi + 1.0))
+        lost = law.stiffness * u * (u / end) ** (law.chi + 1) / ((1 + law.beta) * (law.chi + 2))
+        force = law.stiffness * u - lost
+    else:
+        u = law.slip_force / law.stiffness * 30.0 * (np.arange(1, count + 1) / count) ** 2
+        force = -law.slip_force * np.expm1(-law.stiffness * u / law.slip_force)
+    slopes = np.append(np.diff(force, prepend=0.0) / np.diff(u, prepend=0.0), 0.0)
+    springs = -np.diff(slopes)
+    return ss.ParallelJenkins(*law.dofs, stiffness=springs, slip_forces=springs * u)
+
+
+@pytest.mark.parametrize("law", [iwan(), iwan("a", "b", chi=-0.8, beta=0.5), exponential()])
+def test_forced_responses_are_those_of_many_sliders(law):
+    one, many = (ss.forced_response(model(own), OMEGA, 7) for own in (law, sliders(law)))
+    assert one.converged.all()
+    size = np.abs(many.coefficients("a")).max()
+    assert np.abs(one.coefficients("a") - many.coefficients("a")).max() < 2e-4 * size
+    np.testing.assert_allclose(one.dissipation(0), many.dissipation(0), rtol=3e-3)
+    np.testing.assert_allclose(one.slip_fraction(0), many.slip_fraction(0), rtol=0.02)
+    forces = [own.contact_force(0, 6) for own in (one, many)]
+    np.testing.assert_allclose(*forces, atol=2e-3 * np.abs(forces[1]).max())
+    with pytest.raises(ss.ModelError, match="residual bounds need one stiffness"):
+        one.residual_bounds(0)
+
+
+def chain(omega=108.0):
+    own = [iwan("a", "b"), iwan("b", "c", chi=-0.3, beta=0.4, slip_force=2.5), iwan("d", chi=0.0)]
+    return model(*own, force=4.0, size=4, damping=0.02), omega
+
+
+def test_a_chain_of_joints_vibrates_as_its_integration_in_time_does():
+    own, omega = chain()
+    balance = ss.forced_response(own, [omega], 21)
+    later = ss.transient(own, omega, 400, scheme="rk4", steps=1024, samples=1024)
+    for dof in "abcd":
+        last = later.displacement(dof)[-1024:]
+        amplitude = 0.5 * (last.max() - last.min())
+        assert balance.amplitude(dof)[0] == pytest.approx(amplitude, rel=2e-5)
+
+
+@settings(max_examples=15, deadline=None, derandomize=True)
+@given(
+    chi=st.floats(-0.95, 0.0),
+    beta=st.floats(0.0, 5.0),
+    slip_force=st.floats(0.05, 100.0),
+    omega=st.floats(60.0, 160.0),
+)
+def test_random_joints_converge_and_balance_their_energy(chi, beta, slip_force, omega):
+    own = model(iwan("a", "b", chi=chi, beta=beta, slip_force=slip_force), more=[])
+    frf = ss.forced_response(own, [omega], 9)
+    assert frf.converged.all()
+    fed = np.pi * 3.0 * -frf.coefficients("b")[0, 1].imag
+    damping = own.structure.damping
+    waves = np.array([frf.coefficients(dof)[0] for dof in "ab"])
+    orders = np.arange(waves.shape[1])
+    lost = np.einsum("ik,ij,jk,k->", waves.conj(), damping, waves, np.pi * omega * orders**2).real
+    assert frf.dissipation(0)[0, 0] + lost == pytest.approx(fed, rel=1e-6)
+
+
+def test_the_single_harmonic_method_is_the_balance_of_one():
+    own = model(iwan(), exponential("b"))
+    one, balance = ss.single_harmonic(own, OMEGA), ss.forced_response(own, OMEGA, 1)
+    np.testing.assert_allclose(one.coefficients("a"), balance.coefficients("a"), rtol=1e-8)
+    np.testing.assert_allclose(one.dissipation(0), balance.dissipation(0), rtol=1e-8)
+
+
+def test_samples_come_near_the_integrals():
+    own = model(iwan())
+    exact = ss.forced_response(own, OMEGA[::4], 5)
+    sampled = ss.forced_response(own, OMEGA[::4], 5, evaluation="marched", samples=1024)
+    np.testing.assert_allclose(sampled.amplitude("a"), exact.amplitude("a"), rtol=1e-3)
+
+
+@pytest.mark.parametrize("residual", ["centred", "from_rest", 0.3])
+def test_a_mean_displacement_and_residuals(residual):
+    more = [ss.Force("a", 2.0, harmonic=0)]
+    law = iwan()
+    one, many = (
+        ss.forced_response(model(own, force=1.0, more=more), OMEGA[::4], 5, residual=residual)
+        for own in (law, sliders(law))
+    )
+    # A given force is shared by the elements of one law, and held by each of many sliders.
+    if residual != 0.3:
+        found, expected = (own.coefficients("a") for own in (one, many))
+        assert np.abs(found - expected).max() < 3e-4 * np.abs(expected).max()
+    assert one.converged.all()
+
+
+def test_sensitivities_are_differences():
+    frf = ss.forced_response(model(iwan(chi=-0.4, beta=0.3)), [104.0, 112.0], 7)
+    slopes = frf.sensitivity("a")
+    for parameter, value in {"chi": -0.4, "beta": 0.3, **LAW}.items():
+        h = 1e-4 * abs(value)
+        sides = []
+        for side in (-h, h):
+            options = {"chi": -0.4, "beta": 0.3} | {parameter: value + side}
+            sides.append(ss.forced_response(model(iwan(**options)), [104.0, 112.0], 7))
+        low, high = (own.amplitude("a") for own in sides)
+        found = frf.sensitivity("a", "iwan", parameter)
+        np.testing.assert_allclose(found, (high - low) / (2 * h), rtol=1e-5)
+    assert slopes
+
+
+def test_dampers_and_their_optimum():
+    own = model(exponential())
+    curve = ss.damper_curve(own, slip_force=np.geomspace(0.3, 100.0, 9), dof="b", harmonics=3)
+    best = ss.optimal_damper(own, dof="b", harmonics=3)
+    assert np.isfinite(curve.amplitude).all()
+    assert best.amplitude <= curve.amplitude.min() * (1 + 1e-6)
+    around = ss.damper_curve(
+        own, slip_force=best.value * np.array([0.9, 1.1]), dof="b", harmonics=3
+    )
+    assert (around.amplitude >= best.amplitude).all()
+
+
+def test_disks_tuned_and_mistuned():
+    disk = ss.BladedDisk(
+        structure(),
+        sectors=6,
+        couplings=[ss.Coupling("b", stiffness=500.0)],
+        contacts=[iwan()],
+        forces=[ss.Force("b", 2.0)],
+        engine_order=2,
+    )
+    tuned = ss.forced_response(disk, OMEGA[::4], 3)
+    ring = ss.forced_response(disk.mistuned(np.zeros(6)), OMEGA[::4], 3)
+    np.testing.assert_allclose(ring.amplitude("4.b"), tuned.amplitude("b"), rtol=1e-6)
+    assert np.isfinite(
+        ss.forced_response(disk.mistuned(0.05 * np.arange(6)), OMEGA[::4], 3).omega
+    ).all()
+
+
+def test_limit_cycles_balance_power_and_are_found_in_time():
+    negative = -2.0 * np.eye(1)
+    one = ss.Structure([[1.0]], [[1e4]], [[0.2]], ["a"])
+    own = ss.Model(one, [iwan(stiffness=4e3, slip_force=1.0, chi=-0.5)], [])
+    cycles = ss.limit_cycles(
+        own, negative_damping=negative, mode=0, ratio=[0.3, 1.0, 2.0], harmonics=9
+    )
+    assert cycles.ratio.size
+    for ratio, omega, amplitude in zip(
+        cycles.ratio, cycles.omega, cycles.amplitude("a"), strict=True
+    ):
+        fed = np.pi * omega * (2.0 * ratio - 0.2) * amplitude**2
+        joint = own.contacts[0]
+        k, s, end = joint.stiffness, joint.slip_force, joint.gross_slip_displacement
+        x = amplitude / end
+        if x < 1.0:
+            lost = 4 * k * amplitude**2 * x**0.5 * 0.5 / (1.5 * 2.5)
+        else:
+            lost = (
+                8 * (k * end**2 * (0.5 - 1 / (1.5 * 2.5)) + s * (amplitude - end))
+                - 4 * s * amplitude
+            )
+        assert lost == pytest.approx(fed, rel=0.02)
+
+
+def test_exact_orbits_refuse_it_by_name():
+    with pytest.raises(ss.ModelError, match="iwan"):
+        ss.exact_response(model(iwan()), [100.0])
+
+
+def test_results_go_to_files_and_back(tmp_path):
+    table = ss.Masing("a", backbone=([1e-3, 2e-3, 5e-3], [3.0, 4.0, 4.5]))
+    strap = ss.Masing("b", **LAW, backbone="shear-layer", shear_lag=1.5)
+    frf = ss.forced_response(model(iwan(), table, strap), OMEGA[::6], 3)
+    frf.save(tmp_path / "joints.nc")
+    again = ss.load(tmp_path / "joints.nc")
+    assert again.model.contacts == frf.model.contacts
+    np.testing.assert_array_equal(again.amplitude("a"), frf.amplitude("a"))
+    frf.plot_hysteresis(0, 1)
+    frf.plot_slip()
+
+
+def test_bouc_wen_loops_drift_and_those_of_masing_laws_close():
+    # One slow harmonic that moves to and fro about a mean, in a structure that hardly yields.
+    stiff = ss.Structure([[1.0]], [[1e6]], ss.ModalDamping(0.05), ["a"])
+    loads = [ss.Force("a", 150.0, harmonic=0), ss.Force("a", 100.0)]
+    means = []
+    for law in (exponential(), ss.BoucWen("a", **LAW)):
+        own = ss.Model(stiff, [law], loads)
+        later = ss.transient(own, 50.0, 60, scheme="rk4", steps=512, samples=64)
+        force = later.contact_force(0).reshape(-1)[1:].reshape(60, 64).mean(axis=1)
+        means.append(force)
+    held, drifting = means
+    assert abs(held[-1] - held[20]) < 1e-3 * LAW["slip_force"]
+    assert drifting[-1] < 0.5 * drifting[5]
+
+
+def test_bouc_wen_balances():
+    law = ss.BoucWen("a", **LAW, exponent=2.0)
+    frf = ss.forced_response(model(law), [100.0, 110.0], 7)
+    assert frf.converged.all()
+    later = ss.transient(model(law), 110.0, 300, scheme="rk4", steps=512, samples=512)
+    last = later.displacement("a")[-512:]
+    assert frf.amplitude("a")[1] == pytest.approx(0.5 * (last.max() - last.min()), rel=1e-3)
