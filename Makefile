@@ -77,6 +77,7 @@ bench: $(VENV)/.developed
 peers: $(VENV)/.developed
 	$(BIN)/python benchmarks/speed.py --peers
 	$(BIN)/python benchmarks/rings.py --peers
+	$(BIN)/python benchmarks/contacts.py --peers
 
 clean:
 	rm -rf $(VENV) .peers target site results

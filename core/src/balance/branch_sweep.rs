@@ -19,8 +19,12 @@ use faer::c64;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Most points of a curve.
+/// Most points of a curve, …
 const MOST: usize = 5000;
+/// … and most evaluations of its equations: so many per point, and so many more for a few hard places.
+const EVALUATIONS: [usize; 2] = [100, 6000];
+/// Points after one that asked for more harmonics or samples at which no fewer are tried.
+const PATIENCE: usize = 4;
 /// Steps, relative to the motion and to the frequency. At first touch of a stop the curve bends within
 /// thousandths of the gap.
 pub(super) const STEPS: Steps =
@@ -41,6 +45,10 @@ struct Walk<'a, 'b> {
     stops: Vec<(f64, f64)>,
     bounds: (f64, f64),
     longest: f64,
+    /// Number of points when the resolution was last raised.
+    raised: usize,
+    /// Evaluations of the equations at the resolutions so far.
+    evaluations: usize,
 }
 
 /// Follows the curve from `from` to `to` [rad/s]; from the other end where that leads nowhere.
@@ -79,7 +87,8 @@ fn branch(
     keep(balance.kept, &first);
     let bounds = (from.min(to), from.max(to));
     let longest = LONGEST * (to - from).abs();
-    let mut walk = Walk { balance, points: vec![first], stops, bounds, longest };
+    let mut walk =
+        Walk { balance, points: vec![first], stops, bounds, longest, raised: 0, evaluations: 0 };
     let end = walk.follow(from, to)?;
     Ok((walk.points, end))
 }
@@ -104,6 +113,14 @@ impl Walk<'_, '_> {
                     let before = self.points.iter().rev().nth(1);
                     if let Some((before, known)) = before.and_then(|p| Some((p, p.unknowns()?))) {
                         let before = curve.point(known, before.omega);
+                        // Neither lies on the curve of another resolution: steps that are shorter
+                        // than the distance of the two curves would not find it.
+                        let [before, here] = [0.0, 1.0].map(|share| {
+                            let known = if share == 0.0 { &before } else { &here };
+                            curve.accept(known);
+                            across(&mut curve, &before, &here, share)
+                                .unwrap_or_else(|| known.clone())
+                        });
                         walk.restart(&mut curve, &before, &here);
                     }
                     Some(walk)
@@ -112,6 +129,7 @@ impl Walk<'_, '_> {
             let Some(mut ahead) = ahead else { return Ok(CurveEnd::Stalled) };
             let change = self.stretch(&mut curve, &mut ahead, resolution, (from, to))?;
             let profile = curve.profile;
+            self.evaluations += profile.evaluations;
             self.balance.add_profile(&profile);
             match change {
                 Change::Ends(end) => return Ok(end),
@@ -134,12 +152,14 @@ impl Walk<'_, '_> {
             if !self.balance.report(share) {
                 return Ok(Change::Ends(CurveEnd::Interrupted));
             }
-            if self.points.len() >= MOST {
+            curve.affordable = self.affordable();
+            if self.points.len() >= MOST || curve.is_spent() {
                 return Ok(Change::Ends(CurveEnd::Points));
             }
             let before = walk.clone();
             match walk.advance(curve) {
                 Advance::Stalled => return Ok(Change::Ends(CurveEnd::Stalled)),
+                Advance::Interrupted if curve.is_spent() => continue,
                 Advance::Interrupted => return Ok(Change::Ends(CurveEnd::Interrupted)),
                 Advance::Point => {}
             }
@@ -188,12 +208,23 @@ impl Walk<'_, '_> {
             if let Some(end) = end {
                 return Ok(Change::Ends(end));
             }
-            let next = self.balance.control.first();
-            let next = if kept == resolution { next } else { kept.or_finer(next) };
+            let mut next = self.balance.control.first();
+            if kept != resolution {
+                self.raised = self.points.len();
+                next = kept.or_finer(next);
+            } else if self.points.len() < self.raised + PATIENCE {
+                next = resolution.or_finer(next);
+            }
             if next != resolution {
                 return Ok(Change::Resolution(next));
             }
         }
+    }
+
+    /// Evaluations that may be made at this resolution until the next point.
+    fn affordable(&self) -> usize {
+        let all = EVALUATIONS[0] * self.points.len() + EVALUATIONS[1];
+        all.saturating_sub(self.evaluations)
     }
 
     fn last(&self) -> &Point {

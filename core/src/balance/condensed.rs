@@ -26,7 +26,7 @@ pub struct Condensed<'a> {
     pub(super) table: &'a SampleTable,
     pub(super) residual: Residual,
     pub(super) linear: Linear,
-    omega: f64,
+    pub(super) omega: f64,
     pub(super) stuck: Vec<f64>,
     /// Slip loads and tangents at the last unknowns whose tangents were evaluated.
     pub(super) loads: Vec<SlipLoad>,
@@ -39,8 +39,6 @@ pub struct Condensed<'a> {
     pub(super) softened: Option<(f64, Vec<Box<dyn ContactLaw>>)>,
     pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
     pub(super) factor: Option<Factor>,
-    /// Points of contacts with a tangent, of the last factorisation.
-    pub(super) active: Vec<usize>,
     pub(super) profile: Profile,
 }
 
@@ -68,7 +66,6 @@ impl<'a> Condensed<'a> {
             softened: None,
             interrupted: None,
             factor: None,
-            active: Vec::new(),
             profile: Profile::default(),
         }
     }

@@ -1,21 +1,42 @@
 //! Whether two neighbouring points of a sweep lie on one branch, or the sweep has jumped between them.
 //!
-//! Where solutions are not unique Newton's method may lead to another branch. If the tangents at both
-//! points do not explain the way between them the curve is followed by arclength, to where it first
-//! meets the new frequency: that solution is taken. If the curve has turned back before, the sweep jumps.
+//! Where solutions are not unique Newton's method may lead to another branch. The way between two
+//! points is explained if the extrapolation that the new point was found from has told it, or if the
+//! tangents at both points do. Contacts that begin to slip bend the curve within little of the way:
+//! points between the two divide it, there where the tangents meet, until they leave little of it
+//! unexplained. What is left is followed by arclength, to where the curve first meets the new
+//! frequency: that solution is taken. If the curve has turned back before, the sweep jumps.
 
 use super::branch_sweep::{distance, STEPS};
+use super::condensed::Condensed;
+use super::evaluation::Evaluated;
 use super::forced::ForcedBalance;
 use super::forced_curve::ForcedCurve;
+use super::settings::Resolution;
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
-use crate::solve::{between, tangent, Advance, Continuation, Curve as _};
+use crate::contact::Residual;
+use crate::fourier::SampleTable;
+use crate::solve::{between, newton, Advance, Continuation, NewtonSettings, Outcome, System as _};
+use crate::timing::Profile;
 use crate::Error;
 
-/// Part of the way between two points that their tangents may leave unexplained, …
+/// Part of the way between two points that may be left unexplained, …
 const UNEXPLAINED: f64 = 0.05;
 /// … and distance, relative to the motion, below which nothing has to be explained.
 const CLOSE: f64 = 1e-5;
+/// A piece of the way that is no longer than this part of it may be left.
+const PIECE: f64 = 0.02;
+/// Points that may divide the way.
+const DIVISIONS: usize = 12;
+/// The way is divided no nearer to its ends than at this share.
+const MARGIN: f64 = 0.03;
+/// A piece of the frequencies so short, …
+const SUDDEN: f64 = 1e-3;
+/// … with so much of the way, holds a jump.
+const LEAP: f64 = 0.2;
+/// Newton's method between two points: they say where the curve goes, and are not kept.
+const BETWEEN: NewtonSettings = NewtonSettings { tolerance: 1e-7, max_iterations: 12 };
 /// Newton iterations along a curve from one frequency to the next: over a longer way, or one with
 /// more corners, a sweep that coarse does not say which branch it is on.
 const MOST: usize = 150;
@@ -32,12 +53,31 @@ enum Reached {
     Lost,
 }
 
+/// A point of the curve with its tangent.
+#[derive(Clone)]
+pub(super) struct Tangent {
+    resolution: Resolution,
+    /// Displacements of the contacts and, behind them, the frequency.
+    z: Vec<f64>,
+    /// Derivative of the displacements in the frequency.
+    rate: Vec<f64>,
+}
+
 impl ForcedBalance<'_> {
     /// Replaces a new point by that of the branch of the last one if Newton's method has left it or
-    /// found none, and says so of a point that lies behind a turn.
-    pub(super) fn stay_on_branch(&mut self, last: &Point, point: &mut Point) -> Result<(), Error> {
+    /// found none, and says so of a point that lies behind a turn. `guess` is what the new point was
+    /// found from.
+    pub(super) fn stay_on_branch(
+        &mut self,
+        last: &Point,
+        guess: Option<&Unknowns>,
+        point: &mut Point,
+    ) -> Result<(), Error> {
         let failed = matches!(point.status, PointStatus::Stalled | PointStatus::Singular);
         if !last.is_solved() || !(point.is_solved() || failed) || last.omega == point.omega {
+            return Ok(());
+        }
+        if point.is_solved() && foretold(last, guess, point) {
             return Ok(());
         }
         if let Reached::Other(start, turned) = self.reached(last, point)? {
@@ -56,23 +96,184 @@ impl ForcedBalance<'_> {
         let resolution = if solved { finer } else { last.resolution() };
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
-        let ask = self.interruption();
-        let mut curve = ForcedCurve::new(model, &table, self.settings.residual, &ask);
+        let residual = self.settings.residual;
         let Some(known) = last.unknowns() else { return Ok(Reached::Lost) };
-        let from = curve.point(known, last.omega);
-        let found = point.unknowns().filter(|_| solved);
-        let to = found.map(|found| curve.point(found, point.omega));
+        let mut from = known.recast(table.harmonics());
+        from.push(last.omega);
+        let to = point.unknowns().filter(|_| solved).map(|found| {
+            let mut to = found.recast(table.harmonics());
+            to.push(point.omega);
+            to
+        });
+        let mut way =
+            Way { model: &model, table: &table, residual, resolution, profile: Profile::default() };
+        if let Some(to) = &to {
+            if distance(&from, to) < CLOSE {
+                return Ok(Reached::Same);
+            }
+            let before = self.tangent.take().filter(|known| known.is(resolution, &from));
+            let before = before.or_else(|| way.tangent(&from));
+            let after = way.tangent(to);
+            self.tangent.clone_from(&after);
+            if let (Some(before), Some(after)) = (before, after) {
+                match way.explained(before, after) {
+                    Ok(()) => {
+                        self.add_profile(&way.profile);
+                        return Ok(Reached::Same);
+                    }
+                    Err(reached) => from = reached,
+                }
+            }
+        }
+        self.add_profile(&way.profile);
+        let ask = self.interruption();
+        let mut curve = ForcedCurve::new(model, &table, residual, &ask);
         let reached = followed(&mut curve, &from, to.as_deref(), point.omega);
         self.add_profile(&curve.profile);
         Ok(reached)
     }
 }
 
+/// Whether the extrapolation that led to a new point has told the way to it.
+fn foretold(last: &Point, guess: Option<&Unknowns>, point: &Point) -> bool {
+    let (Some(guess), Some(from), Some(to)) = (guess, last.unknowns(), point.unknowns()) else {
+        return false;
+    };
+    let harmonics = if from.harmonics.highest() > to.harmonics.highest() {
+        &from.harmonics
+    } else {
+        &to.harmonics
+    };
+    let [guess, from, to] =
+        [(guess, point.omega), (from, last.omega), (to, point.omega)].map(|(unknowns, omega)| {
+            let mut z = unknowns.recast(harmonics);
+            z.push(omega);
+            z
+        });
+    distance(&to, &guess) < UNEXPLAINED * distance(&to, &from)
+}
+
+impl Tangent {
+    fn is(&self, resolution: Resolution, z: &[f64]) -> bool {
+        self.resolution == resolution && self.z == z
+    }
+
+    fn omega(&self) -> f64 {
+        self.z[self.z.len() - 1]
+    }
+
+    /// The point that the tangent leads to.
+    fn ahead(&self, step: f64) -> impl Iterator<Item = f64> + '_ {
+        self.z.iter().zip(&self.rate).map(move |(u, rate)| u + step * rate)
+    }
+
+    /// Whether the mean of the tangents at both points leads from one to the other.
+    fn explains(&self, to: &Self) -> bool {
+        let step = 0.5 * (to.omega() - self.omega());
+        let mean = self.ahead(step).zip(&to.rate).map(|(u, rate)| u + step * rate);
+        let mean: Vec<f64> = mean.chain([to.omega()]).collect();
+        distance(&mean, &to.z) < UNEXPLAINED * distance(&self.z, &to.z)
+    }
+
+    /// Share of the way to another point at which the two tangents come closest.
+    fn meets(&self, to: &Self) -> f64 {
+        let step = to.omega() - self.omega();
+        let (mut along, mut square) = (0.0, 0.0);
+        for ((before, after), (u, v)) in
+            self.rate.iter().zip(&to.rate).zip(self.z.iter().zip(&to.z))
+        {
+            let turn = step * (before - after);
+            along += turn * (v - u - step * after);
+            square += turn * turn;
+        }
+        let share = along / square;
+        if share.is_finite() {
+            share.clamp(MARGIN, 1.0 - MARGIN)
+        } else {
+            0.5
+        }
+    }
+}
+
+/// The way between two points at one resolution.
+struct Way<'a> {
+    model: &'a Evaluated<'a>,
+    table: &'a SampleTable,
+    residual: Residual,
+    resolution: Resolution,
+    profile: Profile,
+}
+
+impl Way<'_> {
+    fn equations(&self, omega: f64) -> Option<Condensed<'_>> {
+        let mut equations = Condensed::new(self.model.clone(), self.table, self.residual, true);
+        equations.set_omega(omega).ok()?;
+        Some(equations)
+    }
+
+    /// The tangent at a point.
+    fn tangent(&mut self, z: &[f64]) -> Option<Tangent> {
+        let (omega, u) = z.split_last()?;
+        let mut equations = self.equations(*omega)?;
+        equations.residual(u, &mut vec![0.0; u.len()]);
+        let rate = rate(&mut equations);
+        let profile = equations.profile;
+        self.profile.add(&profile);
+        Some(Tangent { resolution: self.resolution, z: z.to_vec(), rate: rate? })
+    }
+
+    /// The point between two others where their tangents meet.
+    fn between(&mut self, from: &Tangent, to: &Tangent) -> Option<Tangent> {
+        let (share, step) = (from.meets(to), to.omega() - from.omega());
+        let omega = from.omega() + share * step;
+        let mut equations = self.equations(omega)?;
+        let ahead = from.ahead(share * step).zip(to.ahead((share - 1.0) * step));
+        let mut z: Vec<f64> = ahead.map(|(a, b)| share * b + (1.0 - share) * a).collect();
+        let report = newton(&mut equations, &mut z, BETWEEN);
+        let solved = report.outcome == Outcome::Converged;
+        let rate = if solved {
+            equations.residual(&z, &mut vec![0.0; z.len()]);
+            rate(&mut equations)
+        } else {
+            None
+        };
+        let profile = equations.profile;
+        self.profile.add(&profile);
+        z.push(omega);
+        Some(Tangent { resolution: self.resolution, z, rate: rate? })
+    }
+
+    /// Whether tangents explain the way between two points, divided where they do not; if not, how
+    /// far they do.
+    fn explained(&mut self, from: Tangent, to: Tangent) -> Result<(), Vec<f64>> {
+        let (way, step) = (distance(&from.z, &to.z), to.omega() - from.omega());
+        let (mut from, mut ahead, mut divisions) = (from, vec![to], 0);
+        while let Some(to) = ahead.last() {
+            let piece = distance(&from.z, &to.z);
+            if piece < CLOSE || piece < PIECE * way || from.explains(to) {
+                from = ahead.pop().unwrap_or(from);
+                continue;
+            }
+            let sudden = (to.omega() - from.omega()) / step < SUDDEN && piece > LEAP * way;
+            let divided =
+                if sudden || divisions == DIVISIONS { None } else { self.between(&from, to) };
+            let Some(divided) = divided else { return Err(from.z) };
+            divisions += 1;
+            ahead.push(divided);
+        }
+        Ok(())
+    }
+}
+
+/// Derivative of the displacements in the frequency where tangents were evaluated last.
+fn rate(equations: &mut Condensed<'_>) -> Option<Vec<f64>> {
+    let right = equations.frequency_rate();
+    let mut rate = vec![0.0; right.len()];
+    equations.solve(&right, &mut rate).then_some(rate)
+}
+
 /// Where the branch through `from` leads at a frequency at which Newton's method has found `to`.
 fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: Option<&[f64]>, end: f64) -> Reached {
-    if to.is_some_and(|to| is_explained(curve, from, to)) {
-        return Reached::Same;
-    }
     let sign = (end - from[from.len() - 1]).signum();
     let Some(mut walk) = Continuation::new(curve, from.to_vec(), sign, STEPS) else {
         return Reached::Lost;
@@ -94,24 +295,4 @@ fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: Option<&[f64]>, end: 
         before.clone_from(&walk.point);
     }
     Reached::Lost
-}
-
-/// Whether the mean of the tangents at both points leads from one to the other.
-fn is_explained(curve: &mut ForcedCurve<'_>, from: &[f64], to: &[f64]) -> bool {
-    let way = distance(from, to);
-    if way < CLOSE {
-        return true;
-    }
-    let step = to[to.len() - 1] - from[from.len() - 1];
-    let mut mean = from.to_vec();
-    for z in [from, to] {
-        curve.accept(z);
-        let weights = curve.weights(z);
-        let mut ahead = vec![0.0; z.len()];
-        ahead[z.len() - 1] = step.signum();
-        let Some(along) = tangent(curve, z, &weights, &ahead) else { return false };
-        let rate = along[z.len() - 1];
-        mean.iter_mut().zip(&along).for_each(|(m, a)| *m += 0.5 * step * a / rate);
-    }
-    distance(&mean, to) < UNEXPLAINED * way
 }

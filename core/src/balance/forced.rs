@@ -1,6 +1,7 @@
 //! The forced response at one frequency.
 
 use super::condensed::{Condensed, Path};
+use super::continuity::Tangent;
 use super::evaluation::{Evaluated, Evaluations};
 use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
@@ -36,6 +37,8 @@ pub struct ForcedBalance<'a> {
     evaluations: Evaluations<'a>,
     pub(super) control: ResolutionControl,
     pub(super) scale: Scale,
+    /// The tangent at the last point of a sweep whose branch was asked for.
+    pub(super) tangent: Option<Tangent>,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
     pub(super) rescue: Option<&'a dyn ExactOrbits>,
@@ -85,6 +88,7 @@ impl<'a> ForcedBalance<'a> {
             evaluations: Evaluations::new(model.clone()),
             model,
             scale: Scale::default(),
+            tangent: None,
             progress: &|_| true,
             kept: None,
             rescue: None,

@@ -22,6 +22,8 @@ pub(super) struct ForcedCurve<'a> {
     /// Size of the last accepted motion.
     size: f64,
     pub(super) profile: Profile,
+    /// Evaluations after which it asks to end.
+    pub(super) affordable: usize,
 }
 
 struct Evaluation<'a> {
@@ -48,7 +50,13 @@ impl<'a> ForcedCurve<'a> {
             unknowns,
             size: 1.0,
             profile: Profile::default(),
+            affordable: usize::MAX,
         }
+    }
+
+    /// Whether it has taken all evaluations that it may.
+    pub(super) fn is_spent(&self) -> bool {
+        self.profile.evaluations >= self.affordable
     }
 
     /// A point in the unknowns of this curve.
@@ -135,6 +143,23 @@ impl Curve for ForcedCurve<'_> {
         }
     }
 
+    fn solve_bordered(
+        &mut self,
+        z: &[f64],
+        border: &[f64],
+        right: &[f64],
+        _weights: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
+        self.evaluate(z)?;
+        let mut right = right.to_vec();
+        let (_, motion) = right.split_last_mut()?;
+        motion.iter_mut().for_each(|r| *r *= self.size);
+        let equations = &mut self.at.as_mut()?.equations;
+        let solved = equations.solve_bordered(border, &right);
+        self.profile.add(&std::mem::take(&mut equations.profile));
+        solved
+    }
+
     fn weights(&self, z: &[f64]) -> Vec<f64> {
         let (u, omega) = parts(z);
         let mut weights = vec![norm(u).max(f64::MIN_POSITIVE).recip(); u.len()];
@@ -147,6 +172,74 @@ impl Curve for ForcedCurve<'_> {
     }
 
     fn interrupted(&self) -> bool {
-        (self.interrupted)()
+        self.is_spent() || (self.interrupted)()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Closure, Coulomb};
+    use crate::fourier::Harmonics;
+    use crate::model::{Contact, Model};
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::{c64, mat};
+
+    /// Two masses on a planar contact each, one of which may open, and one that is stuck for good.
+    fn model() -> Model {
+        let mass = mat![[2.0, 0.1, 0.0], [0.1, 1.0, 0.2], [0.0, 0.2, 1.5]];
+        let stiffness = mat![[300.0, -100.0, 0.0], [-100.0, 150.0, 20.0], [0.0, 20.0, 250.0]];
+        let damping = mat![[0.5, -0.1, 0.0], [0.2, 0.4, 0.0], [0.0, 0.1, 0.6]];
+        let structure =
+            Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+        let contact = |preload: f64, rows: [[f64; 3]; 2]| Contact {
+            law: Box::new(
+                Coulomb::new(1, 0.4, 120.0, Some(150.0), Closure::Preload(preload)).unwrap(),
+            ),
+            rows: Mat::from_fn(2, 3, |i, j| rows[i][j]),
+        };
+        let contacts = vec![
+            contact(0.4, [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
+            contact(9.0, [[1.0, -1.0, 0.0], [0.0, 0.5, 1.0]]),
+            contact(1e5, [[0.0, 1.0, 0.0], [0.2, 0.0, 1.0]]),
+        ];
+        let amplitude = vec![c64::new(4.0, 0.8), c64::new(-1.2, 0.5), c64::new(2.0, -0.3)];
+        let load = HarmonicLoad { harmonic: 1, amplitude };
+        Model::new(structure, contacts, vec![load]).unwrap()
+    }
+
+    /// The equations in the slip loads have the solution and the orientation of those in the
+    /// displacements.
+    #[test]
+    fn bordered_equations_are_those_of_the_whole_jacobian() {
+        let model = model();
+        let table = SampleTable::new(Harmonics::new(5, false));
+        let ask = || false;
+        let mut orientations = Vec::new();
+        for (case, omega) in [4.0, 9.0, 14.0, 25.0].into_iter().enumerate() {
+            let mut curve =
+                ForcedCurve::new(Evaluated::Given(&model), &table, Residual::Centred, &ask);
+            let size = curve.unknowns();
+            let mut z: Vec<f64> = (0..size)
+                .map(|i| 0.03 * (1.0 + (case * 7 + i) as f64).sin() / (1.0 + (i % 11) as f64 / 3.0))
+                .collect();
+            z[size - 1] = omega;
+            curve.accept(&z);
+            let weights = curve.weights(&z);
+            let border: Vec<f64> = (0..size).map(|i| weights[i] * (0.3 * i as f64).cos()).collect();
+            let right: Vec<f64> = (0..size).map(|i| (0.7 * i as f64).sin()).collect();
+            let (step, sign) = curve.solve_bordered(&z, &border, &right, &weights).unwrap();
+            let mut matrix = Mat::<f64>::zeros(size, size);
+            curve.jacobian(&z, &mut matrix);
+            border.iter().enumerate().for_each(|(j, b)| matrix[(size - 1, j)] = *b);
+            for i in 0..size {
+                let row: f64 = (0..size).map(|j| matrix[(i, j)] * step[j]).sum();
+                let scale: f64 = (0..size).map(|j| (matrix[(i, j)] * step[j]).abs()).sum();
+                assert!((row - right[i]).abs() < 1e-10 * (scale + 1.0), "{i}: {row} {}", right[i]);
+            }
+            assert_eq!(sign, matrix.determinant().signum());
+            orientations.push(sign);
+        }
+        assert!(orientations.contains(&1.0) && orientations.contains(&-1.0), "{orientations:?}");
     }
 }

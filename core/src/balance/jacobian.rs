@@ -1,17 +1,17 @@
 //! The condensed equations as a system for Newton's method and homotopy.
 //!
-//! The Jacobian `I − G ∂Q` has nontrivial columns only for contacts that slip; the Newton
-//! direction is found from their block and carried to the stuck contacts by substitution.
+//! The Newton direction is found from the slip loads that depend on the motion, see
+//! [`SlipJacobian`].
 
 use super::condensed::{Condensed, Path};
 use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
 use super::ring_series::RingSeries;
+use super::slip_jacobian::{Border, Loads, SlipJacobian};
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
 use crate::timing::Profile;
-use faer::linalg::solvers::Solve as _;
 use faer::Mat;
 
 /// Share of the largest contact force below which a contact counts as carrying nothing.
@@ -50,51 +50,63 @@ impl Condensed<'_> {
         }
     }
 
-    /// Assembles `I − G ∂Q` of the points in `active`.
-    fn assemble(&self) -> Mat<f64> {
-        let size = self.active.len() * self.table.harmonics().slots();
+    /// Assembles `I − G ∂Q` of all points.
+    pub(super) fn assemble_all(&self) -> Mat<f64> {
+        let size = self.stuck.len();
         let mut matrix = Mat::<f64>::identity(size, size);
         for (load, points) in self.loads.iter().zip(self.model.points()) {
-            // The points of a contact stand together in `active`, or not at all.
-            let first = self.active.iter().position(|point| points.contains(point));
-            if let (true, Some(first)) = (load.active, first) {
-                self.subtract_contact(load, points.clone(), first, &mut matrix);
+            if load.active {
+                self.subtract_contact(load, points.clone(), &mut matrix);
             }
         }
         matrix
     }
 
-    /// Assembles `I − G ∂Q` of all points.
-    pub(super) fn assemble_all(&mut self) -> Mat<f64> {
-        self.active = (0..self.model.compliance().contacts()).collect();
-        self.assemble()
+    fn tangents(&self) -> Loads<'_> {
+        let slots = self.table.harmonics().slots();
+        Loads { loads: &self.loads, points: self.model.points(), slots }
     }
 
-    /// Assembles and factors `I − G_AA ∂Q_A` of the active points.
+    /// Assembles and factors the equations of a Newton step.
     fn factorise(&mut self) {
-        self.active.clear();
-        for (load, points) in self.loads.iter().zip(self.model.points()) {
-            if load.active {
-                self.active.extend(points.clone());
-            }
-        }
-        self.factor = Some(match (&self.linear, self.model.compliance().ring()) {
-            (Linear::Ring { orders, .. }, Some(ring)) => Factor::Ring(RingNewton::new(
-                RingSeries::new(orders, self.table.harmonics()),
+        let harmonics = self.table.harmonics();
+        self.factor = match (&self.linear, self.model.compliance().ring()) {
+            (Linear::Ring { orders, .. }, Some(ring)) => Some(Factor::Ring(RingNewton::new(
+                RingSeries::new(orders, harmonics),
                 ring.layout(),
                 &self.loads,
                 self.model.points(),
-            )),
-            _ => Factor::Dense(self.assemble().partial_piv_lu()),
-        });
+            ))),
+            (Linear::Dense(receptances), _) => Some(Factor::Dense(SlipJacobian::new(
+                self.tangents(),
+                receptances,
+                harmonics,
+                None,
+            ))),
+            _ => None,
+        };
     }
 
-    /// Subtracts `G ∂Q` of one contact, whose first active column block is `first`.
+    /// Solves the equations linearised in the displacements and the frequency, with one more equation
+    /// whose coefficients are `row`, as `right` says. The sign is that of the determinant.
+    pub(super) fn solve_bordered(&mut self, row: &[f64], right: &[f64]) -> Option<(Vec<f64>, f64)> {
+        let Linear::Dense(receptances) = &self.linear else { return None };
+        let start = std::time::Instant::now();
+        let rate = self.frequency_rate();
+        let border = Border { rate: &rate, row, omega: self.omega };
+        let (harmonics, loads) = (self.table.harmonics(), self.tangents());
+        let factors = SlipJacobian::new(loads, receptances, harmonics, Some(&border));
+        let (step, sign) = factors.solve_bordered(loads, &self.linear, harmonics, &border, right);
+        self.profile.factorisations += 1;
+        self.profile.linear_solve += start.elapsed();
+        step.iter().all(|s| s.is_finite()).then_some((step, sign))
+    }
+
+    /// Subtracts `G ∂Q` of one contact.
     fn subtract_contact(
         &self,
         load: &SlipLoad,
         points: std::ops::Range<usize>,
-        first: usize,
         matrix: &mut Mat<f64>,
     ) {
         let harmonics = self.table.harmonics();
@@ -104,20 +116,20 @@ impl Condensed<'_> {
         let Linear::Dense(receptances) = &self.linear else { return };
         for (receptance, order) in receptances.iter().zip(harmonics.orders()) {
             let Some(slot) = harmonics.slot(order) else { continue };
-            for (row, &point) in self.active.iter().enumerate() {
-                let target = row * slots + slot;
+            for point in 0..contacts {
+                let target = point * slots + slot;
                 for (local, source) in points.clone().enumerate() {
                     let g = receptance.contact[source * contacts + point];
                     let cosines = &load.tangent[(local * slots + slot) * size..][..size];
                     if order == 0 {
                         for (j, dq) in cosines.iter().enumerate() {
-                            matrix[(target, first * slots + j)] -= g.re * dq;
+                            matrix[(target, points.start * slots + j)] -= g.re * dq;
                         }
                         continue;
                     }
                     let sines = &load.tangent[(local * slots + slot + 1) * size..][..size];
                     for (j, (a, b)) in cosines.iter().zip(sines).enumerate() {
-                        let column = first * slots + j;
+                        let column = points.start * slots + j;
                         matrix[(target, column)] -= g.re * a + g.im * b;
                         matrix[(target + 1, column)] -= g.re * b - g.im * a;
                     }
@@ -179,7 +191,6 @@ impl System for Condensed<'_> {
 
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
         let start = std::time::Instant::now();
-        let slots = self.table.harmonics().slots();
         step.copy_from_slice(rhs);
         if self.is_linear() {
             return true;
@@ -188,33 +199,15 @@ impl System for Condensed<'_> {
             self.factorise();
             self.profile.factorisations += 1;
         }
-        let factor = match &self.factor {
-            Some(Factor::Dense(factor)) => factor,
-            Some(Factor::Ring(factor)) => {
-                let Linear::Ring { orders, .. } = &self.linear else { return false };
-                factor.solve(RingSeries::new(orders, self.table.harmonics()), rhs, step);
-                self.profile.linear_solve += start.elapsed();
-                return step.iter().all(|s| s.is_finite());
+        let harmonics = self.table.harmonics();
+        match (&self.factor, &self.linear) {
+            (Some(Factor::Dense(factor)), linear) => {
+                factor.solve(self.tangents(), linear, harmonics, rhs, step);
             }
-            None => return false,
-        };
-        let mut block = Mat::from_fn(self.active.len() * slots, 1, |i, _| {
-            rhs[self.active[i / slots] * slots + i % slots]
-        });
-        factor.solve_in_place(&mut block);
-        // Active points take the block's solution; the others follow from step = rhs + G ∂Q step.
-        let mut active_step = vec![0.0; step.len()];
-        for i in 0..block.nrows() {
-            active_step[self.active[i / slots] * slots + i % slots] = block[(i, 0)];
-        }
-        if self.active.len() * slots < step.len() {
-            let mut change = vec![0.0; step.len()];
-            self.add_tangent_product(&active_step, &mut change);
-            self.add_response(&change, step);
-        }
-        for &point in &self.active {
-            let range = point * slots..(point + 1) * slots;
-            step[range.clone()].copy_from_slice(&active_step[range]);
+            (Some(Factor::Ring(factor)), Linear::Ring { orders, .. }) => {
+                factor.solve(RingSeries::new(orders, harmonics), rhs, step);
+            }
+            _ => return false,
         }
         self.profile.linear_solve += start.elapsed();
         step.iter().all(|s| s.is_finite())

@@ -2,12 +2,12 @@
 //! loads, by dense receptances or around a ring of sectors.
 
 use super::ring_newton::RingNewton;
+use super::slip_jacobian::SlipJacobian;
 use super::unknowns::{gather, scatter};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::structure::{Compliance, Receptance, Request, RingOrder};
 use crate::Error;
 use faer::c64;
-use faer::linalg::solvers::PartialPivLu;
 use std::sync::Arc;
 
 /// `U = U^stuck + G Q`, one part per kept order.
@@ -25,8 +25,8 @@ pub(super) enum Linear {
 
 /// Factors of `I − G ∂Q`.
 pub(super) enum Factor {
-    /// Of the points of contacts that slip.
-    Dense(PartialPivLu<f64>),
+    /// In the slip loads, by dense receptances.
+    Dense(SlipJacobian),
     /// Of all sectors of a ring.
     Ring(RingNewton),
 }

@@ -28,6 +28,7 @@ mod sampling;
 mod scale;
 mod settings;
 mod single_harmonic;
+mod slip_jacobian;
 mod solution;
 mod statics;
 mod stops;

@@ -35,7 +35,7 @@ pub(super) fn sweep_with<'a>(
             let guess = predict(points, frequency);
             let mut point = solve(balance, frequency, guess.as_ref())?;
             if let Some(last) = points.last().filter(|_| follows_branches(balance)) {
-                balance.stay_on_branch(last, &mut point)?;
+                balance.stay_on_branch(last, guess.as_ref(), &mut point)?;
             }
             Ok(Some(point).filter(|point| point.status != PointStatus::NotComputed))
         },

@@ -14,7 +14,7 @@
 
 use super::coulomb_drive::Drive;
 use super::coulomb_slip::{Panel, NODES};
-use super::slider_integrals::Bounds;
+use super::slider_integrals::{dot, Bounds};
 use super::{Phase, PointState, PointSummary};
 use crate::fourier::IntervalSums;
 use crate::solve::Block;
@@ -74,12 +74,12 @@ impl Cycle {
         self.stretches.iter().any(|stretch| of(&stretch.state))
     }
 
-    /// Products of the basis, integrated over stretches with their weights.
+    /// Products of the basis, integrated over stretches with their weights, row by row.
     fn products(
         &self,
         drive: &Drive<'_>,
         weight: impl Fn(&State) -> f64,
-        mut store: impl FnMut(usize, usize, f64),
+        mut visit: impl FnMut(usize, &[f64]),
     ) {
         let harmonics = drive.harmonics();
         let mut sums = IntervalSums::new(harmonics);
@@ -91,7 +91,7 @@ impl Cycle {
                 sums.add_end(*start, -weight);
             }
         }
-        sums.products(harmonics, 2.0 / harmonics.span(), &mut store);
+        sums.rows(harmonics, 2.0 / harmonics.span(), &mut visit);
     }
 
     /// Integrals of the slip load; of their derivatives, too, where the cycle has `rates`.
@@ -105,16 +105,19 @@ impl Cycle {
         if self.has(|state| matches!(state, State::Open)) {
             open.resize(slots * slots, 0.0);
             let weight = |state: &State| f64::from(u8::from(matches!(state, State::Open)));
-            self.products(drive, weight, |i, j, v| open[i * slots + j] = v);
+            self.products(drive, weight, |i, row| {
+                open[i * slots..(i + 1) * slots].copy_from_slice(row);
+            });
         }
         let free = |state: &State| !matches!(state, State::Stuck { .. });
         if self.has(free) {
             let weight = |state: &State| f64::from(u8::from(free(state)));
-            self.products(drive, weight, |i, j, v| {
+            self.products(drive, weight, |i, row| {
                 for first in (0..tangential).step_by(slots) {
-                    slider[first + i] += v * drive.pull[first + j];
+                    slider[first + i] += dot(row, &drive.pull[first..first + slots]);
                     if rates {
-                        rate[(first + i) * width + first + j] = v;
+                        let at = (first + i) * width + first;
+                        rate[at..at + slots].copy_from_slice(row);
                     }
                 }
             });
@@ -122,10 +125,11 @@ impl Cycle {
         if self.has(|state| matches!(state, State::Along(_))) {
             let limit = drive.limit();
             let weight = |state: &State| if let State::Along(sign) = state { *sign } else { 0.0 };
-            self.products(drive, weight, |i, j, v| {
-                slider[i] -= v * limit[j];
+            self.products(drive, weight, |i, row| {
+                slider[i] -= dot(row, &limit);
                 if rates {
-                    rate[i * width + slots + j] = -v;
+                    let own = rate[i * width + slots..(i + 1) * width].iter_mut().zip(row);
+                    own.for_each(|(rate, v)| *rate = -v);
                 }
             });
         }
@@ -325,7 +329,7 @@ impl Cycle {
         }
         let mut work = 0.0;
         let weight = |state: &State| if let State::Along(sign) = state { *sign } else { 0.0 };
-        self.products(drive, weight, |i, j, v| work += limit[i] * v * slope[j]);
+        self.products(drive, weight, |i, row| work += limit[i] * dot(row, &slope));
         work *= 0.5 * harmonics.span();
         for Stretch { start, end, state } in &self.stretches {
             if let State::Along(_) = state {

@@ -16,9 +16,16 @@ pub(super) struct Drive<'a> {
     /// Series of K, direction after direction.
     pub(super) pull: Vec<f64>,
     /// Series of `N₀ + k_n v`, its mean included; nothing if it is constant.
-    pub(super) pressing: Option<Vec<f64>>,
+    pub(super) pressing: Option<Pressing>,
     /// N₀.
     pub(super) at_rest: f64,
+}
+
+/// A normal force that varies.
+pub(super) struct Pressing {
+    pub(super) series: Vec<f64>,
+    /// Its slopes on the grid of turning points, where these are looked for.
+    pub(super) slopes: Vec<f64>,
 }
 
 /// When a contact is closed.
@@ -38,7 +45,10 @@ impl<'a> Drive<'a> {
         let pressing = law.normal_stiffness.filter(|_| varies).map(|k| {
             let mut series: Vec<f64> = normal.iter().map(|v| k * v).collect();
             series[0] += law.normal_at_rest();
-            series
+            // In two directions nothing but opening asks for turning points.
+            let asked = law.directions == 1 || !is_closed(&series);
+            let slopes = if asked { motion.table.slopes(&series) } else { Vec::new() };
+            Pressing { series, slopes }
         });
         Self {
             table: motion.table,
@@ -68,8 +78,8 @@ impl<'a> Drive<'a> {
             let jet = harmonics.jet(self.pull(direction), theta);
             *pull = [jet[0], jet[1]];
         }
-        let pressing = self.pressing.as_ref().map_or([self.at_rest, 0.0], |series| {
-            let jet = harmonics.jet(series, theta);
+        let pressing = self.pressing.as_ref().map_or([self.at_rest, 0.0], |pressing| {
+            let jet = harmonics.jet(&pressing.series, theta);
             [jet[0], jet[1]]
         });
         (pull, pressing)
@@ -89,14 +99,14 @@ impl<'a> Drive<'a> {
     /// Series of M, its mean included; a single number if it is constant.
     pub(super) fn limit(&self) -> Vec<f64> {
         match &self.pressing {
-            Some(series) => series.iter().map(|n| self.friction * n).collect(),
+            Some(pressing) => pressing.series.iter().map(|n| self.friction * n).collect(),
             None => vec![self.friction * self.at_rest],
         }
     }
 
     /// Numbers that describe a variation of the limit M: its coefficients, or one if it is constant.
     pub(super) fn limit_columns(&self) -> usize {
-        self.pressing.as_ref().map_or(1, Vec::len)
+        self.pressing.as_ref().map_or(1, |pressing| pressing.series.len())
     }
 
     /// Numbers that describe a variation of K and M.
@@ -106,18 +116,16 @@ impl<'a> Drive<'a> {
 
     /// When the contact is closed.
     pub(super) fn closed(&self) -> Closed {
-        let Some(series) = &self.pressing else {
+        let Some(Pressing { series, slopes }) = &self.pressing else {
             return Closed::Always;
         };
-        let swing: f64 = series[1..].chunks_exact(2).map(|pair| pair[0].hypot(pair[1])).sum();
-        // Without a number in it nothing opens: the caller sees it diverge.
-        if series[0] <= -swing {
+        if series[0] <= -swing(series) {
             return Closed::Never;
-        } else if series[0] >= swing || series[0].is_nan() || swing.is_nan() {
+        } else if is_closed(series) {
             return Closed::Always;
         }
         let mut turns = Vec::new();
-        self.table.turning_points(series, &mut turns);
+        self.table.turning_points_by(series, slopes.clone(), &mut turns);
         if turns.iter().all(|turn| turn.value >= 0.0) {
             return Closed::Always;
         } else if turns.iter().all(|turn| turn.value <= 0.0) {
@@ -153,6 +161,18 @@ impl<'a> Drive<'a> {
         }
         theta
     }
+}
+
+/// How far a normal force may leave its mean.
+fn swing(series: &[f64]) -> f64 {
+    series[1..].chunks_exact(2).map(|pair| pair[0].hypot(pair[1])).sum()
+}
+
+/// Whether a normal force cannot vanish. Without a number in it nothing opens: the caller sees it
+/// diverge.
+fn is_closed(series: &[f64]) -> bool {
+    let swing = swing(series);
+    series[0] >= swing || series[0].is_nan() || swing.is_nan()
 }
 
 /// A turning point, `by` later.

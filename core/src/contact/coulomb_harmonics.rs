@@ -10,6 +10,7 @@ use super::coulomb_cycle::{Cycle, Response};
 use super::coulomb_drive::Drive;
 use super::coulomb_plane::Grid;
 use super::law::HarmonicForce;
+use super::slider_integrals::dot;
 use super::{coulomb_period, coulomb_play};
 use super::{AssumedStart, Closure, ContactLaw as _, Coulomb};
 use super::{Motion, Phase, PointSummary, SlipLoad};
@@ -97,7 +98,7 @@ impl Coulomb {
         if let Some(pressing) = drive.pressing.as_ref().filter(|_| !response.open.is_empty()) {
             for (i, products) in response.open.chunks_exact(slots).enumerate() {
                 let row = tangential + i;
-                out.value[row] += products.iter().zip(pressing).map(|(p, n)| p * n).sum::<f64>();
+                out.value[row] += dot(products, &pressing.series);
                 if !out.tangent.is_empty() {
                     let first = row * size + tangential;
                     let entries = out.tangent[first..first + slots].iter_mut();
@@ -120,7 +121,10 @@ impl Coulomb {
         };
         let stiffness = self.normal_stiffness.unwrap_or(0.0);
         match index {
-            0 => by.limit = drive.pressing.clone().unwrap_or_else(|| vec![drive.at_rest]),
+            0 => {
+                let series = drive.pressing.as_ref().map(|pressing| pressing.series.clone());
+                by.limit = series.unwrap_or_else(|| vec![drive.at_rest]);
+            }
             1 => by.pull.copy_from_slice(tangential),
             2 => match self.closure {
                 Closure::Preload(_) => (by.pressing[0], by.balanced) = (1.0, 1.0),

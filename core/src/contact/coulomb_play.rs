@@ -7,7 +7,7 @@
 
 use super::coulomb_cycle::{Cycle, State, Stretch};
 use super::coulomb_drive::{shifted, Closed, Drive};
-use super::stick_slip::crossing;
+use super::stick_slip::{crossing, USUAL_TURNS};
 use super::Residual;
 use crate::fourier::{Harmonics, TurningPoint};
 
@@ -22,21 +22,24 @@ struct Wall {
 }
 
 impl Wall {
-    fn new(drive: &Drive<'_>, sign: f64) -> Self {
+    fn new(drive: &Drive<'_>, slopes: &[f64], sign: f64) -> Self {
+        let by = sign * drive.friction;
         let mut series = drive.pull.clone();
-        let pressing = drive.pressing.iter().flatten();
-        series.iter_mut().zip(pressing).for_each(|(k, n)| *k -= sign * drive.friction * n);
-        if drive.pressing.is_none() {
-            series[0] -= sign * drive.friction * drive.at_rest;
+        let mut slopes = slopes.to_vec();
+        if let Some(pressing) = &drive.pressing {
+            series.iter_mut().zip(&pressing.series).for_each(|(k, n)| *k -= by * n);
+            slopes.iter_mut().zip(&pressing.slopes).for_each(|(k, n)| *k -= by * n);
+        } else {
+            series[0] -= by * drive.at_rest;
         }
-        let mut turns = Vec::new();
-        drive.table.turning_points(&series, &mut turns);
+        let mut turns = Vec::with_capacity(2 * USUAL_TURNS);
+        drive.table.turning_points_by(&series, slopes, &mut turns);
         let (count, span) = (turns.len(), drive.harmonics().span());
         let rest = TurningPoint { theta: 0.0, value: series[0] };
         let first = turns.first().copied().unwrap_or(rest);
         let last = turns.last().copied().unwrap_or(rest);
-        let second: Vec<TurningPoint> = turns.iter().map(|turn| shifted(*turn, span)).collect();
-        turns.extend(second);
+        turns.extend_from_within(..);
+        turns[count..].iter_mut().for_each(|turn| *turn = shifted(*turn, span));
         turns.insert(0, shifted(last, -span));
         turns.push(shifted(first, 2.0 * span));
         Self { sign, series, turns, count }
@@ -100,7 +103,8 @@ pub(super) fn cycle(drive: &Drive<'_>, residual: Residual, rest: f64, rates: boo
         let state = State::Open;
         return Cycle::new(vec![Stretch { start: 0.0, end: span, state }], drive.columns());
     }
-    let walls = [Wall::new(drive, 1.0), Wall::new(drive, -1.0)];
+    let slopes = drive.table.slopes(&drive.pull);
+    let walls = [1.0, -1.0].map(|sign| Wall::new(drive, &slopes, sign));
     let mut play = Play { drive, walls, rates, cycle: Cycle::new(Vec::new(), drive.columns()) };
     match closed {
         Closed::During(windows) => {

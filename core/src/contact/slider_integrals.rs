@@ -56,10 +56,10 @@ pub(super) fn add_slipping(
         sums.add_end(turn.theta, *k);
     }
     let SlipLoad { value, tangent: matrix, .. } = out;
-    sums.products(harmonics, weight, |i, j, v| {
-        value[i] += v * motion.displacement[j];
+    sums.rows(harmonics, weight, |i, row| {
+        value[i] += dot(row, motion.displacement);
         if tangent {
-            matrix[i * size + j] = v;
+            matrix[i * size..(i + 1) * size].copy_from_slice(row);
         }
     });
     if tangent {
@@ -153,6 +153,10 @@ impl Turns {
             }
         }
     }
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// `out += factor (end − start)`.

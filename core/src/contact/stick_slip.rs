@@ -5,7 +5,7 @@ use crate::fourier::{Harmonics, TurningPoint};
 use std::f64::consts::PI;
 
 /// Turning points per period that a motion has as a rule.
-const USUAL_TURNS: usize = 8;
+pub(super) const USUAL_TURNS: usize = 8;
 
 /// An interval of the period in which the element sticks. The slip load is constant there.
 #[derive(Debug, Clone, Copy)]

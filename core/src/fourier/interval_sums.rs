@@ -81,32 +81,51 @@ impl IntervalSums {
         factor: f64,
         mut store: impl FnMut(usize, usize, f64),
     ) {
-        let half = 0.5 * factor;
-        let slots = |index: usize| {
-            if harmonics.has_mean() {
-                (2 * index).saturating_sub(1)
-            } else {
-                2 * index
-            }
+        self.rows(harmonics, factor, |row, values| {
+            values.iter().enumerate().for_each(|(column, value)| store(row, column, *value));
+        });
+    }
+
+    /// The same, handed to `visit(row, values)` row by row.
+    ///
+    /// With `P_m = (C_m, S_m)`, `C_{−m} = C_m` and `S_{−m} = −S_m` the entries of the columns
+    /// `cos lθ, sin lθ` are `P_{l+k} + P_{l−k}` in the row of `cos kθ`, and with `Q_m = (S_m, −C_m)`
+    /// they are `Q_{l+k} − Q_{l−k}` in that of `sin kθ`, each halved.
+    pub fn rows(&self, harmonics: &Harmonics, factor: f64, mut visit: impl FnMut(usize, &[f64])) {
+        let Some(first) = harmonics.orders().next() else { return };
+        let (count, step) = (harmonics.orders().count(), self.step);
+        let negative = harmonics.highest() / step;
+        let pair = |at: usize| {
+            let order = at.abs_diff(negative) * step;
+            let sign = if at < negative { -0.5 } else { 0.5 };
+            (0.5 * factor * self.cos[order], sign * factor * self.sin[order])
         };
-        for (i, k) in harmonics.orders().enumerate() {
-            let row = slots(i);
-            for (j, l) in harmonics.orders().enumerate() {
-                let column = slots(j);
-                let (sum, difference) = (k + l, k.abs_diff(l));
-                let (c_sum, c_diff) = (half * self.cos[sum], half * self.cos[difference]);
-                let s_sum = half * self.sin[sum];
-                let s_diff = if l >= k { half } else { -half } * self.sin[difference];
-                store(row, column, c_diff + c_sum);
-                if l > 0 {
-                    store(row, column + 1, s_sum + s_diff);
-                }
-                if k > 0 {
-                    store(row + 1, column, s_sum - s_diff);
-                    if l > 0 {
-                        store(row + 1, column + 1, c_diff - c_sum);
-                    }
-                }
+        let length = negative + (self.cos.len() - 1) / step + 1;
+        let (mut p, mut q) = (vec![0.0; 2 * length], vec![0.0; 2 * length]);
+        let pairs = p.chunks_exact_mut(2).zip(q.chunks_exact_mut(2));
+        for (at, (p, q)) in pairs.enumerate() {
+            let (cos, sin) = pair(at);
+            (p[0], p[1], q[0], q[1]) = (cos, sin, sin, -cos);
+        }
+        let mut row = vec![0.0; 2 * count];
+        let mut slot = 0;
+        for order in harmonics.orders() {
+            let sum = 2 * (negative + (order + first) / step);
+            let difference = 2 * (negative + first / step - order / step);
+            let sum = sum..sum + 2 * count;
+            let difference = difference..difference + 2 * count;
+            for (of, sign) in [(&p, 1.0), (&q, -1.0)].into_iter().take(1 + order.min(1)) {
+                let parts = of[sum.clone()].iter().zip(&of[difference.clone()]);
+                row.iter_mut().zip(parts).for_each(|(v, (s, d))| *v = s + sign * d);
+                // The mean has no sine.
+                let values = if first == 0 {
+                    row[1] = row[0];
+                    &row[1..]
+                } else {
+                    &row[..]
+                };
+                visit(slot, values);
+                slot += 1;
             }
         }
     }

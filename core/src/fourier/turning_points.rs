@@ -1,6 +1,7 @@
 //! Turning points of a trigonometric series: bracketed on samples, then located exactly.
 
 use super::Harmonics;
+use pulp::{Simd, WithSimd};
 
 /// Samples per period and harmonic on which turning points are bracketed. A polynomial of degree
 /// H has at most 2H turning points, so that 16H samples keep them apart by eight on average.
@@ -8,6 +9,9 @@ const SAMPLES_PER_HARMONIC: usize = 64;
 
 /// Samples that are looked at together.
 const BLOCK: usize = 32;
+
+/// Samples that are summed together.
+const LANES: usize = 16;
 
 /// Distance of the samples of [`SampleTable::jets`] on that grid.
 const COARSER: usize = 4;
@@ -61,9 +65,19 @@ impl SampleTable {
     /// Finds the turning points in `[0, span)` (half a period under half-wave symmetry), in
     /// ascending order.
     pub fn turning_points(&self, series: &[f64], points: &mut Vec<TurningPoint>) {
+        self.turning_points_by(series, self.slopes(series), points);
+    }
+
+    /// The same of a series whose [`SampleTable::slopes`] are known.
+    pub(crate) fn turning_points_by(
+        &self,
+        series: &[f64],
+        slope: Vec<f64>,
+        points: &mut Vec<TurningPoint>,
+    ) {
         points.clear();
         let mirrored = self.harmonics.half_wave();
-        let slope = self.sample_slope(series);
+        let slope = self.with_seam(slope);
         let step = std::f64::consts::FRAC_PI_2 / self.quarter as f64;
         let last = slope.len() - 2;
         for block in (0..last).step_by(BLOCK) {
@@ -93,10 +107,14 @@ impl SampleTable {
         points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
     }
 
-    /// Slope of the series on the grid of `[0, span)` and at the first two points beyond, no
-    /// sample exactly zero at the seam, so that its mirror image has the other sign.
-    fn sample_slope(&self, series: &[f64]) -> Vec<f64> {
-        let mut slope = self.sampled(series, 1, |k, a, b| (k * b, -k * a));
+    /// Slope of a series on the grid of `[0, span)`.
+    pub(crate) fn slopes(&self, series: &[f64]) -> Vec<f64> {
+        self.sampled(series, 1, |k, a, b| (k * b, -k * a))
+    }
+
+    /// Slopes on the grid and at the first two points beyond, no sample exactly zero at the seam, so
+    /// that its mirror image has the other sign.
+    fn with_seam(&self, mut slope: Vec<f64>) -> Vec<f64> {
         let sign = if self.harmonics.half_wave() { -1.0 } else { 1.0 };
         for slope in slope.iter_mut().take(2).filter(|slope| **slope == 0.0) {
             *slope = -f64::MIN_POSITIVE;
@@ -140,20 +158,31 @@ impl SampleTable {
         let length = padded(q + 1);
         let mut sums = vec![0.0; 4 * length];
         let (even, odd) = sums.split_at_mut(2 * length);
-        for (index, &order) in self.harmonics.oscillating().iter().enumerate() {
-            let slot = self.harmonics.offset() + 2 * index;
-            let (of_cos, of_sin) = of(order as f64, series[slot], series[slot + 1]);
-            let row = index * all..(index + 1) * all;
-            let (cos, sin) = (&self.cos[row.clone()], &self.sin[row]);
-            let (cosines, sines) =
-                if order % 2 == 0 { &mut *even } else { &mut *odd }.split_at_mut(length);
+        let factors = |parity: usize| -> Vec<(usize, [f64; 2])> {
+            let orders = self.harmonics.oscillating().iter().enumerate();
+            let own = orders.filter(|(_, order)| **order % 2 == parity);
+            own.map(|(index, &order)| {
+                let slot = self.harmonics.offset() + 2 * index;
+                let (of_cos, of_sin) = of(order as f64, series[slot], series[slot + 1]);
+                (index * all, [of_cos, of_sin])
+            })
+            .collect()
+        };
+        for (parity, sums) in [(0, &mut *even), (1, &mut *odd)] {
+            let (cosines, sines) = sums.split_at_mut(length);
+            let factors = factors(parity);
             if stride == 1 {
-                add_multiples([(of_cos, cos, cosines), (of_sin, sin, sines)]);
-            } else {
-                for (sum, row, factor) in [(cosines, cos, of_cos), (sines, sin, of_sin)] {
-                    for (sum, value) in sum.iter_mut().zip(row.iter().step_by(stride)) {
-                        *sum += factor * value;
-                    }
+                let sums = [cosines, sines];
+                let tables = [&self.cos[..], &self.sin];
+                pulp::Arch::new().dispatch(RowSums { tables, rows: &factors, sums });
+                continue;
+            }
+            for (first, factors) in factors {
+                for (sum, row, factor) in
+                    [(&mut *cosines, &self.cos, factors[0]), (&mut *sines, &self.sin, factors[1])]
+                {
+                    let row = row[first..first + all].iter().step_by(stride);
+                    sum.iter_mut().zip(row).for_each(|(sum, value)| *sum += factor * value);
                 }
             }
         }
@@ -301,7 +330,7 @@ fn zero_between([here, next, after]: [f64; 3]) -> f64 {
 
 /// Length of a row of the table: whole vectors.
 fn padded(length: usize) -> usize {
-    length.next_multiple_of(8)
+    length.next_multiple_of(LANES)
 }
 
 fn halves(sums: &[f64], length: usize) -> [&[f64]; 2] {
@@ -309,13 +338,33 @@ fn halves(sums: &[f64], length: usize) -> [&[f64]; 2] {
     [first, second]
 }
 
-/// Adds multiples `(factor, row, sum)` to sums, with the vector instructions there are.
-fn add_multiples(parts: [(f64, &[f64], &mut [f64]); 2]) {
-    pulp::Arch::new().dispatch(|| {
-        for (factor, row, sum) in parts {
-            for (x, r) in sum.iter_mut().zip(row) {
-                *x += factor * r;
+/// Sums of multiples of rows that begin at the given positions, with the vector instructions there
+/// are: one block of samples after the other, so that its sums stay in registers.
+struct RowSums<'a> {
+    tables: [&'a [f64]; 2],
+    rows: &'a [(usize, [f64; 2])],
+    sums: [&'a mut [f64]; 2],
+}
+
+impl WithSimd for RowSums<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for (table, (i, sums)) in self.tables.into_iter().zip(self.sums.into_iter().enumerate()) {
+            for (block, out) in sums.chunks_exact_mut(LANES).enumerate() {
+                let (out, _) = S::as_mut_simd_f64s(out);
+                let mut sum = [simd.splat_f64s(0.0); LANES];
+                for (first, factors) in self.rows {
+                    let factor = simd.splat_f64s(factors[i]);
+                    let at = first + block * LANES;
+                    let (row, _) = S::as_simd_f64s(&table[at..at + LANES]);
+                    for (sum, value) in sum.iter_mut().zip(row) {
+                        *sum = simd.mul_add_e_f64s(factor, *value, *sum);
+                    }
+                }
+                out.copy_from_slice(&sum[..out.len()]);
             }
         }
-    });
+    }
 }

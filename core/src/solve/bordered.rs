@@ -41,7 +41,6 @@ impl Bordered<'_> {
     pub(super) fn solve(&self, curve: &mut dyn Curve, z: &mut [f64]) -> BorderedReport {
         let size = z.len();
         let mut residual = vec![0.0; size];
-        let mut matrix = Mat::<f64>::zeros(size, size);
         let mut trial = LineSearch::new(size);
         self.evaluate(curve, z, &mut residual);
         for iteration in 1..=self.max_iterations {
@@ -50,9 +49,8 @@ impl Bordered<'_> {
             if !before.is_finite() || curve.interrupted() {
                 return failed;
             }
-            curve.jacobian(z, &mut matrix);
-            self.border(z, &mut matrix);
-            let Some((step, _)) = solve(&mut matrix, &residual, self.weights) else {
+            let Some((step, _)) = curve.solve_bordered(z, &self.border(z), &residual, self.weights)
+            else {
                 return failed;
             };
             let length = norm(&weighted(&step, self.weights));
@@ -93,15 +91,12 @@ impl Bordered<'_> {
         };
     }
 
-    fn border(&self, z: &[f64], matrix: &mut Mat<f64>) {
-        let last = z.len() - 1;
-        for i in 0..z.len() {
-            let along = match self.condition {
-                Condition::Plane { normal, .. } => normal[i],
-                Condition::Sphere { centre, radius } => (z[i] - centre[i]) / radius,
-            };
-            matrix[(last, i)] = self.weights[i].powi(2) * along;
-        }
+    fn border(&self, z: &[f64]) -> Vec<f64> {
+        let along = |i: usize| match self.condition {
+            Condition::Plane { normal, .. } => normal[i],
+            Condition::Sphere { centre, radius } => (z[i] - centre[i]) / radius,
+        };
+        (0..z.len()).map(|i| self.weights[i].powi(2) * along(i)).collect()
     }
 
     /// Solution of `J t = 0` with `unit · t = 1`, and the sign of the determinant of the equations
@@ -118,13 +113,11 @@ impl Bordered<'_> {
         if !norm(&right).is_finite() {
             return None;
         }
-        let mut matrix = Mat::<f64>::zeros(size, size);
-        curve.jacobian(z, &mut matrix);
         let condition = Condition::Plane { normal: unit, at: z };
-        Bordered { weights, condition, max_iterations: 0 }.border(z, &mut matrix);
+        let border = Bordered { weights, condition, max_iterations: 0 }.border(z);
         right.fill(0.0);
         right[size - 1] = 1.0;
-        solve(&mut matrix, &right, weights)
+        curve.solve_bordered(z, &border, &right, weights)
     }
 }
 
@@ -134,7 +127,11 @@ fn weighted(x: &[f64], weights: &[f64]) -> Vec<f64> {
 
 /// Solves with the columns scaled by the weights, and says the sign of the determinant; nothing if
 /// the matrix is singular.
-fn solve(matrix: &mut Mat<f64>, right: &[f64], weights: &[f64]) -> Option<(Vec<f64>, f64)> {
+pub(super) fn solve(
+    matrix: &mut Mat<f64>,
+    right: &[f64],
+    weights: &[f64],
+) -> Option<(Vec<f64>, f64)> {
     let size = right.len();
     for (j, weight) in weights.iter().enumerate() {
         for i in 0..size {
@@ -151,7 +148,7 @@ fn solve(matrix: &mut Mat<f64>, right: &[f64], weights: &[f64]) -> Option<(Vec<f
 }
 
 /// Sign of a permutation.
-fn parity(order: &[usize]) -> f64 {
+pub(crate) fn parity(order: &[usize]) -> f64 {
     let mut seen = vec![false; order.len()];
     let mut sign = 1.0;
     for first in 0..order.len() {

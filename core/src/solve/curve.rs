@@ -1,5 +1,6 @@
 //! A curve of solutions as equations: what a continuation asks of them.
 
+use super::bordered::solve;
 use faer::Mat;
 
 /// Equations that leave one degree of freedom.
@@ -22,6 +23,22 @@ pub trait Curve {
 
     /// Jacobian at `z` into the first rows of `out`, unknowns × unknowns.
     fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>);
+
+    /// Solves the equations linearised at `z` with one more row, `border x = last of right`; tells the
+    /// sign of their determinant, too. Nothing where they are singular.
+    fn solve_bordered(
+        &mut self,
+        z: &[f64],
+        border: &[f64],
+        right: &[f64],
+        weights: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
+        let size = z.len();
+        let mut matrix = Mat::<f64>::zeros(size, size);
+        self.jacobian(z, &mut matrix);
+        border.iter().enumerate().for_each(|(j, entry)| matrix[(size - 1, j)] = *entry);
+        solve(&mut matrix, right, weights)
+    }
 
     /// What the unknowns are multiplied by to be compared with each other, about `z`.
     fn weights(&self, z: &[f64]) -> Vec<f64>;

@@ -15,6 +15,7 @@ mod newton;
 mod qr;
 mod small_dense;
 
+pub(crate) use bordered::parity;
 pub(crate) use branch::between;
 pub use branch::{Bounds, Branch, End};
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};

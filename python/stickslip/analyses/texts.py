@@ -152,8 +152,8 @@ TEXTS = {
     "that end of the range: the motions at the other end lie on another branch; begin there.",
     "branch-end/stalled": "Stalled: no way ahead of the branch was found at omega = {omega:.6g} "
     "rad/s; the rest of the range is missing.",
-    "branch-end/points": "The branch ends at omega = {omega:.6g} rad/s after {points} points; "
-    "compute a shorter range.",
+    "branch-end/points": "The branch ends at omega = {omega:.6g} rad/s after {points} points, "
+    "the effort that a curve is granted; compute a shorter range, or with fewer harmonics.",
     # limit cycles
     "onset": "Mode {mode}, stuck at {omega:.6g} rad/s, loses its damping at r = {ratio:.6g} with "
     "all contacts stuck: its limit cycles begin there.",
