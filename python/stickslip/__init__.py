@@ -26,6 +26,8 @@ _NAMES = {
     "analyses.single_harmonic": "single_harmonic",
     "analyses.stability_map": "stability_map",
     "analyses.transient": "transient",
+    "damper": "BodyDamper Centrifugal ContactPoint CylinderDamper Face FlexibleBody RigidBody "
+    "SplitDamper StripDamper WedgeDamper",
     "disk": "BladedDisk Coupling InfluenceCoefficients Interface MistunedDisk "
     "aerodynamic_waves cyclic_sector mistuning_pattern",
     "errors": "Interrupted ModelError",

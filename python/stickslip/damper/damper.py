@@ -1,0 +1,420 @@
+"""Dampers as bodies: what they touch, between two structures or the sectors of a disk."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import cos, pi, sin
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from stickslip.checks import brief, members, set_fields, unknown
+from stickslip.damper.body import Body, ContactPoint, FlexibleBody, RigidBody, Sum, positive
+from stickslip.disk import BladedDisk, Coupling
+from stickslip.drawn import Drawn
+from stickslip.errors import ModelError
+from stickslip.model import Contact, Coulomb, Force, Model, Structure, join
+from stickslip.model.nodes import Displacement
+
+LEFT, RIGHT, NEXT = "left", "right", "next"
+_FASTER = 1e3
+"""Natural frequency of a body without mass on its contacts, over the highest of a DOF beside it.
+
+What its inertia changes is the square of the ratio to the motion, below 1e-6 at the highest of
+these frequencies and far less where one computes. Frequencies farther apart than 1e6 would cost
+the static flexibility its digits.
+"""
+Touched: TypeAlias = Sequence[Displacement] | Sequence[Sequence[Displacement]]
+"""Degrees of freedom of a neighbour, one per axis: of all points of a face, or point by point."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Face:
+    """A face of a body: points that touch the same neighbour, each with its share.
+
+    Parameters
+    ----------
+    points : sequence of ContactPoint
+        Where it touches, and the normals out of the body.
+    to : str
+        What it touches: "left", "right", or another body of the damper.
+    friction : float
+        Coefficient of friction.
+    tangential_stiffness, normal_stiffness : float
+        Stiffnesses of the face [N/m]; its points share them equally.
+    gap : float, optional
+        Distance from the neighbour [m], negative for an interference.
+    body : str, optional
+        The body whose face it is, by its name in the damper.
+    against : sequence of ContactPoint, optional
+        The same points as the other body has them; needed where that one turns, or is elastic.
+    name : str, optional
+        Of the contact. Default: `to`.
+    """
+
+    points: tuple[ContactPoint, ...]
+    to: str
+    friction: float
+    tangential_stiffness: float
+    normal_stiffness: float
+    gap: float = 0.0
+    body: str = "damper"
+    against: tuple[ContactPoint, ...] | None = None
+    name: str | None = None
+
+    def __post_init__(self) -> None:
+        for key in ("points", "against"):
+            value = getattr(self, key)
+            if value is None:
+                continue
+            points = members(value, f"face: {key}", "[ss.ContactPoint(...)]")
+            if not points or not all(isinstance(one, ContactPoint) for one in points):
+                raise ModelError(f"face: {key} {brief(value)}; give a list of ContactPoint")
+            set_fields(self, **{key: points})
+        if self.against is not None and len(self.against) != len(self.points):
+            raise ModelError(
+                f"face: {len(self.against)} points of the other body for {len(self.points)}; give "
+                "as many"
+            )
+
+
+class Damper(ABC):
+    """A damper of one or several bodies between two neighbours, each held by contacts alone."""
+
+    @property
+    @abstractmethod
+    def bodies(self) -> Mapping[str, Body]:
+        """The bodies by name, which is the prefix of their degrees of freedom."""
+
+    @property
+    @abstractmethod
+    def faces(self) -> tuple[Face, ...]:
+        """Where they touch the neighbours, and each other."""
+
+    plot = Drawn("damper_drawing")
+
+    def between(
+        self,
+        left: Structure | None,
+        right: Structure | None,
+        *,
+        left_dofs: Touched | None = None,
+        right_dofs: Touched | None = None,
+        forces: Iterable[Force] = (),
+    ) -> Model:
+        """Return two structures with the damper between them.
+
+        Degrees of freedom are "left.x", ..., "right.y", "damper.x", ...; contacts are named after
+        what they touch. The static load of the damper is among the forces.
+
+        Parameters
+        ----------
+        left, right : Structure or None
+            The neighbours; None is one that does not move.
+        left_dofs, right_dofs : sequence of str
+            Degrees of freedom at which they are touched, one per axis of the damper; or one such
+            list per point of the face. Instead of a name a mapping of names to factors is a sum,
+            as where the axes of the neighbour are turned.
+        forces : iterable of Force, optional
+            Further forces, on "left.x", ...
+
+        Raises
+        ------
+        ModelError
+            If a degree of freedom is unknown, or there is not one per axis.
+        """
+        given = {LEFT: (left, left_dofs), RIGHT: (right, right_dofs)}
+        parts = {side: one for side, (one, _) in given.items() if one is not None}
+        for side, one in parts.items():
+            if not isinstance(one, Structure):
+                raise ModelError(f"{side}: {brief(one)} is no Structure; give ss.Structure(...)")
+        touched = {
+            side: _Neighbour.of(self._axes, side, dofs, one, f"{side}.")
+            for side, (one, dofs) in given.items()
+        }
+        structure = join(parts | self._structures(parts.values()))
+        return Model(structure, self._contacts(touched), [*self._loads, *forces])
+
+    def in_disk(
+        self,
+        blade: Structure,
+        sectors: int,
+        *,
+        left_dofs: Touched,
+        right_dofs: Touched,
+        engine_order: int,
+        forces: Iterable[Force] = (),
+        contacts: Iterable[Contact] = (),
+        couplings: Iterable[Coupling] = (),
+        axes: str = "sector",
+        **disk: Any,
+    ) -> BladedDisk:
+        """Return a disk with a damper between each sector and the next one.
+
+        A sector is the blade, whose degrees of freedom keep their names, with the damper behind it,
+        "damper.x", ...: its left face touches the blade of the sector, its right face that of the
+        next one.
+
+        Parameters
+        ----------
+        blade : Structure
+            A sector by itself, without the damper.
+        sectors : int
+            Number of sectors.
+        left_dofs, right_dofs : sequence of str
+            Degrees of freedom of the blade that the left face touches, and those of the next blade
+            that the right face touches, as of `between`.
+        engine_order : int
+            Engine order of the forces.
+        forces, contacts, couplings : iterable, optional
+            Further ones; see `BladedDisk`.
+        axes : str, optional
+            "sector": every blade has its own axes, x along the circumference towards the next
+            sector, y outwards, in space z along the axis of rotation; those of the damper are
+            halfway between. "parallel": axes of blades and damper are taken for parallel.
+        **disk
+            `engine_orders`; see `BladedDisk`.
+
+        Raises
+        ------
+        ModelError
+            As of `between`; or if the disk refuses something.
+        """
+        if not isinstance(blade, Structure):
+            raise ModelError(f"blade: {brief(blade)} is no Structure; give ss.Structure(...)")
+        if axes not in ("sector", "parallel"):
+            raise ModelError(f"axes: {unknown('axes', axes, ('sector', 'parallel'))}")
+        half = pi / sectors if axes == "sector" else 0.0
+        own = _Neighbour.of(self._axes, LEFT, left_dofs, blade, "", half)
+        ahead = _Neighbour.of(self._axes, RIGHT, right_dofs, blade, f"{NEXT}.", -half)
+        bodies = self._structures([blade])
+        whole = join({"": blade} | bodies)
+        sector = Structure.of_law(
+            whole.mass,
+            whole.stiffness,
+            whole.damping,
+            [dof.removeprefix(".") for dof in whole.dofs],
+            None,
+            whole.proportional,
+        )
+        return BladedDisk(
+            sector,
+            sectors,
+            couplings,
+            [*self._contacts({LEFT: own, RIGHT: ahead}), *contacts],
+            [*self._loads, *forces],
+            engine_order=engine_order,
+            **disk,
+        )
+
+    @property
+    def _axes(self) -> int:
+        (axes,) = {body.axes for body in self.bodies.values()}
+        return axes
+
+    @property
+    def _loads(self) -> list[Force]:
+        return [
+            Force(f"{name}.{dof}", load, harmonic=0)
+            for name, body in self.bodies.items()
+            for dof, load in body.forces.items()
+            if load
+        ]
+
+    def _structures(self, neighbours: Iterable[Structure]) -> dict[str, Structure]:
+        """Return the bodies by themselves."""
+        fastest = max(
+            (
+                np.sqrt(np.abs(np.diag(one.stiffness)) / np.diag(one.mass)).max()
+                for one in neighbours
+            ),
+            default=1.0,
+        )
+        springs = [
+            one
+            for face in self.faces
+            for one in (face.tangential_stiffness, face.normal_stiffness)
+            if one > 0.0
+        ]
+        least = min(springs, default=1.0) / (_FASTER * (fastest or 1.0)) ** 2
+        spans = [
+            np.linalg.norm(point.position)
+            for face in self.faces
+            for point in face.points
+            if point.position is not None
+        ]
+        arm = float(max(spans, default=1.0)) or 1.0
+        return {name: body.structure(least, arm) for name, body in self.bodies.items()}
+
+    def _contacts(self, touched: Mapping[str, _Neighbour | None]) -> list[Coulomb]:
+        known = [*self.bodies, *touched]
+        made = []
+        for number, face in enumerate(self.faces, 1):
+            for name, names in ((face.body, list(self.bodies)), (face.to, known)):
+                if name not in names:
+                    raise ModelError(f"face {number}: {unknown('body', name, names)}")
+            first = [self._at(face.body, point) for point in face.points]
+            other: list[list[Sum]] | None
+            if face.to in self.bodies:
+                other = [self._at(face.to, point) for point in face.against or face.points]
+            else:
+                neighbour = touched[face.to]
+                other = neighbour.at(len(first)) if neighbour else None
+            made.append(_contact(face, first, other))
+        return made
+
+    def _at(self, body: str, point: ContactPoint) -> list[Sum]:
+        sums = self.bodies[body].at(point)
+        return [{f"{body}.{dof}": factor for dof, factor in one.items()} for one in sums]
+
+
+@dataclass(frozen=True)
+class _Neighbour:
+    """Where a structure is touched: displacements along the axes of the damper."""
+
+    entry: str
+    nodes: list[list[Sum]]
+
+    @classmethod
+    def of(
+        cls,
+        axes: int,
+        side: str,
+        dofs: Touched | None,
+        structure: Structure | None,
+        prefix: str,
+        turn: float = 0.0,
+    ) -> _Neighbour | None:
+        """Return the displacements of a side, whose axes are turned against those of the damper.
+
+        They are turned by `turn` from x to y [rad].
+        """
+        entry = f"{side}_dofs"
+        if structure is None:
+            if dofs is not None:
+                raise ModelError(f"{entry}: given without a structure; leave them out")
+            return None
+        if dofs is None:
+            raise ModelError(f"{entry}: missing; name the dofs that the damper touches there")
+        listed = members(dofs, entry, '["x", "y"]')
+        nested = bool(listed) and not isinstance(listed[0], str | Mapping)
+        nodes = [
+            members(one, entry, '["x", "y"]') if nested else listed
+            for one in (listed if nested else [listed])
+        ]
+        made = []
+        for node in nodes:
+            if len(node) != axes:
+                raise ModelError(
+                    f"{entry}: {len(node)} displacements for a damper of {axes} axes; give as many"
+                )
+            sums: list[Sum] = [
+                dict(one) if isinstance(one, Mapping) else {str(one): 1.0} for one in node
+            ]
+            for one in sums:
+                for dof in one:
+                    if dof not in structure.dofs:
+                        raise ModelError(f"{entry}: {unknown('dof', dof, structure.dofs)}")
+            made.append(_turned([{prefix + k: v for k, v in one.items()} for one in sums], turn))
+        return cls(entry, made)
+
+    def at(self, points: int) -> list[list[Sum]]:
+        """Return the displacements at each of so many points."""
+        if len(self.nodes) == 1:
+            return self.nodes * points
+        if len(self.nodes) != points:
+            raise ModelError(
+                f"{self.entry}: {len(self.nodes)} nodes for a face of {points} points; give one "
+                "for all, or one each"
+            )
+        return self.nodes
+
+
+def _turned(sums: list[Sum], turn: float) -> list[Sum]:
+    """Return displacements along axes against which theirs are turned from x to y."""
+    if not turn:
+        return sums
+    x, y, *rest = sums
+    return [
+        _added((cos(turn), x), (-sin(turn), y)),
+        _added((sin(turn), x), (cos(turn), y)),
+        *rest,
+    ]
+
+
+def _added(*parts: tuple[float, Sum]) -> Sum:
+    total: Sum = {}
+    for factor, one in parts:
+        for dof, own in one.items():
+            total[dof] = total.get(dof, 0.0) + factor * own
+    return total
+
+
+def _contact(face: Face, first: list[list[Sum]], other: list[list[Sum]] | None) -> Coulomb:
+    """Return the contact of a face."""
+    count = len(first)
+    ends = [[list(map(_name, node)) for node in one] for one in (first, other) if one is not None]
+    return Coulomb(
+        *(one if count > 1 else one[0] for one in ends),
+        normal=[point.normal for point in face.points] if count > 1 else face.points[0].normal,
+        friction=face.friction,
+        tangential_stiffness=positive(face.tangential_stiffness, "face: stiffness") / count,
+        normal_stiffness=positive(face.normal_stiffness, "face: stiffness") / count,
+        gap=face.gap,
+        name=face.name or face.to,
+    )
+
+
+def _name(one: Sum) -> Displacement:
+    """Return the name of a degree of freedom, or a sum of several."""
+    (dof, factor), *more = one.items()
+    return dof if factor == 1.0 and not more else one
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class BodyDamper(Damper):
+    """A damper of any bodies and faces.
+
+    Parameters
+    ----------
+    bodies : RigidBody or FlexibleBody, or mapping of str to them
+        The body, named "damper"; or several by name.
+    faces : sequence of Face
+        Where they touch the neighbours "left" and "right", and each other.
+
+    Raises
+    ------
+    ModelError
+        If there is no body or face, bodies have other axes than others, or a name is unknown.
+    """
+
+    _bodies: Mapping[str, Body]
+    _faces: tuple[Face, ...]
+
+    def __init__(self, bodies: Body | Mapping[str, Body], faces: Iterable[Face]) -> None:
+        named = bodies if isinstance(bodies, Mapping) else {"damper": bodies}
+        for name, body in named.items():
+            if not isinstance(body, RigidBody | FlexibleBody):
+                raise ModelError(
+                    f"damper: body {brief(name)} is {brief(body)}; give a RigidBody or FlexibleBody"
+                )
+            if name in (LEFT, RIGHT):
+                raise ModelError(f"damper: body {brief(name)}: this is a side; name it otherwise")
+        listed = members(faces, "damper: faces", "faces=[ss.Face(...)]")
+        if not named or not listed or not all(isinstance(one, Face) for one in listed):
+            raise ModelError("damper: give at least one body and a list of ss.Face(...)")
+        if len({body.axes for body in named.values()}) > 1:
+            raise ModelError("damper: bodies of 2 and of 3 axes; give all the same")
+        set_fields(self, _bodies=dict(named), _faces=listed)
+
+    @property
+    def bodies(self) -> Mapping[str, Body]:
+        """The bodies by name."""
+        return self._bodies
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """Where they touch."""
+        return self._faces
