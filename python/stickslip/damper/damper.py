@@ -190,12 +190,12 @@ class Damper(ABC):
         own = _Neighbour.of(self._axes, LEFT, left_dofs, blade, "", half)
         ahead = _Neighbour.of(self._axes, RIGHT, right_dofs, blade, f"{NEXT}.", -half)
         bodies = self._structures([blade])
-        whole = join({"": blade} | bodies)
+        whole = join({"blade": blade} | bodies)
         sector = Structure.of_law(
             whole.mass,
             whole.stiffness,
             whole.damping,
-            [dof.removeprefix(".") for dof in whole.dofs],
+            [*blade.dofs, *whole.dofs[len(blade) :]],
             None,
             whole.proportional,
         )

@@ -125,6 +125,8 @@ class WedgeDamper(_TwoFaces):
                 f"{self._entry}: give inertia and positions together: what turns does so by the "
                 "lever arms of its contact points"
             )
+        _places(self.positions)
+        _inertia(self.inertia, self._entry)
 
     @property
     def locks(self) -> bool:
@@ -181,6 +183,7 @@ class CylinderDamper(_TwoFaces):
             _require_angle(one, f"{self._entry}: angle")
         if not positive(self.cylinder_radius, f"{self._entry}: cylinder_radius") > 0.0:
             raise ModelError(f"{self._entry}: cylinder_radius 0; give the radius in m")
+        _inertia(self.inertia, self._entry)
 
     @property
     def bodies(self) -> Mapping[str, Body]:
@@ -294,6 +297,8 @@ class StripDamper(_TwoFaces):
         super().__post_init__()
         if (self.inertia is None) != (self.positions is None):
             raise ModelError(f"{self._entry}: give inertia and positions together, or neither")
+        _places(self.positions)
+        _inertia(self.inertia, self._entry)
 
     @property
     def bodies(self) -> Mapping[str, Body]:
@@ -317,6 +322,11 @@ def _both(value: object, entry: str) -> tuple[float, float]:
         return real_number(value[0], entry), real_number(value[1], entry)
     number = real_number(value, entry)
     return number, number
+
+
+def _inertia(value: float | None, entry: str) -> None:
+    if value is not None:
+        positive(value, f"{entry}: inertia")
 
 
 def _require_angle(angle: float, entry: str) -> None:
