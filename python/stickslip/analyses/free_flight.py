@@ -42,7 +42,7 @@ def with_free_flight(result: _Response) -> _Response:
 
 
 def _bodies(model: Model) -> Iterator[tuple[str, list[int]]]:
-    """Give the bodies that only Coulomb contacts hold, by a degree of freedom, with the contacts."""
+    """Give the bodies that only Coulomb contacts hold, by a dof, with these contacts."""
     if not any("N" in contact.components for contact in model.contacts):
         return
     from scipy.sparse.csgraph import connected_components

@@ -6,19 +6,21 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import Any, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from stickslip.checks import brief, members, set_fields, unknown
+from stickslip.checks import brief, members, set_fields, text, unknown
 from stickslip.damper.body import Body, ContactPoint, FlexibleBody, RigidBody, Sum, positive
-from stickslip.disk import BladedDisk, Coupling
+from stickslip.disk import BladedDisk, Coupling, Interface
+from stickslip.disk.sector import NEXT
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Contact, Coulomb, Force, Model, Structure, join
 from stickslip.model.nodes import Displacement
+from stickslip.model.structure import side_by_side
 
-LEFT, RIGHT, NEXT = "left", "right", "next"
+LEFT, RIGHT, DAMPER = "left", "right", "damper"
 _FASTER = 1e3
 """Natural frequency of a body without mass on its contacts, over the highest of a DOF beside it.
 
@@ -80,6 +82,17 @@ class Face:
             )
 
 
+class Built(NamedTuple):
+    """What a damper makes of a structure."""
+
+    structure: Structure
+    """The structure with the bodies, behind its own degrees of freedom."""
+    contacts: list[Coulomb]
+    """Contacts of the faces."""
+    forces: list[Force]
+    """Static loads of the bodies."""
+
+
 class Damper(ABC):
     """A damper of one or several bodies between two neighbours, each held by contacts alone."""
 
@@ -134,8 +147,61 @@ class Damper(ABC):
             side: _Neighbour.of(self._axes, side, dofs, one, f"{side}.")
             for side, (one, dofs) in given.items()
         }
-        structure = join(parts | self._structures(parts.values()))
-        return Model(structure, self._contacts(touched), [*self._loads, *forces])
+        built = self._built(join(parts) if parts else None, touched)
+        return Model(built.structure, built.contacts, [*built.forces, *forces])
+
+    def inside(
+        self,
+        structure: Structure,
+        *,
+        left_dofs: Touched,
+        right_dofs: Touched | None = None,
+        forces: Iterable[Force] = (),
+        contacts: Iterable[Contact] = (),
+    ) -> Model:
+        """Return a structure with the damper between two places of it.
+
+        As `between`, but degrees of freedom of the structure keep their names. Without
+        `right_dofs` the right neighbour does not move.
+        """
+        own = self.built(structure, left_dofs, right_dofs)
+        return Model(own.structure, [*own.contacts, *contacts], [*own.forces, *forces])
+
+    def built(
+        self,
+        structure: Structure,
+        left_dofs: Touched,
+        right_dofs: Touched | None,
+        name: str = DAMPER,
+    ) -> Built:
+        """Return a structure with the damper in it, in parts; `name` is that of its bodies."""
+        if not isinstance(structure, Structure):
+            raise ModelError(f"structure: {brief(structure)} is no Structure; give ss.Structure")
+        given = {LEFT: left_dofs, RIGHT: right_dofs}
+        touched = {
+            side: _Neighbour.of(self._axes, side, dofs, None if dofs is None else structure, "")
+            for side, dofs in given.items()
+        }
+        return self._built(structure, touched, name)
+
+    def built_in_sector(
+        self,
+        sector: Structure,
+        sectors: int,
+        left_dofs: Touched,
+        right_dofs: Touched,
+        axes: str = "sector",
+        name: str = DAMPER,
+    ) -> Built:
+        """Return a sector of a disk with the damper behind it, in parts; see `in_disk`."""
+        if not isinstance(sector, Structure):
+            raise ModelError(f"blade: {brief(sector)} is no Structure; give ss.Structure(...)")
+        if axes not in ("sector", "parallel"):
+            raise ModelError(f"axes: {unknown('axes', axes, ('sector', 'parallel'))}")
+        half = pi / sectors if axes == "sector" else 0.0
+        own = _Neighbour.of(self._axes, LEFT, left_dofs, sector, "", half)
+        ahead = _Neighbour.of(self._axes, RIGHT, right_dofs, sector, NEXT, -half)
+        return self._built(sector, {LEFT: own, RIGHT: ahead}, name)
 
     def in_disk(
         self,
@@ -149,7 +215,8 @@ class Damper(ABC):
         contacts: Iterable[Contact] = (),
         couplings: Iterable[Coupling] = (),
         axes: str = "sector",
-        **disk: Any,
+        engine_orders: Mapping[int, int] | None = None,
+        interface: Interface | None = None,
     ) -> BladedDisk:
         """Return a disk with a damper between each sector and the next one.
 
@@ -174,39 +241,24 @@ class Damper(ABC):
             "sector": every blade has its own axes, x along the circumference towards the next
             sector, y outwards, in space z along the axis of rotation; those of the damper are
             halfway between. "parallel": axes of blades and damper are taken for parallel.
-        **disk
-            `engine_orders`; see `BladedDisk`.
+        engine_orders, interface : optional
+            As of `BladedDisk`; the interface is that of the blade.
 
         Raises
         ------
         ModelError
             As of `between`; or if the disk refuses something.
         """
-        if not isinstance(blade, Structure):
-            raise ModelError(f"blade: {brief(blade)} is no Structure; give ss.Structure(...)")
-        if axes not in ("sector", "parallel"):
-            raise ModelError(f"axes: {unknown('axes', axes, ('sector', 'parallel'))}")
-        half = pi / sectors if axes == "sector" else 0.0
-        own = _Neighbour.of(self._axes, LEFT, left_dofs, blade, "", half)
-        ahead = _Neighbour.of(self._axes, RIGHT, right_dofs, blade, f"{NEXT}.", -half)
-        bodies = self._structures([blade])
-        whole = join({"blade": blade} | bodies)
-        sector = Structure.of_law(
-            whole.mass,
-            whole.stiffness,
-            whole.damping,
-            [*blade.dofs, *whole.dofs[len(blade) :]],
-            None,
-            whole.proportional,
-        )
+        own = self.built_in_sector(blade, sectors, left_dofs, right_dofs, axes)
         return BladedDisk(
-            sector,
+            own.structure,
             sectors,
             couplings,
-            [*self._contacts({LEFT: own, RIGHT: ahead}), *contacts],
-            [*self._loads, *forces],
+            [*own.contacts, *contacts],
+            [*own.forces, *forces],
             engine_order=engine_order,
-            **disk,
+            engine_orders=engine_orders,
+            interface=widened(interface, len(own.structure)),
         )
 
     @property
@@ -214,14 +266,30 @@ class Damper(ABC):
         (axes,) = {body.axes for body in self.bodies.values()}
         return axes
 
-    @property
-    def _loads(self) -> list[Force]:
-        return [
-            Force(f"{name}.{dof}", load, harmonic=0)
-            for name, body in self.bodies.items()
+    def _built(
+        self,
+        structure: Structure | None,
+        touched: Mapping[str, _Neighbour | None],
+        name: str = DAMPER,
+    ) -> Built:
+        """Return structure and bodies in one, with contacts and loads."""
+        text(name, "damper: name")
+        names = {one: name + one.removeprefix(DAMPER) for one in self.bodies}
+        bodies = self._structures([] if structure is None else [structure])
+        own = join({names[one]: body for one, body in bodies.items()})
+        contacts = self._contacts(touched, names)
+        if name != DAMPER:
+            contacts = [one.named(f"{name}.{one.name}") for one in contacts]
+        loads = [
+            Force(f"{names[one]}.{dof}", load, harmonic=0)
+            for one, body in self.bodies.items()
             for dof, load in body.forces.items()
             if load
         ]
+        if structure is None:
+            return Built(own, contacts, loads)
+        both = side_by_side([structure, own], [*structure.dofs, *own.dofs])
+        return Built(both, contacts, loads)
 
     def _structures(self, neighbours: Iterable[Structure]) -> dict[str, Structure]:
         """Return the bodies by themselves."""
@@ -248,26 +316,37 @@ class Damper(ABC):
         arm = float(max(spans, default=1.0)) or 1.0
         return {name: body.structure(least, arm) for name, body in self.bodies.items()}
 
-    def _contacts(self, touched: Mapping[str, _Neighbour | None]) -> list[Coulomb]:
+    def _contacts(
+        self, touched: Mapping[str, _Neighbour | None], names: Mapping[str, str]
+    ) -> list[Coulomb]:
         known = [*self.bodies, *touched]
         made = []
         for number, face in enumerate(self.faces, 1):
-            for name, names in ((face.body, list(self.bodies)), (face.to, known)):
-                if name not in names:
-                    raise ModelError(f"face {number}: {unknown('body', name, names)}")
-            first = [self._at(face.body, point) for point in face.points]
+            for name, among in ((face.body, list(self.bodies)), (face.to, known)):
+                if name not in among:
+                    raise ModelError(f"face {number}: {unknown('body', name, among)}")
+            first = [self._at(face.body, point, names) for point in face.points]
             other: list[list[Sum]] | None
             if face.to in self.bodies:
-                other = [self._at(face.to, point) for point in face.against or face.points]
+                other = [self._at(face.to, point, names) for point in face.against or face.points]
             else:
                 neighbour = touched[face.to]
                 other = neighbour.at(len(first)) if neighbour else None
             made.append(_contact(face, first, other))
         return made
 
-    def _at(self, body: str, point: ContactPoint) -> list[Sum]:
+    def _at(self, body: str, point: ContactPoint, names: Mapping[str, str]) -> list[Sum]:
         sums = self.bodies[body].at(point)
-        return [{f"{body}.{dof}": factor for dof, factor in one.items()} for one in sums]
+        return [{f"{names[body]}.{dof}": factor for dof, factor in one.items()} for one in sums]
+
+
+def widened(interface: Interface | None, size: int) -> Interface | None:
+    """Return the interface of a blade as that of a sector which ends in further DOFs."""
+    if interface is None:
+        return None
+    more = (0, size - len(interface))
+    matrices = interface.stiffness, interface.mass, interface.damping
+    return Interface(*(np.pad(one, (more, more)) for one in matrices))
 
 
 @dataclass(frozen=True)
