@@ -3,6 +3,7 @@
 from stickslip.calls import checked_names
 from stickslip.plot.basins import basins, lines
 from stickslip.plot.blades import blade_bars, blade_curves
+from stickslip.plot.bodies import damper_drawing
 from stickslip.plot.contacts import contact_forces, events, hysteresis, waveform
 from stickslip.plot.curves import curves, slip
 from stickslip.plot.cycles import limit_cycles, stability_map
@@ -25,6 +26,7 @@ __all__ = [
     "curves",
     "cycle_multipliers",
     "damper",
+    "damper_drawing",
     "distribution",
     "events",
     "fit",
