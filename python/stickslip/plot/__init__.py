@@ -10,6 +10,7 @@ from stickslip.plot.cycles import limit_cycles, stability_map
 from stickslip.plot.damper import damper
 from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
 from stickslip.plot.fit import fit, fit_intervals, fit_residuals
+from stickslip.plot.maps import design_map
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.multipliers import cycle_multipliers, multipliers
 from stickslip.plot.statics import static_forces
@@ -27,6 +28,7 @@ __all__ = [
     "cycle_multipliers",
     "damper",
     "damper_drawing",
+    "design_map",
     "distribution",
     "events",
     "fit",
