@@ -12,6 +12,9 @@ from stickslip import plot as plot
 from stickslip import reference as reference
 from stickslip import study as study
 from stickslip._core import __version__ as __version__
+from stickslip.analyses.design_map import design_map as design_map
+from stickslip.analyses.design_map import speed_response as speed_response
+from stickslip.analyses.design_map import spinning as spinning
 from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle
 from stickslip.analyses.flutter_formulas import single_harmonic_cycles as single_harmonic_cycles
 from stickslip.analyses.pattern_store import merge_stores as merge_stores

@@ -20,7 +20,7 @@ _COARSE = 3
 """Harmonics with which resonances are located."""
 _NEAR = 0.8
 """Share of the highest of the coarse maxima from which on a rival is looked at too."""
-_LOCAL = 9
+_LOCAL = 5
 """Frequencies around a maximum."""
 
 
@@ -32,7 +32,7 @@ def design_map(
     omega: tuple[float, float],
     points: int = 24,
     tolerance: float = 1e-2,
-    max_harmonics: int = 47,
+    max_harmonics: int = 127,
     threads: int | None = None,
 ) -> DesignMap:
     """Find the peak of a response for all pairs of values of two parameters of a design.
