@@ -166,5 +166,4 @@ def test_wedge_between_two_blades_as_followed_in_time():
     assert curve.converged.all()
     at = curve.index(108.0)
     run = ss.transient(curve.model, omega=108.0, periods=200, scheme="exact")
-    # Nine harmonics of a wedge leave a per cent open.
-    assert curve.amplitude("left.x")[at] == pytest.approx(run.amplitude("left.x"), rel=2e-2)
+    assert curve.amplitude("left.x")[at] == pytest.approx(run.amplitude("left.x"), rel=1e-2)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import cos, pi, sin
-from typing import NamedTuple, TypeAlias
+from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
 from stickslip.checks import brief, members, set_fields, text, unknown
 from stickslip.damper.body import Body, ContactPoint, FlexibleBody, RigidBody, Sum, positive
+from stickslip.damper.neighbour import Neighbour, Touched
 from stickslip.disk import BladedDisk, Coupling, Interface
 from stickslip.disk.sector import NEXT
 from stickslip.drawn import Drawn
@@ -28,8 +29,6 @@ What its inertia changes is the square of the ratio to the motion, below 1e-6 at
 these frequencies and far less where one computes. Frequencies farther apart than 1e6 would cost
 the static flexibility its digits.
 """
-Touched: TypeAlias = Sequence[Displacement] | Sequence[Sequence[Displacement]]
-"""Degrees of freedom of a neighbour, one per axis: of all points of a face, or point by point."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,7 +143,7 @@ class Damper(ABC):
             if not isinstance(one, Structure):
                 raise ModelError(f"{side}: {brief(one)} is no Structure; give ss.Structure(...)")
         touched = {
-            side: _Neighbour.of(self._axes, side, dofs, one, f"{side}.")
+            side: Neighbour.of(self._axes, side, dofs, one, f"{side}.")
             for side, (one, dofs) in given.items()
         }
         built = self._built(join(parts) if parts else None, touched)
@@ -179,7 +178,7 @@ class Damper(ABC):
             raise ModelError(f"structure: {brief(structure)} is no Structure; give ss.Structure")
         given = {LEFT: left_dofs, RIGHT: right_dofs}
         touched = {
-            side: _Neighbour.of(self._axes, side, dofs, None if dofs is None else structure, "")
+            side: Neighbour.of(self._axes, side, dofs, None if dofs is None else structure, "")
             for side, dofs in given.items()
         }
         return self._built(structure, touched, name)
@@ -199,8 +198,8 @@ class Damper(ABC):
         if axes not in ("sector", "parallel"):
             raise ModelError(f"axes: {unknown('axes', axes, ('sector', 'parallel'))}")
         half = pi / sectors if axes == "sector" else 0.0
-        own = _Neighbour.of(self._axes, LEFT, left_dofs, sector, "", half)
-        ahead = _Neighbour.of(self._axes, RIGHT, right_dofs, sector, NEXT, -half)
+        own = Neighbour.of(self._axes, LEFT, left_dofs, sector, "", half)
+        ahead = Neighbour.of(self._axes, RIGHT, right_dofs, sector, NEXT, -half)
         return self._built(sector, {LEFT: own, RIGHT: ahead}, name)
 
     def in_disk(
@@ -269,7 +268,7 @@ class Damper(ABC):
     def _built(
         self,
         structure: Structure | None,
-        touched: Mapping[str, _Neighbour | None],
+        touched: Mapping[str, Neighbour | None],
         name: str = DAMPER,
     ) -> Built:
         """Return structure and bodies in one, with contacts and loads."""
@@ -317,7 +316,7 @@ class Damper(ABC):
         return {name: body.structure(least, arm) for name, body in self.bodies.items()}
 
     def _contacts(
-        self, touched: Mapping[str, _Neighbour | None], names: Mapping[str, str]
+        self, touched: Mapping[str, Neighbour | None], names: Mapping[str, str]
     ) -> list[Coulomb]:
         known = [*self.bodies, *touched]
         made = []
@@ -347,88 +346,6 @@ def widened(interface: Interface | None, size: int) -> Interface | None:
     more = (0, size - len(interface))
     matrices = interface.stiffness, interface.mass, interface.damping
     return Interface(*(np.pad(one, (more, more)) for one in matrices))
-
-
-@dataclass(frozen=True)
-class _Neighbour:
-    """Where a structure is touched: displacements along the axes of the damper."""
-
-    entry: str
-    nodes: list[list[Sum]]
-
-    @classmethod
-    def of(
-        cls,
-        axes: int,
-        side: str,
-        dofs: Touched | None,
-        structure: Structure | None,
-        prefix: str,
-        turn: float = 0.0,
-    ) -> _Neighbour | None:
-        """Return the displacements of a side, whose axes are turned against those of the damper.
-
-        They are turned by `turn` from x to y [rad].
-        """
-        entry = f"{side}_dofs"
-        if structure is None:
-            if dofs is not None:
-                raise ModelError(f"{entry}: given without a structure; leave them out")
-            return None
-        if dofs is None:
-            raise ModelError(f"{entry}: missing; name the dofs that the damper touches there")
-        listed = members(dofs, entry, '["x", "y"]')
-        nested = bool(listed) and not isinstance(listed[0], str | Mapping)
-        nodes = [
-            members(one, entry, '["x", "y"]') if nested else listed
-            for one in (listed if nested else [listed])
-        ]
-        made = []
-        for node in nodes:
-            if len(node) != axes:
-                raise ModelError(
-                    f"{entry}: {len(node)} displacements for a damper of {axes} axes; give as many"
-                )
-            sums: list[Sum] = [
-                dict(one) if isinstance(one, Mapping) else {str(one): 1.0} for one in node
-            ]
-            for one in sums:
-                for dof in one:
-                    if dof not in structure.dofs:
-                        raise ModelError(f"{entry}: {unknown('dof', dof, structure.dofs)}")
-            made.append(_turned([{prefix + k: v for k, v in one.items()} for one in sums], turn))
-        return cls(entry, made)
-
-    def at(self, points: int) -> list[list[Sum]]:
-        """Return the displacements at each of so many points."""
-        if len(self.nodes) == 1:
-            return self.nodes * points
-        if len(self.nodes) != points:
-            raise ModelError(
-                f"{self.entry}: {len(self.nodes)} nodes for a face of {points} points; give one "
-                "for all, or one each"
-            )
-        return self.nodes
-
-
-def _turned(sums: list[Sum], turn: float) -> list[Sum]:
-    """Return displacements along axes against which theirs are turned from x to y."""
-    if not turn:
-        return sums
-    x, y, *rest = sums
-    return [
-        _added((cos(turn), x), (-sin(turn), y)),
-        _added((sin(turn), x), (cos(turn), y)),
-        *rest,
-    ]
-
-
-def _added(*parts: tuple[float, Sum]) -> Sum:
-    total: Sum = {}
-    for factor, one in parts:
-        for dof, own in one.items():
-            total[dof] = total.get(dof, 0.0) + factor * own
-    return total
 
 
 def _contact(face: Face, first: list[list[Sum]], other: list[list[Sum]] | None) -> Coulomb:
