@@ -160,7 +160,7 @@ def disk(sectors=24, **changes):
     return wedge.in_disk(
         blade,
         sectors,
-        engine_order=3,
+        engine_order=max(sectors // 8, 1),
         forces=[ss.Force("x", 15.0)],
         couplings=ring,
         **ENDS,
@@ -169,7 +169,7 @@ def disk(sectors=24, **changes):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("axes", "sectors"), [("sector", 24), ("parallel", 12)])
+@pytest.mark.parametrize(("axes", "sectors"), [("sector", 24), ("parallel", 8)])
 def test_one_sector_is_the_ring(axes, sectors):
     tuned = disk(sectors, axes=axes)
     march = {"evaluation": "marched", "samples": 192, "harmonics": 2, "stability": False}
@@ -178,7 +178,7 @@ def test_one_sector_is_the_ring(axes, sectors):
     assert wave.converged.all()
     assert every.converged.all()
     for side in ("left", "right"):
-        assert wave.slip_fraction(side)[0, 0] > 0.1
+        assert wave.slip_fraction(side)[0, 0] > 0.2
     for blade in (0, 5, sectors - 1):
         for dof in ("x", "damper.y"):
             own = every.coefficients(f"{blade}.{dof}")
