@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import stickslip as ss
 
@@ -43,7 +44,7 @@ def test_peaks_of_a_map_are_those_of_fine_curves():
     assert found.amplitude.min() == pytest.approx(
         found.amplitude[values["mass"].index(best["mass"]), values["angle"].index(best["angle"])]
     )
-    axes = found.plot(length_unit="mm")
+    axes = found.plot(length_unit="mm", ax=Figure().add_subplot())
     assert axes.get_xlabel() == "mass"
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
 import stickslip as ss
 
@@ -246,3 +247,23 @@ def test_refused_bodies():
         damper(ss.ContactPoint((0.0, 1.0), dofs=["x", "z"]), of=bar)
     with pytest.raises(ss.ModelError, match="inertia"):
         ss.RigidBody(1.0, [1.0, 2.0], load=(0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize("name", DAMPERS)
+def test_drawings_name_faces_and_loads(name):
+    axes = DAMPERS[name].plot(ax=Figure().add_subplot())
+    said = " ".join(text.get_text() for text in axes.texts)
+    for face in DAMPERS[name].faces:
+        assert (face.name or face.to) in said
+    assert name == "flexible" or f"{sum(load(DAMPERS[name])):g} N" in said
+
+
+def load(damper):
+    """Return the load of the first body along y."""
+    first = next(iter(damper.bodies.values()))
+    return [first.forces.get("y", 0.0)]
+
+
+def test_dampers_in_space_are_not_drawn():
+    with pytest.raises(ss.ModelError, match="only those in a plane are drawn"):
+        solid().plot(ax=Figure().add_subplot())
