@@ -331,6 +331,29 @@ def flutter(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "flutter.png")
 
 
+def wedge_dampers(folder: Path = ASSETS) -> Path:
+    """Draw ready dampers, and the normal forces that statics allow a wedge."""
+    face = {"friction": 0.3, "tangential_stiffness": 3e5, "normal_stiffness": 3e5, "load": 240.0}
+    split = ss.SplitDamper(angle=30.0, mass=0.06, **face)
+    wedge = ss.WedgeDamper(angle=40.0, mass=0.1, **face)
+    figure = Figure(figsize=(11.0, 3.9), layout="constrained")
+    first, second, third = figure.subplots(1, 3)
+    wedge.plot(ax=first)
+    split.plot(ax=second)
+    a, frictions = np.deg2rad(40.0), np.linspace(0.0, 1.6, 161)
+    least = 120.0 / (np.cos(a) + frictions * np.sin(a))
+    limit = 1.0 / np.tan(a)
+    free = frictions < 0.97 * limit
+    greatest = 120.0 / (np.cos(a) - frictions[free] * np.sin(a))
+    third.fill_between(frictions[free], least[free], greatest, color="0.88", label="allowed")
+    third.plot(frictions, least, label="about to move in")
+    third.plot(frictions[free], greatest, label="about to come out")
+    third.axvline(limit, color="0.45", ls=":", label="µ = cot a: locks")
+    third.set(xlabel="friction", ylabel="normal force [N]", ylim=(0.0, 1200.0))
+    third.legend(frameon=False, fontsize="small")
+    return _save(figure, folder / "wedge-dampers.png")
+
+
 def _errors(
     model: ss.Model, exact: ss.ForcedResponse, harmonics: int | Literal["auto"]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -371,3 +394,4 @@ if __name__ == "__main__":
     print(amplification())
     print(mistuning())
     print(flutter())
+    print(wedge_dampers())

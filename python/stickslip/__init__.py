@@ -16,6 +16,7 @@ _NAMES = {
     "analyses.static_response": "static_response",
     "analyses.damper_curve": "damper_curve",
     "analyses.fit": "fit",
+    "analyses.design_map": "design_map speed_response spinning",
     "analyses.exact_response": "exact_response",
     "analyses.flutter_formulas": "rigid_limit_cycle single_harmonic_cycles",
     "analyses.forced_response": "forced_response",
@@ -26,6 +27,8 @@ _NAMES = {
     "analyses.single_harmonic": "single_harmonic",
     "analyses.stability_map": "stability_map",
     "analyses.transient": "transient",
+    "damper": "BodyDamper Centrifugal ContactPoint CylinderDamper Face FlexibleBody RigidBody "
+    "SplitDamper StripDamper WedgeDamper",
     "disk": "BladedDisk Coupling InfluenceCoefficients Interface MistunedDisk "
     "aerodynamic_waves cyclic_sector mistuning_pattern",
     "errors": "Interrupted ModelError",

@@ -12,10 +12,23 @@ from stickslip import plot as plot
 from stickslip import reference as reference
 from stickslip import study as study
 from stickslip._core import __version__ as __version__
+from stickslip.analyses.design_map import design_map as design_map
+from stickslip.analyses.design_map import speed_response as speed_response
+from stickslip.analyses.design_map import spinning as spinning
 from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle
 from stickslip.analyses.flutter_formulas import single_harmonic_cycles as single_harmonic_cycles
 from stickslip.analyses.pattern_store import merge_stores as merge_stores
 from stickslip.analyses.run import Progress
+from stickslip.damper import BodyDamper as BodyDamper
+from stickslip.damper import Centrifugal as Centrifugal
+from stickslip.damper import ContactPoint as ContactPoint
+from stickslip.damper import CylinderDamper as CylinderDamper
+from stickslip.damper import Face as Face
+from stickslip.damper import FlexibleBody as FlexibleBody
+from stickslip.damper import RigidBody as RigidBody
+from stickslip.damper import SplitDamper as SplitDamper
+from stickslip.damper import StripDamper as StripDamper
+from stickslip.damper import WedgeDamper as WedgeDamper
 from stickslip.disk import BladedDisk as BladedDisk
 from stickslip.disk import Coupling as Coupling
 from stickslip.disk import InfluenceCoefficients as InfluenceCoefficients

@@ -68,6 +68,53 @@ class TestFrame:
         np.testing.assert_allclose(own.rows(dofs), np.hstack([own.frame, -own.frame]))
 
 
+class TestSums:
+    """Displacements that are sums of degrees of freedom."""
+
+    ARM = ss.Coulomb(
+        [{"x": 1.0, "turn": -0.01}, {"y": 1.0, "turn": -0.02}],
+        ["left.x", {"left.y": 0.5}],
+        normal=[0.6, 0.8],
+        **VALUES,
+    )
+
+    def test_rows_are_sums_in_the_frame(self):
+        rows = self.ARM.rows(Dofs(["x", "y", "turn", "left.x", "left.y"]))
+        sums = np.array([[1.0, 0.0, -0.01, -1.0, 0.0], [0.0, 1.0, -0.02, 0.0, -0.5]])
+        np.testing.assert_allclose(rows, self.ARM.frame @ sums, atol=1e-15)
+
+    def test_files_and_other_places_keep_factors(self):
+        named = self.ARM.named("arm")
+        again = contact_from_spec(json.loads(json.dumps(named.to_spec())))
+        assert again == named == pickle.loads(pickle.dumps(named))
+        moved = named.moved([f"3.{dof}" for dof in named.dofs], "3.arm")
+        assert moved.nodes.names == [
+            [{"3.x": 1.0, "3.turn": -0.01}, {"3.y": 1.0, "3.turn": -0.02}],
+            ["3.left.x", {"3.left.y": 0.5}],
+        ]
+        spec = named.to_spec()
+        spec["parameters"] = {**spec["parameters"], "terms": [2, 1, 1, 1]}
+        with pytest.raises(ss.ModelError, match="6 factors and 6 dofs for sums of 5 terms"):
+            contact_from_spec(spec)
+
+    def test_a_face_of_several_nodes(self):
+        face = pad([[{"x": 1.0}, {"y": 2.0}], ["z", "w"]], normal=[0, 1])
+        assert (face.points, face.dofs) == (2, ("x", "y", "z", "w"))
+        assert face.nodes.names == [[["x", {"y": 2.0}], ["z", "w"]]]
+
+    @pytest.mark.parametrize(
+        ("dofs", "message"),
+        [
+            ([{}, "y"], "dofs: a sum without dofs"),
+            ([{"x": np.inf}, "y"], "dofs: x: inf is not a finite number"),
+            ([{"": 1.0}, "y"], "is empty"),
+        ],
+    )
+    def test_refused(self, dofs, message):
+        with pytest.raises(ss.ModelError, match=message):
+            pad(dofs, normal=[0, 1])
+
+
 class TestNodes:
     def test_one_node_has_components_alone(self):
         one = pad()

@@ -158,3 +158,12 @@ def test_the_pad_slides_as_computed_independently():
         at = pad.index(omega)
         found = [pad.amplitude(f"pad.{axis}", "max")[at] for axis in "xyz"]
         assert found == pytest.approx(expected, rel=1e-4)
+
+
+def test_wedge_between_two_blades_as_followed_in_time():
+    study = Study.load(EXAMPLES / "wedge-damper" / "study.toml")
+    (curve,) = study.run()
+    assert curve.converged.all()
+    at = curve.index(108.0)
+    run = ss.transient(curve.model, omega=108.0, periods=200, scheme="exact")
+    assert curve.amplitude("left.x")[at] == pytest.approx(run.amplitude("left.x"), rel=1e-2)

@@ -6,6 +6,7 @@ from stickslip import _core
 from stickslip.analyses.arguments import columns_of, observed_dofs, points_of, require_held
 from stickslip.analyses.assumptions import orbit_assumptions
 from stickslip.analyses.forced_response import forced_response
+from stickslip.analyses.free_flight import with_free_flight
 from stickslip.analyses.run import Progress, Run, refusals, share
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import Interrupted
@@ -67,7 +68,7 @@ def exact_response(
             grid = _frequencies(model, grid, kept, dofs, share(run, 0.0, _CHOOSING))
             part = share(run, _CHOOSING, 1.0)
         result = orbits_at(model, grid, dofs, kept, part)
-        return run.ended(result, f"{result.omega.size} of {grid.size} points")
+        return run.ended(with_free_flight(result), f"{result.omega.size} of {grid.size} points")
 
 
 def orbits_at(

@@ -18,6 +18,7 @@ from stickslip.analyses.arguments import (
 )
 from stickslip.analyses.assumptions import arrays_of, balance_assumptions
 from stickslip.analyses.branch_assumptions import branch_assumptions
+from stickslip.analyses.free_flight import with_free_flight
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.memory import require_memory
 from stickslip.model import Model
@@ -97,4 +98,4 @@ def forced_response(
             ),
         )
         of_all = "" if asked is None else f" of {asked}"
-        return run.ended(result, f"{solution.computed}{of_all} points")
+        return run.ended(with_free_flight(result), f"{solution.computed}{of_all} points")

@@ -58,6 +58,9 @@ TEXTS = {
     "observed-dofs": "Only {kept} of {total} dofs are kept in the result: {_listed}.",
     "law-not-monotone": "The contact law {_laws} is not monotone in the motion: the solution may "
     "be unstable or not the only one.",
+    "free-flight": "Nothing touches {body!r} during {share:.0%} of the period at omega = "
+    "{omega:.6g} rad/s: all contacts that hold it are open at once, and in free flight neither "
+    "stiffness nor damping decides where it goes; raise its load, or check the motion in time.",
     "undamped-motion": "The damping leaves some motion undamped: a steady state that friction does "
     "not damp either may not be the only one.",
     "negative-damping": "The damping is negative for some motion: the solution may be unstable or "

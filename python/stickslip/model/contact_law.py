@@ -15,7 +15,7 @@ from stickslip.errors import ModelError
 from stickslip.model.bonded import Bonded
 from stickslip.model.contact import Contact
 from stickslip.model.dofs import Dofs
-from stickslip.model.nodes import Nodes
+from stickslip.model.nodes import Displacement, Nodes
 
 _STEP = 1e-6
 """Step of differences, relative to what is moved: its cube root of rounding, a little less."""
@@ -54,7 +54,8 @@ class ContactLaw(Contact):
     Parameters
     ----------
     dofs : sequence of str, or of sequences of str
-        The d degrees of freedom of a node; of many nodes one such list each.
+        The d degrees of freedom of a node, or sums of them as of `Coulomb`; of many nodes one such
+        list each.
     other : sequence of str, or of sequences of str, optional
         As many at its other end: the displacements are x_dofs - x_other. Default: the ground.
     name : str, optional
@@ -97,8 +98,8 @@ class ContactLaw(Contact):
 
     def __init__(
         self,
-        dofs: Sequence[str] | Sequence[Sequence[str]],
-        other: Sequence[str] | Sequence[Sequence[str]] | None = None,
+        dofs: Sequence[Displacement] | Sequence[Sequence[Displacement]],
+        other: Sequence[Displacement] | Sequence[Sequence[Displacement]] | None = None,
         *,
         name: str | None = None,
     ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any, ClassVar, Self, TypeAlias
 
 import numpy as np
@@ -22,7 +23,7 @@ from stickslip.errors import ModelError
 from stickslip.model.bonded import Bonded
 from stickslip.model.contact import OPEN, Contact
 from stickslip.model.dofs import Dofs
-from stickslip.model.nodes import Nodes
+from stickslip.model.nodes import Displacement, Nodes
 
 Each: TypeAlias = float | tuple[float, ...]
 """One number for all nodes, or one per node."""
@@ -62,8 +63,10 @@ class Coulomb(Contact):
     dofs : sequence of str, or of sequences of str
         Degrees of freedom of the node: 3 in space, 2 in a plane, those of the tangential directions
         alone (2 or 1) where `normal` is None. One such list per node makes many nodes one contact.
+        Instead of a name a mapping of names to factors is a sum of degrees of freedom, as lever
+        arms and turned axes make it: ``{"x": 1.0, "rotation": -0.02}``.
     other : sequence of str, or of sequences of str, optional
-        As many of the other body. Default: the ground.
+        As many of the other body, names or sums. Default: the ground.
     normal : sequence of float or None
         Normal n, of any length above 0, out of the first body into the other; of many nodes also
         one per node. None: the normal load is constant, the preload.
@@ -117,8 +120,8 @@ class Coulomb(Contact):
 
     def __init__(
         self,
-        dofs: Sequence[str] | Sequence[Sequence[str]],
-        other: Sequence[str] | Sequence[Sequence[str]] | None = None,
+        dofs: Sequence[Displacement] | Sequence[Sequence[Displacement]],
+        other: Sequence[Displacement] | Sequence[Sequence[Displacement]] | None = None,
         *,
         normal: ArrayLike | None,
         friction: float | Sequence[float],
@@ -163,7 +166,8 @@ class Coulomb(Contact):
         set_fields(self, **each, normal=vectors, nodes=nodes)
 
     def __repr__(self) -> str:
-        ends = f"{list(self.nodes.first[: self.nodes.size])}" + (" ..." if self.points > 1 else "")
+        first, *_ = self.nodes.names
+        ends = f"{first if self.single else first[0]}" + (" ..." if self.points > 1 else "")
         return f"Coulomb({ends}, {self.summary()}, name={self.name!r})"
 
     @property
@@ -297,7 +301,9 @@ class Coulomb(Contact):
         return {key: one for key in self.keys if (one := getattr(self, key)) is not None}
 
     def _values(self) -> dict[str, Any]:
-        return self._given | {"shape": self.nodes.shape}
+        nodes = self.nodes
+        sums = {"terms": nodes.terms, "factors": tuple(chain.from_iterable(nodes.factors))}
+        return self._given | {"shape": nodes.shape} | (sums if nodes.factors else {})
 
     def adjustable(self) -> dict[str, tuple[float, ...]]:
         """Return friction, stiffnesses, and preload or gap, by name, in SI units."""
@@ -340,13 +346,16 @@ class Coulomb(Contact):
         cls, dofs: tuple[str | None, ...], parameters: Mapping[str, object], name: str | None
     ) -> Self:
         """Build the contact from what `dofs`, the parameters of `to_spec` and `name` hold."""
-        known = (*cls.keys, "shape")
+        known = (*cls.keys, "shape", "terms", "factors")
         require_keys(parameters, _ENTRY, known, ("shape",), "parameter")
         given: dict[str, Any] = dict(parameters)
         sizes: Iterable[object] = given.pop("shape")
         listed = members(sizes, f"{_ENTRY}: shape", "shape=[...]")
         shape = tuple(whole_number(one, f"{_ENTRY}: shape", smallest=1) for one in listed)
-        nodes = Nodes.of_list(dofs, shape, _ENTRY)
+        sums = None
+        if "terms" in given or "factors" in given:
+            sums = given.pop("terms", ()), given.pop("factors", ())
+        nodes = Nodes.of_list(dofs, shape, _ENTRY, sums)
         values: dict[str, Any] = {"normal": None} | given
         return cls(*nodes.names, **values, name=name)
 

@@ -138,14 +138,19 @@ def join(structures: Mapping[str, Structure]) -> Structure:
         text(name, "join: name of a part")
         if not isinstance(structure, Structure):
             raise ModelError(f"join: part {brief(name)} is {brief(structure)}; give a Structure")
-    parts = list(structures.values())
+    dofs = [f"{name}.{dof}" for name, part in structures.items() for dof in part.dofs]
+    return side_by_side(structures.values(), dofs)
+
+
+def side_by_side(structures: Iterable[Structure], dofs: Iterable[str]) -> Structure:
+    """Put several structures side by side, not yet coupled, under names of all their dofs."""
+    parts = list(structures)
     starts = np.cumsum([0, *map(len, parts)])
     blocks = {name: np.zeros((starts[-1],) * 2) for name in ("mass", "stiffness", "damping")}
     for name, whole in blocks.items():
         for start, part in zip(starts, parts, strict=False):
             block = slice(start, start + len(part))
             whole[block, block] = getattr(part, name)
-    dofs = [f"{name}.{dof}" for name, part in structures.items() for dof in part.dofs]
     proportional = all(part.proportional for part in parts)
     return Structure.of_law(**blocks, dofs=dofs, law=None, proportional=proportional)
 

@@ -3,12 +3,14 @@
 from stickslip.calls import checked_names
 from stickslip.plot.basins import basins, lines
 from stickslip.plot.blades import blade_bars, blade_curves
+from stickslip.plot.bodies import damper_drawing
 from stickslip.plot.contacts import contact_forces, events, hysteresis, waveform
 from stickslip.plot.curves import curves, slip
 from stickslip.plot.cycles import limit_cycles, stability_map
 from stickslip.plot.damper import damper
 from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
 from stickslip.plot.fit import fit, fit_intervals, fit_residuals
+from stickslip.plot.maps import design_map
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.multipliers import cycle_multipliers, multipliers
 from stickslip.plot.statics import static_forces
@@ -25,6 +27,8 @@ __all__ = [
     "curves",
     "cycle_multipliers",
     "damper",
+    "damper_drawing",
+    "design_map",
     "distribution",
     "events",
     "fit",

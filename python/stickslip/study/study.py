@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from stickslip.analyses.arguments import loaded_dofs, physical_dofs
 from stickslip.analyses.run import share
 from stickslip.checks import brief, file_path, is_file, is_reserved, unknown, vanished
+from stickslip.damper.damper import Built, widened
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.sector import NEXT, stranger
 from stickslip.errors import ModelError
@@ -81,8 +82,9 @@ class Study:
         Parameters
         ----------
         path : str or Path
-            TOML file with the tables ``[structure]``, ``[[contact]]``, ``[[force]]``, ``[disk]``,
-            ``[[coupling]]``, ``[analysis]`` and ``[output]``; files named in it are relative to it.
+            TOML file with the tables ``[structure]``, ``[[contact]]``, ``[[damper]]``,
+            ``[[force]]``, ``[disk]``, ``[[coupling]]``, ``[analysis]`` and ``[output]``; files
+            named in it are relative to it.
 
         Returns
         -------
@@ -262,12 +264,31 @@ def _model(tables: StudyTables, folder: Path) -> Model:
         structure = _structure(tables.structure, folder)
     if tables.disk is not None:
         return _disk(tables, tables.disk, structure, folder)
+    structure, contacts, forces = _with_dampers(tables, structure)
     _check_parts(tables, structure)
     return Model(
         structure,
-        contacts=[contact.build() for contact in tables.contact],
-        forces=[force.build() for force in tables.force],
+        contacts=[*contacts, *(contact.build() for contact in tables.contact)],
+        forces=[*forces, *(force.build() for force in tables.force)],
     )
+
+
+def _with_dampers(tables: StudyTables, structure: Structure) -> Built:
+    """Return the structure, or the sector of a disk, with the bodies of all dampers."""
+    whole = Built(structure, [], [])
+    for number, table in enumerate(tables.damper, 1):
+        name = table.name or ("damper" if number == 1 else f"damper-{number}")
+        ends = table.left_dofs, table.right_dofs
+        with named(f"damper {number}"):
+            damper = table.build()
+            if tables.disk is None:
+                own = damper.built(whole.structure, *ends, name)
+            else:
+                own = damper.built_in_sector(
+                    whole.structure, tables.disk.sectors, *ends, table.axes, name
+                )
+        whole = Built(own.structure, [*whole.contacts, *own.contacts], [*whole.forces, *own.forces])
+    return whole
 
 
 def _check_parts(tables: StudyTables, structure: Structure) -> None:
@@ -318,17 +339,18 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
     if table.interface is not None:
         with named("disk: interface"):
             interface = _interface(table.interface, folder)
+    structure, contacts, forces = _with_dampers(tables, structure)
     _check_parts(tables, structure)
     with named("disk"):
         disk = BladedDisk(
             structure,
             table.sectors,
             [coupling.build() for coupling in tables.coupling],
-            [contact.build() for contact in tables.contact],
-            [force.build() for force in tables.force],
+            [*contacts, *(contact.build() for contact in tables.contact)],
+            [*forces, *(force.build() for force in tables.force)],
             engine_order=table.engine_order,
             engine_orders=table.engine_orders,
-            interface=interface,
+            interface=widened(interface, len(structure)),
         )
         if table.mistuning is None:
             return disk

@@ -1,0 +1,256 @@
+"""Peaks over two parameters of a design, and responses along a speed that changes the model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from os import cpu_count
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.analyses.forced_response import forced_response
+from stickslip.checks import brief, members, real_matrix, real_number, set_fields, text
+from stickslip.errors import ModelError
+from stickslip.model import Model, Structure
+from stickslip.results.design_map import DesignMap, SpeedResponse
+
+_COARSE = 3
+"""Harmonics with which resonances are located."""
+_NEAR = 0.8
+"""Share of the highest of the coarse maxima from which on a rival is looked at too."""
+_LOCAL = 5
+"""Frequencies around a maximum."""
+
+
+def design_map(
+    build: Callable[..., Model],
+    parameters: Mapping[str, ArrayLike],
+    *,
+    dof: str,
+    omega: tuple[float, float],
+    points: int = 24,
+    tolerance: float = 1e-2,
+    max_harmonics: int = 127,
+    threads: int | None = None,
+) -> DesignMap:
+    """Find the peak of a response for all pairs of values of two parameters of a design.
+
+    Resonances of a model are located on a coarse grid with three harmonics; the highest ones are
+    then solved on ever narrower grids with twice the harmonics each, until the peak stays the same
+    within the tolerance. Unlike with `damper_curve` whatever `build` makes may vary: mass, angle,
+    speed, geometry.
+
+    Parameters
+    ----------
+    build : callable
+        Makes the model of the two values, which it takes by their names.
+    parameters : mapping of str to array_like
+        The values of the two parameters.
+    dof : str
+        The degree of freedom whose peak is sought.
+    omega : (float, float)
+        Range of frequencies in which the peak is the highest point [rad/s].
+    points : int, optional
+        Frequencies of the coarse grid. A resonance much narrower than their distance may be missed.
+    tolerance : float, optional
+        Change of the peak, relative to it, with twice the harmonics that counts as none.
+    max_harmonics : int, optional
+        Harmonics at which a peak is given up: it counts as not found.
+    threads : int, optional
+        Threads. Default: as many as there are processors.
+
+    Returns
+    -------
+    DesignMap
+        Amplitude and frequency of every peak; nan where none was found.
+
+    Raises
+    ------
+    ModelError
+        If there are not two parameters with values, or a value makes no model.
+    """
+    names, values = _two(parameters)
+    low, high = sorted(real_number(one, "omega") for one in omega)
+    if not 0.0 < low < high or points < 3:
+        raise ModelError(
+            f"omega: {brief(omega)} with {points} points; give 0 < from < to, 3 points"
+        )
+    span = np.linspace(low, high, points)
+    cells = [(one, other) for one in values[0] for other in values[1]]
+    models = []
+    for cell in cells:
+        model = build(**dict(zip(names, cell, strict=True)))
+        if not isinstance(model, Model):
+            raise ModelError(f"build: {brief(model)} is no Model; return one")
+        model.structure.index(dof)
+        models.append(model)
+    find = partial(_peak, dof=dof, grid=span, tolerance=tolerance, max_harmonics=max_harmonics)
+    with ThreadPoolExecutor(threads or cpu_count()) as pool:
+        found = np.array(list(pool.map(find, models)))
+    shape = tuple(map(len, values))
+    columns = [column.reshape(shape) for column in found.T]
+    own = DesignMap(names, values, dof, columns[0], columns[1], columns[2].astype(np.int64))
+    set_fields(own, **vars(own))
+    return own
+
+
+def _two(parameters: object) -> tuple[tuple[str, str], tuple[NDArray[np.float64], ...]]:
+    if not isinstance(parameters, Mapping) or len(parameters) != 2:
+        raise ModelError(
+            f'parameters: {brief(parameters)}; give two, {{"mass": [...], "angle": [...]}}'
+        )
+    first, second = (text(name, "parameters") for name in parameters)
+    return (first, second), tuple(
+        np.array([real_number(one, name) for one in members(values, name, "[0.05, 0.1]")])
+        for name, values in parameters.items()
+    )
+
+
+def _peak(
+    model: Model, *, dof: str, grid: NDArray[np.float64], tolerance: float, max_harmonics: int
+) -> tuple[float, float, float]:
+    """Return amplitude, frequency and harmonics of the highest peak; nan where there is none."""
+    coarse = _amplitudes(model, dof, grid, _COARSE)
+    if not np.isfinite(coarse).any():
+        return np.nan, np.nan, 0
+    filled = np.nan_to_num(coarse, nan=-1.0)
+    ahead, behind = np.append(filled[1:], -1.0), np.append(-1.0, filled[:-1])
+    tops = np.flatnonzero((filled >= ahead) & (filled >= behind) & (filled >= _NEAR * filled.max()))
+    best: tuple[float, float, float] = (np.nan, np.nan, 0)
+    for top in tops:
+        one = _refined(model, dof, grid, int(top), tolerance, max_harmonics)
+        if not best[0] >= one[0]:
+            best = one
+    return best
+
+
+def _refined(
+    model: Model,
+    dof: str,
+    grid: NDArray[np.float64],
+    top: int,
+    tolerance: float,
+    max_harmonics: int,
+) -> tuple[float, float, float]:
+    """Return a peak near a point of the coarse grid."""
+    step, centre = grid[1] - grid[0], grid[top]
+    before, harmonics = np.nan, _COARSE
+    while 2 * harmonics + 1 <= max_harmonics:
+        harmonics = 2 * harmonics + 1
+        near = np.linspace(
+            max(centre - 2.0 * step, grid[0]), min(centre + 2.0 * step, grid[-1]), _LOCAL
+        )
+        amplitudes = _amplitudes(model, dof, near, harmonics)
+        if not np.isfinite(amplitudes).any():
+            break
+        omega, amplitude = _vertex(near, amplitudes)
+        if abs(amplitude - before) <= tolerance * amplitude:
+            return amplitude, omega, harmonics
+        # A peak that has wandered off is followed before the grid narrows.
+        inside = near[1] < omega < near[-2]
+        step, centre, before = (0.5 if inside else 1.0) * step, omega, amplitude
+    return np.nan, np.nan, harmonics
+
+
+def _vertex(omega: NDArray[np.float64], amplitude: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the top of the parabola through the highest point and its neighbours."""
+    top = int(np.nanargmax(amplitude))
+    around = slice(top - 1, top + 2)
+    if not 0 < top < omega.size - 1 or not np.isfinite(amplitude[around]).all():
+        return float(omega[top]), float(amplitude[top])
+    curve = np.polynomial.Polynomial.fit(omega[around], amplitude[around], 2)
+    (at,) = curve.deriv().roots()
+    return float(at), float(curve(at))
+
+
+def _amplitudes(
+    model: Model, dof: str, omega: NDArray[np.float64], harmonics: int
+) -> NDArray[np.float64]:
+    result = forced_response(
+        model, omega, harmonics, observe=[dof], stability=False, tolerance=1e-2
+    )
+    amplitude = np.array(result.amplitude(dof))
+    amplitude[~result.converged] = np.nan
+    return amplitude
+
+
+def speed_response(
+    build: Callable[[float], Model],
+    speed: ArrayLike,
+    *,
+    engine_order: float,
+    dof: str,
+    harmonics: int = 7,
+) -> SpeedResponse:
+    """Response along the speed of rotation, which changes the model itself.
+
+    At a speed W the forces have the frequency of their engine order, E W; `build` makes the model
+    there, with the centrifugal loads of dampers and the stiffness of the turning blades.
+
+    Parameters
+    ----------
+    build : callable
+        Makes the model of a speed [rad/s].
+    speed : array_like
+        Speeds of rotation [rad/s].
+    engine_order : float
+        Frequency of the forces over the speed.
+    dof : str
+        The degree of freedom that is looked at.
+    harmonics : int, optional
+        Highest harmonic kept.
+
+    Returns
+    -------
+    SpeedResponse
+        Amplitude at every speed; nan where none was found.
+
+    Raises
+    ------
+    ModelError
+        If a speed is not positive, or makes no model.
+    """
+    order = real_number(engine_order, "engine_order")
+    speeds = np.array([real_number(one, "speed") for one in members(speed, "speed", "[...]")])  # type: ignore[arg-type]
+    if not (speeds.size and (speeds > 0.0).all() and order > 0.0):
+        raise ModelError(f"speed: {brief(speed)} of order {order:g}; give numbers above zero")
+    found = [_amplitudes(build(one), dof, np.array([order * one]), harmonics)[0] for one in speeds]
+    own = SpeedResponse(speeds, order * speeds, np.array(found), dof, order)
+    set_fields(own, **vars(own))
+    return own
+
+
+def spinning(
+    structure: Structure, stiffening: ArrayLike, softening: ArrayLike | None = None
+) -> Callable[[float], Structure]:
+    """Return the structure as a function of the speed of rotation W, K(W) = K + W^2 (K2 - S).
+
+    Parameters
+    ----------
+    structure : Structure
+        At rest. Its damping stays what it is at rest.
+    stiffening : array_like, shape (N, N)
+        K2, what the stress of the centrifugal load adds [N s2/m].
+    softening : array_like, shape (N, N), optional
+        S, what the change of the load with the displacement takes away [kg]. Default: none.
+
+    Raises
+    ------
+    ModelError
+        If a matrix is of another size.
+    """
+    added = real_matrix(stiffening, "stiffening")
+    if softening is not None:
+        added = added - real_matrix(softening, "softening")
+    if added.shape != structure.stiffness.shape:
+        raise ModelError(
+            f"stiffening: {added.shape} for a structure of {len(structure)} dofs; give as many"
+        )
+
+    def at(speed: float) -> Structure:
+        stiffness = structure.stiffness + speed**2 * added
+        return Structure(structure.mass, stiffness, structure.damping, structure.dofs)
+
+    return at

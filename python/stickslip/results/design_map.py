@@ -1,0 +1,62 @@
+"""Peaks over two parameters of a design, and amplitudes along a speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.drawn import Drawn
+from stickslip.errors import ModelError
+from stickslip.results.fields import Float
+
+
+@dataclass(frozen=True, eq=False)
+class DesignMap:
+    """Peaks over two parameters of a design; rows belong to the first one."""
+
+    names: tuple[str, str]
+    """Names of the parameters."""
+    values: tuple[Float, ...]
+    """Their values, (n,) and (m,)."""
+    dof: str
+    """The degree of freedom whose peak it is."""
+    amplitude: Float
+    """(n, m) Amplitude of the peak [m]; nan where none was found."""
+    omega: Float
+    """(n, m) Angular frequency of the peak [rad/s]."""
+    harmonics: NDArray[np.int64]
+    """(n, m) Highest harmonic kept."""
+
+    plot = Drawn("design_map")
+
+    @property
+    def optimum(self) -> dict[str, float]:
+        """The values of the least of the computed peaks.
+
+        Raises ModelError if no peak was found.
+        """
+        if not np.isfinite(self.amplitude).any():
+            raise ModelError("optimum: none of the peaks was found; widen omega, or max_harmonics")
+        place = np.unravel_index(int(np.nanargmin(self.amplitude)), self.amplitude.shape)
+        return {
+            name: float(values[at])
+            for name, values, at in zip(self.names, self.values, place, strict=True)
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedResponse:
+    """Amplitudes along the speed of rotation."""
+
+    speed: Float
+    """(n,) Speeds of rotation [rad/s]."""
+    omega: Float
+    """(n,) Angular frequency of the forces [rad/s]."""
+    amplitude: Float
+    """(n,) Amplitude [m]; nan where none was found."""
+    dof: str
+    """The degree of freedom."""
+    engine_order: float
+    """Frequency of the forces over the speed."""

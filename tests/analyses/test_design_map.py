@@ -1,0 +1,95 @@
+"""Peaks over two parameters of a design, and responses along a speed that changes the model."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import stickslip as ss
+
+WEDGE = ss.WedgeDamper(
+    angle=60.0,
+    mass=0.1,
+    friction=0.2,
+    tangential_stiffness=3e5,
+    normal_stiffness=3e5,
+    load=240.0,
+)
+
+
+def pair(mass=0.1, angle=60.0, wedge=WEDGE):
+    blades = (
+        ss.Structure(10.0 * np.eye(2), stiffness, 100.0 * np.eye(2), ["x", "y"])
+        for stiffness in ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]])
+    )
+    forces = [ss.Force("left.x", 150.0), ss.Force("right.x", 150.0, phase=np.pi)]
+    damper = replace(wedge, mass=mass, angle=angle)
+    ends = ["x", "y"]
+    return damper.between(*blades, left_dofs=ends, right_dofs=ends, forces=forces)
+
+
+@pytest.mark.slow
+def test_peaks_of_a_map_are_those_of_fine_curves():
+    values = {"mass": [0.05, 0.2], "angle": [50.0, 60.0]}
+    found = ss.design_map(pair, values, dof="left.x", omega=(95.0, 120.0), threads=1)
+    assert found.amplitude.shape == (2, 2)
+    for row, mass in enumerate(values["mass"]):
+        for column, angle in enumerate(values["angle"]):
+            near = found.omega[row, column] + np.linspace(-2.0, 2.0, 9)
+            fine = ss.forced_response(pair(mass, angle), near, 63, stability=False)
+            expected = np.nanmax(fine.amplitude("left.x"))
+            assert found.amplitude[row, column] == pytest.approx(expected, rel=1e-2)
+    best = found.optimum
+    assert found.amplitude.min() == pytest.approx(
+        found.amplitude[values["mass"].index(best["mass"]), values["angle"].index(best["angle"])]
+    )
+    axes = found.plot(length_unit="mm", ax=Figure().add_subplot())
+    assert axes.get_xlabel() == "mass"
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({"mass": [0.1]}, "give two"),
+        ({"mass": [0.1], "angle": ["x"]}, "angle: 'x' is not a number"),
+    ],
+)
+def test_refused_parameters(parameters, message):
+    with pytest.raises(ss.ModelError, match=message):
+        ss.design_map(pair, parameters, dof="left.x", omega=(95.0, 120.0))
+
+
+def test_refused_models():
+    values = {"mass": [0.1], "angle": [60.0]}
+    with pytest.raises(ss.ModelError, match="build: 3 is no Model"):
+        ss.design_map(lambda mass, angle: 3, values, dof="left.x", omega=(95.0, 120.0))
+    with pytest.raises(ss.ModelError, match="give 0 < from < to"):
+        ss.design_map(pair, values, dof="left.x", omega=(95.0, 95.0))
+
+
+def test_speed_changes_loads_and_stiffness():
+    """A linear blade that stiffens, and the wedge whose load grows with the square of the speed."""
+    blade = ss.Structure([[1.0]], [[4e4]], [[4.0]], ["x"])
+    at = ss.spinning(blade, [[0.5]], softening=[[1.0]])
+    speeds = np.array([40.0, 90.0])
+    found = ss.speed_response(
+        lambda speed: ss.Model(at(speed), forces=[ss.Force("x", 3.0)]),
+        speeds,
+        engine_order=2,
+        dof="x",
+        harmonics=1,
+    )
+    omega = 2.0 * speeds
+    dynamic = 4e4 - 0.5 * speeds**2 - omega**2 + 4j * omega
+    np.testing.assert_allclose(found.amplitude, 3.0 / np.abs(dynamic), rtol=1e-12)
+    np.testing.assert_array_equal(found.omega, omega)
+    spun = [
+        pair(wedge=replace(WEDGE, load=ss.Centrifugal(radius=0.4, speed=speed))).forces[0]
+        for speed in speeds
+    ]
+    np.testing.assert_allclose([one.amplitude for one in spun], 0.1 * 0.4 * speeds**2)
+    with pytest.raises(ss.ModelError, match=r"stiffening: \(2, 2\)"):
+        ss.spinning(blade, np.eye(2))
+    with pytest.raises(ss.ModelError, match="give numbers above zero"):
+        ss.speed_response(at, [0.0], engine_order=2, dof="x")
