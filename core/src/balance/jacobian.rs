@@ -4,6 +4,7 @@
 //! direction is found from their block and carried to the stuck contacts by substitution.
 
 use super::condensed::{Condensed, Path};
+use super::krylov_newton::KrylovNewton;
 use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
 use super::ring_series::RingSeries;
@@ -39,6 +40,9 @@ impl Condensed<'_> {
         if tangent {
             self.loads = loads;
             self.factor = None;
+            let slots = self.table.harmonics().slots();
+            self.moved_on = false;
+            self.sizes = sizes(&self.model, slots, &self.slip_load(), x);
         } else {
             self.values = loads;
         }
@@ -78,7 +82,9 @@ impl Condensed<'_> {
                 self.active.extend(points.clone());
             }
         }
-        self.factor = Some(match (&self.linear, self.model.compliance().ring()) {
+        let compliance = self.model.compliance();
+        self.factor = Some(match (&self.linear, compliance.ring()) {
+            (Linear::Modal(_), _) => Factor::Krylov(KrylovNewton::new(compliance, &self.active)),
             (Linear::Ring { orders, .. }, Some(ring)) => Factor::Ring(RingNewton::new(
                 RingSeries::new(orders, self.table.harmonics()),
                 ring.layout(),
@@ -127,25 +133,28 @@ impl Condensed<'_> {
     }
 }
 
-/// Size of a step contact by contact: a stiff contact moves little, and its force is its stiffness
+/// Size of the motion of every point: a stiff contact moves little, and its force is its stiffness
 /// times that little. A contact that carries next to nothing is measured against the largest force.
-fn contactwise(model: &Model, slots: usize, slip_load: &[f64], step: &[f64], x: &[f64]) -> f64 {
+fn sizes(model: &Model, slots: usize, slip_load: &[f64], x: &[f64]) -> Vec<f64> {
     let stiffness = |i: usize| model.contact_stiffness()[(i, i)];
     let force = |i: usize, u: &[f64], q: &[f64]| {
         u.iter().zip(q).map(|(u, q)| (stiffness(i) * u - q).powi(2)).sum::<f64>().sqrt()
     };
-    let points = || {
-        let parts = x.chunks_exact(slots).zip(slip_load.chunks_exact(slots));
-        parts.zip(step.chunks_exact(slots)).enumerate()
-    };
-    let largest = points().map(|(i, ((u, q), _))| force(i, u, q)).fold(0.0, f64::max);
+    let points = || x.chunks_exact(slots).zip(slip_load.chunks_exact(slots)).enumerate();
+    let largest = points().map(|(i, (u, q))| force(i, u, q)).fold(0.0, f64::max);
     let size = norm(x);
     points()
-        .map(|(i, ((u, _), step))| {
+        .map(|(i, (u, _))| {
             let least = CARRIES_NOTHING * largest / stiffness(i).max(f64::MIN_POSITIVE);
-            norm(step) / norm(u).max(least.min(size)).max(f64::MIN_POSITIVE)
+            norm(u).max(least.min(size)).max(f64::MIN_POSITIVE)
         })
-        .fold(0.0, f64::max)
+        .collect()
+}
+
+/// Size of a step contact by contact.
+fn contactwise(model: &Model, slots: usize, slip_load: &[f64], step: &[f64], x: &[f64]) -> f64 {
+    let sizes = sizes(model, slots, slip_load, x);
+    step.chunks_exact(slots).zip(sizes).map(|(s, size)| norm(s) / size).fold(0.0, f64::max)
 }
 
 impl System for Condensed<'_> {
@@ -195,6 +204,12 @@ impl System for Condensed<'_> {
                 factor.solve(RingSeries::new(orders, self.table.harmonics()), rhs, step);
                 self.profile.linear_solve += start.elapsed();
                 return step.iter().all(|s| s.is_finite());
+            }
+            Some(Factor::Krylov(factor)) => {
+                let solved = factor.solve(self, rhs, step);
+                self.profile.linear_solve += start.elapsed();
+                self.profile.products += solved.unwrap_or_default();
+                return solved.is_some() && step.iter().all(|s| s.is_finite());
             }
             None => return false,
         };

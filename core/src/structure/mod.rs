@@ -4,6 +4,7 @@
 //! harmonic k produces when all contacts stick. That form stays well scaled at high harmonics,
 //! needs no partition of the matrices and takes ω as an unknown.
 
+mod contact_modes;
 mod cyclic;
 mod direct;
 mod flexibility;
@@ -20,6 +21,7 @@ mod ring_order;
 mod spectrum;
 mod system;
 
+pub use contact_modes::{ContactModes, ModalOrders};
 pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
 pub use direct::DirectCompliance;
 pub use flutter_compliance::{FlutterCompliance, StuckMode};
@@ -144,6 +146,12 @@ pub trait Compliance: Send + Sync {
 
     /// The ring of sectors that this is, if it is one: its equations need no dense receptance.
     fn ring(&self) -> Option<&Ring> {
+        None
+    }
+
+    /// The contacts seen from the modes of the stuck structure, if there are many: their equations need
+    /// no receptance at all.
+    fn contact_modes(&self) -> Option<&ContactModes> {
         None
     }
 
