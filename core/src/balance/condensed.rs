@@ -245,12 +245,7 @@ impl<'a> Condensed<'a> {
 
     /// `out += G q` over all kept harmonics.
     pub fn add_response(&self, slip_load: &[f64], out: &mut [f64]) {
-        self.linear.add_response(
-            self.model.compliance(),
-            self.table.harmonics(),
-            slip_load,
-            out,
-        );
+        self.linear.add_response(self.model.compliance(), self.table.harmonics(), slip_load, out);
     }
 
     /// Rate of change of the residual with frequency at fixed unknowns, sign reversed.

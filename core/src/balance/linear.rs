@@ -93,7 +93,8 @@ impl Linear {
             }
             Self::Modal(orders) => {
                 let Some(modes) = compliance.contact_modes() else { return Ok(()) };
-                *orders = modes.orders(harmonics, omega)?;
+                let slots = |order| harmonics.slot(order).map(|slot| (order, slot));
+                *orders = modes.orders(harmonics.orders().filter_map(slots), omega)?;
                 let mut motion = Mat::zeros(harmonics.slots(), modes.modes());
                 modes.add_load(orders, &mut motion);
                 modes.answer(orders, &mut motion, EXACT);
@@ -149,12 +150,9 @@ impl Linear {
         request: &Request<'_>,
         out: &mut [c64],
     ) -> Result<(), Error> {
-        if let (Some(motion), Some(modes), Some(slot)) = (motion, compliance.contact_modes(), slot) {
-            for (x, &dof) in out.iter_mut().zip(request.observe) {
-                let part = |slot| modes.displacement(dof, slot, motion);
-                let sine = if request.harmonic == 0 { 0.0 } else { part(slot + 1) };
-                *x = c64::new(part(slot), -sine);
-            }
+        if let (Some(motion), Some(modes), Some(slot)) = (motion, compliance.contact_modes(), slot)
+        {
+            modes.observe(request.harmonic, slot, motion, request.observe, out);
             return Ok(());
         }
         match (self, compliance.ring()) {

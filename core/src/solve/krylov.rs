@@ -5,6 +5,9 @@ use super::norm;
 /// Directions after which the basis is begun anew.
 const LONGEST_BASIS: usize = 80;
 
+/// Image of a direction, relative to what it was before the others were taken off, that is rounding.
+const NOTHING: f64 = 1e-14;
+
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KrylovSettings {
@@ -125,9 +128,10 @@ impl Basis {
         }
         let last = column.len() - 1;
         let length = column[last].hypot(rest);
-        let [cos, sin] =
-            if length > 0.0 { [column[last] / length, rest / length] } else { [1.0, 0.0] };
-        column[last] = length;
+        // What the matrix takes to nothing leaves the residual as it is.
+        let nothing = length <= NOTHING * before;
+        let [cos, sin] = if nothing { [0.0, 1.0] } else { [column[last] / length, rest / length] };
+        column[last] = if nothing { 0.0 } else { length };
         let right = self.right[last];
         self.right[last] = cos * right;
         self.right.push(-sin * right);
@@ -135,7 +139,7 @@ impl Basis {
         self.triangle.push(column);
         image.iter_mut().for_each(|w| *w /= rest);
         self.vectors.push(image);
-        rest > f64::EPSILON * before
+        rest > NOTHING * before
     }
 
     /// Adds the least-squares solution to x, and leaves its residual.
@@ -158,7 +162,8 @@ impl Basis {
         left[steps] = self.right[steps];
         for i in (0..steps).rev() {
             let [cos, sin] = self.rotations[i];
-            (left[i], left[i + 1]) = (cos * left[i] - sin * left[i + 1], sin * left[i] + cos * left[i + 1]);
+            (left[i], left[i + 1]) =
+                (cos * left[i] - sin * left[i + 1], sin * left[i] + cos * left[i + 1]);
         }
         let closed = self.vectors[steps].iter().any(|v| !v.is_finite());
         if closed {
@@ -220,7 +225,10 @@ mod tests {
     fn a_space_that_closes_gives_the_solution_and_a_singular_matrix_none() {
         // Two eigenvalues: two directions hold the solution.
         let product = |v: &[f64], out: &mut [f64]| {
-            out.iter_mut().zip(v).enumerate().for_each(|(i, (o, v))| *o = (1.0 + (i % 2) as f64) * v);
+            out.iter_mut()
+                .zip(v)
+                .enumerate()
+                .for_each(|(i, (o, v))| *o = (1.0 + (i % 2) as f64) * v);
             true
         };
         let rhs: Vec<f64> = (1..=10).map(f64::from).collect();

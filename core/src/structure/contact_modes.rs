@@ -8,14 +8,12 @@ use super::flexibility::RIGID_BODY;
 use super::modal::RESONANCE;
 use super::modes::RealModes;
 use super::ports::{HarmonicLoad, Ports};
-use crate::fourier::Harmonics;
 use crate::solve::{gmres, KrylovSettings};
 use crate::Error;
 use faer::linalg::matmul::matmul;
+use faer::linalg::solvers::Solve as _;
 use faer::{c64, Accum, Mat, MatRef, Par};
 
-/// Contacts from which on a structure is seen in this way; fewer gain nothing by it.
-const FEWEST: usize = 24;
 /// Products with the coupling of the damping: far more than it takes.
 const MOST_PRODUCTS: usize = 400;
 
@@ -44,13 +42,16 @@ pub struct ModalOrders {
 }
 
 impl ContactModes {
+    /// Contacts from which on a structure is seen in this way; fewer gain nothing by it.
+    pub(super) const FEWEST: usize = 24;
+
     /// Of the modes of the stuck structure and `Φᵀ C Φ`; nothing if there are few contacts.
     pub(super) fn new(
         modes: &RealModes,
         damping: impl FnOnce() -> Mat<f64>,
         ports: &Ports,
     ) -> Option<Self> {
-        if ports.rows.nrows() < FEWEST {
+        if ports.rows.nrows() < Self::FEWEST {
             return None;
         }
         let damping = damping();
@@ -60,15 +61,10 @@ impl ContactModes {
 
     /// Of modes that the damping does not couple; nothing if there are few contacts.
     pub(super) fn uncoupled(modes: &RealModes, damping: &[f64], ports: &Ports) -> Option<Self> {
-        (ports.rows.nrows() >= FEWEST).then(|| Self::of(modes, damping.to_vec(), None, ports))
+        (ports.rows.nrows() >= Self::FEWEST).then(|| Self::of(modes, damping.to_vec(), None, ports))
     }
 
-    fn of(
-        modes: &RealModes,
-        damping: Vec<f64>,
-        coupling: Option<Mat<f64>>,
-        ports: &Ports,
-    ) -> Self {
+    fn of(modes: &RealModes, damping: Vec<f64>, coupling: Option<Mat<f64>>, ports: &Ports) -> Self {
         let dofs = modes.shapes.transpose().to_owned();
         let coupling = coupling.map(|matrix| {
             let mut transposed = matrix.transpose().to_owned();
@@ -83,7 +79,7 @@ impl ContactModes {
             (load.harmonic, (0..dofs.nrows()).map(of_mode).collect())
         };
         Self {
-            contacts: &dofs * ports.rows.transpose(),
+            contacts: seen(dofs.as_ref(), ports.rows.as_ref()),
             omega_squared: modes.omega_squared.clone(),
             loads: ports.loads.iter().map(project).collect(),
             dofs,
@@ -110,14 +106,17 @@ impl ContactModes {
         self.contacts.as_ref()
     }
 
-    /// The dynamic stiffness at a frequency [rad/s].
+    /// The dynamic stiffness at a frequency [rad/s], of harmonics with their slots.
     ///
     /// # Errors
     /// The harmonic at which the structure is singular, and why.
-    pub fn orders(&self, harmonics: &Harmonics, omega: f64) -> Result<ModalOrders, (usize, Error)> {
-        let mut orders = Vec::new();
-        for order in harmonics.orders() {
-            let Some(slot) = harmonics.slot(order) else { continue };
+    pub fn orders(
+        &self,
+        harmonics: impl Iterator<Item = (usize, usize)>,
+        omega: f64,
+    ) -> Result<ModalOrders, (usize, Error)> {
+        let (mut orders, mut kept) = (Vec::new(), Vec::new());
+        for (order, slot) in harmonics {
             let rate = order as f64 * omega;
             self.check(order, omega).map_err(|error| (order, error))?;
             let modes = self.omega_squared.iter().zip(&self.damping);
@@ -128,12 +127,13 @@ impl ContactModes {
                 if own.norm() < least { c64::new(0.0, least) } else { own }.inv()
             });
             orders.push((slot, rate, inverse.collect()));
+            kept.push(order);
         }
-        Ok(ModalOrders { orders, harmonics: harmonics.orders().collect() })
+        Ok(ModalOrders { orders, harmonics: kept })
     }
 
     /// Refuses rigid-body motion under static loads, and an undamped mode at its resonance.
-    fn check(&self, order: usize, omega: f64) -> Result<(), Error> {
+    pub(super) fn check(&self, order: usize, omega: f64) -> Result<(), Error> {
         if order == 0 {
             let largest = self.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
             let lowest = self.omega_squared.first().map_or(0.0, |w| w.max(0.0).sqrt());
@@ -157,7 +157,7 @@ impl ContactModes {
         Ok(())
     }
 
-    fn load(&self, harmonic: usize) -> Option<&[c64]> {
+    pub(super) fn load(&self, harmonic: usize) -> Option<&[c64]> {
         self.loads.iter().find(|(order, _)| *order == harmonic).map(|(_, load)| load.as_slice())
     }
 
@@ -190,11 +190,63 @@ impl ContactModes {
         motion
     }
 
-    /// Displacement of a DOF from modal coordinates at a slot.
+    /// Amplitudes of DOFs from the modal coordinates of a harmonic at a slot.
+    pub fn observe(
+        &self,
+        harmonic: usize,
+        slot: usize,
+        coordinates: &Mat<f64>,
+        observe: &[usize],
+        out: &mut [c64],
+    ) {
+        for (x, &dof) in out.iter_mut().zip(observe) {
+            let part = |slot: usize| -> f64 {
+                let shape = self.dofs.col(dof).iter();
+                shape.zip(coordinates.row(slot).iter()).map(|(phi, y)| phi * y).sum()
+            };
+            *x = c64::new(part(slot), if harmonic == 0 { 0.0 } else { -part(slot + 1) });
+        }
+    }
+
+    /// `Z⁻¹` of the columns of a matrix of complex modal forces, by a factorisation where the damping
+    /// couples modes.
+    pub(super) fn solved(&self, order: usize, omega: f64, forces: Mat<c64>) -> Mat<c64> {
+        let rate = order as f64 * omega;
+        let own = |j: usize| c64::new(self.omega_squared[j] - rate * rate, rate * self.damping[j]);
+        let Some(coupling) = &self.coupling else {
+            return Mat::from_fn(forces.nrows(), forces.ncols(), |i, j| forces[(i, j)] / own(i));
+        };
+        let whole = Mat::from_fn(self.modes(), self.modes(), |i, j| {
+            let diagonal = if i == j { own(i) } else { c64::new(0.0, 0.0) };
+            diagonal + c64::new(0.0, rate * coupling[(j, i)])
+        });
+        whole.partial_piv_lu().solve(forces)
+    }
+
+    /// `−dZ/dω` of the columns of a matrix of complex modal coordinates.
+    pub(super) fn softening(&self, order: usize, omega: f64, coordinates: &Mat<c64>) -> Mat<c64> {
+        let k = order as f64;
+        let coupled = self.coupling.as_ref().map(|coupling| {
+            let matrix = coupling.transpose();
+            Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
+                * coordinates
+        });
+        Mat::from_fn(coordinates.nrows(), coordinates.ncols(), |i, j| {
+            let y = coordinates[(i, j)];
+            let other = coupled.as_ref().map_or(c64::new(0.0, 0.0), |coupled| coupled[(i, j)]);
+            2.0 * k * k * omega * y - c64::new(0.0, k) * (self.damping[i] * y + other)
+        })
+    }
+
+    /// Number of DOFs.
     #[must_use]
-    pub fn displacement(&self, dof: usize, slot: usize, coordinates: &Mat<f64>) -> f64 {
-        let shape = self.dofs.col(dof).iter();
-        shape.zip(coordinates.row(slot).iter()).map(|(phi, y)| phi * y).sum()
+    pub fn dofs(&self) -> usize {
+        self.dofs.ncols()
+    }
+
+    /// Half-power bandwidth of the least damped mode [rad/s].
+    pub(super) fn narrowest_bandwidth(&self) -> f64 {
+        self.damping.iter().map(|c| c.abs()).fold(f64::MAX, f64::min)
     }
 
     /// Turns modal forces into modal coordinates, `Z⁻¹ f`, to a relative tolerance where the damping
@@ -204,7 +256,8 @@ impl ContactModes {
         let (slots, modes) = (forces.nrows(), forces.ncols());
         let rhs: Vec<f64> = (0..modes).flat_map(|j| forces.col(j).iter().copied()).collect();
         let mut carried = vec![0.0; rhs.len()];
-        let column_major = |values: &[f64]| Mat::from_fn(slots, modes, |i, j| values[j * slots + i]);
+        let column_major =
+            |values: &[f64]| Mat::from_fn(slots, modes, |i, j| values[j * slots + i]);
         let mut work = Mat::zeros(slots, modes);
         // Forces that the diagonal carries: (1 + iω C_off diag(Z)⁻¹) carried = forces.
         let product = |v: &[f64], out: &mut [f64]| {
@@ -220,7 +273,12 @@ impl ContactModes {
             }
             true
         };
-        gmres(product, &rhs, &mut carried, KrylovSettings { tolerance, max_products: MOST_PRODUCTS });
+        gmres(
+            product,
+            &rhs,
+            &mut carried,
+            KrylovSettings { tolerance, max_products: MOST_PRODUCTS },
+        );
         *forces = column_major(&carried);
         at.divide(forces);
     }
@@ -262,4 +320,15 @@ impl ModalOrders {
             }
         }
     }
+}
+
+/// Ψᵀ, of rows of B that hold few numbers each.
+fn seen(dofs: MatRef<'_, f64>, rows: MatRef<'_, f64>) -> Mat<f64> {
+    let mut contacts = Mat::zeros(dofs.nrows(), rows.nrows());
+    for (i, mut contact) in contacts.col_iter_mut().enumerate() {
+        for (dof, share) in rows.row(i).iter().enumerate().filter(|(_, share)| **share != 0.0) {
+            contact += faer::Scale(*share) * dofs.col(dof);
+        }
+    }
+    contacts
 }

@@ -9,6 +9,7 @@ mod cyclic;
 mod direct;
 mod flexibility;
 mod flutter_compliance;
+mod interface;
 mod modal;
 mod modes;
 mod poles;
@@ -25,6 +26,7 @@ pub use contact_modes::{ContactModes, ModalOrders};
 pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
 pub use direct::DirectCompliance;
 pub use flutter_compliance::{FlutterCompliance, StuckMode};
+pub use interface::InterfaceCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
 pub use modes::{modes, natural_frequencies, HermitianModes, Modes, RealModes};
 pub use poles::Poles;
@@ -119,6 +121,14 @@ pub trait Compliance: Send + Sync {
     /// Harmonics with an external load, ascending.
     fn forced_harmonics(&self) -> Vec<usize> {
         self.outline().forced.clone()
+    }
+
+    /// Refuses a structure that moves rigidly with all contacts stuck.
+    ///
+    /// # Errors
+    /// The static stiffness is singular.
+    fn require_grounded(&self) -> Result<(), Error> {
+        self.receptance(0, 0.0, &mut Receptance::default())
     }
 
     /// Receptance of the contacts for harmonic `harmonic` of a motion at `omega` [rad/s].

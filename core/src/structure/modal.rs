@@ -8,6 +8,7 @@
 
 use super::contact_modes::ContactModes;
 use super::flexibility::Flexibility;
+use super::interface::InterfaceCompliance;
 use super::modes::{complex, modes, HermitianModes, RealModes};
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
@@ -72,7 +73,7 @@ pub(super) struct Wave {
     pub(super) loads: Vec<HarmonicLoad>,
 }
 
-/// The compliance of a structure: modal, or by direct solution where its complex modes are
+/// The compliance of a structure: modal, of many contacts through the modes of the stuck structure, or by direct solution where its complex modes are
 /// defective (critically damped or undamped rigid-body modes with general damping).
 ///
 /// # Errors
@@ -81,6 +82,10 @@ pub fn compliance(
     structure: &Structure,
     ports: &Ports,
 ) -> Result<(Box<dyn Compliance>, &'static str), Error> {
+    if let Some(interface) = InterfaceCompliance::new(structure, ports)? {
+        let base = interface.base();
+        return Ok((Box::new(interface), base));
+    }
     match ModalCompliance::new(structure, ports)? {
         Some(modal) => {
             let name = match modal.base {
