@@ -7,8 +7,8 @@ Usage::
 
 A clamped bar on Jenkins elements, a third of which slip, under three laws of damping; the shear
 layer of Menq, whose dissipation is known in closed form; a block of finite elements on a face of
-Coulomb contacts that slip in part and lift off. The time of a point stands beside that of one LAPACK
-factorisation of as many unknowns as the block of a NumPy balance would have. One thread.
+Coulomb contacts that slip in part and lift off. Processor times of one thread; that of a point stands
+beside one LAPACK factorisation of contacts times (H + 1) unknowns.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ BLOCK = {
     "damping": 150.0,
     "omega": (10000.0, 14000.0),
 }
+MARCHED = {"evaluation": "marched", "samples": 128, "stability": False}
 BAR = {
     "EA": 4e5,
     "length": 1.0,
@@ -78,7 +79,7 @@ def layer(count: int) -> tuple[ss.Model, np.ndarray]:
     structure = ss.Structure(np.diag(share), bar, ss.Rayleigh(mass=1.0, stiffness=0.0), names)
     contacts = [
         ss.Jenkins(name, stiffness=LAYER["stiffness"] * w, slip_force=LAYER["limit"] * w)
-        for name, w in zip(names, share)
+        for name, w in zip(names, share, strict=True)
     ]
     return ss.Model(structure, contacts, [ss.Force("n0", LAYER["force"])]), np.array([1.0])
 
@@ -163,7 +164,8 @@ def measured(kind: str, count: int, model: ss.Model, omega: np.ndarray, **option
     shares = {name: f"{value / len(frf.omega) * 1e3:.1f}" for name, value in frf.timings.items()}
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     print(
-        f"{kind:>6} {count:6d}  set-up {built:7.2f} s  point {1e3 * point:9.2f} ms  slip {slips:.2f}"
+        f"{kind:>6} {count:6d}  set-up {built:7.2f} s  point {1e3 * point:9.2f} ms"
+        f"  slip {slips:.2f}"
     )
     print(f"        converged {np.mean([s == 'converged' for s in frf.status]):.2f}, {shares} ms")
     print(f"        {dict(frf.counters)}, {peak:.2f} GB at most", flush=True)
@@ -202,15 +204,7 @@ def main() -> None:
             else:
                 model, omega = block(count)
                 print(f"        one symmetric eigenproblem: {eigenproblem(model):.2f} s")
-                measured(
-                    kind,
-                    count,
-                    model,
-                    omega[: given.points],
-                    evaluation="marched",
-                    samples=128,
-                    stability=False,
-                )
+                measured(kind, count, model, omega[: given.points], **MARCHED)
 
 
 if __name__ == "__main__":

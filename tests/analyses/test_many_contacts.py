@@ -9,7 +9,7 @@ EA, LENGTH, STIFFNESS, LIMIT = 1e7, 0.1, 1e10, 2e4
 
 
 def shear_layer(count: int, force: float) -> ss.Model:
-    """Return a bar in a shear layer (Menq 1985), pulled at one end, of elements by the trapezoid."""
+    """Return a bar in a shear layer (Menq 1985) of elements by the trapezoid, pulled at one end."""
     step = LENGTH / (count - 1)
     share = np.full(count, step)
     share[[0, -1]] /= 2.0
