@@ -7,8 +7,8 @@ Usage::
 
 A clamped bar on Jenkins elements, a third of which slip, under three laws of damping; the shear
 layer of Menq, whose dissipation is known in closed form; a block of finite elements on a face of
-Coulomb contacts that slip in part and lift off. Processor times of one thread; that of a point stands
-beside one LAPACK factorisation of contacts times (H + 1) unknowns.
+Coulomb contacts that slip in part and lift off. Processor times of one thread; that of a point
+stands beside one LAPACK factorisation of contacts times (H + 1) unknowns.
 """
 
 from __future__ import annotations
