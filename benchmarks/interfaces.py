@@ -102,7 +102,7 @@ def layer_dissipation() -> float:
     work, _ = scipy.integrate.quad(
         displacement, 0.0, force, points=[pulled(0.0)], epsabs=0.0, epsrel=1e-12, limit=200
     )
-    return 4.0 * force * displacement(force) - 8.0 * (force * displacement(force) - work)
+    return 8.0 * (force * displacement(force) - work) - 4.0 * force * displacement(force)
 
 
 def block(count: int) -> tuple[ss.Model, np.ndarray]:
