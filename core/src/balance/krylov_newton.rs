@@ -139,7 +139,8 @@ impl KrylovNewton {
         let mut solution = vec![0.0; right.len()];
         let settings = KrylovSettings { tolerance, max_products: MOST_PRODUCTS };
         let report = gmres(product, &right, &mut solution, settings);
-        if !(report.residual <= USEFUL) {
+        // What the caller has ended is not a number.
+        if report.residual.is_nan() || report.residual > USEFUL {
             return None;
         }
         scaled(&mut solution, &|size| size);
