@@ -72,6 +72,7 @@ bench: $(VENV)/.developed
 	$(BIN)/python benchmarks/rings.py
 	$(BIN)/python benchmarks/mistuning_study.py
 	$(BIN)/python benchmarks/contacts.py
+	$(BIN)/python benchmarks/interfaces.py
 	$(BIN)/python benchmarks/table_4_1_blade.py
 
 peers: $(VENV)/.developed

@@ -40,6 +40,7 @@ impl<'py> Columns<'py> {
             first,
             ("evaluations", profile.evaluations),
             ("factorisations", profile.factorisations),
+            ("products", profile.products),
             ("updates", profile.updates),
             ("restarts", profile.restarts),
             ("homotopies", profile.homotopies),

@@ -21,6 +21,8 @@ pub struct Profile {
     pub evaluations: usize,
     /// Factorisations of Jacobians.
     pub factorisations: usize,
+    /// Products with Jacobians that are never formed.
+    pub products: usize,
     /// Rank-one updates of factorised Jacobians, by Broyden's method.
     pub updates: usize,
     /// Points at which Broyden's method took a second Jacobian.
@@ -39,6 +41,7 @@ impl Profile {
         self.linear_solve += part.linear_solve;
         self.evaluations += part.evaluations;
         self.factorisations += part.factorisations;
+        self.products += part.products;
     }
 
     /// Runs `work` and adds its duration to `stage`.

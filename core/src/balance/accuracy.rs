@@ -11,6 +11,7 @@
 //! Elsewhere a second step would overshoot, ten times and more at nearly rigid contacts.
 
 use super::condensed::Condensed;
+use super::krylov_newton::{of_step, suits};
 use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::contact::Residual;
@@ -41,6 +42,8 @@ const OF_SOLUTION: f64 = 6.0;
 const ALLOWED: f64 = 3.0;
 /// The same of a ring, of which nearly all is reckoned.
 const ALLOWED_OF_RING: f64 = 2.0;
+/// The same of many contacts, whose products with the modes are reckoned as they are.
+const ALLOWED_OF_MANY: f64 = 0.5;
 
 /// The change after the second step counts up to this multiple of that after the first: where it is
 /// still larger, the second one overshoots.
@@ -75,7 +78,11 @@ impl Extension {
         let known = effort.orders(highest, [1.0, 0.0]);
         let solution = effort.orders(highest, [1.0, 1.0]) + OF_SOLUTION * effort.step(highest);
         let is_ring = model.compliance().ring().is_some();
-        let allowed = solution * if is_ring { ALLOWED_OF_RING } else { ALLOWED };
+        let allowed = match (is_ring, effort.is_of_many(highest)) {
+            (true, _) => ALLOWED_OF_RING,
+            (_, true) => ALLOWED_OF_MANY,
+            _ => ALLOWED,
+        } * solution;
         let affordable = |order: &usize| {
             effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order) <= allowed
         };
@@ -113,8 +120,18 @@ impl Effort<'_> {
     /// Of so many evaluations of compliances and recoveries of displacements up to an order.
     fn orders(&self, highest: usize, [evaluations, recoveries]: [f64; 2]) -> f64 {
         let count = if self.half_wave { highest.div_ceil(2) } else { highest + 1 };
-        let [receptance, displacement] = self.model.compliance().effort(self.observed);
+        let [mut receptance, displacement] = self.model.compliance().effort(self.observed);
+        if let Some(modes) = self.model.compliance().contact_modes() {
+            if self.is_of_many(highest) {
+                receptance = 10.0 * modes.modes() as f64;
+            }
+        }
         count as f64 * (evaluations * receptance + recoveries * displacement)
+    }
+
+    /// Whether receptances are not formed.
+    fn is_of_many(&self, highest: usize) -> bool {
+        suits(self.model.compliance(), &Harmonics::new(highest, self.half_wave))
     }
 
     /// Of a Newton step in the harmonics up to `highest`.
@@ -130,6 +147,7 @@ impl Effort<'_> {
                 let ports = ring.layout().ports() as f64;
                 ring.sectors() as f64 * (1e3 + 0.4 * (ports * slots).powi(3))
             }
+            None if self.is_of_many(highest) => of_step(compliance, slots, slipping),
             None => 1e3 + 100.0 * slipping * slots + 0.06 * (slipping * slots).powi(3),
         };
         laws + linear

@@ -26,6 +26,8 @@ pub struct Condensed<'a> {
     pub(super) table: &'a SampleTable,
     pub(super) residual: Residual,
     pub(super) linear: Linear,
+    /// Whether derivatives in ω are wanted.
+    pub(super) slopes: bool,
     pub(super) omega: f64,
     pub(super) stuck: Vec<f64>,
     /// Slip loads and tangents at the last unknowns whose tangents were evaluated.
@@ -39,6 +41,9 @@ pub struct Condensed<'a> {
     pub(super) softened: Option<(f64, Vec<Box<dyn ContactLaw>>)>,
     pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
     pub(super) factor: Option<Factor>,
+    /// Sizes against which the motion of every point is accurate, at the unknowns whose tangents were
+    /// evaluated last.
+    pub(super) sizes: Vec<f64>,
     pub(super) profile: Profile,
 }
 
@@ -53,6 +58,7 @@ impl<'a> Condensed<'a> {
         let model = model.into();
         Self {
             linear: Linear::new(model.compliance(), table, slopes),
+            slopes,
             loads: vec![SlipLoad::default(); model.laws().len()],
             values: vec![SlipLoad::default(); model.laws().len()],
             model,
@@ -66,6 +72,7 @@ impl<'a> Condensed<'a> {
             softened: None,
             interrupted: None,
             factor: None,
+            sizes: Vec::new(),
             profile: Profile::default(),
         }
     }
@@ -99,9 +106,9 @@ impl<'a> Condensed<'a> {
         })
     }
 
-    /// Takes the dense receptance also of a ring, for methods that need the whole Jacobian.
+    /// Takes dense receptances in any case, for methods that need the whole Jacobian.
     pub(super) fn densify(&mut self) {
-        self.linear.densify(self.table);
+        self.linear.densify(self.table, self.slopes);
     }
 
     /// Displacements of the DOFs `observe` at every kept order, handed to
@@ -120,12 +127,16 @@ impl<'a> Condensed<'a> {
         let (harmonics, omega) = (self.table.harmonics(), self.omega);
         let (mut u, mut q) = (Vec::new(), Vec::new());
         let mut observed = vec![c64::new(0.0, 0.0); observe.len()];
+        let compliance = self.model.compliance();
+        let motion = self.linear.coordinates(compliance, harmonics, quantity, slip_load);
         for (index, harmonic) in harmonics.orders().enumerate() {
             gather(harmonics, harmonic, x, &mut u);
             gather(harmonics, harmonic, slip_load, &mut q);
             let (contact, slip_load) = (&u, &q);
             let request = Request { harmonic, omega, quantity, contact, slip_load, observe };
-            self.linear.displacement(self.model.compliance(), index, &request, &mut observed)?;
+            let place = (index, harmonics.slot(harmonic));
+            let motion = motion.as_ref();
+            self.linear.displacement(compliance, place, motion, &request, &mut observed)?;
             store(harmonic, &observed, &u, &q);
         }
         Ok(())
@@ -231,13 +242,14 @@ impl<'a> Condensed<'a> {
 
     /// `out += G q` over all kept harmonics.
     pub fn add_response(&self, slip_load: &[f64], out: &mut [f64]) {
-        self.linear.add_response(self.table.harmonics(), slip_load, out);
+        self.linear.add_response(self.model.compliance(), self.table.harmonics(), slip_load, out);
     }
 
     /// Rate of change of the residual with frequency at fixed unknowns, sign reversed.
     pub fn frequency_rate(&self) -> Vec<f64> {
         let mut rate = vec![0.0; self.stuck.len()];
-        self.linear.add_rate(self.table.harmonics(), &self.slip_load(), &mut rate);
+        let (compliance, harmonics) = (self.model.compliance(), self.table.harmonics());
+        self.linear.add_rate(compliance, harmonics, &self.slip_load(), &mut rate);
         rate
     }
 

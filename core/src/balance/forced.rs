@@ -3,6 +3,7 @@
 use super::condensed::{Condensed, Path};
 use super::continuity::Tangent;
 use super::evaluation::{Evaluated, Evaluations};
+use super::krylov_newton::is_large;
 use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
 use super::settings::{resolving, Method, Resolution, Settings};
@@ -75,8 +76,7 @@ impl<'a> ForcedBalance<'a> {
         .unwrap_or(Evaluated::Given(model));
         let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
         if !half_wave {
-            let mut receptance = crate::structure::Receptance::default();
-            model.compliance().receptance(0, 0.0, &mut receptance)?;
+            model.compliance().require_grounded()?;
         }
         Ok(Self {
             settings,
@@ -218,6 +218,13 @@ impl<'a> ForcedBalance<'a> {
         let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
         self.add_profile(&equations.profile);
         Ok(solved)
+    }
+
+    /// Whether the whole Jacobian is too large to be formed, at the least resolution that a point
+    /// begins with.
+    pub(super) fn has_many_contacts(&self) -> bool {
+        let harmonics = Harmonics::new(self.control.first().harmonics, self.half_wave);
+        is_large(self.model.compliance(), &harmonics)
     }
 
     /// Whether a homotopy leads to the solution: it does where there is one alone.

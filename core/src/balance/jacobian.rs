@@ -4,6 +4,7 @@
 //! [`SlipJacobian`].
 
 use super::condensed::{Condensed, Path};
+use super::krylov_newton::KrylovNewton;
 use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
 use super::ring_series::RingSeries;
@@ -39,6 +40,9 @@ impl Condensed<'_> {
         if tangent {
             self.loads = loads;
             self.factor = None;
+            let slots = self.table.harmonics().slots();
+            self.moved_on = false;
+            self.sizes = sizes(&self.model, slots, &self.slip_load(), x);
         } else {
             self.values = loads;
         }
@@ -70,7 +74,15 @@ impl Condensed<'_> {
     /// Assembles and factors the equations of a Newton step.
     fn factorise(&mut self) {
         let harmonics = self.table.harmonics();
-        self.factor = match (&self.linear, self.model.compliance().ring()) {
+        let compliance = self.model.compliance();
+        self.factor = match (&self.linear, compliance.ring()) {
+            (Linear::Modal(_), _) => {
+                let active: Vec<usize> = (self.loads.iter().zip(self.model.points()))
+                    .filter(|(load, _)| load.active)
+                    .flat_map(|(_, points)| points.clone())
+                    .collect();
+                Some(Factor::Krylov(KrylovNewton::new(compliance, &active)))
+            }
             (Linear::Ring { orders, .. }, Some(ring)) => Some(Factor::Ring(RingNewton::new(
                 RingSeries::new(orders, harmonics),
                 ring.layout(),
@@ -96,7 +108,8 @@ impl Condensed<'_> {
         let border = Border { rate: &rate, row, omega: self.omega };
         let (harmonics, loads) = (self.table.harmonics(), self.tangents());
         let factors = SlipJacobian::new(loads, receptances, harmonics, Some(&border));
-        let (step, sign) = factors.solve_bordered(loads, &self.linear, harmonics, &border, right);
+        let (step, sign) =
+            factors.solve_bordered(loads, |q, out| self.add_response(q, out), &border, right);
         self.profile.factorisations += 1;
         self.profile.linear_solve += start.elapsed();
         step.iter().all(|s| s.is_finite()).then_some((step, sign))
@@ -139,25 +152,28 @@ impl Condensed<'_> {
     }
 }
 
-/// Size of a step contact by contact: a stiff contact moves little, and its force is its stiffness
+/// Size of the motion of every point: a stiff contact moves little, and its force is its stiffness
 /// times that little. A contact that carries next to nothing is measured against the largest force.
-fn contactwise(model: &Model, slots: usize, slip_load: &[f64], step: &[f64], x: &[f64]) -> f64 {
+fn sizes(model: &Model, slots: usize, slip_load: &[f64], x: &[f64]) -> Vec<f64> {
     let stiffness = |i: usize| model.contact_stiffness()[(i, i)];
     let force = |i: usize, u: &[f64], q: &[f64]| {
         u.iter().zip(q).map(|(u, q)| (stiffness(i) * u - q).powi(2)).sum::<f64>().sqrt()
     };
-    let points = || {
-        let parts = x.chunks_exact(slots).zip(slip_load.chunks_exact(slots));
-        parts.zip(step.chunks_exact(slots)).enumerate()
-    };
-    let largest = points().map(|(i, ((u, q), _))| force(i, u, q)).fold(0.0, f64::max);
+    let points = || x.chunks_exact(slots).zip(slip_load.chunks_exact(slots)).enumerate();
+    let largest = points().map(|(i, (u, q))| force(i, u, q)).fold(0.0, f64::max);
     let size = norm(x);
     points()
-        .map(|(i, ((u, _), step))| {
+        .map(|(i, (u, _))| {
             let least = CARRIES_NOTHING * largest / stiffness(i).max(f64::MIN_POSITIVE);
-            norm(step) / norm(u).max(least.min(size)).max(f64::MIN_POSITIVE)
+            norm(u).max(least.min(size)).max(f64::MIN_POSITIVE)
         })
-        .fold(0.0, f64::max)
+        .collect()
+}
+
+/// Size of a step contact by contact.
+fn contactwise(model: &Model, slots: usize, slip_load: &[f64], step: &[f64], x: &[f64]) -> f64 {
+    let sizes = sizes(model, slots, slip_load, x);
+    step.chunks_exact(slots).zip(sizes).map(|(s, size)| norm(s) / size).fold(0.0, f64::max)
 }
 
 impl System for Condensed<'_> {
@@ -201,11 +217,15 @@ impl System for Condensed<'_> {
         }
         let harmonics = self.table.harmonics();
         match (&self.factor, &self.linear) {
-            (Some(Factor::Dense(factor)), linear) => {
-                factor.solve(self.tangents(), linear, harmonics, rhs, step);
+            (Some(Factor::Dense(factor)), _) => {
+                factor.solve(self.tangents(), |q, out| self.add_response(q, out), rhs, step);
             }
             (Some(Factor::Ring(factor)), Linear::Ring { orders, .. }) => {
                 factor.solve(RingSeries::new(orders, harmonics), rhs, step);
+            }
+            (Some(Factor::Krylov(factor)), _) => {
+                let Some(products) = factor.solve(self, rhs, step) else { return false };
+                self.profile.products += products;
             }
             _ => return false,
         }

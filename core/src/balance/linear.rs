@@ -1,19 +1,27 @@
 //! What is linear in the condensed equations at one frequency: the answer of the contacts to slip
-//! loads, by dense receptances or around a ring of sectors.
+//! loads, by dense receptances, through the modes of the stuck structure or around a ring of sectors.
 
+use super::krylov_newton::{suits, KrylovNewton};
 use super::ring_newton::RingNewton;
 use super::slip_jacobian::SlipJacobian;
 use super::unknowns::{gather, scatter};
 use crate::fourier::{Harmonics, SampleTable};
-use crate::structure::{Compliance, Receptance, Request, RingOrder};
+use crate::structure::{
+    Compliance, ContactModes, ModalOrders, Quantity, Receptance, Request, RingOrder,
+};
 use crate::Error;
-use faer::c64;
+use faer::{c64, Mat, MatRef};
 use std::sync::Arc;
+
+/// Tolerance of what the damping couples, where nothing corrects it.
+const EXACT: f64 = 1e-14;
 
 /// `U = U^stuck + G Q`, one part per kept order.
 pub(super) enum Linear {
     /// Dense receptances.
     Dense(Vec<Receptance>),
+    /// Modes of the stuck structure: receptances are never formed. Empty until a frequency is set.
+    Modal(ModalOrders),
     /// Sectors coupled to their neighbours.
     Ring {
         /// Empty until a frequency is set.
@@ -27,15 +35,20 @@ pub(super) enum Linear {
 pub(super) enum Factor {
     /// In the slip loads, by dense receptances.
     Dense(SlipJacobian),
+    /// None: products with the matrix serve.
+    Krylov(KrylovNewton),
     /// Of all sectors of a ring.
     Ring(RingNewton),
 }
 
 impl Linear {
     pub(super) fn new(compliance: &dyn Compliance, table: &SampleTable, slopes: bool) -> Self {
-        match compliance.ring() {
-            Some(_) => Self::Ring { orders: Vec::new(), slopes },
-            None => Self::dense(table, slopes),
+        if compliance.ring().is_some() {
+            Self::Ring { orders: Vec::new(), slopes }
+        } else if suits(compliance, table.harmonics()) {
+            Self::Modal(ModalOrders::default())
+        } else {
+            Self::dense(table, slopes)
         }
     }
 
@@ -44,10 +57,10 @@ impl Linear {
         Self::Dense(vec![blank; table.harmonics().orders().count()])
     }
 
-    /// Takes dense receptances also of a ring.
-    pub(super) fn densify(&mut self, table: &SampleTable) {
-        if let Self::Ring { slopes, .. } = self {
-            *self = Self::dense(table, *slopes);
+    /// Takes dense receptances in any case.
+    pub(super) fn densify(&mut self, table: &SampleTable, slopes: bool) {
+        if !matches!(self, Self::Dense(_)) {
+            *self = Self::dense(table, slopes);
         }
     }
 
@@ -78,6 +91,15 @@ impl Linear {
                     scatter(harmonics, order, &receptance.stuck, stuck);
                 }
             }
+            Self::Modal(orders) => {
+                let Some(modes) = compliance.contact_modes() else { return Ok(()) };
+                let slots = |order| harmonics.slot(order).map(|slot| (order, slot));
+                *orders = modes.orders(harmonics.orders().filter_map(slots), omega)?;
+                let mut motion = Mat::zeros(harmonics.slots(), modes.modes());
+                modes.add_load(orders, &mut motion);
+                modes.answer(orders, &mut motion, EXACT);
+                add_motion(modes, &motion, stuck);
+            }
             Self::Ring { orders, slopes } => {
                 orders.clear();
                 let Some(ring) = compliance.ring() else { return Ok(()) };
@@ -97,14 +119,42 @@ impl Linear {
         Ok(())
     }
 
-    /// Displacements at the harmonic of position `index`.
+    /// Modal coordinates of a motion, slots × modes, where receptances are not formed.
+    pub(super) fn coordinates(
+        &self,
+        compliance: &dyn Compliance,
+        harmonics: &Harmonics,
+        quantity: Quantity,
+        slip_load: &[f64],
+    ) -> Option<Mat<f64>> {
+        let Self::Modal(orders) = self else { return None };
+        let modes = compliance.contact_modes()?;
+        let mut motion = excite(modes, harmonics, slip_load);
+        if quantity != Quantity::OfSlip {
+            modes.add_load(orders, &mut motion);
+        }
+        modes.answer(orders, &mut motion, EXACT);
+        if quantity == Quantity::Slope {
+            modes.answer_rate(orders, &mut motion, EXACT);
+        }
+        Some(motion)
+    }
+
+    /// Displacements at the harmonic of position `index`; `motion` holds the modal coordinates, if
+    /// there are some.
     pub(super) fn displacement(
         &self,
         compliance: &dyn Compliance,
-        index: usize,
+        (index, slot): (usize, Option<usize>),
+        motion: Option<&Mat<f64>>,
         request: &Request<'_>,
         out: &mut [c64],
     ) -> Result<(), Error> {
+        if let (Some(motion), Some(modes), Some(slot)) = (motion, compliance.contact_modes(), slot)
+        {
+            modes.observe(request.harmonic, slot, motion, request.observe, out);
+            return Ok(());
+        }
         match (self, compliance.ring()) {
             (Self::Ring { orders, .. }, Some(ring)) => {
                 ring.displacement_of(&orders[index], request, out)
@@ -114,10 +164,22 @@ impl Linear {
     }
 
     /// `out += G q`.
-    pub(super) fn add_response(&self, harmonics: &Harmonics, slip_load: &[f64], out: &mut [f64]) {
+    pub(super) fn add_response(
+        &self,
+        compliance: &dyn Compliance,
+        harmonics: &Harmonics,
+        slip_load: &[f64],
+        out: &mut [f64],
+    ) {
         match self {
             Self::Dense(receptances) => {
                 add_product(receptances, harmonics, slip_load, out, |r| &r.contact);
+            }
+            Self::Modal(orders) => {
+                let Some(modes) = compliance.contact_modes() else { return };
+                let mut motion = excite(modes, harmonics, slip_load);
+                modes.answer(orders, &mut motion, EXACT);
+                add_motion(modes, &motion, out);
             }
             Self::Ring { orders, .. } => {
                 let mut q = Vec::new();
@@ -130,7 +192,13 @@ impl Linear {
     }
 
     /// `out += dU^stuck/dω + dG/dω q`.
-    pub(super) fn add_rate(&self, harmonics: &Harmonics, slip_load: &[f64], out: &mut [f64]) {
+    pub(super) fn add_rate(
+        &self,
+        compliance: &dyn Compliance,
+        harmonics: &Harmonics,
+        slip_load: &[f64],
+        out: &mut [f64],
+    ) {
         match self {
             Self::Dense(receptances) => {
                 for (receptance, order) in receptances.iter().zip(harmonics.orders()) {
@@ -141,6 +209,14 @@ impl Linear {
                 add_product(receptances, harmonics, slip_load, out, |receptance| {
                     receptance.slope.as_ref().map_or(&[], |(contact, _)| contact)
                 });
+            }
+            Self::Modal(orders) => {
+                let Some(modes) = compliance.contact_modes() else { return };
+                let mut motion = excite(modes, harmonics, slip_load);
+                modes.add_load(orders, &mut motion);
+                modes.answer(orders, &mut motion, EXACT);
+                modes.answer_rate(orders, &mut motion, EXACT);
+                add_motion(modes, &motion, out);
             }
             Self::Ring { orders, .. } => {
                 let mut q = Vec::new();
@@ -160,6 +236,20 @@ impl Linear {
             add_product(receptances, harmonics, slip_load, out, |r| &r.by_ratio);
         }
     }
+}
+
+/// Modal forces of the slip loads of all contacts.
+fn excite(modes: &ContactModes, harmonics: &Harmonics, slip_load: &[f64]) -> Mat<f64> {
+    let (slots, contacts) = (harmonics.slots(), modes.contacts().ncols());
+    let slip_load = MatRef::from_column_major_slice(slip_load, slots, contacts);
+    ContactModes::excite(modes.contacts(), slip_load)
+}
+
+/// Adds the displacements of all contacts by modal coordinates.
+fn add_motion(modes: &ContactModes, coordinates: &Mat<f64>, out: &mut [f64]) {
+    let motion = ContactModes::displace(modes.contacts(), coordinates.as_ref());
+    let entries = motion.col_iter().flat_map(|column| column.iter().copied());
+    out.iter_mut().zip(entries).for_each(|(out, u)| *out += u);
 }
 
 /// Adds complex amplitudes of all points at one order to a real layout.

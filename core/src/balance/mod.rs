@@ -15,6 +15,7 @@ mod forced;
 mod forced_curve;
 mod from_orbit;
 mod jacobian;
+mod krylov_newton;
 mod limit_cycle;
 mod linear;
 mod linearised;

@@ -4,6 +4,8 @@
 //! The price follows from the model and the solution below, not from the clock or from the work
 //! already done: the same point is solved in the same way everywhere.
 
+use super::krylov_newton::{of_step, suits};
+use crate::fourier::Harmonics;
 use crate::model::Model;
 
 /// Newton iterations with a new Jacobian that one more level usually takes.
@@ -44,6 +46,9 @@ impl Price<'_> {
                 let (own, between) = (layout.contacts, layout.between.len());
                 let inside = 3.0 * cube(own - between);
                 ring.sectors() as f64 * (inside + 20.0 * cube(layout.ports() - own + 2 * between))
+            }
+            None if suits(self.model.compliance(), &Harmonics::new(order, self.half_wave)) => {
+                of_step(self.model.compliance(), slots, self.slipping as f64) / IN_BLOCKS
             }
             None => 2.0 / 3.0 * cube(self.slipping),
         };

@@ -12,7 +12,6 @@
 //! in them alone: often half as many unknowns, and one more where the frequency is unknown, too. The
 //! determinant is the same (Sylvester).
 
-use super::linear::Linear;
 use crate::contact::SlipLoad;
 use crate::fourier::Harmonics;
 use crate::solve::parity;
@@ -155,12 +154,11 @@ impl SlipJacobian {
         }
     }
 
-    /// `dU` of `(1 − G ∂Q) dU = r`.
+    /// `dU` of `(1 − G ∂Q) dU = r`; `add_response` adds G q.
     pub(super) fn solve(
         &self,
         of: Loads<'_>,
-        linear: &Linear,
-        harmonics: &Harmonics,
+        add_response: impl FnOnce(&[f64], &mut [f64]),
         right: &[f64],
         step: &mut [f64],
     ) {
@@ -170,7 +168,7 @@ impl SlipJacobian {
         let mut change = vec![0.0; right.len()];
         self.spread(&q, &mut change);
         step.copy_from_slice(right);
-        linear.add_response(harmonics, &change, step);
+        add_response(&change, step);
     }
 
     /// `(dU, dω)` of the bordered equations, and the sign of their determinant. `right` holds their
@@ -178,8 +176,7 @@ impl SlipJacobian {
     pub(super) fn solve_bordered(
         &self,
         of: Loads<'_>,
-        linear: &Linear,
-        harmonics: &Harmonics,
+        add_response: impl FnOnce(&[f64], &mut [f64]),
         border: &Border<'_>,
         right: &[f64],
     ) -> (Vec<f64>, f64) {
@@ -195,7 +192,7 @@ impl SlipJacobian {
         self.spread(&x[..size], &mut change);
         let mut step: Vec<f64> =
             right[..count].iter().zip(border.rate).map(|(r, rate)| r + ahead * rate).collect();
-        linear.add_response(harmonics, &change, &mut step);
+        add_response(&change, &mut step);
         step.push(ahead);
         let pivots = self.factors.U().diagonal().column_vector().iter().map(|p| p.signum());
         let sign = pivots.product::<f64>() * parity(self.factors.P().arrays().0);

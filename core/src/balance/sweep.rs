@@ -90,9 +90,10 @@ pub(crate) fn check_bracket([low, guess, high]: [f64; 3]) -> Result<(), Error> {
     Err(Error::value("peak: guess", guess, "must lie between its bounds"))
 }
 
-/// Whether points may lie on several branches, from one of which to another a sweep may jump.
+/// Whether points may lie on several branches, from one of which to another a sweep may jump, and a
+/// curve between them can be followed: it takes the whole Jacobian.
 fn follows_branches(balance: &ForcedBalance<'_>) -> bool {
-    !balance.model.is_monotone()
+    !balance.model.is_monotone() && !balance.has_many_contacts()
 }
 
 pub(super) fn finish(

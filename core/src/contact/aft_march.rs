@@ -97,13 +97,15 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         step
     }
 
-    /// Goes from instant n − 1 to instant n, which may be the first of the next span.
-    pub(super) fn advance(&self, samples: &Samples, n: usize, step: &mut Step) {
+    /// Goes from instant n − 1 to instant n, which may be the first of the next span; with the
+    /// derivative of the step, if asked for.
+    pub(super) fn advance(&self, samples: &Samples, n: usize, step: &mut Step, derived: bool) {
         let sign = if n == samples.count { samples.sign } else { 1.0 };
         let Step { state, force, jacobian, after } = step;
         let now = samples.at(n % samples.count);
         after.iter_mut().zip(now).for_each(|(after, now)| *after = sign * now);
-        self.law.return_map(samples.at(n - 1), after, state, force, Some(jacobian));
+        let jacobian = derived.then_some(jacobian);
+        self.law.return_map(samples.at(n - 1), after, state, force, jacobian);
     }
 
     /// Marches until the state repeats; with `account` of the friction work.
@@ -137,7 +139,8 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                 let old = (n - 1) * count;
                 round.state[(n - 1) * size..n * size].copy_from_slice(&step.state);
                 round.force[old..old + count].copy_from_slice(&step.force);
-                self.advance(samples, n, &mut step);
+                // What has slipped needs no more than its forces, unless the work is asked for.
+                self.advance(samples, n, &mut step, account || !round.slipped);
                 round.slipped = round.slipped || departs(&step);
                 largest = step.state.iter().fold(largest, |most, z| most.max(z.abs()));
                 let shares = round.slipping.iter_mut().zip(&step.jacobian.slipping);
@@ -201,7 +204,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                     rate.add_direct(&step.jacobian, weight, basis(n - 1), out);
                 }
                 let force_by_state = step.jacobian.force_by_state.clone();
-                self.advance(samples, n, &mut step);
+                self.advance(samples, n, &mut step, true);
                 let wraps = n == samples.count;
                 let changes = !is_elastic(&step.jacobian, &state_stiffness)
                     || force_by_state != step.jacobian.force_by_state;

@@ -1,7 +1,7 @@
 //! Displacements at the equidistant instants of a march.
 
 use super::Motion;
-use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Displacements at the instants of one span, with the basis there.
 pub struct Samples {
@@ -9,7 +9,7 @@ pub struct Samples {
     pub count: usize,
     /// −1 if the second half of the period mirrors the first.
     pub sign: f64,
-    pub basis: Vec<f64>,
+    pub basis: Arc<[f64]>,
     /// Instant after instant.
     pub displacement: Vec<f64>,
 }
@@ -21,12 +21,11 @@ impl Samples {
         let slots = harmonics.slots();
         let half = harmonics.half_wave();
         let count = if half { samples / 2 } else { samples };
-        let mut basis = vec![0.0; count * slots];
+        let basis = motion.table.basis(samples, count);
         let mut displacement = Vec::with_capacity(count * motion.displacement.len() / slots);
-        for (n, row) in basis.chunks_exact_mut(slots).enumerate() {
-            harmonics.basis(TAU * n as f64 / samples as f64, row);
+        for row in basis.chunks_exact(slots) {
             for series in motion.displacement.chunks_exact(slots) {
-                displacement.push(series.iter().zip(&*row).map(|(c, b)| c * b).sum());
+                displacement.push(series.iter().zip(row).map(|(c, b)| c * b).sum());
             }
         }
         Self { count, sign: if half { -1.0 } else { 1.0 }, basis, displacement }

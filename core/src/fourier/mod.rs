@@ -2,6 +2,7 @@
 
 mod gradient;
 mod harmonics;
+mod instants;
 mod interval_sums;
 mod panel;
 mod turning_points;

@@ -1,7 +1,9 @@
 //! Turning points of a trigonometric series: bracketed on samples, then located exactly.
 
+use super::instants::Instants;
 use super::Harmonics;
 use pulp::{Simd, WithSimd};
+use std::sync::Arc;
 
 /// Samples per period and harmonic on which turning points are bracketed. A polynomial of degree
 /// H has at most 2H turning points, so that 16H samples keep them apart by eight on average.
@@ -36,6 +38,7 @@ pub struct SampleTable {
     quarter: usize,
     cos: Vec<f64>,
     sin: Vec<f64>,
+    instants: Instants,
 }
 
 impl SampleTable {
@@ -53,7 +56,14 @@ impl SampleTable {
                 sin.push(s);
             }
         }
-        Self { harmonics, quarter, cos, sin }
+        Self { harmonics, quarter, cos, sin, instants: Instants::default() }
+    }
+
+    /// The basis at the first `count` of `samples` equidistant instants of a period, instant after
+    /// instant.
+    #[must_use]
+    pub fn basis(&self, samples: usize, count: usize) -> Arc<[f64]> {
+        self.instants.basis(&self.harmonics, samples, count)
     }
 
     /// The harmonics of the table.

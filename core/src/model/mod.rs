@@ -268,8 +268,7 @@ impl Model {
     /// Whether rigid-body motion remains with all contacts stuck.
     #[must_use]
     pub fn static_singular(&self) -> bool {
-        let mut receptance = crate::structure::Receptance::default();
-        self.compliance.receptance(0, 0.0, &mut receptance).is_err()
+        self.compliance.require_grounded().is_err()
     }
 
     /// Whether all contact laws are monotone operators: with positive damping there is one steady

@@ -64,7 +64,10 @@ pub fn newton(system: &mut impl System, x: &mut [f64], settings: NewtonSettings)
     for iteration in 1..=settings.max_iterations {
         let Some(checkpoint) = newton.step() else { continue };
         if let Some(outcome) = newton.terminate(checkpoint) {
-            return newton.report(outcome, iteration);
+            // A direction that the caller has ended is none.
+            let failed = matches!(outcome, Outcome::Stalled | Outcome::Singular);
+            let ended = failed && newton.system.interrupted();
+            return newton.report(if ended { Outcome::Interrupted } else { outcome }, iteration);
         }
     }
     newton.report(Outcome::Stalled, settings.max_iterations)

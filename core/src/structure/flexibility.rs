@@ -6,7 +6,7 @@ use super::Receptance;
 use faer::{c64, Mat, MatRef};
 
 /// Lowest squared frequency, relative to the highest, of a structure that counts as grounded.
-const RIGID_BODY: f64 = 1e-13;
+pub(super) const RIGID_BODY: f64 = 1e-13;
 
 /// Static displacements, which damping does not touch: `K_s⁻¹ [Bᵀ, P_0]`.
 #[derive(Debug, Clone)]

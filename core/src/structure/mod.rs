@@ -4,10 +4,12 @@
 //! harmonic k produces when all contacts stick. That form stays well scaled at high harmonics,
 //! needs no partition of the matrices and takes ω as an unknown.
 
+mod contact_modes;
 mod cyclic;
 mod direct;
 mod flexibility;
 mod flutter_compliance;
+mod interface;
 mod modal;
 mod modes;
 mod poles;
@@ -20,9 +22,11 @@ mod ring_order;
 mod spectrum;
 mod system;
 
+pub use contact_modes::{ContactModes, ModalOrders};
 pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
 pub use direct::DirectCompliance;
 pub use flutter_compliance::{FlutterCompliance, StuckMode};
+pub use interface::InterfaceCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
 pub use modes::{modes, natural_frequencies, HermitianModes, Modes, RealModes};
 pub use poles::Poles;
@@ -119,6 +123,14 @@ pub trait Compliance: Send + Sync {
         self.outline().forced.clone()
     }
 
+    /// Refuses a structure that moves rigidly with all contacts stuck.
+    ///
+    /// # Errors
+    /// The static stiffness is singular.
+    fn require_grounded(&self) -> Result<(), Error> {
+        self.receptance(0, 0.0, &mut Receptance::default())
+    }
+
     /// Receptance of the contacts for harmonic `harmonic` of a motion at `omega` [rad/s].
     ///
     /// # Errors
@@ -144,6 +156,12 @@ pub trait Compliance: Send + Sync {
 
     /// The ring of sectors that this is, if it is one: its equations need no dense receptance.
     fn ring(&self) -> Option<&Ring> {
+        None
+    }
+
+    /// The contacts seen from the modes of the stuck structure, if there are many: their equations need
+    /// no receptance at all.
+    fn contact_modes(&self) -> Option<&ContactModes> {
         None
     }
 

@@ -6,7 +6,9 @@
 //! | diagonal in the free modes (Rayleigh, modal) | real, free | contact stiffness as a low-rank change |
 //! | any other, also unsymmetric | complex, stuck | directly |
 
+use super::contact_modes::ContactModes;
 use super::flexibility::Flexibility;
+use super::interface::InterfaceCompliance;
 use super::modes::{complex, modes, HermitianModes, RealModes};
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
@@ -20,7 +22,7 @@ use std::sync::Arc;
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
 const FREE_FLOOR: f64 = 1e-8;
 /// Distance to an undamped resonance, relative to the squared frequency, that is refused.
-const RESONANCE: f64 = 1e-9;
+pub(super) const RESONANCE: f64 = 1e-9;
 
 /// Natural frequencies below this share of the highest are those of rigid-body modes.
 const SLOWEST: f64 = 1e-9;
@@ -56,6 +58,8 @@ pub struct ModalCompliance {
     restraint: Option<Mat<f64>>,
     flexibility: Option<Flexibility>,
     outline: Outline,
+    /// The stuck modes at many contacts.
+    contact_modes: Option<Arc<ContactModes>>,
 }
 
 /// What a modal compliance is made of: modes of the stuck and of the free structure, rows of B (complex in a travelling wave), contact stiffness and loads.
@@ -69,7 +73,7 @@ pub(super) struct Wave {
     pub(super) loads: Vec<HarmonicLoad>,
 }
 
-/// The compliance of a structure: modal, or by direct solution where its complex modes are
+/// The compliance of a structure: modal, of many contacts through the modes of the stuck structure, or by direct solution where its complex modes are
 /// defective (critically damped or undamped rigid-body modes with general damping).
 ///
 /// # Errors
@@ -78,6 +82,10 @@ pub fn compliance(
     structure: &Structure,
     ports: &Ports,
 ) -> Result<(Box<dyn Compliance>, &'static str), Error> {
+    if let Some(interface) = InterfaceCompliance::new(structure, ports)? {
+        let base = interface.base();
+        return Ok((Box::new(interface), base));
+    }
     match ModalCompliance::new(structure, ports)? {
         Some(modal) => {
             let name = match modal.base {
@@ -117,7 +125,9 @@ impl ModalCompliance {
         };
         let project = |free_modes| if free_modes { &free } else { &stuck }.damping(damping);
         let Some(modal) = Self::of_wave(wave, project)? else { return Ok(None) };
-        let modal = Self { flexibility: Flexibility::new(&stuck, ports), ..modal };
+        let contact_modes = modal.contact_modes_of(&stuck, damping, ports).map(Arc::new);
+        let flexibility = Flexibility::new(&stuck, ports);
+        let modal = Self { flexibility, contact_modes, ..modal };
         let direct = || DirectCompliance::of(structure, ports, restrained.as_ref());
         Ok(modal.reproduces(direct).then_some(modal))
     }
@@ -170,6 +180,7 @@ impl ModalCompliance {
             spectrum,
             restraint,
             flexibility: None,
+            contact_modes: None,
         }))
     }
 
@@ -194,6 +205,26 @@ impl ModalCompliance {
             restraint: None,
             flexibility: None,
             outline: Outline::default(),
+            contact_modes: None,
+        }
+    }
+
+    /// The modes of the stuck structure at many contacts, as the damping leaves them.
+    fn contact_modes_of(
+        &self,
+        stuck: &RealModes,
+        damping: MatRef<'_, f64>,
+        ports: &Ports,
+    ) -> Option<ContactModes> {
+        match (self.base, &self.spectrum) {
+            (ModalBase::Stuck, Spectrum::Real { omega_squared, damping, .. }) => {
+                let shapes = Mat::from_fn(self.right.nrows(), self.right.ncols(), |i, j| {
+                    self.right[(i, j)].re
+                });
+                let modes = RealModes { omega_squared: omega_squared.clone(), shapes };
+                ContactModes::uncoupled(&modes, damping, ports)
+            }
+            _ => ContactModes::new(stuck, || stuck.project(damping), ports),
         }
     }
 
@@ -317,6 +348,10 @@ impl Compliance for ModalCompliance {
 
     fn outline(&self) -> &Outline {
         &self.outline
+    }
+
+    fn contact_modes(&self) -> Option<&ContactModes> {
+        self.contact_modes.as_deref()
     }
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {

@@ -1,7 +1,8 @@
 //! Modes of `(K − ω²M) φ = 0`, scaled to unit modal mass.
 
-use crate::solve::hermitian_eigen;
+use crate::solve::{hermitian_eigen, hermitian_eigenvalues};
 use crate::Error;
+use faer::linalg::solvers::Llt;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
@@ -63,10 +64,40 @@ fn graded_order<T: ComplexField<Real = f64>>(
     (largest > GRADED * least).then_some(order)
 }
 
+/// Squared natural frequencies, ascending, without mode shapes.
+///
+/// # Errors
+/// As [`modes`].
+pub(super) fn squared_frequencies(
+    mass: MatRef<'_, f64>,
+    stiffness: MatRef<'_, f64>,
+) -> Result<Vec<f64>, Error> {
+    let order = graded_order(mass, stiffness).unwrap_or_else(|| (0..mass.nrows()).collect());
+    let permuted = |matrix: MatRef<'_, f64>| {
+        Mat::from_fn(order.len(), order.len(), |i, j| matrix[(order[i], order[j])])
+    };
+    let (_, reduced) = reduced(permuted(mass).as_ref(), permuted(stiffness).as_ref())?;
+    let failed = || Error::Eigenvalues("stiffness".to_owned());
+    hermitian_eigenvalues(reduced.as_ref()).ok_or_else(failed)
+}
+
 fn ordered_modes<T: ComplexField<Real = f64>>(
     mass: MatRef<'_, T>,
     stiffness: MatRef<'_, T>,
 ) -> Result<Modes<T>, Error> {
+    let (cholesky, reduced) = reduced(mass, stiffness)?;
+    let failed = || Error::Eigenvalues("stiffness".to_owned());
+    let (omega_squared, mut shapes) = hermitian_eigen(reduced.as_ref()).ok_or_else(failed)?;
+    let upper = cholesky.L().adjoint();
+    solve_upper_triangular_in_place(upper, shapes.as_mut(), faer::Par::Seq);
+    Ok(Modes { omega_squared, shapes })
+}
+
+/// The mass `L Lᴴ`, and `L⁻¹ K L⁻ᴴ`.
+fn reduced<T: ComplexField<Real = f64>>(
+    mass: MatRef<'_, T>,
+    stiffness: MatRef<'_, T>,
+) -> Result<(Llt<T>, Mat<T>), Error> {
     let cholesky = mass.llt(Side::Lower).map_err(|_| Error::IndefiniteMass)?;
     let lower = cholesky.L();
     let mut reduced = stiffness.to_owned();
@@ -75,10 +106,7 @@ fn ordered_modes<T: ComplexField<Real = f64>>(
     solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
     let mut reduced = reduced.adjoint().to_owned();
     solve_lower_triangular_in_place(lower, reduced.as_mut(), par);
-    let failed = || Error::Eigenvalues("stiffness".to_owned());
-    let (omega_squared, mut shapes) = hermitian_eigen(reduced.as_ref()).ok_or_else(failed)?;
-    solve_upper_triangular_in_place(lower.adjoint(), shapes.as_mut(), par);
-    Ok(Modes { omega_squared, shapes })
+    Ok((cholesky, reduced))
 }
 
 impl<T> Modes<T> {

@@ -5,6 +5,8 @@ use faer::{Mat, MatRef};
 
 /// Asymmetry, relative to the largest entry, that printed digits may leave in a matrix.
 const ASYMMETRY: f64 = 1e-8;
+/// Contacts from which on the numbers in their rows are counted.
+const MANY: usize = 24;
 
 /// The matrices of a linear structure; mass and stiffness symmetric, damping any.
 #[derive(Debug, Clone)]
@@ -102,8 +104,24 @@ impl Structure {
         rows: MatRef<'_, f64>,
         contact_stiffness: MatRef<'_, f64>,
     ) -> Mat<f64> {
-        let added = rows.transpose() * contact_stiffness * rows;
-        &self.stiffness + &added
+        if rows.nrows() < MANY {
+            return &self.stiffness + rows.transpose() * contact_stiffness * rows;
+        }
+        // Rows of many contacts hold few numbers each, and a contact knows few others.
+        let entries = |i: usize| {
+            let row = rows.row(i).iter().copied().enumerate();
+            row.filter(|(_, b)| *b != 0.0).collect::<Vec<_>>()
+        };
+        let entries: Vec<_> = (0..rows.nrows()).map(entries).collect();
+        let mut restrained = self.stiffness.clone();
+        for (j, column) in contact_stiffness.col_iter().enumerate() {
+            for (i, d) in column.iter().enumerate().filter(|(_, d)| **d != 0.0) {
+                for &(l, right) in &entries[j] {
+                    entries[i].iter().for_each(|&(k, left)| restrained[(k, l)] += left * d * right);
+                }
+            }
+        }
+        restrained
     }
 }
 

@@ -1,0 +1,148 @@
+//! Compliance of a structure with many contacts: real modes of the stuck structure, seen from the
+//! contacts, and nothing of the size of the structure beside them. Receptances are formed only for
+//! those who ask.
+
+use super::contact_modes::ContactModes;
+use super::modes::{modes, squared_frequencies, RealModes};
+use super::ports::{forced_harmonics, Ports};
+use super::proportional::follows_mass;
+use super::restraint::store;
+use super::{Compliance, Outline, Quantity, Receptance, Request, Structure};
+use crate::Error;
+use faer::{c64, Mat};
+
+/// Contacts from which on a structure is seen in this way whatever its damping is.
+const MANY: usize = 128;
+/// Tolerance of what the damping couples.
+const EXACT: f64 = 1e-14;
+
+/// A structure seen from its contacts.
+#[derive(Debug)]
+pub struct InterfaceCompliance {
+    modes: ContactModes,
+    outline: Outline,
+}
+
+impl InterfaceCompliance {
+    /// Of a structure with many contacts; nothing if others serve it better.
+    ///
+    /// # Errors
+    /// Shapes that do not fit, or an eigenvalue iteration that fails.
+    pub fn new(structure: &Structure, ports: &Ports) -> Result<Option<Self>, Error> {
+        ports.check(structure.dofs())?;
+        let (mass, damping) = (structure.mass(), structure.damping());
+        let contacts = ports.rows.nrows();
+        let uncoupled = damping.norm_max() == 0.0 || follows_mass(damping, mass);
+        if contacts < if uncoupled { ContactModes::FEWEST } else { MANY } {
+            return Ok(None);
+        }
+        let restrained =
+            structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
+        let stuck = modes(mass, restrained.as_ref())?;
+        drop(restrained);
+        let seen = if uncoupled {
+            let rate = damping[(0, 0)] / mass[(0, 0)];
+            ContactModes::uncoupled(&stuck, &vec![rate; stuck.omega_squared.len()], ports)
+        } else {
+            ContactModes::new(&stuck, || stuck.project(damping), ports)
+        };
+        let stuck = stuck.frequencies();
+        let Some(modes) = seen else { return Ok(None) };
+        let bandwidth = modes.narrowest_bandwidth();
+        let omega_squared = squared_frequencies(mass, structure.stiffness())?;
+        let free = RealModes { omega_squared, shapes: Mat::new() }.frequencies();
+        let forced = forced_harmonics(&ports.loads);
+        Ok(Some(Self { modes, outline: Outline { stuck, free, bandwidth, forced } }))
+    }
+}
+
+impl InterfaceCompliance {
+    /// Which modes carry it.
+    pub(super) fn base(&self) -> &'static str {
+        if self.modes.is_coupled() {
+            "coupled stuck modes"
+        } else {
+            "stuck modes"
+        }
+    }
+}
+
+impl Compliance for InterfaceCompliance {
+    fn contacts(&self) -> usize {
+        self.modes.contacts().ncols()
+    }
+
+    fn dofs(&self) -> usize {
+        self.modes.dofs()
+    }
+
+    fn outline(&self) -> &Outline {
+        &self.outline
+    }
+
+    fn contact_modes(&self) -> Option<&ContactModes> {
+        Some(&self.modes)
+    }
+
+    fn require_grounded(&self) -> Result<(), Error> {
+        self.modes.check(0, 0.0)
+    }
+
+    fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
+        out.reset(self.contacts());
+        self.modes.check(harmonic, omega)?;
+        let rows = self.modes.contacts();
+        let complex = |i: usize, j: usize| c64::new(rows[(i, j)], 0.0);
+        let forces = Mat::from_fn(rows.nrows(), rows.ncols(), complex);
+        let load = self.modes.load(harmonic);
+        let load =
+            Mat::from_fn(rows.nrows(), 1, |i, _| load.map_or(c64::new(0.0, 0.0), |load| load[i]));
+        let coordinates = [forces, load].map(|forces| self.modes.solved(harmonic, omega, forces));
+        let at_contacts = |coordinates: &Mat<c64>| {
+            // Two real products.
+            let part = |of: fn(&c64) -> f64| {
+                let size = (coordinates.nrows(), coordinates.ncols());
+                rows.transpose() * Mat::from_fn(size.0, size.1, |i, j| of(&coordinates[(i, j)]))
+            };
+            let (re, im) = (part(|z| z.re), part(|z| z.im));
+            Mat::from_fn(re.nrows(), re.ncols(), |i, j| c64::new(re[(i, j)], im[(i, j)]))
+        };
+        store(at_contacts(&coordinates[0]).as_ref(), &mut out.contact);
+        store(at_contacts(&coordinates[1]).as_ref(), &mut out.stuck);
+        if let Some((contact, stuck)) = &mut out.slope {
+            let slopes = coordinates.map(|coordinates| {
+                let softening = self.modes.softening(harmonic, omega, &coordinates);
+                self.modes.solved(harmonic, omega, softening)
+            });
+            store(at_contacts(&slopes[0]).as_ref(), contact);
+            store(at_contacts(&slopes[1]).as_ref(), stuck);
+        }
+        Ok(())
+    }
+
+    fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
+        let Request { harmonic, omega, quantity, slip_load, observe, .. } = *request;
+        let slots = if harmonic == 0 { 1 } else { 2 };
+        let at = self.modes.orders([(harmonic, 0)].into_iter(), omega);
+        let at = at.map_err(|(_, error)| error)?;
+        let part = |row: usize, q: &c64| if row == 0 { q.re } else { -q.im };
+        let slip = Mat::from_fn(slots, slip_load.len(), |i, j| part(i, &slip_load[j]));
+        let mut motion = ContactModes::excite(self.modes.contacts(), slip.as_ref());
+        if quantity != Quantity::OfSlip {
+            self.modes.add_load(&at, &mut motion);
+        }
+        self.modes.answer(&at, &mut motion, EXACT);
+        if quantity == Quantity::Slope {
+            self.modes.answer_rate(&at, &mut motion, EXACT);
+        }
+        self.modes.observe(harmonic, 0, &motion, observe, out);
+        Ok(())
+    }
+
+    fn effort(&self, observed: usize) -> [f64; 2] {
+        let (modes, contacts) = (self.modes.modes() as f64, self.contacts() as f64);
+        let whole = if self.modes.is_coupled() { modes.powi(3) } else { 0.0 };
+        let displacement = modes * (20.0 + 1.5 * (contacts + observed as f64));
+        [modes * (20.0 + 0.5 * contacts * contacts) + whole, displacement]
+    }
+}
