@@ -8,6 +8,7 @@ mod curve;
 mod cyclic_tridiagonal;
 mod damping;
 mod eigen;
+mod gmres;
 mod homotopy;
 mod kernels;
 mod line_search;
@@ -22,6 +23,7 @@ pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Ste
 pub use curve::Curve;
 pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
 pub use eigen::hermitian_eigen;
+pub use gmres::{gmres, KrylovReport};
 pub use homotopy::{homotopy, Parametrised};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
 pub use qr::Qr;

@@ -24,6 +24,7 @@ pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
 pub use direct::DirectCompliance;
 pub use flutter_compliance::{FlutterCompliance, StuckMode};
 pub use modal::{compliance, ModalBase, ModalCompliance};
+pub(crate) use modes::complex;
 pub use modes::{modes, natural_frequencies, HermitianModes, Modes, RealModes};
 pub use poles::Poles;
 pub use ports::{HarmonicLoad, Ports};
