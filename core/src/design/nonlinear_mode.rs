@@ -18,7 +18,7 @@ use std::time::Instant;
 
 /// Longest steps along a branch whose points are wanted, and along one of which some amplitudes are, in
 /// the metric of the unknowns: shares of the motion, and ln a.
-const LONGEST: [f64; 2] = [0.25, 0.6];
+const LONGEST: [f64; 2] = [0.1, 0.6];
 /// First and shortest step.
 const STEPS: [f64; 2] = [0.05, 1e-6];
 /// Iterations up to which a step may grow, and from which on it shrinks.
@@ -281,7 +281,7 @@ impl<'a> Walk<'a> {
         let (low, high) = self.bounds();
         let listed = matches!(self.settings.amplitudes, Amplitudes::List(_));
         let longest = LONGEST[usize::from(listed)];
-        let Some(mut z) = self.refined(first) else { return ModeEnd::Stalled };
+        let mut z = self.refined(first);
         let mut step = STEPS[0].min(longest);
         let mut way: Vec<f64> = level(z.len(), 0.0).normal;
         if z[z.len() - 1] >= low {
@@ -314,7 +314,7 @@ impl<'a> Walk<'a> {
             way = difference(&ahead, &z);
             let before = std::mem::replace(&mut z, ahead);
             self.last = z.last().copied();
-            let Some(more) = self.pass(&before, &z) else { return ModeEnd::Interrupted };
+            let more = self.pass(&before, &z);
             if more.len() != z.len() {
                 // In more harmonics the way goes on as it came.
                 way = self.recast(&way, z.len());
@@ -379,16 +379,16 @@ impl<'a> Walk<'a> {
     }
 
     /// Takes what lies between two points of the branch; returns the second one in as many harmonics as
-    /// have been found necessary, or nothing if the analysis is to end.
-    fn pass(&mut self, before: &[f64], z: &[f64]) -> Option<Vec<f64>> {
+    /// have been found necessary.
+    fn pass(&mut self, before: &[f64], z: &[f64]) -> Vec<f64> {
         let size = z.len();
         let (from, to) = (before[size - 1], z[size - 1]);
         let (low, high) = self.bounds();
         match self.settings.amplitudes.clone() {
             Amplitudes::Range(..) if to >= low && to <= high => {
-                let z = self.refined(z.to_vec())?;
+                let z = self.refined(z.to_vec());
                 self.record(&z);
-                Some(z)
+                z
             }
             Amplitudes::List(values) => {
                 let mut reached = z.to_vec();
@@ -398,7 +398,7 @@ impl<'a> Walk<'a> {
                         continue;
                     }
                     if (value - to).abs() <= 1e-12 {
-                        reached = self.refined(z.to_vec())?;
+                        reached = self.refined(z.to_vec());
                         self.record(&reached);
                         continue;
                     }
@@ -411,21 +411,21 @@ impl<'a> Walk<'a> {
                         self.record(&between);
                     }
                 }
-                Some(reached)
+                reached
             }
-            Amplitudes::Range(..) => Some(z.to_vec()),
+            Amplitudes::Range(..) => z.to_vec(),
         }
     }
 
     /// A point in as many harmonics as the tolerance asks for.
-    fn refined(&mut self, mut z: Vec<f64>) -> Option<Vec<f64>> {
+    fn refined(&mut self, mut z: Vec<f64>) -> Vec<f64> {
         if self.settings.harmonics != HarmonicChoice::Auto {
-            return Some(z);
+            return z;
         }
         loop {
             let kept = self.equations.harmonics().highest();
             if kept >= self.settings.max_harmonics || self.error(&z) <= self.settings.tolerance {
-                return Some(z);
+                return z;
             }
             let more = (kept + 2 + kept / 2).min(self.settings.max_harmonics);
             let mut equations = self.in_harmonics(more);
@@ -433,7 +433,11 @@ impl<'a> Walk<'a> {
             equations.accept(&recast);
             let plane = level(recast.len(), recast[recast.len() - 1]);
             let progress = self.progress;
-            equations.solve(&mut recast, &plane, &|| progress(0.0))?;
+            if equations.solve(&mut recast, &plane, &|| progress(0.0)).is_none() {
+                // It stays in the harmonics that it has, and says so.
+                self.products += equations.products;
+                return z;
+            }
             self.profile.add(&self.equations.profile);
             self.products += self.equations.products;
             self.equations = equations;

@@ -49,7 +49,7 @@ class ModeArrays(PeriodicArrays):
     relative_error: Float = column(
         "* mode_entry",
         "1",
-        "what the discarded harmonics could still change in frequency and damping, relative to them",
+        "what the discarded harmonics could still change, relative to frequency and damping",
         least=0.0,
     )
     residual: Float = column(
@@ -130,8 +130,8 @@ class NonlinearModes(PeriodicMotions):
     ) -> SynthesizedResponse:
         """Return the response to forces that this mode alone gives, with its error indicator.
 
-        Static loads are those of the mode. Good where the mode is well apart from others and lightly
-        damped: below a damping ratio of about 0.03.
+        Static loads are those of the mode. Good where the mode is well apart from others and
+        lightly damped: below a damping ratio of about 0.03.
 
         Parameters
         ----------

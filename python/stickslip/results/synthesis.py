@@ -41,11 +41,11 @@ class SynthesizedResponse:
     omega : ndarray of float64, shape (n,)
         Frequencies of the forces [rad/s].
     modal_amplitude : ndarray of float64, shape (n,)
-        Modal amplitude [m kg^(1/2)], the largest one where there are several; not-a-number where the
-        mode was not computed that far.
+        Modal amplitude [m kg^(1/2)], the largest one where there are several; not-a-number where
+        the mode was not computed that far.
     error_indicator : ndarray of float64, shape (n,)
-        What the mode leaves out, relative to the motion: how far the full equations are from holding,
-        in terms of displacements. Above 0.01 compute the response directly.
+        What the mode leaves out, relative to the motion: how far the full equations are from
+        holding, in terms of displacements. Above 0.01 compute the response directly.
     """
 
     mode: NonlinearModes
@@ -86,9 +86,9 @@ class _Shapes:
         rising = known[np.r_[True, np.diff(arrays.amplitude[known]) > 0.0]] if known.size else known
         if rising.size < known.size or known.size < 2:
             raise ModelError(
-                "forced_response: the mode needs two amplitudes and more, and a branch that does not "
-                f"turn; it has {known.size} with {mode.turns.size} turns; compute it over another "
-                "range"
+                "forced_response: the mode needs two amplitudes and more, and a branch that does "
+                f"not turn; it has {known.size} with {mode.turns.size} turns; compute it over "
+                "another range"
             )
         log = np.log(arrays.amplitude[known])
         self.low, self.high = log[0], log[-1]
@@ -98,7 +98,6 @@ class _Shapes:
         def between(values: Complex | Float) -> PchipInterpolator:
             return PchipInterpolator(log, values, axis=0)
 
-        self._factor = factor.shape[1]
         self._omega, self._damping = (
             between(arrays.omega[known]),
             between(arrays.damping_ratio[known]),
@@ -155,11 +154,14 @@ def synthesized(mode: NonlinearModes, force: Complex, omega: Float) -> Synthesiz
             found[index] = grid[at] * (grid[at + 1] / grid[at]) ** share
         else:
             found[index] = grid[0] * np.abs(work[0]) / (excess[0] + np.abs(work[0]))
-    natural, damping = shapes.scalars(found)
+    reached = np.isfinite(found)
+    natural, damping = (np.full(omega.size, np.nan) for _ in range(2))
+    work, turn = (np.full(omega.size, np.nan, np.complex128) for _ in range(2))
+    natural[reached], damping[reached] = shapes.scalars(found[reached])
     response = natural**2 - omega**2 + 2j * damping * natural * omega
-    work = shapes.displacement(found)[:, 1].conj() @ force / found
-    turn = work / (response * found)
-    turn /= np.abs(turn)
+    fundamental = shapes.displacement(found[reached])[:, 1]
+    work[reached] = fundamental.conj() @ force / found[reached]
+    turn[reached] = np.exp(1j * np.angle(work[reached] / response[reached]))
     indicator = _indicator(mode, shapes, force, omega, found, turn)
     arrays = (constant(np.array(one)) for one in (omega, found, indicator, turn))
     return SynthesizedResponse(mode, *arrays)
@@ -175,9 +177,9 @@ def _indicator(
 ) -> Float:
     """Return the displacements that the residual of the full equations stands for.
 
-    Contacts answer as they do in the mode, by their complex stiffness of the fundamental, so that the
-    mode itself is an exact solution; across the mode the residual moves the other modes, and along it
-    the amplitude.
+    Contacts answer as they do in the mode, by their complex stiffness of the fundamental, so that
+    the mode itself is an exact solution; across the mode the residual moves the other modes, and
+    along it the amplitude.
     """
     structure = mode.model.structure
     rows = np.vstack([contact.rows(structure) for contact in mode.model.contacts])
@@ -241,8 +243,8 @@ def force_vector(mode: NonlinearModes, given: object) -> Complex:
             vector[dofs.index(one.dof)] += one.coefficient
         elif one.harmonic > 1:
             raise ModelError(
-                f"forces: harmonic {one.harmonic} at {one.dof!r}; a mode answers to the fundamental "
-                "alone"
+                f"forces: harmonic {one.harmonic} at {one.dof!r}; a mode answers to the "
+                "fundamental alone"
             )
     if not vector.any():
         raise ModelError("forces: none has harmonic 1; nothing drives the mode")

@@ -16,8 +16,8 @@ class BackboneSettings(HarmonicSettings):
 
     mode: Index = Field(
         default=0,
-        description="Mode of the structure with its contacts as they are at rest, counted from 0 by "
-        "rising frequency.",
+        description="Mode of the structure with its contacts as they are at rest, counted from 0 "
+        "by rising frequency.",
     )
     max_harmonics: Count = Field(default=63, description="Highest harmonic that may be kept.")
     max_points: Annotated[int, Whole(2)] = Field(
@@ -34,8 +34,9 @@ class ModeKeys(BackboneSettings):
     """Which nonlinear mode, at which amplitudes, and how."""
 
     amplitude: Amplitudes = Field(
-        description="Modal amplitudes a = (X_1^H M X_1)^(1/2) [m kg^(1/2)]. A list: exactly these. A "
-        "range, of functions a tuple of two numbers: all between, with steps as the mode asks for.",
+        description="Modal amplitudes a = (X_1^H M X_1)^(1/2) [m kg^(1/2)]. A list: exactly these. "
+        "A range, of functions a tuple of two numbers: all between, with steps as the mode "
+        "asks for.",
         examples=[{"from": 1e-6, "to": 1e-2}, [1e-4, 1e-3]],
     )
 
