@@ -18,7 +18,10 @@ use std::time::Instant;
 
 /// Longest steps along a branch whose points are wanted, and along one of which some amplitudes are, in
 /// the metric of the unknowns: shares of the motion, and ln a.
-const LONGEST: [f64; 2] = [0.1, 0.6];
+const LONGEST: [f64; 2] = [0.25, 0.6];
+/// Change of the damping from point to point of such a branch, as a share of it, and the least damping,
+/// in units of 2ω, that counts.
+const SEEN: [f64; 2] = [0.04, 1e-4];
 /// First and shortest step.
 const STEPS: [f64; 2] = [0.05, 1e-6];
 /// Iterations up to which a step may grow, and from which on it shrinks.
@@ -360,13 +363,26 @@ impl<'a> Walk<'a> {
                 let along: f64 = came.iter().zip(&unit).map(|(a, b)| a * b).sum();
                 let straight = along / norm(&came).max(f64::MIN_POSITIVE);
                 let bend = if norm(&came) <= CORNER { 0.0 } else { BEND };
-                if straight > bend && norm(&came) < 3.0 * step.max(norm(&came).min(CORNER)) {
+                let shows = self.shows(z, &ahead) || *step <= CORNER;
+                if shows && straight > bend && norm(&came) < 3.0 * step.max(CORNER) {
                     return Some((ahead, iterations));
                 }
             }
             *step *= 0.4;
         }
         None
+    }
+
+    /// Whether two points of a branch that is wanted as a whole are close enough for what is read off
+    /// between them: damping rises steeply where contacts begin to slip.
+    fn shows(&self, z: &[f64], ahead: &[f64]) -> bool {
+        let size = z.len();
+        let (low, _) = self.bounds();
+        if ahead[size - 1] <= low || matches!(self.settings.amplitudes, Amplitudes::List(_)) {
+            return true;
+        }
+        let [before, after] = [z, ahead].map(|z| z[size - 2].abs());
+        (after - before).abs() <= SEEN[0] * before.max(after).max(SEEN[1])
     }
 
     /// The next ln a above one at which a point is wanted.

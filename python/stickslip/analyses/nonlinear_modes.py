@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from stickslip import _core
@@ -96,7 +94,7 @@ def _of_diameter(model: Model, diameter: int | None) -> Model:
             f"nodal_diameter: {diameter} of a model without cyclic symmetry; leave it out"
         )
     static = [force for force in model.forces if force.harmonic == 0]
-    return replace(model, engine_order=diameter, forces=tuple(static))  # type: ignore[call-arg]
+    return model._like(engine_order=diameter, forces=tuple(static))
 
 
 def _assumptions(

@@ -37,7 +37,8 @@ _CODES = {
     Severity.CAUTION: """
         truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps
         no-tolerance forces-left-out peak-at-edge optimum-at-bound points-limit no-turn branch-jumps
-        stability-unknown jump internal-resonance not-determined tied at-bound other-minimum misfit-above-noise
+        stability-unknown jump internal-resonance not-determined tied at-bound
+        other-minimum misfit-above-noise
     """,
     Severity.FAILURE: """
         mode-not-reached branch-stalled branch-turned-back branch-end no-limit predictions-missing

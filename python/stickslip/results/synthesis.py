@@ -95,7 +95,7 @@ class _Shapes:
         factor = np.ones((known.size, arrays.displacement.shape[1], 1))
         factor[:, 1:] = arrays.amplitude[known, None, None]
 
-        def between(values: Complex | Float) -> PchipInterpolator:
+        def between(values: Float) -> PchipInterpolator:
             return PchipInterpolator(log, values, axis=0)
 
         self._omega, self._damping = (

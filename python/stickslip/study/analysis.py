@@ -238,6 +238,8 @@ class FitTable(FitSettings, AnalysisTable):
         pairs = zip(self._read, self.measurement, strict=True)
         tests = [test.on(table.model_of(model)) for test, table in pairs]
         return fit(model, tests, settings=self, progress=progress)
+
+
 class NonlinearModesTable(ModeKeys, AnalysisTable):
     """Frequency, damping and shape of a mode against its amplitude."""
 
