@@ -96,7 +96,8 @@ def test_friction_work_is_the_friction_part_of_the_damping():
     # From stuck to slipping natural frequency.
     stuck = ss.natural_frequencies(mode.model)[1]
     free = ss.natural_frequencies(mode.model, slipping=[(0, 0), (1, 0)])[1]
-    assert mode.omega[0] == pytest.approx(stuck, rel=1e-9)
+    # Damping of the free modes couples the stuck ones by a little.
+    assert mode.omega[0] == pytest.approx(stuck, rel=1e-7)
     assert mode.omega[-1] == pytest.approx(free, rel=1e-3)
 
 
@@ -139,11 +140,52 @@ def test_a_cubic_spring_stiffens():
     assert mode.damping_ratio == pytest.approx(0.0, abs=1e-12)
 
 
-def test_a_stop_that_opens_has_the_frequency_of_its_exact_motion():
-    # Half a period with the spring of the stop, half a period without.
-    model = one_mass(ss.Stop("x", stiffness=3e4, gap=0.0), damping=0.0)
-    mode = ss.nonlinear_modes(model, mode=0, amplitude=[1e-3], tolerance=1e-6)
-    assert mode.omega[0] == pytest.approx(2.0 / (1.0 / 100.0 + 1.0 / 200.0), rel=1e-4)
+def test_a_stop_beyond_its_gap_has_the_frequency_of_its_exact_motion():
+    # Far beyond the gap: half a period with the spring of the stop, half a period without.
+    model = one_mass(ss.Stop("x", stiffness=3e4, gap=1e-4), damping=0.0)
+    mode = ss.nonlinear_modes(model, mode=0, amplitude=[1e-5, 1.0])
+    assert mode.omega[0] == pytest.approx(100.0, rel=1e-9)
+    assert mode.omega[1] == pytest.approx(2.0 / (1.0 / 100.0 + 1.0 / 200.0), rel=1e-3)
+
+
+def test_random_joints_are_solved_or_say_why_not():
+    rng = np.random.default_rng(7)
+    for _ in range(12):
+        size = int(rng.integers(2, 5))
+        root = rng.normal(size=(size, size))
+        stiffness = 1e4 * (root @ root.T + np.eye(size))
+        dofs = [f"d{i}" for i in range(size)]
+        structure = ss.Structure(
+            mass=np.diag(rng.uniform(0.5, 2.0, size)),
+            stiffness=stiffness,
+            damping=ss.ModalDamping(0.002),
+            dofs=dofs,
+        )
+        kinds = [
+            ss.Jenkins("d0", stiffness=5e3, slip_force=1.0, name="a"),
+            ss.Cubic("d1", stiffness=1e8, name="b"),
+            ss.Stop("d1", stiffness=5e3, gap=2e-4, name="c"),
+            ss.Coulomb(
+                ["d0", "d1"],
+                normal=[0.0, 1.0],
+                friction=0.3,
+                tangential_stiffness=4e3,
+                normal_stiffness=6e3,
+                preload=2.0,
+                name="d",
+            ),
+        ]
+        chosen = rng.choice(len(kinds), size=int(rng.integers(1, 4)), replace=False)
+        model = ss.Model(structure, contacts=[kinds[i] for i in chosen])
+        mode = ss.nonlinear_modes(
+            model, mode=int(rng.integers(size)), amplitude=np.geomspace(1e-5, 1e-2, 7), harmonics=5
+        )
+        codes = {one.code for one in mode.diagnostics}
+        solved = np.array([status.solved for status in mode.status])
+        assert solved.all() or "mode-not-reached" in codes
+        assert np.isfinite(mode.omega[solved]).all()
+        assert (mode.friction_ratio[solved] > -1e-6).all()
+        assert (mode.arrays.residual[solved] < 1e-6).all()
 
 
 def test_decaying_vibration_has_the_same_frequency_and_damping():
