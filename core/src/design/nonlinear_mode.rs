@@ -165,8 +165,7 @@ fn held_at_rest(
     settings: &ModeSettings,
     progress: &Progress<'_>,
 ) -> Result<Option<Model>, Error> {
-    let kept = |law: &Box<dyn ContactLaw>| keeps_history(law.as_ref());
-    if !model.laws().iter().any(kept) {
+    if !model.laws().iter().any(|law| keeps_history(law.as_ref())) {
         return Ok(None);
     }
     let settings = ModeSettings { harmonics: HarmonicChoice::Fixed(1), ..settings.clone() };
