@@ -10,6 +10,7 @@ mod design;
 mod fates;
 mod limit_cycles;
 mod mistuning;
+mod modes;
 mod orbits;
 mod problem;
 mod python_law;
@@ -32,6 +33,7 @@ mod _core {
         fates::fates,
         limit_cycles::limit_cycles,
         mistuning::{mistuning_study, summits, TunedDisk},
+        modes::nonlinear_mode,
         orbits::{exact_peak, exact_response, orbit_history},
         problem::Problem,
         response::{amplitude, forced_response, single_harmonic},

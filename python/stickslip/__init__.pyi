@@ -89,9 +89,11 @@ from stickslip.results.limit_cycles import LimitCycles as LimitCycles
 from stickslip.results.limit_cycles import StabilityMap as StabilityMap
 from stickslip.results.mistuning import MistuningStudy as MistuningStudy
 from stickslip.results.motion_class import MotionClass as MotionClass
+from stickslip.results.nonlinear_modes import NonlinearModes as NonlinearModes
 from stickslip.results.optimal_damper import OptimalDamper as OptimalDamper
 from stickslip.results.static_response import StaticResponse
 from stickslip.results.store import load as load
+from stickslip.results.synthesis import SynthesizedResponse as SynthesizedResponse
 from stickslip.results.transient import Transient as Transient
 from stickslip.settings.variation import Contacts
 
@@ -234,6 +236,20 @@ def mistuning_study(
     client: Client | None = None,
     progress: Progress = None,
 ) -> MistuningStudy: ...
+def nonlinear_modes(
+    model: Model,
+    *,
+    amplitude: ArrayLike | tuple[float, float],
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float | None = None,
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 0.001,
+    max_harmonics: int = 63,
+    mode: int = 0,
+    max_points: int = 2000,
+    nodal_diameter: int | None = None,
+    progress: Progress = None,
+) -> NonlinearModes: ...
 def optimal_damper(
     model: Model,
     *,

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from stickslip.model.contact_law import ContactLaw
 from stickslip.settings.balance import BalanceSettings, HarmonicSettings, SteadySettings
 from stickslip.settings.cycles import CycleSettings
+from stickslip.settings.modes import ModeSettings
 from stickslip.settings.motion import ClassifySettings, TransientSettings
 from stickslip.settings.orbits import ExactSettings, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperSettings, MistuningSettings
@@ -245,6 +246,18 @@ def sensitivity(
     causes: Sequence[str | tuple[int, int | None, str]],
     samples: NDArray[np.int64],
 ) -> Float: ...
+
+class NonlinearMode:
+    columns: dict[str, NDArray[Any]]
+    end: tuple[str, float]
+    half_wave: bool
+    interrupted: bool
+    timings: dict[str, float]
+    counters: dict[str, int]
+
+def nonlinear_mode(
+    problem: Problem, settings: ModeSettings, progress: Progress
+) -> NonlinearMode: ...
 
 class LimitCycles:
     columns: dict[str, NDArray[Any]]

@@ -94,7 +94,7 @@ impl Point {
     }
 
     /// Makes room for harmonics up to `highest`.
-    pub(super) fn keep(&mut self, highest: usize) {
+    pub(crate) fn keep(&mut self, highest: usize) {
         self.harmonics = highest;
         for series in
             [&mut self.displacement, &mut self.contact_displacement, &mut self.contact_force]

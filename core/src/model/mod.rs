@@ -4,11 +4,13 @@ mod body;
 mod contact_assembly;
 mod contact_states;
 mod flutter_model;
+mod modal_basis;
 mod resonances;
 mod slipping;
 mod variation;
 
 pub use flutter_model::{FlutterModel, NegativeDamping};
+pub(crate) use modal_basis::{ModalBases, ModalBasis};
 pub use resonances::Resonance;
 pub use variation::{Change, ParameterMode, Variation};
 

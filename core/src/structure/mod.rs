@@ -28,6 +28,7 @@ pub use direct::DirectCompliance;
 pub use flutter_compliance::{FlutterCompliance, StuckMode};
 pub use interface::InterfaceCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
+pub(crate) use modes::complex;
 pub use modes::{modes, natural_frequencies, HermitianModes, Modes, RealModes};
 pub use poles::Poles;
 pub use ports::{HarmonicLoad, Ports};

@@ -151,6 +151,6 @@ pub fn natural_frequencies(
     }
 }
 
-pub(super) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {
+pub(crate) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {
     Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
 }

@@ -5,6 +5,14 @@ from __future__ import annotations
 from stickslip.results.diagnostic import Diagnostic, diagnostic
 
 TEXTS = {
+    # nonlinear modes
+    "mode-at-rest": "Mode {mode} has {omega:.8g} rad/s and a damping ratio of {ratio:.6g} with "
+    "its contacts as they are at rest; periodic forces are left out, static loads kept.",
+    "internal-resonance": "At {points} of the amplitudes, from {_first:.4g} on, harmonic {order} "
+    "meets the stuck natural frequency of {frequency:.6g} rad/s with {share:.0%} of the amplitude: "
+    "the mode is an internal resonance there, and other branches lie close by.",
+    "turns": "The branch turns back in amplitude at {_listed}.",
+    "mode-not-reached": "The branch ended at the amplitude {amplitude:.6g} ({_why}): {_remedy}.",
     # the method
     "harmonics": "All harmonics from 0 to {most} were solved for{_chosen}.",
     "harmonics/odd": "Only the odd harmonics up to {most} were solved for{_chosen}: the forces and "

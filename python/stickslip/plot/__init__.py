@@ -12,6 +12,7 @@ from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
 from stickslip.plot.fit import fit, fit_intervals, fit_residuals
 from stickslip.plot.maps import design_map
 from stickslip.plot.mistuning import amplification, distribution
+from stickslip.plot.modes import backbone, mode_damping
 from stickslip.plot.multipliers import cycle_multipliers, multipliers
 from stickslip.plot.statics import static_forces
 from stickslip.plot.transients import contact_history, history, phase, poincare, spectrum
@@ -19,6 +20,7 @@ from stickslip.plot.transients import contact_history, history, phase, poincare,
 __all__ = [
     "aerodynamic",
     "amplification",
+    "backbone",
     "basins",
     "blade_bars",
     "blade_curves",
@@ -38,6 +40,7 @@ __all__ = [
     "hysteresis",
     "limit_cycles",
     "lines",
+    "mode_damping",
     "multipliers",
     "nodal_diameters",
     "phase",

@@ -132,6 +132,19 @@ class CycleOptions(Several, Amplitude, total=False):
     frequency: Annotated[bool, True, "Draw the frequency too, on axes below those of a new figure."]
 
 
+class DampingOptions(Drawing, total=False):
+    """Keywords of `mode_damping`."""
+
+    labels: Annotated[Sequence[str] | None, None, "One per result. Default: the modes."]
+
+
+class BackboneOptions(DampingOptions, Swept, total=False):
+    """Keywords of `backbone`."""
+
+    damping: Annotated[bool, True, "Draw the damping ratio too, below on a new figure."]
+    shapes: Annotated[bool, True, "Show the shape at three amplitudes."]
+
+
 class MultiplierOptions(Swept, total=False):
     """Keywords of `multipliers`."""
 

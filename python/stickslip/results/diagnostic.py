@@ -32,16 +32,16 @@ _CODES = {
         exact-orbits frequencies observed-dofs tolerances-missed static-traction start-of-march
         start time-steps kept-periods criterion modes peak-range varied-together rigid-limit
         coarse-search patterns deviations onset forces-ignored stability-undecided multipliers
-        unbounded-branch folds unstable intervals noise-estimated text
+        unbounded-branch folds unstable intervals noise-estimated mode-at-rest turns text
     """,
     Severity.CAUTION: """
         truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps
         no-tolerance forces-left-out peak-at-edge optimum-at-bound points-limit no-turn branch-jumps
-        stability-unknown jump free-flight not-determined tied at-bound other-minimum
-        misfit-above-noise
+        stability-unknown jump free-flight internal-resonance not-determined tied at-bound
+        other-minimum misfit-above-noise
     """,
     Severity.FAILURE: """
-        branch-stalled branch-turned-back branch-end no-limit predictions-missing
+        mode-not-reached branch-stalled branch-turned-back branch-end no-limit predictions-missing
     """,
 }
 SEVERITIES: Mapping[str, Severity] = MappingProxyType(

@@ -40,7 +40,11 @@ Attributes: TypeAlias = Mapping[str, Callable[[Any], object]]
 _NUMBERED = {"harmonic": "multiple of omega", "pattern": "number of the pattern"}
 """Dimensions along which positions are counted, with the meaning of the number."""
 
-_LABELLED = {"side": "end of the range", "turn_entry": "entry of the place"}
+_LABELLED = {
+    "side": "end of the range",
+    "turn_entry": "entry of the place",
+    "mode_entry": "frequency and damping",
+}
 """Dimensions that have `Columns.labels`, with the meaning of a label."""
 
 

@@ -27,6 +27,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "transient": ("stickslip.results.transient", "Transient"),
     "damper_curve": ("stickslip.results.damper_curve", "DamperCurve"),
     "limit_cycles": ("stickslip.results.limit_cycles", "LimitCycles"),
+    "nonlinear_modes": ("stickslip.results.nonlinear_modes", "NonlinearModes"),
     "optimal_damper": ("stickslip.results.optimal_damper", "OptimalDamper"),
     "motion_class": ("stickslip.results.motion_class", "MotionClass"),
     "basin_map": ("stickslip.results.basin_map", "BasinMap"),

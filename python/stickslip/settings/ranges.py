@@ -290,6 +290,7 @@ Preloads = Annotated[Float | Span, Or(ListOr[NormalLoad, LoadRange], *_LIST, _no
 Springs = Annotated[Float | Span, Or(ListOr[StiffnessValue, SpringRange], *_LIST, _not_negative)]
 Gaps = Annotated[Float, Or(Some[Length], *_LIST, _finite)]
 Levels = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_LIST, _above_zero)]
+Amplitudes = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_BOTH, _branch)]
 Ratios = Annotated[Float | Span, Or(_Ratios, *_BOTH, _branch)]
 BranchStiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_BOTH, _branch)]
 BranchSlipForces = Annotated[Float | Span, Or(_SlipForces, *_BOTH, _branch)]

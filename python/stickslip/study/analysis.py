@@ -19,6 +19,7 @@ from stickslip.analyses.fit import fit
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.analyses.mistuning_study import mistuning_study
+from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.analyses.run import Progress, share
 from stickslip.analyses.single_harmonic import single_harmonic
 from stickslip.analyses.static_response import static_response
@@ -31,6 +32,7 @@ from stickslip.settings.balance import BalanceKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import Factor, Some, Table, chosen_by
 from stickslip.settings.fit import FitSettings
+from stickslip.settings.modes import ModeKeys
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys
@@ -238,6 +240,14 @@ class FitTable(FitSettings, AnalysisTable):
         return fit(model, tests, settings=self, progress=progress)
 
 
+class NonlinearModesTable(ModeKeys, AnalysisTable):
+    """Frequency, damping and shape of a mode against its amplitude."""
+
+    kind: Literal["nonlinear-modes"] = Field(description="The analysis.")
+    analysis: ClassVar = nonlinear_modes
+    dof_keys = ()
+
+
 KINDS: Mapping[str, type[AnalysisTable]] = {
     get_args(table.model_fields["kind"].annotation)[0]: table
     for table in (
@@ -252,6 +262,7 @@ KINDS: Mapping[str, type[AnalysisTable]] = {
         MistuningStudyTable,
         LimitCyclesTable,
         FitTable,
+        NonlinearModesTable,
     )
 }
 """Each further analysis has a table of its own here."""

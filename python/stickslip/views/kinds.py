@@ -28,6 +28,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "fit": ("stickslip.views.fits", "FitView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
+    "nonlinear_modes": ("stickslip.views.modes", "ModeView"),
 }
 """Module and class of the view of every kind; results of one view are drawn together."""
 

@@ -1,0 +1,75 @@
+//! Nonlinear modes: settings in, points along the branch out.
+
+use crate::columns::Columns;
+use crate::problem::Problem;
+use crate::settings::{self, get, harmonics};
+use crate::watch::computed;
+use pyo3::prelude::*;
+use std::sync::Arc;
+use stickslip_core::design::{self, Amplitudes, ModeEnd, ModeSettings, NonlinearMode};
+use stickslip_core::Model;
+
+/// A nonlinear mode as columns.
+fn branch<'py>(
+    py: Python<'py>,
+    found: &NonlinearMode,
+    model: &Model,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (dofs, contacts) = (model.compliance().dofs(), model.compliance().contacts());
+    let points = || found.points.iter();
+    let columns = Columns::new(py);
+    columns.responses(points().map(|p| &p.response), dofs, contacts)?;
+    columns.one("amplitude", points().map(|p| p.amplitude))?;
+    columns.one("damping_ratio", points().map(|p| p.damping_ratio))?;
+    columns.one("viscous_ratio", points().map(|p| p.viscous))?;
+    columns.rows("relative_error", 2, f64::NAN, points().map(|p| p.errors))?;
+    let met = |of: fn(&design::Interaction) -> f64| {
+        points().map(move |p| p.interaction.as_ref().map_or(f64::NAN, of)).collect::<Vec<_>>()
+    };
+    let order = points().map(|p| p.interaction.map_or(0, |met| met.order as i64));
+    columns.one("resonance_order", order)?;
+    columns.one("resonance_omega", met(|met| met.frequency))?;
+    columns.one("resonance_share", met(|met| met.share))?;
+    columns.one("turns", found.turns.iter().copied())?;
+    columns.one("linear", found.linear)?;
+    let end = match found.end {
+        ModeEnd::Range => "range",
+        ModeEnd::Returned => "returned",
+        ModeEnd::Stalled => "stalled",
+        ModeEnd::Points => "points",
+        ModeEnd::Interrupted => "interrupted",
+    };
+    columns.tell("end", (end, found.end_amplitude))?;
+    columns.tell("half_wave", found.half_wave)?;
+    columns.tell("interrupted", found.end == ModeEnd::Interrupted)?;
+    columns.effort(&found.profile, ("products", found.products))?;
+    columns.end()
+}
+
+/// The nonlinear mode of a model.
+#[pyfunction]
+pub fn nonlinear_mode<'py>(
+    py: Python<'py>,
+    problem: &Problem,
+    settings: &Bound<'_, PyAny>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let amplitudes: Vec<f64> = get(settings, "amplitudes")?;
+    let amplitudes = match (get::<bool>(settings, "whole")?, amplitudes.as_slice()) {
+        (true, &[low, high]) => Amplitudes::Range(low, high),
+        _ => Amplitudes::List(amplitudes),
+    };
+    let settings = ModeSettings {
+        mode: get(settings, "mode")?,
+        amplitudes,
+        harmonics: harmonics(get(settings, "fixed_harmonics")?),
+        tolerance: get(settings, "tolerance")?,
+        max_harmonics: get(settings, "max_harmonics")?,
+        residual: settings::residual(&settings.getattr("residual")?)?,
+        most: get(settings, "max_points")?,
+    };
+    let model = Arc::clone(&problem.model);
+    let found =
+        computed(py, progress, move |look| design::nonlinear_mode(&model, &settings, look))?;
+    branch(py, &found, &problem.model)
+}

@@ -1,0 +1,129 @@
+"""Nonlinear modes: frequency and damping of a structure with contacts against amplitude."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip import _core
+from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.texts import told
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
+from stickslip.results.nonlinear_modes import ModeArrays, NonlinearModes
+from stickslip.settings.modes import BackboneSettings, ModeKeys, ModeSettings
+from stickslip.settings.settings import configured
+
+_WHY = {
+    "returned": "it turned back to small amplitudes",
+    "stalled": "no point ahead was found",
+    "points": "as many points as allowed",
+    "interrupted": "interrupted",
+}
+_REMEDY = {
+    "returned": "ask for smaller amplitudes",
+    "stalled": "ask for smaller amplitudes, or try other harmonics",
+    "points": "raise max_points",
+    "interrupted": "run it again",
+}
+
+
+@configured(ModeKeys)
+def nonlinear_modes(
+    model: Model, *, settings: ModeKeys, progress: Progress = None
+) -> NonlinearModes:
+    """Follow a mode of vibration from small amplitudes, where it is linear, to large ones.
+
+    A nonlinear mode is a periodic motion without forces that a fictitious mass-proportional
+    damping keeps up; what that has to feed is the modal damping of the structure and its contacts.
+    Static loads stay. The branch is followed by arclength in the logarithm of the amplitude, around
+    the turns that contacts make as they lift off.
+
+    Parameters
+    ----------
+    model : Model
+        Structure, contacts and static loads; other forces are left out. A tuned `BladedDisk` moves
+        in a travelling wave of one nodal diameter, with amplitudes of one sector.
+
+    Returns
+    -------
+    NonlinearModes
+        Along its branch, or at the amplitudes given in rising order.
+
+    Raises
+    ------
+    ModelError
+        If there is no such mode, or it is a rigid-body motion.
+    Interrupted
+        It holds the points so far.
+
+    References
+    ----------
+    Krack (2015), Comput. Struct. 154, 59: the extended periodic motion concept.
+    """
+    model = _of_diameter(model, settings.nodal_diameter)
+    amplitude = settings.amplitude
+    kept = ModeSettings.of(
+        **{
+            **settings.suited(model).part(BackboneSettings),
+            "amplitudes": tuple(map(float, np.atleast_1d(amplitude))),
+            "whole": isinstance(amplitude, tuple),
+        }
+    )
+    with Run("nonlinear mode", progress, model) as run:
+        with refusals(model):
+            solution = _core.nonlinear_mode(model.problem, kept, run)
+        arrays = ModeArrays.of(solution)
+        result = NonlinearModes.of(
+            solution,
+            model=model,
+            dofs=model.structure.dofs,
+            settings=kept,
+            arrays=arrays,
+            diagnostics=_assumptions(kept, arrays, solution),
+        )
+        return run.ended(result, f"{result.omega.size} amplitudes")
+
+
+def _of_diameter(model: Model, diameter: int | None) -> Model:
+    """Return the model in the wave of a nodal diameter."""
+    if diameter is None:
+        return model
+    if not model.travels:
+        raise ModelError(
+            f"nodal_diameter: {diameter} of a model without cyclic symmetry; leave it out"
+        )
+    static = [force for force in model.forces if force.harmonic == 0]
+    return model._like(engine_order=diameter, forces=tuple(static))
+
+
+def _assumptions(
+    settings: ModeSettings, arrays: ModeArrays, solution: _core.NonlinearMode
+) -> tuple[Diagnostic, ...]:
+    """Say what a nonlinear mode took for granted."""
+    omega, ratio = arrays.linear.tolist()
+    end, amplitude = solution.end
+    met = np.flatnonzero(arrays.resonance_order > 0)
+    worst = met[np.argmax(arrays.resonance_share[met])] if met.size else 0
+    most = int(arrays.harmonics.max(initial=0))
+    chosen = "" if settings.fixed_harmonics else f", chosen to {settings.tolerance:g}"
+    return present(
+        (
+            told("mode-at-rest", mode=settings.mode, omega=omega, ratio=ratio),
+            told("harmonics/odd" if solution.half_wave else "harmonics", most=most, _chosen=chosen),
+            met.size > 0
+            and told(
+                "internal-resonance",
+                points=int(met.size),
+                order=int(arrays.resonance_order[worst]),
+                frequency=float(arrays.resonance_omega[worst]),
+                share=float(arrays.resonance_share[worst]),
+                _first=float(arrays.amplitude[met[0]]),
+            ),
+            arrays.turns.size > 0
+            and told("turns", _listed=", ".join(f"{one:.4g}" for one in arrays.turns[:6])),
+            end in _WHY
+            and told("mode-not-reached", amplitude=amplitude, _why=_WHY[end], _remedy=_REMEDY[end]),
+            missed_tolerances(arrays.status, "amplitudes") if arrays.status.size else None,
+        )
+    )

@@ -1,0 +1,97 @@
+"""Nonlinear modes: frequency and damping against amplitude."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Unpack
+
+import numpy as np
+from matplotlib import pyplot
+from matplotlib.axes import Axes
+
+from stickslip.plot import style
+from stickslip.plot.arguments import checked_labels, several
+from stickslip.plot.figure import keywords
+from stickslip.plot.options import BackboneOptions, DampingOptions
+from stickslip.plot.style import Colour
+from stickslip.results.nonlinear_modes import NonlinearModes
+
+_AMPLITUDE = r"modal amplitude [m kg$^{1/2}$]"
+_INSETS = (0.08, 0.42, 0.76)
+"""Where the shapes stand across the figure of the frequency."""
+
+
+@keywords
+def backbone(
+    results: NonlinearModes | Sequence[NonlinearModes], **options: Unpack[BackboneOptions]
+) -> Axes:
+    """Draw frequency and damping ratio of nonlinear modes against modal amplitude.
+
+    Dotted lines are the viscous part of the damping. The insets show the moduli of the
+    fundamental at the least, a middle and the largest amplitude of the first mode, DOF by DOF.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes of the frequency.
+    """
+    branches = several(NonlinearModes, results)
+    names = checked_labels(options["labels"], [f"mode {one.settings.mode}" for one in branches])
+    omega = style.OMEGA[options["omega_unit"]]
+    made, ax, below = options["ax"] is None, options["ax"], None
+    if made and options["damping"]:
+        tall = pyplot.figure(figsize=(6.4, 6.4), layout="constrained")
+        ax, below = tall.subplots(2, 1, sharex=True)
+    ax = style.new_axes(ax)
+    for one, name, colour in zip(branches, names, style.colours(len(branches)), strict=True):
+        marker = "" if one.settings.whole else "o"
+        ax.plot(one.amplitude, omega.factor * one.omega, color=colour, label=name, marker=marker)
+        if below is not None:
+            _damping(below, one, colour, name)
+    ax.set(xscale="log", ylabel=omega.label)
+    lowest = below or ax
+    lowest.set_xlabel(_AMPLITUDE)
+    if below is not None:
+        below.set(ylabel="damping ratio")
+    if options["shapes"]:
+        _shapes(ax, branches[0])
+    style.finish(ax, made=made)
+    return ax
+
+
+@keywords
+def mode_damping(
+    results: NonlinearModes | Sequence[NonlinearModes], **options: Unpack[DampingOptions]
+) -> Axes:
+    """Draw the damping ratio of nonlinear modes against modal amplitude; viscous parts are dotted.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    branches = several(NonlinearModes, results)
+    names = checked_labels(options["labels"], [f"mode {one.settings.mode}" for one in branches])
+    made, ax = options["ax"] is None, style.new_axes(options["ax"])
+    for one, name, colour in zip(branches, names, style.colours(len(branches)), strict=True):
+        _damping(ax, one, colour, name)
+    ax.set(xscale="log", xlabel=_AMPLITUDE, ylabel="damping ratio")
+    style.finish(ax, made=made)
+    return ax
+
+
+def _damping(ax: Axes, one: NonlinearModes, colour: Colour, name: str) -> None:
+    marker = "" if one.settings.whole else "o"
+    ax.plot(one.amplitude, one.damping_ratio, color=colour, marker=marker, label=name)
+    ax.plot(one.amplitude, one.viscous_ratio, color=colour, ls=":")
+
+
+def _shapes(ax: Axes, mode: NonlinearModes) -> None:
+    known = np.flatnonzero(np.isfinite(mode.omega))
+    if not known.size:
+        return
+    for left, index in zip(_INSETS, known[[0, known.size // 2, -1]], strict=True):
+        inset = ax.inset_axes((left, 0.06, 0.16, 0.2))
+        shape = np.abs(mode.arrays.displacement[index, 1])
+        inset.bar(np.arange(shape.size), shape / max(shape.max(), np.finfo(float).tiny))
+        inset.set(xticks=[], yticks=[], ylim=(0.0, 1.05))

@@ -1,0 +1,169 @@
+"""A nonlinear mode: frequency, damping and shape against amplitude."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any, ClassVar, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip.checks import choice, whole_number
+from stickslip.drawn import Drawn
+from stickslip.errors import ModelError
+from stickslip.model.force import Force
+from stickslip.results.arrays import (
+    Float,
+    Int,
+    Measure,
+    PeriodicArrays,
+    amplitude_of,
+    constant,
+)
+from stickslip.results.fields import Shown, column
+from stickslip.results.periodic import PeriodicMotions
+from stickslip.results.synthesis import SynthesizedResponse, force_vector, synthesized
+from stickslip.settings.modes import ModeSettings
+from stickslip.settings.ranges import numbers, positive
+
+
+class ModeArrays(PeriodicArrays):
+    """The numbers of a nonlinear mode, in the order of its branch.
+
+    At amplitudes that were not reached all but the amplitude is not-a-number.
+    """
+
+    along = "mode_point"
+    labels: ClassVar[Mapping[str, Sequence[str]]] = {"mode_entry": ("omega", "damping_ratio")}
+
+    omega: Float = column("*", "rad/s", "angular frequency of the mode")
+    amplitude: Float = column(
+        "*",
+        "m kg^(1/2)",
+        "modal amplitude (X_1^H M X_1)^(1/2), of the mass-normalised fundamental",
+        least=0.0,
+        file_name="modal_amplitude",
+    )
+    damping_ratio: Float = column("*", "1", "modal damping ratio, viscous damping included")
+    viscous_ratio: Float = column("*", "1", "part of it that is due to viscous damping")
+    relative_error: Float = column(
+        "* mode_entry",
+        "1",
+        "what the discarded harmonics could still change, relative to frequency and damping",
+        least=0.0,
+    )
+    residual: Float = column(
+        "*", "1", "residual of the equations, relative to the motion", least=0.0
+    )
+    resonance_order: Int = column(
+        "*", "1", "order of a harmonic in internal resonance, 0 if there is none", least=0
+    )
+    resonance_omega: Float = column(
+        "*", "rad/s", "natural frequency of the stuck structure that it meets"
+    )
+    resonance_share: Float = column("*", "1", "modal amplitude of that harmonic over the amplitude")
+    turns: Float = column("turn", "m kg^(1/2)", "amplitudes at which the branch turns")
+    linear: Float = column("mode_entry", "1", "natural frequency and damping ratio at rest")
+
+
+class NonlinearModes(PeriodicMotions):
+    """A nonlinear mode, from amplitude to amplitude.
+
+    Degrees of freedom are addressed by name, contacts by position or name, one node as (contact,
+    point).
+    """
+
+    kind: ClassVar[str] = "nonlinear_modes"
+    title = "Nonlinear mode of a structure with dry friction"
+    attributes: ClassVar[Mapping[str, type]] = {"interrupted": bool, "half_wave": bool}
+
+    settings: ModeSettings
+    arrays: ModeArrays
+    half_wave: bool
+
+    def __repr__(self) -> str:
+        return (
+            f"NonlinearModes({self.omega.size} amplitudes of mode {self.settings.mode}, "
+            f"{np.nanmin(self.omega, initial=np.inf):.6g} to "
+            f"{np.nanmax(self.omega, initial=0.0):.6g} rad/s)"
+        )
+
+    amplitude = Shown[Float]()  # type: ignore[assignment]
+    omega = Shown[Float]()
+    damping_ratio = Shown[Float]()
+    viscous_ratio = Shown[Float]()
+    harmonics = Shown[Int]()
+    turns = Shown[Float]()
+    relative_error = Shown[Float]()
+
+    plot = Drawn("backbone")
+
+    @property
+    def linear_omega(self) -> float:
+        """Natural frequency at rest [rad/s]."""
+        return float(self.arrays.linear[0])
+
+    @property
+    def linear_damping_ratio(self) -> float:
+        """Damping ratio at rest."""
+        return float(self.arrays.linear[1])
+
+    @property
+    def friction_ratio(self) -> Float:
+        """Part of the damping ratio that is due to contacts, shape (n,)."""
+        return constant(self.damping_ratio - self.viscous_ratio)
+
+    def displacement_amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitude of a displacement along the branch, shape (n,) [m]."""
+        choice(measure, "measure", get_args(Measure))
+        return constant(amplitude_of(self.coefficients(dof), measure))
+
+    def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
+        """Return one period of a displacement from its harmonics, shape (samples,) [m]."""
+        series = self.coefficients(dof)[self.position(index)]
+        count = whole_number(samples, "samples", smallest=1)
+        turn = 2j * np.pi * np.outer(np.arange(count) / count, np.arange(series.size))
+        return constant((np.exp(turn) @ series).real)
+
+    def forced_response(
+        self, forces: Force | Sequence[Force], omega: ArrayLike
+    ) -> SynthesizedResponse:
+        """Return the response to forces that this mode alone gives, with its error indicator.
+
+        Static loads are those of the mode. Good where the mode is well apart from others and
+        lightly damped: below a damping ratio of about 0.03.
+
+        Parameters
+        ----------
+        forces : Force or sequence of Force
+            Forces of harmonic 1; static loads among them are left out, for the mode has its own.
+        omega : array_like, shape (n,)
+            Angular frequencies [rad/s].
+
+        Raises
+        ------
+        ModelError
+            If a force fits no DOF or drives nothing, the branch turns, or the model travels.
+
+        References
+        ----------
+        Krack (2015), Comput. Struct. 154, 59, section 4; Krack, Panning-von Scheidt and Wallaschek
+        (2013).
+        """
+        if self.model.travels:
+            raise ModelError(
+                "forced_response: a sector of a travelling wave; compute it with "
+                "stickslip.forced_response"
+            )
+        driven = force_vector(self, forces)
+        given = numbers(omega, "give finite frequencies above 0 rad/s", positive)
+        return synthesized(self, driven, given)
+
+    def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
+        if not derived:
+            return {}
+        values = np.stack([self.displacement_amplitude(dof) for dof in self.dofs], axis=1)
+        meaning = "half peak-to-peak amplitude of the displacement"
+        return {
+            "amplitude": ((self.arrays.along, "dof"), values, {"units": "m", "long_name": meaning})
+        }

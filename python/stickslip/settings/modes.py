@@ -1,0 +1,50 @@
+"""How nonlinear modes are computed."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, Strict
+
+from stickslip.settings.balance import HarmonicSettings
+from stickslip.settings.entries import Count, Flag, Index, Whole
+from stickslip.settings.ranges import Amplitudes
+
+
+class BackboneSettings(HarmonicSettings):
+    """How a nonlinear mode is computed."""
+
+    mode: Index = Field(
+        default=0,
+        description="Mode of the structure with its contacts as they are at rest, counted from 0 "
+        "by rising frequency.",
+    )
+    max_harmonics: Count = Field(default=63, description="Highest harmonic that may be kept.")
+    max_points: Annotated[int, Whole(2)] = Field(
+        default=2000, description="Most points along a range of amplitudes."
+    )
+    nodal_diameter: Index | None = Field(
+        default=None,
+        description="Nodal diameter of the travelling wave of a tuned disk. Default: its engine "
+        "order.",
+    )
+
+
+class ModeKeys(BackboneSettings):
+    """Which nonlinear mode, at which amplitudes, and how."""
+
+    amplitude: Amplitudes = Field(
+        description="Modal amplitudes a = (X_1^H M X_1)^(1/2) [m kg^(1/2)]. A list: exactly these. "
+        "A range, of functions a tuple of two numbers: all between, with steps as the mode "
+        "asks for.",
+        examples=[{"from": 1e-6, "to": 1e-2}, [1e-4, 1e-3]],
+    )
+
+
+class ModeSettings(BackboneSettings):
+    """How a nonlinear mode was computed."""
+
+    amplitudes: Annotated[tuple[float, ...], Strict(False)] = Field(
+        default=(), description="Amplitudes that were asked for, or the two ends of their range."
+    )
+    whole: Flag = Field(default=False, description="Whether the range between two is wanted.")

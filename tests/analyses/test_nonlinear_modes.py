@@ -1,0 +1,290 @@
+"""Nonlinear modes against closed forms, other computations and an independent code."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import stickslip as ss
+
+
+def one_mass(*contacts, force=None, damping=2.0):
+    """Return a mass of 1 kg on a spring of 1e4 N/m."""
+    structure = ss.Structure(mass=[[1.0]], stiffness=[[1e4]], damping=[[damping]], dofs=["x"])
+    return ss.Model(structure, contacts=contacts, forces=[] if force is None else [force])
+
+
+JENKINS = ss.Jenkins("x", stiffness=4e3, slip_force=1.0)
+
+
+def describing(amplitude, stiffness=4e3, limit=1.0):
+    """Return the complex stiffness of a Jenkins element (Griffin 1980)."""
+    onset = limit / stiffness
+    if amplitude <= onset:
+        return stiffness + 0j
+    angle = np.arccos(1.0 - 2.0 * onset / amplitude)
+    real = stiffness / np.pi * (angle - 0.5 * np.sin(2.0 * angle))
+    work = 4.0 * limit * (amplitude - onset)
+    return real + 1j * work / (np.pi * amplitude**2)
+
+
+def chain(force=None):
+    """Return three masses with two elements of one joint."""
+    structure = ss.Structure(
+        mass=np.diag([1.0, 0.5, 0.3]),
+        stiffness=[[3e4, -1e4, 0.0], [-1e4, 2.5e4, -5e3], [0.0, -5e3, 2e4]],
+        damping=ss.ModalDamping(0.003),
+        dofs=["x", "y", "z"],
+    )
+    contacts = [
+        ss.Jenkins("x", stiffness=4e3, slip_force=1.0),
+        ss.Jenkins("y", "z", stiffness=2e3, slip_force=0.7),
+    ]
+    return ss.Model(structure, contacts=contacts, forces=[] if force is None else [force])
+
+
+def wedge():
+    """Return two blades and a wedge with the parameters of Balaji and Ferhatoglu (2025)."""
+    stiffness = np.zeros((6, 6))
+    blocks = [(1e6, -9e5), (4e5, -3e5), (1e6, -1e6)]
+    for place, (own, other) in enumerate(blocks):
+        stiffness[2 * place : 2 * place + 2, 2 * place : 2 * place + 2] = [
+            [own, other],
+            [other, own],
+        ]
+    structure = ss.Structure(
+        mass=np.diag([10.0, 10.0, 10.0, 10.0, 0.1, 0.1]),
+        stiffness=stiffness,
+        damping=np.diag([20.0, 20.0, 20.0, 20.0, 0.0, 0.0]),
+        dofs=["x1", "y1", "x2", "y2", "xD", "yD"],
+    )
+    cos, sin = np.cos(np.deg2rad(40.0)), np.sin(np.deg2rad(40.0))
+    keys = {"friction": 0.6, "tangential_stiffness": 3e5, "normal_stiffness": 3e5}
+    contacts = [
+        ss.Coulomb(["xD", "yD"], other=["x1", "y1"], normal=[-sin, cos], **keys),
+        ss.Coulomb(["xD", "yD"], other=["x2", "y2"], normal=[sin, cos], **keys),
+    ]
+    return ss.Model(structure, contacts=contacts, forces=[ss.Force("yD", 240.0, harmonic=0)])
+
+
+def test_one_jenkins_element_has_its_closed_form():
+    amplitudes = np.array([1e-5, 2.5e-4, 2.6e-4, 1e-3, 1e-2])
+    mode = ss.nonlinear_modes(one_mass(JENKINS), mode=0, amplitude=amplitudes, harmonics=1)
+    assert mode.amplitude.tolist() == pytest.approx(amplitudes.tolist(), rel=1e-14)
+    for index, amplitude in enumerate(amplitudes):
+        stiffness = describing(amplitude)
+        omega = np.sqrt(1e4 + stiffness.real)
+        ratio = (2.0 + stiffness.imag / omega) / (2.0 * omega)
+        assert mode.omega[index] == pytest.approx(omega, rel=1e-9)
+        assert mode.damping_ratio[index] == pytest.approx(ratio, rel=1e-9)
+    assert mode.viscous_ratio == pytest.approx(1.0 / mode.omega, rel=1e-9)
+    assert mode.dissipation((0, 0))[3] == pytest.approx(4.0 * (1e-3 - 2.5e-4), rel=1e-9)
+
+
+def test_friction_work_is_the_friction_part_of_the_damping():
+    mode = ss.nonlinear_modes(chain(), mode=1, amplitude=(1e-5, 1e-1), tolerance=1e-4)
+    mass = mode.model.structure.mass
+    series = mode.arrays.displacement
+    orders = np.arange(series.shape[1]) ** 2
+    kinetic = np.einsum("k,nki,ij,nkj->n", orders, series.conj(), mass, series).real
+    work = sum(mode.dissipation((contact, 0)) for contact in range(2))
+    friction = work / (2.0 * np.pi * mode.omega**2 * kinetic)
+    assert friction == pytest.approx(mode.friction_ratio, rel=1e-6, abs=1e-9)
+    assert mode.amplitude[0] == pytest.approx(1e-5)
+    assert mode.amplitude[-1] == pytest.approx(1e-1)
+    # From stuck to slipping natural frequency.
+    stuck = ss.natural_frequencies(mode.model)[1]
+    free = ss.natural_frequencies(mode.model, slipping=[(0, 0), (1, 0)])[1]
+    # Damping of the free modes couples the stuck ones by a little.
+    assert mode.omega[0] == pytest.approx(stuck, rel=1e-7)
+    assert mode.omega[-1] == pytest.approx(free, rel=1e-3)
+
+
+def test_two_blades_and_a_wedge():
+    # From an independent code; where contacts slip both ways no residual traction is left.
+    logs = np.array([-2.2, -2.0, -1.5])
+    hertz = [43.135809, 42.639235, 42.198362]
+    ratio = [0.03804438, 0.02785888, 0.01230350]
+    mode = ss.nonlinear_modes(
+        wedge(), mode=2, amplitude=10.0**logs, harmonics=5, residual="centred"
+    )
+    assert mode.omega / (2.0 * np.pi) == pytest.approx(hertz, rel=1e-4)
+    assert mode.damping_ratio == pytest.approx(ratio, rel=1e-3)
+    assert mode.linear_omega / (2.0 * np.pi) == pytest.approx(49.421406, rel=1e-8)
+    held = ss.nonlinear_modes(
+        wedge(), mode=2, amplitude=[10.0**-2.9, 10.0**-2.8], harmonics=5, residual=-200.0
+    )
+    # At -mu N nothing slips at first.
+    assert held.damping_ratio[0] == pytest.approx(0.00321991, rel=1e-5)
+    assert held.omega[1] / (2.0 * np.pi) == pytest.approx(49.187874, rel=1e-4)
+    assert held.damping_ratio[1] == pytest.approx(0.01547973, rel=1e-3)
+
+
+def test_four_decades_of_a_wedge_are_followed():
+    mode = ss.nonlinear_modes(
+        wedge(), mode=2, amplitude=(1e-6, 1e-1), harmonics=5, residual="centred"
+    )
+    assert all(status.solved for status in mode.status)
+    assert mode.amplitude[0] == pytest.approx(1e-6)
+    assert mode.amplitude[-1] == pytest.approx(1e-1)
+    assert mode.arrays.residual.max() < 1e-7
+    assert (np.diff(np.log(mode.amplitude)) < 0.3).all()
+
+
+def test_a_cubic_spring_stiffens():
+    model = one_mass(ss.Cubic("x", stiffness=1e9), damping=0.0)
+    mode = ss.nonlinear_modes(model, mode=0, amplitude=[1e-4, 1e-3, 1e-2], harmonics=1)
+    expected = np.sqrt(1e4 + 0.75e9 * mode.amplitude**2)
+    assert mode.omega == pytest.approx(expected, rel=1e-9)
+    assert mode.damping_ratio == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_stop_beyond_its_gap_has_the_frequency_of_its_exact_motion():
+    # Far beyond the gap: half a period with the spring of the stop, half a period without.
+    model = one_mass(ss.Stop("x", stiffness=3e4, gap=1e-4), damping=0.0)
+    mode = ss.nonlinear_modes(model, mode=0, amplitude=[1e-5, 1.0])
+    assert mode.omega[0] == pytest.approx(100.0, rel=1e-9)
+    assert mode.omega[1] == pytest.approx(2.0 / (1.0 / 100.0 + 1.0 / 200.0), rel=1e-3)
+
+
+def test_random_joints_are_solved_or_say_why_not():
+    rng = np.random.default_rng(7)
+    for _ in range(12):
+        size = int(rng.integers(2, 5))
+        root = rng.normal(size=(size, size))
+        stiffness = 1e4 * (root @ root.T + np.eye(size))
+        dofs = [f"d{i}" for i in range(size)]
+        structure = ss.Structure(
+            mass=np.diag(rng.uniform(0.5, 2.0, size)),
+            stiffness=stiffness,
+            damping=ss.ModalDamping(0.002),
+            dofs=dofs,
+        )
+        kinds = [
+            ss.Jenkins("d0", stiffness=5e3, slip_force=1.0, name="a"),
+            ss.Cubic("d1", stiffness=1e8, name="b"),
+            ss.Stop("d1", stiffness=5e3, gap=2e-4, name="c"),
+            ss.Coulomb(
+                ["d0", "d1"],
+                normal=[0.0, 1.0],
+                friction=0.3,
+                tangential_stiffness=4e3,
+                normal_stiffness=6e3,
+                preload=2.0,
+                name="d",
+            ),
+        ]
+        chosen = rng.choice(len(kinds), size=int(rng.integers(1, 4)), replace=False)
+        model = ss.Model(structure, contacts=[kinds[i] for i in chosen])
+        mode = ss.nonlinear_modes(
+            model, mode=int(rng.integers(size)), amplitude=np.geomspace(1e-5, 1e-2, 7), harmonics=5
+        )
+        codes = {one.code for one in mode.diagnostics}
+        solved = np.array([status.solved for status in mode.status])
+        assert solved.all() or "mode-not-reached" in codes
+        assert np.isfinite(mode.omega[solved]).all()
+        assert (mode.friction_ratio[solved] > -1e-6).all()
+        assert (mode.arrays.residual[solved] < 1e-6).all()
+
+
+def test_decaying_vibration_has_the_same_frequency_and_damping():
+    model = one_mass(ss.Jenkins("x", stiffness=300.0, slip_force=0.1), damping=0.2)
+    free = ss.transient(model, omega=100.0, periods=60, scheme="exact", start={"x": 3e-3})
+    mode = ss.nonlinear_modes(model, mode=0, amplitude=(1e-4, 5e-3), tolerance=1e-5)
+    t, x = free.time, free.displacement("x")
+    top = np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:])) + 1
+    peaks = []
+    for at in top:
+        curve = np.polyfit(t[at - 1 : at + 2] - t[at], x[at - 1 : at + 2], 2)
+        place = -0.5 * curve[1] / curve[0]
+        peaks.append((t[at] + place, np.polyval(curve, place)))
+    times, heights = np.array(peaks).T
+    lapse, height = times[10:20:9], heights[10:20:9]
+    omega = 2.0 * np.pi * 9 / (lapse[1] - lapse[0])
+    decay = np.log(height[0] / height[1]) / (2.0 * np.pi * 9)
+    log = np.log(np.sqrt(height[0] * height[1]))
+    known = np.log(mode.displacement_amplitude("x"))
+    assert omega == pytest.approx(np.interp(log, known, mode.omega), rel=1e-3)
+    assert decay == pytest.approx(np.interp(log, known, mode.damping_ratio), rel=1e-2)
+
+
+@pytest.mark.parametrize("size", [0.05, 0.5, 2.0])
+def test_synthesised_peaks_are_those_of_direct_computation(size):
+    force = ss.Force("x", size)
+    mode = ss.nonlinear_modes(chain(), mode=0, amplitude=(1e-6, 3e-2))
+    direct = ss.forced_response(chain(force), omega=(120.0, 190.0), tolerance=1e-4).peak("y")
+    near = np.linspace(0.97, 1.03, 1201) * direct.omega
+    response = mode.forced_response(force, near)
+    heights = response.amplitude("y")
+    top = int(np.nanargmax(heights))
+    ratio = np.interp(
+        np.log(response.modal_amplitude[top]), np.log(mode.amplitude), mode.damping_ratio
+    )
+    error = abs(heights[top] / direct.amplitude - 1.0)
+    assert ratio < 0.03
+    assert error < 0.01
+    assert response.omega[top] == pytest.approx(direct.omega, rel=3e-3)
+    assert response.error_indicator[top] > error
+
+
+def test_limit_cycles_are_where_the_damping_vanishes():
+    negative = ss.Rayleigh(mass=-1.0)
+    model = one_mass(JENKINS)
+    cycles = ss.limit_cycles(model, negative, ratio=[4.0], harmonics=15)
+    mode = ss.nonlinear_modes(model, mode=0, amplitude=(1e-4, 1e-1), harmonics=15)
+    excess = mode.damping_ratio * 2.0 * mode.omega - 4.0
+    log = np.log(mode.amplitude)
+    places = np.flatnonzero(excess[:-1] * excess[1:] < 0.0)
+    assert places.size == cycles.omega.size == 2
+    for place, fundamental in zip(places, cycles.amplitude("x", "fundamental"), strict=True):
+        root = brentq(lambda one: np.interp(one, log, excess), log[place], log[place + 1])
+        exact = ss.nonlinear_modes(
+            model, mode=0, amplitude=np.exp(root + np.array([-1e-2, 0.0, 1e-2])), harmonics=15
+        )
+        rest = exact.damping_ratio * 2.0 * exact.omega - 4.0
+        slope = np.polyfit(np.log(exact.amplitude), rest, 2)
+        roots = np.roots(slope)
+        nearest = roots[np.argmin(np.abs(roots - root))].real
+        assert np.exp(nearest) == pytest.approx(fundamental, rel=1e-3)
+
+
+def test_a_tuned_disk_has_modes_by_nodal_diameter():
+    blade = ss.Structure(mass=np.eye(2), stiffness=[[2e4, -1e4], [-1e4, 1e4]], dofs=["root", "tip"])
+    disk = ss.BladedDisk(
+        blade,
+        sectors=6,
+        couplings=[ss.Coupling("root", stiffness=5e3)],
+        contacts=[ss.Jenkins("tip", stiffness=2e3, slip_force=1.0)],
+        engine_order=1,
+    )
+    found = [
+        ss.nonlinear_modes(disk, mode=0, amplitude=[1e-6, 1e-2], nodal_diameter=d).omega
+        for d in (0, 1, 2, 3)
+    ]
+    stuck = np.array([[2e4, -1e4], [-1e4, 1.2e4]])
+    for diameter, omega in enumerate(found):
+        coupled = stuck + np.diag([5e3 * (2 - 2 * np.cos(2 * np.pi * diameter / 6)), 0.0])
+        assert omega[0] == pytest.approx(np.sqrt(np.linalg.eigvalsh(coupled)[0]), rel=1e-9)
+        assert omega[1] < omega[0]
+
+
+def test_results_are_kept(tmp_path):
+    mode = ss.nonlinear_modes(chain(), mode=0, amplitude=(1e-5, 1e-2))
+    mode.save(tmp_path / "mode.nc")
+    again = ss.load(tmp_path / "mode.nc")
+    assert np.array_equal(again.omega, mode.omega)
+    assert np.array_equal(again.amplitude, mode.amplitude)
+    assert again.diagnostics == mode.diagnostics
+    assert mode.plot().get_xscale() == "log"
+    assert mode.to_dataset()["modal_amplitude"].attrs["units"] == "m kg^(1/2)"
+
+
+def test_what_does_not_exist_is_refused():
+    with pytest.raises(ss.ModelError, match=r"mode = 3: the structure has modes 0 to 2"):
+        ss.nonlinear_modes(chain(), mode=3, amplitude=[1e-3])
+    with pytest.raises(ss.ModelError, match="nodal_diameter"):
+        ss.nonlinear_modes(chain(), mode=0, amplitude=[1e-3], nodal_diameter=1)
+    mode = ss.nonlinear_modes(chain(), mode=0, amplitude=[1e-3, 1e-2])
+    with pytest.raises(ss.ModelError, match="forces"):
+        mode.forced_response([ss.Force("x", 1.0, harmonic=3)], [100.0])
