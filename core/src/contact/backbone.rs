@@ -97,7 +97,7 @@ impl Backbone {
     /// rises more steeply than before.
     pub fn table(displacement: &[f64], force: &[f64]) -> Result<(Self, f64, f64), Error> {
         let fail = |row: usize, value: f64, remedy: &str| {
-            Err(Error::value(&format!("masing: backbone row {}", row + 1), value, remedy))
+            Err(Error::value(format!("masing: backbone row {}", row + 1), value, remedy))
         };
         if displacement.len() != force.len() {
             let expected = format!("{} forces, one per displacement", displacement.len());

@@ -36,7 +36,7 @@ impl BoucWen {
     /// A stiffness that is negative or infinite, a negative slip force, n below 1, β outside 0.5 to 1.
     pub fn new(stiffness: f64, slip_force: f64, exponent: f64, beta: f64) -> Result<Self, Error> {
         let refused = |name: &str, value: f64, remedy: &str| {
-            Err(Error::value(&format!("bouc-wen: {name}"), value, remedy))
+            Err(Error::value(format!("bouc-wen: {name}"), value, remedy))
         };
         if !(stiffness.is_finite() && stiffness >= 0.0) {
             return refused("stiffness", stiffness, "must be finite and not negative");

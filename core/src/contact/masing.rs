@@ -66,11 +66,11 @@ impl Masing {
     ) -> Result<Self, Error> {
         if !(stiffness.is_finite() && stiffness >= 0.0) {
             let remedy = "must be finite and not negative";
-            return Err(Error::value(&format!("{name}: stiffness"), stiffness, remedy));
+            return Err(Error::value(format!("{name}: stiffness"), stiffness, remedy));
         }
         if slip_force.is_nan() || slip_force < 0.0 {
             let remedy = "must not be negative; infinity means that the contact never slips";
-            return Err(Error::value(&format!("{name}: slip_force"), slip_force, remedy));
+            return Err(Error::value(format!("{name}: slip_force"), slip_force, remedy));
         }
         Ok(Self { name, stiffness, slip_force, backbone, memory: MEMORY })
     }

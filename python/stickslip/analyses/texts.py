@@ -107,6 +107,9 @@ TEXTS = {
     "noise is larger than given.",
     "predictions-missing": "{count} of {total} numbers could not be predicted by the best fit and "
     "count as zero; look at the forced response of the fitted model.",
+    "branch-not-followed": "The equations of the contacts have {unknowns} unknowns, too many to "
+    "follow the curve around folds: jumps to another branch were not looked for. Sweep in both "
+    "directions and compare.",
     # the model
     "static-traction": "A contact that never slips was taken to hold {_held} "
     "(residual={residual!r}, of effect at {points} of {_solved} points); residual_bounds gives "
