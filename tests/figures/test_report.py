@@ -34,6 +34,7 @@ def results():
     disk = ss.reference.beam_ring()
     mistuned = disk.mistuned(0.05 * ss.mistuning_pattern(disk.sectors, 1.0, seed=1))
     forces = np.geomspace(10.0, 1e3, 8)
+    measured = ss.forced_response(BEAM, grid, 1).amplitude("tip")
     return {
         "low": ss.forced_response(ss.reference.snecma_beam(6.563), grid, 5),
         "high": ss.certify(ss.forced_response(BEAM, grid, 5), 3),
@@ -51,6 +52,13 @@ def results():
         "boundary": ss.stability_map(*ss.reference.flutter_mass(), stiffness=[1.2e7, 2.4e7]),
         "settled": ss.classify(FLUTTER, {"mass": 5e-5}),
         "starts": ss.basin_map(FLUTTER, {"mass": [1e-5, 1e-4], 0: [2e-5, 2e-4]}),
+        "fitted": ss.fit(
+            BEAM,
+            ss.Measurement(grid, "tip", measured, relative_noise=0.02),
+            parameters={"slip_force": (10.0, 1e3)},
+            harmonics=1,
+        ),
+        "backbone": ss.nonlinear_modes(BEAM, amplitude=np.geomspace(1e-4, 1e-2, 5), harmonics=3),
         "rest": ss.static_response(ss.Model(BEAM.structure, BEAM.contacts, [LOAD])),
     }
 

@@ -99,7 +99,7 @@ def test_every_edit_is_noticed(path, change):
     [
         ("omega", 0, -5.0, "omega = -5, outside 0 to inf"),
         ("event_point", 0, 99999, "event_point = 99999, outside 0 to 0"),
-        ("event_kind", 0, 4, "event_kind 4 is unknown"),
+        ("event_kind", 0, 5, "event_kind 5 is unknown"),
         ("event_offset", 1, 2**40, "event_offset does not divide the "),
         ("slip_fraction", (0, 0), 1.5, "slip_fraction = 1.5, outside 0 to 1"),
         ("error_estimate", (0, 0), -1.0, "error_estimate = -1, outside 0 to inf"),

@@ -207,6 +207,7 @@ struct Way<'a> {
 impl Way<'_> {
     fn equations(&self, omega: f64) -> Option<Condensed<'_>> {
         let mut equations = Condensed::new(self.model.clone(), self.table, self.residual, true);
+        equations.densify();
         equations.set_omega(omega).ok()?;
         Some(equations)
     }

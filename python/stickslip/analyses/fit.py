@@ -136,19 +136,34 @@ class _Search:
             )
         self.best = starts[int(np.argmin(heights))]
         ends: list[tuple[float, Float]] = []
-        for at in np.argsort(heights)[:_FOLLOWED]:
+        order = np.argsort(heights)[:_FOLLOWED]
+        for at in order:
             ends.append(self._followed(coarse, starts[at]))
             self.best = min(ends, key=lambda one: one[0])[1]
-            if sum(np.abs(end - self.best).max() < _SAME for _, end in ends) == _AGREED:
+            least = min(ends, key=lambda one: one[0])[0]
+            agreed = sum(np.abs(end - self.best).max() < _SAME for _, end in ends)
+            if agreed >= _AGREED and self._is_enough(least):
                 break
         ends.sort(key=lambda one: one[0])
         tell(0.6)
-        for place, (_, end) in enumerate(ends[:_AGREED]):
-            if all(np.abs(end - other).max() > _SAME for _, other in ends[:place]):
-                self.minima.append(self._followed(self.misfit, end))
+        distinct = [
+            end
+            for place, (_, end) in enumerate(ends)
+            if all(np.abs(end - other).max() > _SAME for _, other in ends[:place])
+        ]
+        # Few harmonics may have no minimum where all have one: starts are followed with all, too.
+        for number, end in enumerate([*distinct, *(starts[at] for at in order)], 1):
+            self.minima.append(self._followed(self.misfit, end))
+            least = min(one for one, _ in self.minima)
+            if number >= min(_AGREED, len(distinct)) and self._is_enough(least):
+                break
         self.minima.sort(key=lambda one: one[0])
         self.best = self.minima[0][1]
         tell(1.0)
+
+    def _is_enough(self, least: float) -> bool:
+        """Whether no better minimum need be there: with a known noise, the model fits within it."""
+        return not self.misfit.noise_known or least <= self.misfit.expected
 
     def _followed(self, misfit: Misfit, start: Float) -> tuple[float, Float]:
         """Return the misfit and the place of the minimum that a start leads to."""

@@ -69,6 +69,16 @@ class Misfit:
         self._look = look
         self._last: tuple[Float, Evaluation] | None = None
 
+    @property
+    def noise_known(self) -> bool:
+        """Whether standard deviations are known."""
+        return self.measured[0].noise_known
+
+    @property
+    def expected(self) -> float:
+        """Misfit up to which a model fits within the noise, with a factor of two to spare."""
+        return 2.0 * sum(test.observed.size for test in self.measured)
+
     def coarse(self, harmonics: int) -> Misfit:
         """Return the same misfit with few harmonics."""
         most = max(highest_harmonic(test.model or self.model) for test in self.measured)
