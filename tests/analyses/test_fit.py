@@ -160,6 +160,42 @@ def test_loops_are_fitted():
     assert found.values["jenkins.stiffness"] == pytest.approx(2.1e7, rel=0.01)
 
 
+def loop_of_sliders(amplitude, stiffness, slip_force, chi, beta, samples=400, sliders=4000):
+    """A loop of Segalman's density of sliders, each followed from sample to sample."""
+    share = beta + (chi + 1.0) / (chi + 2.0)
+    longest = slip_force * (1.0 + beta) / (stiffness * share)
+    density = slip_force * (chi + 1.0) / (longest ** (chi + 2.0) * share)
+    reach = longest * ((np.arange(sliders) + 0.5) / sliders) ** (1.0 / (chi + 1.0))
+    each = density * longest ** (chi + 1.0) / (chi + 1.0) / sliders
+    reach = np.append(reach, longest)
+    springs = np.append(np.full(sliders, each), slip_force / longest * beta / share)
+    u = amplitude * np.cos(2.0 * np.pi * np.arange(samples) / samples)
+    force, x = np.empty(samples), np.zeros(sliders + 1)
+    for _ in range(2):
+        for n, at in enumerate(u):
+            x = np.clip(x, at - reach, at + reach)
+            force[n] = springs @ (at - x)
+    return u, force
+
+
+def test_four_parameters_of_an_iwan_joint_follow_from_three_noisy_loops():
+    rng = np.random.default_rng(3)
+    true = {"stiffness": 2e6, "slip_force": 1000.0, "chi": -0.6, "beta": 0.5}
+    tests = []
+    for amplitude in (2e-4, 6e-4, 2e-3):
+        u, force = loop_of_sliders(amplitude, **true)
+        force = force + 0.02 * np.abs(force).max() * rng.standard_normal(force.size)
+        tests.append(ss.MeasuredLoop("iwan", u, force, harmonics=1, relative_noise=0.02))
+    joint = ss.Iwan("tip", stiffness=1e6, slip_force=500.0, chi=-0.3, beta=0.1)
+    bounds = {"stiffness": (1e5, 1e8), "slip_force": (10, 1e5), "chi": (-0.95, 0), "beta": (0, 5)}
+    found = ss.fit(ss.Model(BEAM.structure, [joint]), tests, parameters=bounds)
+    assert found.values["stiffness"] == pytest.approx(2e6, rel=0.01)
+    assert found.values["slip_force"] == pytest.approx(1000.0, rel=0.01)
+    assert found.values["chi"] == pytest.approx(-0.6, abs=0.05)
+    for name, (low, high) in found.intervals.items():
+        assert low < true[name] < high
+
+
 def test_laws_are_compared_by_a_criterion(fitted):
     wrong = ss.Model(
         BEAM.structure,
