@@ -214,6 +214,25 @@ def test_laws_are_compared_by_a_criterion(fitted):
     assert str(both).count("\n") == 2
 
 
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.7])
+def test_ctrl_c_keeps_the_best_values_so_far(share):
+    def press(done):
+        if done > share:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        ss.fit(model(1.0), curves(0), parameters=BOUNDS, progress=press)
+    if share < 0.18:
+        # Starts were still being compared.
+        assert not isinstance(stopped.value, ss.Interrupted)
+        return
+    kept = stopped.value.result
+    assert kept.interrupted
+    low, high = kept.intervals["slip_force"]
+    assert low < kept.values["slip_force"] < high
+    assert kept.values["slip_force"] == pytest.approx(200.0, rel=0.05)
+
+
 def test_a_fit_is_saved_and_loaded(fitted, tmp_path):
     fitted.save(tmp_path / "fit.nc")
     again = ss.load(tmp_path / "fit.nc")

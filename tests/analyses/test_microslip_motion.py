@@ -166,7 +166,7 @@ def test_disks_tuned_and_mistuned():
     ).all()
 
 
-def test_limit_cycles_balance_power_and_are_found_in_time():
+def test_limit_cycles_balance_power():
     negative = -2.0 * np.eye(1)
     one = ss.Structure([[1.0]], [[1e4]], [[0.2]], ["a"])
     own = ss.Model(one, [iwan(stiffness=4e3, slip_force=1.0, chi=-0.5)], [])

@@ -2,7 +2,6 @@
 
 use super::mode_equations::ModeEquations;
 use super::mode_start::Linear;
-use super::nonlinear_mode::interaction;
 use crate::balance::{Point, PointStatus};
 use crate::contact::PointSummary;
 use faer::c64;
@@ -23,6 +22,25 @@ impl Interaction {
     pub const NEAR: f64 = 0.1;
     /// Share from which on it counts.
     pub const SHARE: f64 = 0.1;
+
+    /// The largest one at a point, if there is any.
+    fn largest(equations: &ModeEquations<'_>, z: &[f64]) -> Option<Self> {
+        let [omega, ..] = equations.scalars(z);
+        let mut found: Option<Self> = None;
+        for order in equations.harmonics().oscillating().iter().copied().filter(|k| *k > 1) {
+            let (basis, own) = (equations.basis(order), equations.part(z, order));
+            for j in 0..own.nrows() {
+                let share = own[(j, 0)].hypot(own[(j, 1)]);
+                let frequency = basis.squared[j].max(0.0).sqrt();
+                let near = (order as f64 * omega / frequency - 1.0).abs() < Self::NEAR;
+                let larger = found.is_none_or(|known| share > known.share);
+                if near && share > Self::SHARE && larger {
+                    found = Some(Self { order, frequency, share });
+                }
+            }
+        }
+        found
+    }
 }
 
 /// A nonlinear mode at one amplitude.
@@ -109,7 +127,7 @@ impl ModePoint {
             damping_ratio: 0.5 * excess / omega,
             viscous: 0.5 * viscous / (kinetic * omega),
             errors: [f64::NAN; 2],
-            interaction: interaction(equations, z),
+            interaction: Interaction::largest(equations, z),
         }
     }
 

@@ -4,7 +4,7 @@
 //! by arclength in the logarithm of the amplitude, around the turns that contacts make as they lift off.
 
 use super::mode_equations::{ModeEquations, Plane};
-use super::mode_point::{Interaction, ModePoint};
+use super::mode_point::ModePoint;
 use super::mode_start::{at_rest, linear_mode, Linear};
 use crate::balance::{HarmonicChoice, PointStatus, Progress};
 use crate::contact::{ContactLaw, Residual};
@@ -569,23 +569,4 @@ fn recast(z: &[f64], from: &ModeEquations<'_>, to: &ModeEquations<'_>) -> Vec<f6
     let size = out.len();
     out[size - 3..].copy_from_slice(&z[z.len() - 3..]);
     out
-}
-
-/// The neighbour that a mode meets, for its points.
-pub(super) fn interaction(equations: &ModeEquations<'_>, z: &[f64]) -> Option<Interaction> {
-    let [omega, ..] = equations.scalars(z);
-    let mut found: Option<Interaction> = None;
-    for order in equations.harmonics().oscillating().iter().copied().filter(|k| *k > 1) {
-        let (basis, own) = (equations.basis(order), equations.part(z, order));
-        for j in 0..own.nrows() {
-            let share = own[(j, 0)].hypot(own[(j, 1)]);
-            let frequency = basis.squared[j].max(0.0).sqrt();
-            let near = (order as f64 * omega / frequency - 1.0).abs() < Interaction::NEAR;
-            let larger = found.is_none_or(|known| share > known.share);
-            if near && share > Interaction::SHARE && larger {
-                found = Some(Interaction { order, frequency, share });
-            }
-        }
-    }
-    found
 }

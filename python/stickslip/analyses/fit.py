@@ -73,7 +73,8 @@ def fit(
         If a model lacks a parameter, there are fewer numbers than parameters, or nothing could be
         solved from any start.
     Interrupted
-        Its `result` holds the best values so far, without intervals.
+        Its `result` holds the best values so far, with intervals by the covariance there. Before
+        all starts have been compared there are none: it is a KeyboardInterrupt then.
 
     References
     ----------
