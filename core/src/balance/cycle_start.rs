@@ -38,6 +38,8 @@ pub struct Onset {
     law: Option<Arc<dyn ContactLaw>>,
     /// Force at which it begins to slip \[N\].
     pub limit: f64,
+    /// How many times further that contact slips as a whole: 1 unless it slips little by little.
+    pub whole: f64,
     /// DOF that moves most, of those that no contact restrains, if there are any.
     pub dof: usize,
 }
@@ -96,9 +98,20 @@ impl Onset {
             .unwrap_or(most);
         let mut contacts = laws.iter().zip(model.points());
         let law = contacts.find(|(_, range)| range.contains(&point)).map(|(law, _)| law);
+        let gross = laws.iter().flat_map(|law| law.limits()).nth(point).filter(|f| f.is_finite());
+        let whole = gross.map_or(1.0, |gross| gross / limits[point]);
         let law = law.filter(|law| law.describing(1.0).is_some());
         let law = law.map(|law| Arc::from(law.with_scaled_forces(1.0)));
-        Ok(Self { mode: own.clone(), ratio, amplitude, point, law, limit: limits[point], dof })
+        Ok(Self {
+            mode: own.clone(),
+            ratio,
+            amplitude,
+            point,
+            law,
+            limit: limits[point],
+            whole,
+            dof,
+        })
     }
 
     /// A limit cycle at the ratio r asked for, or as near to the onset as needed: unknowns of

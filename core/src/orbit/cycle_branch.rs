@@ -270,7 +270,11 @@ impl Finder<'_> {
         let steps = Steps::default();
         // The mean over the states, however many there are.
         let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]) / (z.len() as f64).sqrt();
-        let first = motion(&start);
+        // A contact that slips little by little has its onset at next to nothing.
+        let whole =
+            if self.onset.whole > 1.0 { self.onset.amplitude * self.onset.whole } else { 0.0 };
+        let shape = self.onset.mode.contact.iter().map(|u| u.norm_sqr()).sum::<f64>();
+        let first = motion(&start).max(whole * (shape / start.len() as f64).sqrt());
         let endless = |z: &[f64]| motion(z) > ENDLESS * first;
         if *self.family.variation() == Variation::Ratio {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);
