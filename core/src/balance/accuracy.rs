@@ -11,7 +11,7 @@
 //! Elsewhere a second step would overshoot, ten times and more at nearly rigid contacts.
 
 use super::condensed::Condensed;
-use super::krylov_newton::{of_step, suits};
+use super::modal_work::{of_step, suits};
 use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::contact::Residual;

@@ -13,6 +13,7 @@ use super::settings::Resolution;
 use super::solution::{CurveEnd, Point, PointStatus, Solution};
 use super::stops::{stops, LONGEST};
 use super::sweep::finish;
+use super::tangent::distance;
 use crate::solve::{across, between, Advance, Branch, Continuation, Curve as _, Steps};
 use crate::Error;
 use faer::c64;
@@ -397,12 +398,4 @@ impl Walk<'_, '_> {
 enum Change {
     Resolution(Resolution),
     Ends(CurveEnd),
-}
-
-/// Distance of two points: motion against its size, frequency against itself.
-pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let (Some((w, u)), Some((x, v))) = (a.split_last(), b.split_last()) else { return f64::NAN };
-    let way: f64 = u.iter().zip(v).map(|(u, v)| (u - v).powi(2)).sum();
-    let size: f64 = u.iter().map(|u| u * u).sum();
-    (way / size.max(f64::MIN_POSITIVE) + (x / w - 1.0).powi(2)).sqrt()
 }

@@ -7,13 +7,14 @@
 //! unexplained. What is left is followed by arclength, to where the curve first meets the new
 //! frequency: that solution is taken. If the curve has turned back before, the sweep jumps.
 
-use super::branch_sweep::{distance, STEPS};
+use super::branch_sweep::STEPS;
 use super::condensed::Condensed;
 use super::evaluation::Evaluated;
 use super::forced::ForcedBalance;
 use super::forced_curve::ForcedCurve;
 use super::settings::Resolution;
 use super::solution::{Point, PointStatus};
+use super::tangent::{distance, Tangent, UNEXPLAINED};
 use super::unknowns::Unknowns;
 use crate::contact::Residual;
 use crate::fourier::SampleTable;
@@ -21,16 +22,12 @@ use crate::solve::{between, newton, Advance, Continuation, NewtonSettings, Outco
 use crate::timing::Profile;
 use crate::Error;
 
-/// Part of the way between two points that may be left unexplained, …
-const UNEXPLAINED: f64 = 0.05;
-/// … and distance, relative to the motion, below which nothing has to be explained.
+/// Distance, relative to the motion, below which nothing has to be explained.
 const CLOSE: f64 = 1e-5;
 /// A piece of the way that is no longer than this part of it may be left.
 const PIECE: f64 = 0.02;
 /// Points that may divide the way.
 const DIVISIONS: usize = 12;
-/// The way is divided no nearer to its ends than at this share.
-const MARGIN: f64 = 0.03;
 /// A piece of the frequencies so short, …
 const SUDDEN: f64 = 1e-3;
 /// … with so much of the way, holds a jump.
@@ -51,16 +48,6 @@ enum Reached {
     Other(Unknowns, bool),
     /// Not known.
     Lost,
-}
-
-/// A point of the curve with its tangent.
-#[derive(Clone)]
-pub(super) struct Tangent {
-    resolution: Resolution,
-    /// Displacements of the contacts and, behind them, the frequency.
-    z: Vec<f64>,
-    /// Derivative of the displacements in the frequency.
-    rate: Vec<f64>,
 }
 
 impl ForcedBalance<'_> {
@@ -151,48 +138,6 @@ fn foretold(last: &Point, guess: Option<&Unknowns>, point: &Point) -> bool {
             z
         });
     distance(&to, &guess) < UNEXPLAINED * distance(&to, &from)
-}
-
-impl Tangent {
-    fn is(&self, resolution: Resolution, z: &[f64]) -> bool {
-        self.resolution == resolution && self.z == z
-    }
-
-    fn omega(&self) -> f64 {
-        self.z[self.z.len() - 1]
-    }
-
-    /// The point that the tangent leads to.
-    fn ahead(&self, step: f64) -> impl Iterator<Item = f64> + '_ {
-        self.z.iter().zip(&self.rate).map(move |(u, rate)| u + step * rate)
-    }
-
-    /// Whether the mean of the tangents at both points leads from one to the other.
-    fn explains(&self, to: &Self) -> bool {
-        let step = 0.5 * (to.omega() - self.omega());
-        let mean = self.ahead(step).zip(&to.rate).map(|(u, rate)| u + step * rate);
-        let mean: Vec<f64> = mean.chain([to.omega()]).collect();
-        distance(&mean, &to.z) < UNEXPLAINED * distance(&self.z, &to.z)
-    }
-
-    /// Share of the way to another point at which the two tangents come closest.
-    fn meets(&self, to: &Self) -> f64 {
-        let step = to.omega() - self.omega();
-        let (mut along, mut square) = (0.0, 0.0);
-        for ((before, after), (u, v)) in
-            self.rate.iter().zip(&to.rate).zip(self.z.iter().zip(&to.z))
-        {
-            let turn = step * (before - after);
-            along += turn * (v - u - step * after);
-            square += turn * turn;
-        }
-        let share = along / square;
-        if share.is_finite() {
-            share.clamp(MARGIN, 1.0 - MARGIN)
-        } else {
-            0.5
-        }
-    }
 }
 
 /// The way between two points at one resolution.

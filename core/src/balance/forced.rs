@@ -1,14 +1,14 @@
 //! The forced response at one frequency.
 
 use super::condensed::{Condensed, Path};
-use super::continuity::Tangent;
 use super::evaluation::{Evaluated, Evaluations};
-use super::krylov_newton::is_large;
+use super::modal_work::is_large;
 use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
 use super::settings::{resolving, Method, Resolution, Settings};
 use super::solution::{Point, PointStatus};
 use super::statics::with_history;
+use super::tangent::Tangent;
 use super::unknowns::Unknowns;
 use super::{ExactOrbits, Kept, Progress};
 use crate::contact::Residual;

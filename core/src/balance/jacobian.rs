@@ -4,7 +4,7 @@
 //! [`SlipJacobian`].
 
 use super::condensed::{Condensed, Path};
-use super::krylov_newton::KrylovNewton;
+use super::krylov_newton::{KrylovNewton, Products};
 use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
 use super::ring_series::RingSeries;
@@ -223,9 +223,18 @@ impl System for Condensed<'_> {
             (Some(Factor::Ring(factor)), Linear::Ring { orders, .. }) => {
                 factor.solve(RingSeries::new(orders, harmonics), rhs, step);
             }
-            (Some(Factor::Krylov(factor)), _) => {
-                let Some(products) = factor.solve(self, rhs, step) else { return false };
-                self.profile.products += products;
+            (Some(Factor::Krylov(factor)), Linear::Modal(orders)) => {
+                let Some(modes) = self.model.compliance().contact_modes() else { return false };
+                let products = Products {
+                    modes,
+                    orders,
+                    loads: self.tangents(),
+                    sizes: &self.sizes,
+                    fine: self.slopes,
+                    interrupted: self.interrupted,
+                };
+                let Some(count) = factor.solve(products, rhs, step) else { return false };
+                self.profile.products += count;
             }
             _ => return false,
         }

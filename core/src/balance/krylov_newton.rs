@@ -5,11 +5,9 @@
 //! products hardly depends on the number of contacts. Points are scaled by the size of their motion,
 //! as the error of the solution is judged.
 
-use super::condensed::Condensed;
-use super::linear::Linear;
-use crate::fourier::Harmonics;
+use super::slip_jacobian::Loads;
 use crate::solve::{gmres, KrylovSettings};
-use crate::structure::{Compliance, ContactModes};
+use crate::structure::{Compliance, ContactModes, ModalOrders};
 use faer::{Mat, MatRef};
 
 /// What a direction may leave of the residual: Newton's method takes it from there.
@@ -23,53 +21,17 @@ const USEFUL: f64 = 0.5;
 /// Tolerance of what damping couples within a product, against that of the whole.
 const WITHIN: f64 = 1e-2;
 
-/// Unknowns of the largest Jacobian that is formed where products with the modes would do.
-const LARGEST_FORMED: usize = 2000;
-/// Products with all contacts that the solution of a point takes.
-const PRODUCTS: f64 = 60.0;
-/// Of them a Newton step takes these, with the contacts that slip, …
-const PRODUCTS_OF_STEP: f64 = 8.0;
-/// … at so much an operation \[ns\].
-const PER_OPERATION: f64 = 0.1;
-/// Factorisations that it takes, and the share of the contacts that slip, as a rule.
-const FACTORISATIONS: f64 = 4.0;
-const SLIPPING: f64 = 0.5;
-/// How many times less work it has to be: many small products are slower than one factorisation.
-const WORTH: f64 = 4.0;
-
-/// Products with the coupling of the damping within one with the modes.
-const COUPLING: f64 = 4.0;
-
-/// Whether products with the modes are less work than dense receptances and a factorisation.
-pub(super) fn suits(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool {
-    let Some(modes) = compliance.contact_modes() else { return false };
-    let (contacts, slots) = (compliance.contacts() as f64, harmonics.slots() as f64);
-    let count = modes.modes() as f64;
-    let formed = 2.0 * slots * count * contacts * contacts;
-    let block = SLIPPING * contacts * slots;
-    let dense = formed + FACTORISATIONS * 2.0 / 3.0 * block.powi(3);
-    dense > WORTH * PRODUCTS * product(modes, contacts, slots)
-}
-
-/// Whether the whole Jacobian is too large to be formed: a curve is then not followed by arclength.
-pub(super) fn is_large(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool {
-    suits(compliance, harmonics) && compliance.contacts() * harmonics.slots() > LARGEST_FORMED
-}
-
-/// Floating-point operations of a product with the modes.
-pub(super) fn product(modes: &ContactModes, contacts: f64, slots: f64) -> f64 {
-    let count = modes.modes() as f64;
-    let coupled = if modes.is_coupled() { COUPLING * count } else { 0.0 };
-    2.0 * slots * count * (2.0 * contacts + coupled)
-}
-
-/// About the time of a Newton step of some contacts that slip, on a common processor \[ns\].
-pub(super) fn of_step(compliance: &dyn Compliance, slots: f64, slipping: f64) -> f64 {
-    let Some(modes) = compliance.contact_modes() else { return 0.0 };
-    let contacts = compliance.contacts() as f64;
-    PER_OPERATION
-        * (PRODUCTS_OF_STEP * product(modes, slipping, slots)
-            + 2.0 * product(modes, contacts, slots))
+/// What a product with `I − G ∂Q` is made of.
+#[derive(Clone, Copy)]
+pub(super) struct Products<'a> {
+    pub(super) modes: &'a ContactModes,
+    pub(super) orders: &'a ModalOrders,
+    pub(super) loads: Loads<'a>,
+    /// Sizes of the motion of all points.
+    pub(super) sizes: &'a [f64],
+    /// Whether nothing corrects the direction.
+    pub(super) fine: bool,
+    pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
 }
 
 /// The contacts that slip.
@@ -97,25 +59,23 @@ impl KrylovNewton {
     /// caller ends the analysis.
     pub(super) fn solve(
         &self,
-        equations: &Condensed<'_>,
+        products: Products<'_>,
         rhs: &[f64],
         step: &mut [f64],
     ) -> Option<usize> {
-        let Linear::Modal(orders) = &equations.linear else { return None };
-        let modes = equations.model.compliance().contact_modes()?;
-        let slots = equations.harmonics().slots();
-        let tolerance = if equations.slopes { FINE } else { FORCING };
+        let Products { modes, orders, loads: Loads { slots, .. }, .. } = products;
+        let tolerance = if products.fine { FINE } else { FORCING };
         let mut load = vec![0.0; self.points.len() * slots];
         // Modal coordinates of the motion that the tangents answer a step of the active points with.
         let mut answered = |v: &[f64], tolerance: f64| -> Mat<f64> {
             load.fill(0.0);
-            self.add_tangents(equations, slots, v, &mut load);
+            self.add_tangents(products.loads, v, &mut load);
             let load = MatRef::from_column_major_slice(&load, slots, self.points.len());
             let mut motion = ContactModes::excite(self.shapes.as_ref(), load);
             modes.answer(orders, &mut motion, tolerance);
             motion
         };
-        let sizes: Vec<f64> = self.points.iter().map(|&point| equations.sizes[point]).collect();
+        let sizes: Vec<f64> = self.points.iter().map(|&point| products.sizes[point]).collect();
         let scaled = |values: &mut [f64], scale: &dyn Fn(f64) -> f64| {
             for (own, size) in values.chunks_exact_mut(slots).zip(&sizes) {
                 own.iter_mut().for_each(|value| *value *= scale(*size));
@@ -134,7 +94,7 @@ impl KrylovNewton {
             }
             scaled(out, &|size| 1.0 / size);
             out.iter_mut().zip(v).for_each(|(out, v)| *out = v - *out);
-            !equations.interrupted.is_some_and(|ask| ask())
+            !products.interrupted.is_some_and(|ask| ask())
         };
         let mut solution = vec![0.0; right.len()];
         let settings = KrylovSettings { tolerance, max_products: MOST_PRODUCTS };
@@ -169,9 +129,9 @@ impl KrylovNewton {
     }
 
     /// `out += ∂Q v` of the active points.
-    fn add_tangents(&self, equations: &Condensed<'_>, slots: usize, v: &[f64], out: &mut [f64]) {
+    fn add_tangents(&self, loads: Loads<'_>, v: &[f64], out: &mut [f64]) {
         let mut first = 0;
-        for load in equations.loads.iter().filter(|load| load.active) {
+        for load in loads.loads.iter().filter(|load| load.active) {
             let size = load.value.len();
             let rows = load.tangent.chunks_exact(size).zip(&mut out[first..first + size]);
             for (row, out) in rows {
@@ -179,221 +139,6 @@ impl KrylovNewton {
             }
             first += size;
         }
-        debug_assert_eq!(first, self.points.len() * slots);
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-    use crate::contact::{
-        Closure, ContactLaw, Coulomb, Jenkins, Residual, Slider, StructuralDamper,
-    };
-    use crate::fourier::{Harmonics, SampleTable};
-    use crate::model::{Contact, Model};
-    use crate::solve::{newton, NewtonSettings, Outcome, System as _};
-    use crate::structure::{HarmonicLoad, Structure};
-    use faer::c64;
-
-    /// Numbers between 0 and 1 without a pattern.
-    fn random(seed: usize) -> f64 {
-        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
-        x - x.floor()
-    }
-
-    #[derive(Debug, Clone, Copy)]
-    enum Damping {
-        Mass,
-        Rayleigh,
-        General,
-    }
-
-    /// Masses in rows, some of them coupled across, each law on the next ones; loads at harmonic 1 and
-    /// at rest.
-    fn model(laws: Vec<Box<dyn ContactLaw>>, damping: Damping, static_load: f64) -> Model {
-        let size: usize = laws.iter().map(|law| law.displacements()).sum();
-        let spring = |i: usize, j: usize| match i.abs_diff(j) {
-            3 => 900.0 * (1.0 + random(i.min(j))),
-            7 => 100.0 * random(3 * i.min(j)),
-            _ => 0.0,
-        };
-        let stiffness = Mat::from_fn(size, size, |i, j| {
-            let own: f64 = (0..size).map(|k| spring(i, k)).sum::<f64>() + 60.0;
-            if i == j {
-                own
-            } else {
-                -spring(i, j)
-            }
-        });
-        let mass =
-            Mat::from_fn(size, size, |i, j| f64::from(u8::from(i == j)) * (0.5 + random(5 * i)));
-        let damping = match damping {
-            Damping::Mass => faer::Scale(0.6) * &mass,
-            Damping::Rayleigh => faer::Scale(0.4) * &mass + faer::Scale(2e-3) * &stiffness,
-            Damping::General => Mat::from_fn(size, size, |i, j| {
-                let own = f64::from(u8::from(i == j)) * (0.4 + random(11 * i));
-                own + if i.abs_diff(j) < 3 { 0.05 * (random(i + 13 * j) - 0.5) } else { 0.0 }
-            }),
-        };
-        let structure =
-            Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
-        let mut first = 0;
-        let contacts = laws.into_iter().map(|law| {
-            let count = law.displacements();
-            let rows = Mat::from_fn(count, size, |i, j| f64::from(u8::from(first + i == j)));
-            first += count;
-            Contact { law, rows }
-        });
-        let load = |harmonic, force: f64| HarmonicLoad {
-            harmonic,
-            amplitude: (0..size)
-                .map(|i| force * c64::new(random(17 * i), if harmonic == 0 { 0.0 } else { 0.3 }))
-                .collect(),
-        };
-        let contacts = contacts.collect();
-        Model::new(structure, contacts, vec![load(1, 40.0), load(0, static_load)]).unwrap()
-    }
-
-    /// Solutions with receptances and without, their largest difference relative to the motion, and
-    /// the share of the points that slip.
-    fn compared(model: &Model, highest: usize, omega: f64) -> (f64, f64) {
-        let half_wave = model.is_symmetric();
-        let table = SampleTable::new(Harmonics::new(highest, half_wave));
-        let mut solutions = Vec::new();
-        let mut share = 0.0;
-        for dense in [true, false] {
-            let mut equations = Condensed::new(model, &table, Residual::Centred, false);
-            assert!(matches!(equations.linear, Linear::Modal(_)));
-            if dense {
-                equations.densify();
-            }
-            equations.set_omega(omega).unwrap();
-            let mut x = equations.stuck_response().to_vec();
-            let report = newton(&mut equations, &mut x, NewtonSettings::default());
-            assert_eq!(report.outcome, Outcome::Converged, "{dense} {report:?}");
-            let mut residual = vec![0.0; x.len()];
-            equations.residual(&x, &mut residual);
-            let active = equations.loads.iter().filter(|load| load.active).count();
-            share = active as f64 / equations.loads.len() as f64;
-            let observe: Vec<usize> = (0..model.compliance().dofs()).step_by(5).collect();
-            let status = super::super::solution::PointStatus::Converged;
-            let point = equations.recover(&x, &observe, status).unwrap();
-            solutions.push((x, equations.frequency_rate(), point));
-        }
-        let difference = |a: &[f64], b: &[f64]| {
-            let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
-            a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
-        };
-        let flat = |values: &[c64]| values.iter().flat_map(|z| [z.re, z.im]).collect::<Vec<_>>();
-        let [(a, _, p), (b, _, q)] = &solutions[..] else { unreachable!() };
-        let observed = difference(&flat(&p.displacement), &flat(&q.displacement));
-        (difference(a, b).max(observed), share)
-    }
-
-    fn jenkins(count: usize) -> Vec<Box<dyn ContactLaw>> {
-        let law = |i: usize| Jenkins::new(150.0, 10f64.powf(3.0 * random(7 * i))).unwrap();
-        (0..count).map(|i| Box::new(law(i)) as Box<dyn ContactLaw>).collect()
-    }
-
-    fn coulomb(count: usize, directions: usize) -> Vec<Box<dyn ContactLaw>> {
-        let law = |i: usize| {
-            let preload = 10f64.powf(2.5 * random(7 * i) - 0.3);
-            let closure = Closure::Preload(preload);
-            Coulomb::new(directions, 0.4, 150.0, Some(200.0), closure).unwrap()
-        };
-        (0..count).map(|i| Box::new(law(i)) as Box<dyn ContactLaw>).collect()
-    }
-
-    #[test]
-    fn solutions_without_receptances_are_those_with_them() {
-        for damping in [Damping::Mass, Damping::Rayleigh, Damping::General] {
-            for static_load in [0.0, 5.0] {
-                let model = model(jenkins(100), damping, static_load);
-                let (difference, share) = compared(&model, 9, 9.0);
-                assert!(difference < 1e-9, "{damping:?} {static_load}: {difference:e}");
-                // Under a static load the mean of what sticks moves with it.
-                assert!(static_load > 0.0 || (0.1..0.95).contains(&share), "{share}");
-            }
-        }
-    }
-
-    #[test]
-    fn so_are_those_of_other_laws() {
-        let parallel = |i: usize| {
-            let slider = |k, f| Slider::new(k, f).unwrap();
-            let limit = 10f64.powf(3.0 * random(7 * i) - 0.5);
-            Jenkins::of(vec![slider(80.0, 0.3 * limit), slider(60.0, limit)]).unwrap()
-        };
-        let structural = |i: usize| {
-            let stiffness = faer::mat![[120.0, -40.0], [-40.0, 90.0]];
-            let limit = |k: usize| 10f64.powf(3.0 * random(7 * i + k) - 0.5);
-            StructuralDamper::new(stiffness.as_ref(), &[limit(0), limit(1)]).unwrap()
-        };
-        let laws: [Vec<Box<dyn ContactLaw>>; 4] = [
-            (0..72).map(|i| Box::new(parallel(i)) as Box<dyn ContactLaw>).collect(),
-            (0..36).map(|i| Box::new(structural(i)) as Box<dyn ContactLaw>).collect(),
-            coulomb(40, 1),
-            coulomb(26, 2),
-        ];
-        for laws in laws {
-            let name = laws[0].name();
-            let formless = name == "coulomb";
-            let model = model(laws, Damping::Mass, 0.0);
-            let model = if formless { model.marched(64).unwrap() } else { model };
-            let (difference, share) = compared(&model, if formless { 3 } else { 7 }, 9.0);
-            assert!(difference < 1e-9, "{name}: {difference:e}");
-            assert!((0.1..=1.0).contains(&share), "{name} {share}");
-        }
-    }
-
-    #[test]
-    fn rates_with_frequency_and_directions_are_those_with_receptances() {
-        for damping in [Damping::Mass, Damping::General] {
-            let model = model(jenkins(72), damping, 5.0);
-            let table = SampleTable::new(Harmonics::new(5, false));
-            let results: Vec<[Vec<f64>; 2]> = [true, false]
-                .into_iter()
-                .map(|dense| {
-                    let mut equations = Condensed::new(&model, &table, Residual::Centred, true);
-                    assert!(matches!(equations.linear, Linear::Modal(_)));
-                    if dense {
-                        equations.densify();
-                    }
-                    equations.set_omega(9.0).unwrap();
-                    let x = equations.stuck_response().to_vec();
-                    let mut residual = vec![0.0; x.len()];
-                    equations.residual(&x, &mut residual);
-                    let rate = equations.frequency_rate();
-                    let mut step = vec![0.0; x.len()];
-                    assert!(equations.solve(&rate, &mut step));
-                    [rate, step]
-                })
-                .collect();
-            for (a, b) in results[0].iter().zip(&results[1]) {
-                let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
-                let worst = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                assert!(worst < 1e-9 * size, "{damping:?}: {:e}", worst / size);
-            }
-        }
-    }
-
-    #[test]
-    fn a_direction_ends_with_the_analysis() {
-        let model = model(jenkins(72), Damping::Mass, 0.0);
-        let table = SampleTable::new(Harmonics::new(7, true));
-        let asked = std::cell::Cell::new(0);
-        let ask = || {
-            asked.set(asked.get() + 1);
-            asked.get() > 4
-        };
-        let mut equations = Condensed::new(&model, &table, Residual::Centred, false);
-        equations.watch(&ask);
-        equations.set_omega(9.0).unwrap();
-        let mut x = equations.stuck_response().to_vec();
-        let report = newton(&mut equations, &mut x, NewtonSettings::default());
-        assert_eq!(report.outcome, Outcome::Interrupted);
-        // Once before the first step, then product by product.
-        assert!(asked.get() <= 7 && report.iterations == 1, "{} {report:?}", asked.get());
+        debug_assert_eq!(first, self.points.len() * loads.slots);
     }
 }

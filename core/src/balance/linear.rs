@@ -1,7 +1,8 @@
 //! What is linear in the condensed equations at one frequency: the answer of the contacts to slip
 //! loads, by dense receptances, through the modes of the stuck structure or around a ring of sectors.
 
-use super::krylov_newton::{suits, KrylovNewton};
+use super::krylov_newton::KrylovNewton;
+use super::modal_work::suits;
 use super::ring_newton::RingNewton;
 use super::slip_jacobian::SlipJacobian;
 use super::unknowns::{gather, scatter};

@@ -16,9 +16,12 @@ mod forced_curve;
 mod from_orbit;
 mod jacobian;
 mod krylov_newton;
+#[cfg(test)]
+mod krylov_tests;
 mod limit_cycle;
 mod linear;
 mod linearised;
+mod modal_work;
 mod peak;
 mod price;
 
@@ -34,6 +37,7 @@ mod solution;
 mod statics;
 mod stops;
 mod sweep;
+mod tangent;
 mod unknowns;
 
 pub use adaptive::sweep_range;

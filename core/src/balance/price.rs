@@ -4,7 +4,7 @@
 //! The price follows from the model and the solution below, not from the clock or from the work
 //! already done: the same point is solved in the same way everywhere.
 
-use super::krylov_newton::{of_step, suits};
+use super::modal_work::{of_step, suits};
 use crate::fourier::Harmonics;
 use crate::model::Model;
 

@@ -6,8 +6,9 @@
 //! passes the reversal before, that loop is forgotten (Masing 1926). A sum of elements with concave F
 //! is a monotone operator, as each of them is, so that passive structures have one steady motion.
 
-use super::backbone::{Backbone, Loss};
+use super::backbone::Backbone;
 use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::loading_curve::LoadingCurve;
 use super::masing_integrals::{add_loops, sweep};
 use super::masing_loops::{Branch, Loops, Stretch};
 use super::parameter::{number, numbers};
@@ -31,11 +32,7 @@ const LITTLE: f64 = 1e-12;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Masing {
     name: &'static str,
-    /// k [N/m].
-    pub(super) stiffness: f64,
-    /// S \[N\].
-    pub(super) slip_force: f64,
-    pub(super) backbone: Arc<Backbone>,
+    curve: LoadingCurve,
     /// Places for reversals.
     memory: usize,
 }
@@ -72,7 +69,7 @@ impl Masing {
             let remedy = "must not be negative; infinity means that the contact never slips";
             return Err(Error::value(format!("{name}: slip_force"), slip_force, remedy));
         }
-        Ok(Self { name, stiffness, slip_force, backbone, memory: MEMORY })
+        Ok(Self { name, curve: LoadingCurve { stiffness, slip_force, backbone }, memory: MEMORY })
     }
 
     pub(super) fn from_parameters(given: &Parameters) -> Result<Self, Error> {
@@ -95,58 +92,23 @@ impl Masing {
         Self::iwan(stiffness?, slip_force?, chi?, beta?)
     }
 
-    /// Displacement without units; infinite without slip force.
-    fn x(&self, u: f64) -> f64 {
-        self.stiffness * u / self.slip_force
-    }
-
-    /// What slip takes off the elastic force at first loading to u >= 0: its integral \[J\], its value
-    /// \[N\] and its slope [N/m].
-    pub(super) fn loss(&self, u: f64) -> Loss {
-        let (k, s) = (self.stiffness, self.slip_force);
-        if k == 0.0 || s == f64::INFINITY {
-            return Loss::default();
-        }
-        if s == 0.0 {
-            return Loss { integral: 0.5 * k * u * u, value: k * u, slope: k };
-        }
-        let own = self.backbone.loss(self.x(u));
-        Loss { integral: s / k * s * own.integral, value: s * own.value, slope: k * own.slope }
-    }
-
-    /// Displacements where the backbone is not analytic \[m\].
-    pub(super) fn breaks(&self) -> Vec<f64> {
-        let unit = self.slip_force / self.stiffness;
-        if unit > 0.0 && unit.is_finite() {
-            self.backbone.breaks().iter().map(|x| x * unit).collect()
-        } else {
-            Vec::new()
-        }
-    }
-
-    /// Work of a closed loop \[J\]: `8 ∫ F du − 4 a F(a)` with half its range a.
-    fn work(&self, half_range: f64) -> f64 {
-        let loss = self.loss(half_range);
-        4.0 * half_range * loss.value - 8.0 * loss.integral
-    }
-
     /// Mean slip load of a motion about its middle, with its derivatives in the middle and in half the
     /// range: what the elements that never slip hold there. Those that slip are centred.
     fn mean_load(&self, residual: Residual, middle: f64, half_range: f64) -> [f64; 3] {
-        let (k, sign) = (self.stiffness, 1.0_f64.copysign(middle));
-        let own = self.loss(half_range);
+        let (k, sign) = (self.curve.stiffness, 1.0_f64.copysign(middle));
+        let own = self.curve.loss(half_range);
         if k == 0.0 {
             return [0.0; 3];
         }
         match residual {
             Residual::Centred => [k * middle, k, 0.0],
             Residual::FromRest => {
-                let most = self.loss(half_range + middle.abs());
+                let most = self.curve.loss(half_range + middle.abs());
                 let by_range = sign * (most.slope - own.slope);
                 [sign * (most.value - own.value), most.slope, by_range]
             }
             Residual::Value(force) => {
-                let room = (self.slip_force - k * half_range + own.value).max(0.0);
+                let room = (self.curve.slip_force - k * half_range + own.value).max(0.0);
                 if force.abs() <= room {
                     return [k * middle - force, k, 0.0];
                 }
@@ -155,33 +117,15 @@ impl Masing {
         }
     }
 
-    /// Derivative of the backbone in a parameter, at u >= 0.
-    fn by_parameter(&self, index: usize, u: f64) -> f64 {
-        let (k, s) = (self.stiffness, self.slip_force);
-        if s == 0.0 || s == f64::INFINITY {
-            // Without slip force only that acts, without limit only the stiffness.
-            let acts = if s == 0.0 { index == 1 && k * u > 0.0 } else { index == 0 };
-            let slope = if index == 0 { u } else { 1.0 };
-            return if acts { slope } else { 0.0 };
-        }
-        let x = self.x(u);
-        let loss = self.backbone.loss(x);
-        match index {
-            0 => u * (1.0 - loss.slope),
-            1 => x * loss.slope - loss.value,
-            _ => s * self.backbone.by_number(index - 2, x),
-        }
-    }
-
     /// Force at a displacement on a stretch, with the slip loads at the reversals and the mean one.
     fn force_at(&self, loops: &Loops, loads: &[f64], mean: f64, at: &Stretch, u: f64) -> f64 {
         let Branch { origin, sign, .. } = loops.branches[at.branch];
         let distance = (0.5 * sign * (u - origin)).max(0.0);
-        if self.x(distance) >= self.backbone.end() {
-            return sign * self.slip_force;
+        if self.curve.x(distance) >= self.curve.backbone.end() {
+            return sign * self.curve.slip_force;
         }
-        let lost = loads[at.branch] + mean + 2.0 * sign * self.loss(distance).value;
-        (self.stiffness * u - lost).clamp(-self.slip_force, self.slip_force)
+        let lost = loads[at.branch] + mean + 2.0 * sign * self.curve.loss(distance).value;
+        (self.curve.stiffness * u - lost).clamp(-self.curve.slip_force, self.curve.slip_force)
     }
 }
 
@@ -203,7 +147,7 @@ impl ContactLaw for Masing {
     }
 
     fn stiffness(&self) -> Mat<f64> {
-        Mat::from_fn(1, 1, |_, _| self.stiffness)
+        Mat::from_fn(1, 1, |_, _| self.curve.stiffness)
     }
 
     /// Reversals stay as they are.
@@ -220,7 +164,7 @@ impl ContactLaw for Masing {
     }
 
     fn limits(&self) -> Vec<f64> {
-        vec![if self.stiffness == 0.0 { 0.0 } else { self.slip_force }]
+        vec![if self.curve.stiffness == 0.0 { 0.0 } else { self.curve.slip_force }]
     }
 
     /// It slips from the first on: a force at which that is little.
@@ -236,12 +180,19 @@ impl ContactLaw for Masing {
         force: &mut [f64],
         jacobian: Option<&mut ReturnMapJacobian>,
     ) {
-        super::masing_memory::step(self, before[0], after[0], state, &mut force[0], jacobian);
+        super::masing_memory::step(
+            &self.curve,
+            before[0],
+            after[0],
+            state,
+            &mut force[0],
+            jacobian,
+        );
     }
 
     fn stuck_load(&self, residual: Residual, low: f64, high: f64) -> Option<[f64; 3]> {
         let (middle, half_range) = (0.5 * (low + high), 0.5 * (high - low));
-        if self.loss(half_range).slope > 0.0 {
+        if self.curve.loss(half_range).slope > 0.0 {
             return None;
         }
         let [load, by_middle, by_range] = self.mean_load(residual, middle, half_range);
@@ -249,22 +200,27 @@ impl ContactLaw for Masing {
     }
 
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
-        Box::new(Self { stiffness: share * self.stiffness, ..self.clone() })
+        let stiffness = share * self.curve.stiffness;
+        Box::new(Self { curve: LoadingCurve { stiffness, ..self.curve.clone() }, ..self.clone() })
     }
 
     fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
-        Box::new(Self { slip_force: factor * self.slip_force, ..self.clone() })
+        let slip_force = factor * self.curve.slip_force;
+        Box::new(Self { curve: LoadingCurve { slip_force, ..self.curve.clone() }, ..self.clone() })
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        let own = [Parameter::stiffness(self.stiffness), Parameter::slip_force(0, self.slip_force)];
+        let own = [
+            Parameter::stiffness(self.curve.stiffness),
+            Parameter::slip_force(0, self.curve.slip_force),
+        ];
         let number = |(name, value)| Parameter { name, point: None, value, factor: false };
-        own.into_iter().chain(self.backbone.numbers().into_iter().map(number)).collect()
+        own.into_iter().chain(self.curve.backbone.numbers().into_iter().map(number)).collect()
     }
 
     fn with_parameter(&self, index: usize, value: f64) -> Result<Box<dyn ContactLaw>, Error> {
-        let (mut stiffness, mut slip_force) = (self.stiffness, self.slip_force);
-        let mut backbone = Arc::clone(&self.backbone);
+        let (mut stiffness, mut slip_force) = (self.curve.stiffness, self.curve.slip_force);
+        let mut backbone = Arc::clone(&self.curve.backbone);
         match index {
             0 => stiffness = value,
             1 => slip_force = value,
@@ -287,10 +243,10 @@ impl ContactLaw for Masing {
         self.slip_load(motion, true, &mut load);
         let mut summary = [PointSummary::default()];
         self.summary(motion, &mut summary);
-        let k = c64::new(self.stiffness, 0.0);
+        let k = c64::new(self.curve.stiffness, 0.0);
         if amplitude == 0.0 {
             let zero = c64::new(0.0, 0.0);
-            let rest = self.loss(0.0).slope;
+            let rest = self.curve.loss(0.0).slope;
             return Some(Describing { stiffness: k - rest, slope: zero, slip_fraction: 0.0 });
         }
         // q = Re Q e^{iθ} with Q = a − i b, and K = k − Q/A.
@@ -310,10 +266,10 @@ impl HarmonicForce for Masing {
         out.reset(harmonics.slots(), tangent);
         let path = Path::new(motion);
         let half_range = path.half_range();
-        if self.loss(half_range).slope > 0.0 && !path.turns.is_empty() {
+        if self.curve.loss(half_range).slope > 0.0 && !path.turns.is_empty() {
             out.active = true;
-            let loops = Loops::new(self, motion, &path);
-            add_loops(self, motion, &path, &loops, tangent, out);
+            let loops = Loops::new(&self.curve, motion, &path);
+            add_loops(&self.curve, motion, &path, &loops, tangent, out);
         }
         if !harmonics.has_mean() {
             return;
@@ -335,25 +291,26 @@ impl HarmonicForce for Masing {
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
         let path = Path::new(motion);
         out[0] = PointSummary::default();
-        let largest = self.loss(path.half_range()).slope;
+        let largest = self.curve.loss(path.half_range()).slope;
         if largest == 0.0 {
             return;
         }
-        let (loops, span) = (Loops::new(self, motion, &path), motion.table.harmonics().span());
-        sweep(self, motion, &loops, largest, |nodes| {
+        let (loops, span) =
+            (Loops::new(&self.curve, motion, &path), motion.table.harmonics().span());
+        sweep(&self.curve, motion, &loops, largest, |nodes| {
             let slipping: f64 = (0..NODES).map(|i| nodes.panel.weight[i] * nodes.slope[i]).sum();
-            out[0].slip_fraction += slipping / self.stiffness / span;
+            out[0].slip_fraction += slipping / self.curve.stiffness / span;
         });
-        let closed: f64 = loops.closed.iter().map(|half_range| self.work(*half_range)).sum();
+        let closed: f64 = loops.closed.iter().map(|half_range| self.curve.work(*half_range)).sum();
         let half = motion.table.harmonics().half_wave();
         // The two halves of a symmetric motion close the largest loop together.
-        let whole = if half { self.work(path.half_range()) } else { 0.0 };
+        let whole = if half { self.curve.work(path.half_range()) } else { 0.0 };
         out[0].dissipation = closed * TAU / span + whole;
     }
 
     fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
         let path = Path::new(motion);
-        let loops = Loops::new(self, motion, &path);
+        let loops = Loops::new(&self.curve, motion, &path);
         let mut history = vec![0.0; samples * self.memory];
         for (n, state) in history.chunks_exact_mut(self.memory).enumerate() {
             let (theta, sign) = path.fold(TAU * n as f64 / samples as f64);
@@ -361,7 +318,7 @@ impl HarmonicForce for Masing {
             let mut origin = 0.0;
             for (z, branch) in state.iter_mut().zip(loops.memory(stretch)) {
                 let to = loops.branches[branch].origin;
-                *z = sign * self.stiffness * (to - origin);
+                *z = sign * self.curve.stiffness * (to - origin);
                 origin = to;
             }
         }
@@ -371,9 +328,9 @@ impl HarmonicForce for Masing {
     fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
         let harmonics = motion.table.harmonics();
         let path = Path::new(motion);
-        let loops = Loops::new(self, motion, &path);
+        let loops = Loops::new(&self.curve, motion, &path);
         let half_range = path.half_range();
-        let loads = loops.at_reversals(half_range, |u| self.loss(u).value);
+        let loads = loops.at_reversals(half_range, |u| self.curve.loss(u).value);
         let mean = if harmonics.has_mean() {
             self.mean_load(motion.residual, path.middle(), half_range)[0]
         } else {
@@ -383,7 +340,7 @@ impl HarmonicForce for Masing {
             let angle = TAU * n as f64 / samples as f64;
             let (theta, sign) = path.fold(angle);
             let u = sign * harmonics.jet(motion.displacement, angle)[0];
-            let Some(stretch) = loops.at(theta) else { return self.stiffness * u - mean };
+            let Some(stretch) = loops.at(theta) else { return self.curve.stiffness * u - mean };
             sign * self.force_at(&loops, &loads, mean, stretch, u)
         };
         (0..samples).map(force).collect()
@@ -399,11 +356,11 @@ impl HarmonicForce for Masing {
         let harmonics = motion.table.harmonics();
         let path = Path::new(motion);
         let (middle, half_range) = (path.middle(), path.half_range());
-        let of = |u: f64| self.by_parameter(index, u);
-        let loops = Loops::new(self, motion, &path);
+        let of = |u: f64| self.curve.by_parameter(index, u);
+        let loops = Loops::new(&self.curve, motion, &path);
         let loads = loops.at_reversals(half_range, of);
         let weight = 2.0 / harmonics.span();
-        sweep(self, motion, &loops, self.loss(half_range).slope, |nodes| {
+        sweep(&self.curve, motion, &loops, self.curve.loss(half_range).slope, |nodes| {
             let mut lanes = [0.0; NODES];
             for (i, lane) in lanes.iter_mut().enumerate() {
                 let own = 2.0 * nodes.branch.sign * of(nodes.distance[i]);
@@ -419,8 +376,8 @@ impl HarmonicForce for Masing {
             Residual::Centred => 0.0,
             Residual::FromRest => (of(half_range + middle.abs()) - of(half_range)).copysign(middle),
             Residual::Value(force) => {
-                let room =
-                    self.slip_force - self.stiffness * half_range + self.loss(half_range).value;
+                let room = self.curve.slip_force - self.curve.stiffness * half_range
+                    + self.curve.loss(half_range).value;
                 let grows = f64::from(u8::from(index == 1)) - of(half_range);
                 if force.abs() <= room {
                     0.0

@@ -5,7 +5,7 @@
 //! `∂q = ∂q_r + L'(|u − u_r|/2) (∂u − ∂u_r)`. At a reversal u is stationary, so that ∂u_r is the basis
 //! there: each reversal adds a term of rank one. Gauss panels are halved until they resolve L'.
 
-use super::masing::Masing;
+use super::loading_curve::LoadingCurve;
 use super::masing_loops::{Branch, Loops, Stretch};
 use super::slider_integrals::Bounds;
 use super::stick_slip::Path;
@@ -34,7 +34,7 @@ pub(super) struct Nodes<'a> {
 
 /// Calls `visit` with panels that cover the loops.
 pub(super) fn sweep(
-    law: &Masing,
+    curve: &LoadingCurve,
     motion: Motion<'_>,
     loops: &Loops,
     largest: f64,
@@ -43,7 +43,7 @@ pub(super) fn sweep(
     let harmonics = motion.table.harmonics();
     let mut panel = Panel::new(harmonics);
     let power = |root: f64| (SMOOTH / (2.0 * root + 1.0)).ceil() as i32;
-    let at_rest = law.backbone.root_at_rest().map_or(1, power);
+    let at_rest = curve.backbone.root_at_rest().map_or(1, power);
     let (mut intervals, mut open) = (Vec::new(), Vec::new());
     for stretch in &loops.stretches {
         let branch = &loops.branches[stretch.branch];
@@ -57,7 +57,7 @@ pub(super) fn sweep(
             let (mut distance, mut loss, mut slope) = ([0.0; NODES], [0.0; NODES], [0.0; NODES]);
             for i in 0..NODES {
                 distance[i] = (0.5 * branch.sign * (u[i] - branch.origin)).max(0.0);
-                let own = law.loss(distance[i]);
+                let own = curve.loss(distance[i]);
                 (loss[i], slope[i]) = (own.value, own.slope);
             }
             let rough = panel.tail(&slope) * interval.length() > RESOLVED * largest;
@@ -72,7 +72,7 @@ pub(super) fn sweep(
 
 /// Adds the integrals of the loops, without what keeps them from their middle.
 pub(super) fn add_loops(
-    law: &Masing,
+    curve: &LoadingCurve,
     motion: Motion<'_>,
     path: &Path<'_>,
     loops: &Loops,
@@ -82,7 +82,7 @@ pub(super) fn add_loops(
     let harmonics = motion.table.harmonics();
     let (size, half_range) = (harmonics.slots(), path.half_range());
     let weight = 2.0 / harmonics.span();
-    let largest = law.loss(half_range).slope;
+    let largest = curve.loss(half_range).slope;
     let mut sums = IntervalSums::new(harmonics);
     let count = loops.branches.len();
     // Integrals over the stretches of each branch, of the basis and of L' times the basis.
@@ -93,11 +93,11 @@ pub(super) fn add_loops(
         let own = &mut held[stretch.branch * size..(stretch.branch + 1) * size];
         bounds.add_integral(harmonics, stretch.start, stretch.end, weight, own);
     }
-    let loads = loops.at_reversals(half_range, |u| law.loss(u).value);
+    let loads = loops.at_reversals(half_range, |u| curve.loss(u).value);
     for (load, held) in loads.iter().zip(held.chunks_exact(size)) {
         out.value.iter_mut().zip(held).for_each(|(q, held)| *q += load * held);
     }
-    sweep(law, motion, loops, largest, |nodes| {
+    sweep(curve, motion, loops, largest, |nodes| {
         let (mut load, mut slope) = ([0.0; NODES], [0.0; NODES]);
         for i in 0..NODES {
             let own = weight * nodes.panel.weight[i];
@@ -114,7 +114,7 @@ pub(super) fn add_loops(
     if tangent {
         let matrix = &mut out.tangent;
         sums.products(harmonics, 1.0, |i, j, value| matrix[i * size + j] = value);
-        let slopes = loops.slopes(half_range, |u| law.loss(u).slope);
+        let slopes = loops.slopes(half_range, |u| curve.loss(u).slope);
         let anchored = anchors(loops, harmonics, &slopes, held, &followed);
         let mut basis = vec![0.0; size];
         let mut add = |theta: f64, factor: f64, anchored: &[f64]| {

@@ -5,7 +5,7 @@
 //! forgotten, and the branch before them goes on (Masing 1926). From the largest displacement on one
 //! lap is enough.
 
-use super::masing::Masing;
+use super::loading_curve::LoadingCurve;
 use super::stick_slip::{crossing, Path};
 use super::Motion;
 use crate::fourier::TurningPoint;
@@ -46,7 +46,7 @@ pub(super) struct Loops {
 
 impl Loops {
     /// Follows a path from its largest displacement.
-    pub(super) fn new(law: &Masing, motion: Motion<'_>, path: &Path<'_>) -> Self {
+    pub(super) fn new(curve: &LoadingCurve, motion: Motion<'_>, path: &Path<'_>) -> Self {
         let turns = &path.turns;
         let mut loops = Self::default();
         if turns.len() < 2 {
@@ -55,7 +55,7 @@ impl Loops {
         let sign = if turns[0].value >= turns[1].value { -1.0 } else { 1.0 };
         loops.branches.push(Branch { turn: 0, origin: turns[0].value, sign, parent: None });
         let mut stack = vec![0];
-        let mut walk = Walk { law, motion, breaks: law.breaks(), loops: &mut loops };
+        let mut walk = Walk { curve, motion, breaks: curve.breaks(), loops: &mut loops };
         for (turn, ends) in turns.windows(2).enumerate() {
             let leg = [ends[0], ends[1]];
             if leg[0].value != leg[1].value {
@@ -122,7 +122,7 @@ impl Loops {
 }
 
 struct Walk<'a> {
-    law: &'a Masing,
+    curve: &'a LoadingCurve,
     motion: Motion<'a>,
     /// Displacements of the backbone where it is not analytic \[m\].
     breaks: Vec<f64>,
@@ -201,7 +201,7 @@ impl Walk<'_> {
         if to.theta > from.theta {
             let reverses = from.value == self.loops.branches[branch].origin;
             let (start, end) = (from.theta, to.theta);
-            let reaches_end = reaches_end && self.law.backbone.root_at_end();
+            let reaches_end = reaches_end && self.curve.backbone.root_at_end();
             self.loops.stretches.push(Stretch { branch, start, end, reverses, reaches_end });
         }
     }

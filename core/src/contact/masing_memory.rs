@@ -7,7 +7,7 @@
 //! least.
 
 use super::law::ReturnMapJacobian;
-use super::masing::Masing;
+use super::loading_curve::LoadingCurve;
 
 /// The remembered steps, each a sum of neighbours among those before and the new one.
 struct Steps {
@@ -46,16 +46,16 @@ impl Steps {
 
 /// Takes the state from one displacement to another, and gives the force there.
 pub(super) fn step(
-    law: &Masing,
+    curve: &LoadingCurve,
     before: f64,
     after: f64,
     state: &mut [f64],
     force: &mut f64,
     jacobian: Option<&mut ReturnMapJacobian>,
 ) {
-    let k = law.stiffness;
-    let loss = |v: f64| if k == 0.0 { 0.0 } else { law.loss((v / k).abs()).value.copysign(v) };
-    let slope = |v: f64| if k == 0.0 { 0.0 } else { law.loss((v / k).abs()).slope / k };
+    let k = curve.stiffness;
+    let loss = |v: f64| if k == 0.0 { 0.0 } else { curve.loss((v / k).abs()).value.copysign(v) };
+    let slope = |v: f64| if k == 0.0 { 0.0 } else { curve.loss((v / k).abs()).slope / k };
     let (from, to) = (k * before, k * after);
     let mut steps = Steps::of(state);
     let known = steps.size.len();

@@ -26,6 +26,7 @@ mod increment;
 mod jenkins;
 mod jets;
 mod law;
+mod loading_curve;
 mod march_rate;
 mod masing;
 mod masing_integrals;

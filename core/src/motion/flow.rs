@@ -8,8 +8,8 @@
 
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
 use super::modal_system::{ContactState, ModalSystem};
-use super::polynomial::first_zero;
-use super::power_series::{sum_of_products, PowerSeries, DEGREE};
+use super::polynomial::{first_zero, DEGREE};
+use super::power_series::{sum_of_products, PowerSeries};
 use super::sliding::Slide;
 use super::state::State;
 use crate::contact::{Bound, PointState, SlipPlane};

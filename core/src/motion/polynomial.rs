@@ -3,6 +3,10 @@
 //! A bound on the second derivative tells whether a sub-interval can hold a zero, and whether the
 //! polynomial is monotone there; where it tells neither, the interval is halved.
 
+/// Highest power of the series of a motion.
+pub(super) const DEGREE: usize = 32;
+/// Truncation error of a step relative to the motion in it.
+pub(super) const TRUNCATION: f64 = 1e-17;
 /// Two zeros closer than this, relative to the interval, cancel: a graze.
 const GRAZE: f64 = 1e-7;
 /// Width at which a change of sign counts as located.

@@ -6,18 +6,14 @@
 
 use super::damping::Damping;
 use super::modal_system::{dot, ContactState, ModalSystem};
-use super::polynomial;
+use super::polynomial::{self, DEGREE, TRUNCATION};
 use super::sliding::{Slide, Swing};
 use super::state::State;
 
-/// Highest power kept.
-pub(super) const DEGREE: usize = 32;
 /// Longest step in units of the fastest rate: beyond it rounding errors of fast modes would grow.
 const LONGEST: f64 = 12.0;
 /// The same where contacts slide: disturbances, which may be faster than the motion, take the same steps.
 const LONGEST_SLIDING: f64 = 4.0;
-/// Truncation error of a step relative to the motion in it.
-pub(super) const TRUNCATION: f64 = 1e-17;
 
 /// Sum relative to its parts that is rounding.
 const CANCELLED: f64 = 1e-14;

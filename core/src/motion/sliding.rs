@@ -19,7 +19,7 @@
 //! traction is too small for its direction to matter.
 
 use super::modal_system::{ContactState, ModalSystem};
-use super::power_series::{DEGREE, TRUNCATION};
+use super::polynomial::{DEGREE, TRUNCATION};
 use super::state::State;
 use crate::contact::{Bound, PointState, SlipPlane};
 

@@ -3,8 +3,6 @@
 use super::curve::Curve;
 use super::line_search::LineSearch;
 use super::norm;
-use faer::linalg::solvers::Solve as _;
-use faer::Mat;
 
 /// Weighted step after which one more is taken as the last: Newton's method squares it.
 const CLOSE: f64 = 1e-8;
@@ -123,43 +121,4 @@ impl Bordered<'_> {
 
 fn weighted(x: &[f64], weights: &[f64]) -> Vec<f64> {
     x.iter().zip(weights).map(|(x, w)| x * w).collect()
-}
-
-/// Solves with the columns scaled by the weights, and says the sign of the determinant; nothing if
-/// the matrix is singular.
-pub(super) fn solve(
-    matrix: &mut Mat<f64>,
-    right: &[f64],
-    weights: &[f64],
-) -> Option<(Vec<f64>, f64)> {
-    let size = right.len();
-    for (j, weight) in weights.iter().enumerate() {
-        for i in 0..size {
-            matrix[(i, j)] /= weight;
-        }
-    }
-    let mut x = Mat::from_fn(size, 1, |i, _| right[i]);
-    let factors = matrix.partial_piv_lu();
-    factors.solve_in_place(&mut x);
-    let step: Vec<f64> = weights.iter().enumerate().map(|(i, w)| x[(i, 0)] / w).collect();
-    let pivots = factors.U().diagonal().column_vector().iter().map(|pivot| pivot.signum());
-    let sign = pivots.product::<f64>() * parity(factors.P().arrays().0);
-    step.iter().all(|s| s.is_finite()).then_some((step, sign))
-}
-
-/// Sign of a permutation.
-pub(crate) fn parity(order: &[usize]) -> f64 {
-    let mut seen = vec![false; order.len()];
-    let mut sign = 1.0;
-    for first in 0..order.len() {
-        let mut at = first;
-        while !seen[at] {
-            seen[at] = true;
-            at = order[at];
-            if at != first {
-                sign = -sign;
-            }
-        }
-    }
-    sign
 }

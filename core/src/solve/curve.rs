@@ -1,6 +1,6 @@
 //! A curve of solutions as equations: what a continuation asks of them.
 
-use super::bordered::solve;
+use super::scaled_lu::solve;
 use faer::Mat;
 
 /// Equations that leave one degree of freedom.

@@ -14,9 +14,9 @@ mod krylov;
 mod line_search;
 mod newton;
 mod qr;
+mod scaled_lu;
 mod small_dense;
 
-pub(crate) use bordered::parity;
 pub(crate) use branch::between;
 pub use branch::{Bounds, Branch, End};
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
@@ -28,6 +28,7 @@ pub use homotopy::{homotopy, Parametrised};
 pub use krylov::{gmres, KrylovReport, KrylovSettings};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
 pub use qr::Qr;
+pub(crate) use scaled_lu::parity;
 pub use small_dense::{Block, BlockFactors};
 
 use faer::Mat;

@@ -5,8 +5,7 @@
 //! diagonal, and GMRES from the diagonal takes a few products with it.
 
 use super::flexibility::RIGID_BODY;
-use super::modal::RESONANCE;
-use super::modes::RealModes;
+use super::modes::{RealModes, RESONANCE};
 use super::ports::{HarmonicLoad, Ports};
 use crate::solve::{gmres, KrylovSettings};
 use crate::Error;

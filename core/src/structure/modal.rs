@@ -9,7 +9,7 @@
 use super::contact_modes::ContactModes;
 use super::flexibility::Flexibility;
 use super::interface::InterfaceCompliance;
-use super::modes::{complex, modes, HermitianModes, RealModes};
+use super::modes::{complex, modes, HermitianModes, RealModes, RESONANCE};
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
 use super::restraint::restrain;
@@ -21,8 +21,6 @@ use std::sync::Arc;
 
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
 const FREE_FLOOR: f64 = 1e-8;
-/// Distance to an undamped resonance, relative to the squared frequency, that is refused.
-pub(super) const RESONANCE: f64 = 1e-9;
 
 /// Natural frequencies below this share of the highest are those of rigid-body modes.
 const SLOWEST: f64 = 1e-9;

@@ -23,6 +23,8 @@ pub type RealModes = Modes<f64>;
 /// Modes of complex matrices, as of a travelling wave.
 pub type HermitianModes = Modes<c64>;
 
+/// Distance to an undamped resonance, relative to the squared frequency, that is refused.
+pub(super) const RESONANCE: f64 = 1e-9;
 /// Ratio of the DOFs' squared frequencies from which their order decides how many digits the low
 /// modes keep: below, rounding of the fastest DOF is no more than 1e-10 of them.
 const GRADED: f64 = 1e6;

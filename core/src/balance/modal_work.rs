@@ -1,0 +1,53 @@
+//! The work of a point whose receptances are never formed, and whether it is less than with them.
+
+use crate::fourier::Harmonics;
+use crate::structure::{Compliance, ContactModes};
+
+/// Unknowns of the largest Jacobian that is formed where products with the modes would do.
+const LARGEST_FORMED: usize = 2000;
+/// Products with all contacts that the solution of a point takes.
+const PRODUCTS: f64 = 60.0;
+/// Of them a Newton step takes these, with the contacts that slip, …
+const PRODUCTS_OF_STEP: f64 = 8.0;
+/// … at so much an operation \[ns\].
+const PER_OPERATION: f64 = 0.1;
+/// Factorisations that it takes, and the share of the contacts that slip, as a rule.
+const FACTORISATIONS: f64 = 4.0;
+const SLIPPING: f64 = 0.5;
+/// How many times less work it has to be: many small products are slower than one factorisation.
+const WORTH: f64 = 4.0;
+
+/// Products with the coupling of the damping within one with the modes.
+const COUPLING: f64 = 4.0;
+
+/// Whether products with the modes are less work than dense receptances and a factorisation.
+pub(super) fn suits(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool {
+    let Some(modes) = compliance.contact_modes() else { return false };
+    let (contacts, slots) = (compliance.contacts() as f64, harmonics.slots() as f64);
+    let count = modes.modes() as f64;
+    let formed = 2.0 * slots * count * contacts * contacts;
+    let block = SLIPPING * contacts * slots;
+    let dense = formed + FACTORISATIONS * 2.0 / 3.0 * block.powi(3);
+    dense > WORTH * PRODUCTS * product(modes, contacts, slots)
+}
+
+/// Whether the whole Jacobian is too large to be formed: a curve is then not followed by arclength.
+pub(super) fn is_large(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool {
+    suits(compliance, harmonics) && compliance.contacts() * harmonics.slots() > LARGEST_FORMED
+}
+
+/// Floating-point operations of a product with the modes.
+pub(super) fn product(modes: &ContactModes, contacts: f64, slots: f64) -> f64 {
+    let count = modes.modes() as f64;
+    let coupled = if modes.is_coupled() { COUPLING * count } else { 0.0 };
+    2.0 * slots * count * (2.0 * contacts + coupled)
+}
+
+/// About the time of a Newton step of some contacts that slip, on a common processor \[ns\].
+pub(super) fn of_step(compliance: &dyn Compliance, slots: f64, slipping: f64) -> f64 {
+    let Some(modes) = compliance.contact_modes() else { return 0.0 };
+    let contacts = compliance.contacts() as f64;
+    PER_OPERATION
+        * (PRODUCTS_OF_STEP * product(modes, slipping, slots)
+            + 2.0 * product(modes, contacts, slots))
+}

@@ -1,0 +1,69 @@
+//! First loading of a Masing law, with units: the backbone between a stiffness and a slip force.
+
+use super::backbone::{Backbone, Loss};
+use std::sync::Arc;
+
+/// The force of first loading, and what slip takes off the elastic one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LoadingCurve {
+    /// k [N/m].
+    pub(super) stiffness: f64,
+    /// S \[N\].
+    pub(super) slip_force: f64,
+    pub(super) backbone: Arc<Backbone>,
+}
+
+impl LoadingCurve {
+    /// Displacement without units; infinite without slip force.
+    pub(super) fn x(&self, u: f64) -> f64 {
+        self.stiffness * u / self.slip_force
+    }
+
+    /// What slip takes off the elastic force at first loading to u >= 0: its integral \[J\], its value
+    /// \[N\] and its slope [N/m].
+    pub(super) fn loss(&self, u: f64) -> Loss {
+        let (k, s) = (self.stiffness, self.slip_force);
+        if k == 0.0 || s == f64::INFINITY {
+            return Loss::default();
+        }
+        if s == 0.0 {
+            return Loss { integral: 0.5 * k * u * u, value: k * u, slope: k };
+        }
+        let own = self.backbone.loss(self.x(u));
+        Loss { integral: s / k * s * own.integral, value: s * own.value, slope: k * own.slope }
+    }
+
+    /// Displacements where the backbone is not analytic \[m\].
+    pub(super) fn breaks(&self) -> Vec<f64> {
+        let unit = self.slip_force / self.stiffness;
+        if unit > 0.0 && unit.is_finite() {
+            self.backbone.breaks().iter().map(|x| x * unit).collect()
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// Work of a closed loop \[J\]: `8 ∫ F du − 4 a F(a)` with half its range a.
+    pub(super) fn work(&self, half_range: f64) -> f64 {
+        let loss = self.loss(half_range);
+        4.0 * half_range * loss.value - 8.0 * loss.integral
+    }
+
+    /// Derivative of the backbone in a parameter, at u >= 0.
+    pub(super) fn by_parameter(&self, index: usize, u: f64) -> f64 {
+        let (k, s) = (self.stiffness, self.slip_force);
+        if s == 0.0 || s == f64::INFINITY {
+            // Without slip force only that acts, without limit only the stiffness.
+            let acts = if s == 0.0 { index == 1 && k * u > 0.0 } else { index == 0 };
+            let slope = if index == 0 { u } else { 1.0 };
+            return if acts { slope } else { 0.0 };
+        }
+        let x = self.x(u);
+        let loss = self.backbone.loss(x);
+        match index {
+            0 => u * (1.0 - loss.slope),
+            1 => x * loss.slope - loss.value,
+            _ => s * self.backbone.by_number(index - 2, x),
+        }
+    }
+}
