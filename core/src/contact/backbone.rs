@@ -5,15 +5,14 @@
 //! slip takes off the elastic force is `λ = x − φ`; it is computed without the cancellation of the two,
 //! so that small motions keep their digits.
 
+use super::loss::Loss;
+use super::shear_layer::Layer;
 use crate::Error;
 
 /// Rise of a table's slope, relative to it, that is rounding.
 const CONCAVE: f64 = 1e-9;
 /// Argument below which the series of the exponential is used.
 const SERIES: f64 = 1.0;
-
-/// Last step of an iteration that squares its error, relative to the solution.
-const SQUARED: f64 = 1e-8;
 
 /// Shape of a backbone.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,17 +35,6 @@ pub enum Backbone {
     },
     /// Points that straight lines join; the force stays at the last one.
     Table(Table),
-}
-
-/// The loss of a backbone at one displacement.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Loss {
-    /// `∫ λ dx` from zero.
-    pub(super) integral: f64,
-    /// λ.
-    pub(super) value: f64,
-    /// λ'.
-    pub(super) slope: f64,
 }
 
 /// A tabulated backbone in the units of its shape.
@@ -141,7 +129,7 @@ impl Backbone {
             let own = (1.0 - (f[i] - f[i - 1]) / most / length).max(0.0);
             let own = if i == 1 { 0.0 } else { own };
             slope.push(own);
-            loss.push(straight(loss[i - 1], own, length));
+            loss.push(loss[i - 1].straight(own, length));
         }
         slope.push(1.0);
         Ok((Self::Table(Table { x, loss, slope }), stiffness, most))
@@ -229,15 +217,6 @@ impl Backbone {
     }
 }
 
-/// The loss at a distance from a place, on a straight line of slope `own`.
-fn straight(from: Loss, own: f64, length: f64) -> Loss {
-    Loss {
-        integral: from.integral + length * (from.value + 0.5 * own * length),
-        value: from.value + own * length,
-        slope: own,
-    }
-}
-
 /// `x − 1 + e^{−x}` and what belongs to it.
 fn exponential(x: f64) -> Loss {
     let slope = -(-x).exp_m1();
@@ -267,105 +246,14 @@ fn iwan(chi: f64, beta: f64, x: f64) -> Loss {
     if x < end {
         inner
     } else {
-        straight(inner, 1.0, x - end)
+        inner.straight(1.0, x - end)
     }
 }
 
 impl Table {
     fn loss(&self, x: f64) -> Loss {
         let row = self.x.partition_point(|own| *own <= x).max(1) - 1;
-        straight(self.loss[row], self.slope[row], x - self.x[row])
-    }
-}
-
-/// The shear layer, by the share α of the bar that slips: with `T = tanh Λ(1 − α)` and `T₀ = tanh Λ`,
-/// `φ = α + T/Λ` and `x = Λ T₀ (1/Λ² + α²/2 + α T/Λ)`.
-struct Layer {
-    lag: f64,
-    stuck: f64,
-    /// x where slip begins, and where all of it slips.
-    begin: f64,
-    end: f64,
-}
-
-impl Layer {
-    fn new(lag: f64) -> Self {
-        let stuck = lag.tanh();
-        Self { lag, stuck, begin: stuck / lag, end: stuck * (1.0 / lag + 0.5 * lag) }
-    }
-
-    /// Share of the bar that slips.
-    fn slipping(&self, x: f64) -> f64 {
-        let (lag, wanted) = (self.lag, (x - self.begin) / (self.lag * self.stuck));
-        let first = self.stuck / lag;
-        // T is below T₀ and below Λ(1 − α): two bounds of the solution from below.
-        let low = 2.0 * wanted / (first + (first * first + 2.0 * wanted).sqrt());
-        let (mut low, mut high) = (low.max(1.0 - (1.0 - 2.0 * wanted).max(0.0).sqrt()), 1.0);
-        let mut alpha = low;
-        for _ in 0..60 {
-            let t = (lag * (1.0 - alpha)).tanh();
-            let excess = 0.5 * alpha * alpha + alpha * t / lag - wanted;
-            if excess > 0.0 {
-                high = alpha;
-            } else {
-                low = alpha;
-            }
-            let newton = alpha - excess / (t / lag + alpha * t * t);
-            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
-            let moved = (next - alpha).abs();
-            alpha = next;
-            // Newton's method squares its error.
-            if moved <= SQUARED * alpha {
-                break;
-            }
-        }
-        alpha
-    }
-
-    /// `∫ φ dx` where the share α slips and φ is known.
-    fn work(&self, x: f64, alpha: f64, t: f64) -> f64 {
-        let lag = self.lag;
-        let phi = alpha + t / lag;
-        let lost = phi / (2.0 * lag * lag)
-            + alpha.powi(3) / 6.0
-            + alpha * t * (alpha + t / lag) / (2.0 * lag);
-        x * phi - lag * self.stuck * lost
-    }
-
-    fn loss(&self, x: f64) -> Loss {
-        if x <= self.begin {
-            return Loss::default();
-        }
-        let (lag, t_0) = (self.lag, self.stuck);
-        let alpha = if x < self.end { self.slipping(x) } else { 1.0 };
-        let t = (lag * (1.0 - alpha)).tanh();
-        let lost = (lag * alpha).tanh() * (1.0 - t * t_0);
-        let inside = x.min(self.end);
-        let inner = Loss {
-            integral: 0.5 * inside * inside - self.work(inside, alpha, t),
-            value: lag * t_0 * (0.5 * alpha * alpha + alpha * t / lag) - alpha + lost / lag,
-            slope: (lost / t_0 + alpha * lag * t) / (1.0 + alpha * lag * t),
-        };
-        if x < self.end {
-            inner
-        } else {
-            straight(inner, 1.0, x - self.end)
-        }
-    }
-
-    /// `∂φ/∂Λ` at a fixed x.
-    fn by_shear_lag(&self, x: f64) -> f64 {
-        if x <= self.begin || x >= self.end {
-            return 0.0;
-        }
-        let (lag, t_0) = (self.lag, self.stuck);
-        let alpha = self.slipping(x);
-        let t = (lag * (1.0 - alpha)).tanh();
-        let t_by = (1.0 - alpha) * (1.0 - t * t);
-        let share = 1.0 / lag + 0.5 * lag * alpha * alpha + alpha * t;
-        let x_by = (1.0 - t_0 * t_0) * share
-            + t_0 * (-1.0 / (lag * lag) + 0.5 * alpha * alpha + alpha * t_by);
-        t_by / lag - t / (lag * lag) - (1.0 - self.loss(x).slope) * x_by
+        self.loss[row].straight(self.slope[row], x - self.x[row])
     }
 }
 

@@ -18,8 +18,9 @@
 //! error of a sampled evaluation is that of the straight lines, of second order in their length.
 
 use super::dual::{Dual, Real};
-use super::law::{Element, HarmonicForce, ReturnMapJacobian};
+use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::parameter::number;
+use super::slip_element::Element;
 use super::{AssumedStart, ContactLaw, Motion, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;

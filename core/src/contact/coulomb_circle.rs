@@ -5,7 +5,7 @@
 //! the points move along the path.
 
 use super::coulomb_drive::Drive;
-use super::coulomb_plane::Grid;
+use super::coulomb_grid::Grid;
 use super::coulomb_slip::differentiated;
 
 /// Excess over the squared radius, relative to it, that is none.

@@ -12,8 +12,9 @@
 //! so that the tangential slip load is s itself. The traction is continuous at all events: those that
 //! move add nothing to derivatives.
 
+use super::collocation::NODES;
 use super::coulomb_drive::Drive;
-use super::coulomb_slip::{Panel, NODES};
+use super::coulomb_slip::Panel;
 use super::slider_integrals::{dot, Bounds};
 use super::{Phase, PointState, PointSummary};
 use crate::fourier::IntervalSums;

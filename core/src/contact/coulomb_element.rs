@@ -11,7 +11,7 @@
 //! `w' = u' − t'/k_t`, in the direction of t: where that vanishes the contact sticks again (Yang, Chu and
 //! Menq 1998).
 
-use super::law::{Bound, SlipElement, SlipPlane};
+use super::slip_element::{Bound, SlipElement, SlipPlane};
 use super::{ContactLaw, Coulomb, PointState};
 use faer::Mat;
 

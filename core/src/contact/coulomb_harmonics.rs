@@ -8,7 +8,7 @@ use super::coulomb_circle::centre;
 use super::coulomb_constant::Constant;
 use super::coulomb_cycle::{Cycle, Response};
 use super::coulomb_drive::Drive;
-use super::coulomb_plane::Grid;
+use super::coulomb_grid::Grid;
 use super::law::HarmonicForce;
 use super::slider_integrals::dot;
 use super::{coulomb_period, coulomb_play};

@@ -9,7 +9,8 @@
 use super::coulomb_circle::centre;
 use super::coulomb_cycle::{Cycle, State, Stretch};
 use super::coulomb_drive::{Closed, Drive};
-use super::coulomb_plane::{Grid, March, Slider};
+use super::coulomb_grid::Grid;
+use super::coulomb_plane::{March, Slider};
 use super::coulomb_slip::{Plane, RESOLVED, ROUGHLY};
 use super::{Coulomb, Residual};
 

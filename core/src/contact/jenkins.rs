@@ -9,9 +9,10 @@
 //! points are common to all elements, so that the tangent has one term of rank one for each of them,
 //! however many elements there are.
 
-use super::law::{Element, HarmonicForce, ReturnMapJacobian, SlipElement as _};
+use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::parameter::numbers;
 use super::slider_integrals::add_slipping;
+use super::slip_element::{Element, SlipElement as _};
 use super::stick_slip::{Path, StickSlipIntervals};
 use super::{
     ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointSummary, Residual, Slider,

@@ -4,11 +4,12 @@
 //! which is what slip takes off it. The stuck structure carries D, so that the balance has to
 //! find q alone; it vanishes while a contact sticks.
 
+use super::point_state::Phase;
+use super::slip_element::Element;
 use super::{AssumedStart, Describing, Parameter, Residual};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::Error;
 use faer::Mat;
-use std::sync::Arc;
 
 /// One period of the relative displacements at the points of a contact.
 #[derive(Debug, Clone, Copy)]
@@ -62,94 +63,6 @@ pub struct PointSummary {
     pub slip_fraction: f64,
     /// Friction work per period \[J\].
     pub dissipation: f64,
-}
-
-/// What a contact point does at an instant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PointState {
-    /// It sticks.
-    Stuck,
-    /// It slips with positive force: the relative displacement grows.
-    Forward,
-    /// It slips with negative force.
-    Backward,
-    /// It is one of two points that slip in a plane, in a direction that turns.
-    Sliding,
-    /// It is open: there is no force.
-    Open,
-}
-
-impl PointState {
-    /// Whether it slips.
-    #[must_use]
-    pub fn slips(self) -> bool {
-        matches!(self, Self::Forward | Self::Backward | Self::Sliding)
-    }
-
-    /// Direction of slip: 1, −1, or 0 without slip or where slip turns.
-    #[must_use]
-    pub fn sign(self) -> f64 {
-        match self {
-            Self::Stuck | Self::Sliding | Self::Open => 0.0,
-            Self::Forward => 1.0,
-            Self::Backward => -1.0,
-        }
-    }
-
-    /// The state in the mirror image of the motion.
-    #[must_use]
-    pub fn mirrored(self) -> Self {
-        match self {
-            Self::Stuck | Self::Sliding | Self::Open => self,
-            Self::Forward => Self::Backward,
-            Self::Backward => Self::Forward,
-        }
-    }
-
-    /// Slip in the direction of `sign`.
-    #[must_use]
-    pub fn slipping(sign: f64) -> Self {
-        if sign > 0.0 {
-            Self::Forward
-        } else {
-            Self::Backward
-        }
-    }
-}
-
-/// A stretch of the period in which no point changes its state.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Phase {
-    /// Angle θ = ωt from which on, up to the start of the next one.
-    pub start: f64,
-    /// States of the points. A point without friction counts as stuck: it carries no force.
-    pub states: Vec<PointState>,
-}
-
-impl Phase {
-    /// Instants at which a law that keeps no account of its phases is asked.
-    pub const INSTANTS: usize = 4096;
-
-    /// The phases that show in the forces at equidistant instants: a point slips at its limit.
-    #[must_use]
-    pub fn from_forces(history: &[f64], limits: &[f64]) -> Vec<Self> {
-        let step = std::f64::consts::TAU * limits.len() as f64 / history.len() as f64;
-        let mut phases: Vec<Self> = Vec::new();
-        for (n, force) in history.chunks_exact(limits.len()).enumerate() {
-            let states: Vec<PointState> = force
-                .iter()
-                .zip(limits)
-                .map(|(f, limit)| match *limit {
-                    limit if limit > 0.0 && f.abs() >= limit => PointState::slipping(*f),
-                    _ => PointState::Stuck,
-                })
-                .collect();
-            if phases.last().is_none_or(|last| last.states != states) {
-                phases.push(Self { start: step * n as f64, states });
-            }
-        }
-        phases
-    }
 }
 
 /// Derivative of one step of a return map, with n displacements and m numbers of state; matrices
@@ -342,93 +255,4 @@ pub trait HarmonicForce {
     /// Series of the derivative of the contact force in parameter `index` at fixed displacement,
     /// laid out as the displacement.
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]);
-}
-
-/// A part of a law that exact motions follow from event to event.
-#[derive(Debug, Clone)]
-pub struct Element {
-    /// Components of the law's relative displacement that it acts on.
-    pub components: Vec<usize>,
-    /// What it does.
-    pub law: Arc<dyn SlipElement>,
-}
-
-/// What bounds the force of a point of an element.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Bound {
-    /// A slip limit that does not change: `|f| ≤ F`. The force is remembered.
-    Constant(f64),
-    /// Friction under a normal force: `|f| ≤ μN`, and `f = 0` while it is open. The force is
-    /// remembered.
-    Friction {
-        /// μ.
-        friction: f64,
-        /// The point of the element whose force presses.
-        normal: usize,
-    },
-    /// A normal force `N = N₀ + k u ≥ 0`, of which the structure feels `f = N − balanced`. The
-    /// displacement alone determines it, and whether the contact is open.
-    Unilateral {
-        /// N₀ \[N\].
-        at_rest: f64,
-        /// k [N/m].
-        stiffness: f64,
-        /// What of N the structure does not feel \[N\].
-        balanced: f64,
-    },
-}
-
-/// Two points of an element whose forces are one traction: the length of the vector is bounded by the
-/// limit that both points have, and what slips moves along it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlipPlane {
-    /// The points, in directions across each other.
-    pub points: [usize; 2],
-    /// Stiffness against each other while they stick, the same in all directions [N/m].
-    pub stiffness: f64,
-}
-
-/// An element that is linear between events: each of its points sticks, or slips at its limit, or is
-/// open. Forces that are bounded by slip are its state. Slip in a plane alone is not linear: there the
-/// traction turns, as the slip equation says.
-pub trait SlipElement: Send + Sync + std::fmt::Debug {
-    /// Stiffness of the stuck element, points × points [N/m].
-    fn stiffness(&self) -> Mat<f64>;
-
-    /// Slip limit of every point \[N\]: 0 if it never carries a force, infinite if it never slips;
-    /// of a limit that varies the largest number.
-    fn limits(&self) -> Vec<f64>;
-
-    /// What bounds the force of every point: constant limits, unless an element has others.
-    fn bounds(&self) -> Vec<Bound> {
-        self.limits().into_iter().map(Bound::Constant).collect()
-    }
-
-    /// Pairs of points that slip in a plane.
-    fn planes(&self) -> Vec<SlipPlane> {
-        Vec::new()
-    }
-
-    /// `∂f/∂u` while the points are in these states, points × points [N/m]; rows of points that slip in a
-    /// plane are zero.
-    fn tangent(&self, points: &[PointState]) -> Mat<f64>;
-
-    /// Displacement at which the force of its first point vanishes, where it has not slipped since the
-    /// static loads were raised \[m\].
-    fn slider_at_rest(&self) -> f64 {
-        0.0
-    }
-
-    /// Slip per relative displacement, `s' = R u'`, while the points are in these states,
-    /// points × points; rows of points that do not slip are zero.
-    fn slip_rate(&self, points: &[PointState]) -> Mat<f64>;
-
-    /// Takes the forces through a straight change of the displacements. `gain`, if asked for, is the
-    /// derivative of the new forces in the trial forces `f + D Δu`, points × points, row by row.
-    fn increment(&self, before: &[f64], after: &[f64], force: &mut [f64], gain: Option<&mut [f64]>);
-
-    /// [`SlipElement::increment`] of an element that remembers something else than its forces.
-    fn march(&self, before: &[f64], after: &[f64], _memory: &mut [f64], force: &mut [f64]) {
-        self.increment(before, after, force, None);
-    }
 }

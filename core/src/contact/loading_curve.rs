@@ -1,6 +1,7 @@
 //! First loading of a Masing law, with units: the backbone between a stiffness and a slip force.
 
-use super::backbone::{Backbone, Loss};
+use super::backbone::Backbone;
+use super::loss::Loss;
 use std::sync::Arc;
 
 /// The force of first loading, and what slip takes off the elastic one.

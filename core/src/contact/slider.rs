@@ -1,6 +1,6 @@
 //! One elastic, perfectly plastic element: a spring k_d in series with a slider of limit F_d.
 
-use super::law::SlipElement;
+use super::slip_element::SlipElement;
 use super::stick_slip::{Path, Slip, Stick, StickSlipIntervals};
 use super::{Motion, PointState, PointSummary, Residual, SlipLoad};
 use crate::Error;

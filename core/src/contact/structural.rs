@@ -9,8 +9,8 @@
 
 use super::elastic::{Elastic, ReducedStiffness};
 use super::increment::Increment;
-use super::law::SlipElement;
 use super::parameter::numbers;
+use super::slip_element::SlipElement;
 use super::{Parameters, PointState};
 use crate::Error;
 use faer::{Mat, MatRef, Side};

@@ -1,8 +1,10 @@
 //! Exact periodic orbits by shooting with the exact flow, and their Floquet multipliers: no
 //! harmonic is discarded, so that they judge the harmonic balance.
 
+mod curve_stability;
 mod cycle_branch;
 mod cycles;
+mod drift;
 mod limit_cycle;
 mod linear_path;
 mod orbit_postprocess;
@@ -23,10 +25,11 @@ mod start;
 mod survey;
 mod sweep;
 
+pub use curve_stability::decide_stability;
 pub use cycle_branch::limit_cycles;
 pub use cycles::{Change, ChangeKind, Cycle, CycleSettings, LimitCycles, Turn};
 pub use limit_cycle::{CycleOrbits, OrbitCurve};
-pub use period_map::{decide_stability, Multipliers, PeriodMap};
+pub use period_map::{Multipliers, PeriodMap};
 pub use periodic::{Orbit, PeriodicOrbits};
 pub use rescue::OrbitInitialGuess;
 pub use rotation::Rotation;

@@ -6,16 +6,15 @@
 //! laws, at which steps end, the error has even powers of the step alone: maps of halved steps are
 //! extrapolated (Romberg), and what the last halving has changed is the error.
 
+use super::drift::Drift;
 use super::linear_path::{inside, step, Displacements, Part, PartPath};
-use crate::balance::{with_history, Progress, Solution, Unknowns};
+use crate::balance::Unknowns;
 use crate::contact::{Residual, ReturnMapJacobian};
 use crate::model::Model;
 use crate::structure::modes;
 use crate::Error;
-use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// Fewest steps per period, and most at the first level.
 const STEPS: (usize, usize) = (32, 512);
@@ -202,7 +201,8 @@ impl PeriodMap {
         for (pair, &count) in ends.windows(2).zip(counts) {
             let [start, end] = [pair[0], pair[1]];
             let h = (end - start) / count as f64;
-            let drift = Drift::new(self, h / omega)?;
+            let modes = [&self.omega_squared[..], &self.damping];
+            let drift = Drift::new(modes, self.coupled.as_ref(), h / omega);
             let at = |n: usize| inside(start, end, start + h * n as f64);
             run.follow(before, at(0));
             for n in 0..count {
@@ -215,45 +215,6 @@ impl PeriodMap {
         }
         Some(run.matrix(omega))
     }
-}
-
-/// The exact motion of the modes over a step, with half a step of coupled damping on either side.
-struct Drift {
-    /// New displacement and velocity by the old ones, mode after mode.
-    modes: Vec<[f64; 4]>,
-    coupled: Option<Mat<f64>>,
-}
-
-impl Drift {
-    fn new(map: &PeriodMap, h: f64) -> Option<Self> {
-        let modes = map.omega_squared.iter().zip(&map.damping);
-        let coupled = map.coupled.as_ref().map(|damping| {
-            // (I + h C/4)⁻¹ (I − h C/4): symmetric in time.
-            let quarter = faer::Scale(0.25 * h) * damping;
-            let unit = Mat::<f64>::identity(damping.nrows(), damping.nrows());
-            (&unit + &quarter).partial_piv_lu().solve(&unit - &quarter)
-        });
-        Some(Self { modes: modes.map(|(w, c)| oscillator(*w, *c, h)).collect(), coupled })
-    }
-}
-
-/// `η'' + c η' + ω² η = 0` over a time h.
-fn oscillator(omega_squared: f64, damping: f64, h: f64) -> [f64; 4] {
-    let rate = 0.5 * damping;
-    let square = omega_squared - rate * rate;
-    let turn = square.abs().sqrt() * h;
-    let (cos, sinc) = if turn < 1e-4 {
-        let t = square * h * h;
-        let decay = (-rate * h).exp();
-        (decay * (1.0 - t / 2.0 + t * t / 24.0), decay * h * (1.0 - t / 6.0 + t * t / 120.0))
-    } else if square > 0.0 {
-        let decay = (-rate * h).exp();
-        (decay * turn.cos(), decay * h * turn.sin() / turn)
-    } else {
-        let (up, down) = ((turn - rate * h).exp(), (-turn - rate * h).exp());
-        (0.5 * (up + down), 0.5 * h * (up - down) / turn)
-    };
-    [cos + rate * sinc, sinc, -omega_squared * sinc, cos - rate * sinc]
 }
 
 /// A fundamental matrix on its way through the period, row after row.
@@ -431,35 +392,4 @@ fn add(out: &mut [f64], factor: f64, row: &[f64]) {
     if factor != 0.0 {
         out.iter_mut().zip(row).for_each(|(out, row)| *out += factor * row);
     }
-}
-
-/// Decides the stability of the points of a curve under the residual assumed by its balance, as far as the map tells it; those of a travelling
-/// wave stay undecided.
-///
-/// # Errors
-/// As [`PeriodMap::new`], but for a wave.
-pub fn decide_stability(
-    model: &Model,
-    residual: Residual,
-    solution: &mut Solution,
-    progress: &Progress<'_>,
-) -> Result<(), Error> {
-    if model.is_travelling_wave() {
-        return Ok(());
-    }
-    let history = match residual {
-        Residual::FromRest => with_history(model)?,
-        Residual::Centred | Residual::Value(_) => None,
-    };
-    let map = PeriodMap::new(history.as_ref().unwrap_or(model))?.assuming(residual);
-    for point in &mut solution.points {
-        if !progress(1.0) {
-            return Ok(());
-        }
-        let Some(motion) = point.unknowns().filter(|_| point.is_solved()) else { continue };
-        let stable =
-            map.multipliers(point.omega, motion, None).and_then(|multipliers| multipliers.stable());
-        Arc::make_mut(point).stable = stable;
-    }
-    Ok(())
 }

@@ -1,0 +1,234 @@
+//! What a contact point does next along a step of the flow.
+
+use super::flow::{Flow, Next};
+use super::modal_system::ContactState;
+use super::polynomial::{first_zero, DEGREE};
+use super::power_series::sum_of_products;
+use super::sliding::Slide;
+use crate::contact::{Bound, PointState, SlipPlane};
+
+/// Leading coefficient, relative to the largest, that counts as zero: a point is at its limit.
+const AT_LIMIT: f64 = 1e-14;
+/// The same for the next coefficients of a point that is at its limit.
+const AT_REST: f64 = 1e-9;
+
+impl Flow<'_> {
+    /// What a point does within `length` of τ, and whether it can begin the step as it is.
+    pub(super) fn next(
+        &mut self,
+        regime: &ContactState,
+        point: usize,
+        natural: f64,
+        length: f64,
+    ) -> Next {
+        let state = regime.points[point];
+        if let Some(plane) = self.system.plane_of(point).copied() {
+            return match state {
+                _ if plane.points[0] != point || self.system.limits()[point] == 0.0 => Next::Stay,
+                PointState::Open => Next::Stay,
+                PointState::Stuck => self.begins_to_slide(plane, natural, length),
+                _ => self.ends_to_slide(plane, natural, length),
+            };
+        }
+        let (constant, friction) = match self.system.bounds[point] {
+            Bound::Constant(limit) if limit > 0.0 && limit.is_finite() => (limit, None),
+            Bound::Friction { friction, normal } if state != PointState::Open => {
+                (friction * self.system.balanced(normal), Some((friction, normal)))
+            }
+            Bound::Unilateral { stiffness, .. } if stiffness > 0.0 => {
+                return self.opens_or_closes(state, point, natural, length);
+            }
+            _ => return Next::Stay,
+        };
+        if state != PointState::Stuck {
+            self.fill_slip_velocity(regime, point, state.sign(), natural);
+            return self.comes_to_rest(natural, length);
+        }
+        let force = self.series.force(point);
+        let (mut limit, mut size, mut reach) = (constant, constant, reach_of(force, length));
+        if let Some((friction, normal)) = friction {
+            let pressing = self.series.force(normal);
+            limit += friction * pressing[0];
+            reach += friction * reach_of(pressing, length);
+            size = self.system.limit_size(point, self.series.displacement());
+        }
+        if reach < limit - force[0].abs() {
+            return Next::Stay;
+        }
+        let mut first = Next::Stay;
+        let mut window = length;
+        for side in [1.0, -1.0] {
+            self.fill_margin(point, side, constant, friction);
+            rescale(&mut self.scratch, natural);
+            match self.leaves(window / natural, size) {
+                Some(0.0) => return Next::Now(PointState::slipping(side)),
+                Some(share) => {
+                    window = share * natural;
+                    first = Next::At(window, PointState::slipping(side));
+                }
+                None => {}
+            }
+        }
+        first
+    }
+
+    /// Whether the slip velocity at hand vanishes.
+    fn comes_to_rest(&mut self, natural: f64, length: f64) -> Next {
+        // Another point's onset of slip turns it back at once.
+        if self.scratch[0] < -AT_REST * self.scratch[1..].iter().map(|a| a.abs()).sum::<f64>() {
+            return Next::Now(PointState::Stuck);
+        }
+        match self.leaves(length / natural, 0.0) {
+            Some(0.0) => Next::Now(PointState::Stuck),
+            Some(share) => Next::At(share * natural, PointState::Stuck),
+            None => Next::Stay,
+        }
+    }
+
+    /// Whether the traction in a plane comes to its limit: `M² − |t|²` vanishes.
+    fn begins_to_slide(&mut self, plane: SlipPlane, natural: f64, length: f64) -> Next {
+        let [a, b] = plane.points;
+        let [t, s] = plane.points.map(|point| self.series.force(point));
+        let limit = self.limit_series(a);
+        let now = t[0].hypot(s[0]);
+        let reach = reach_of(t, length) + reach_of(s, length) + reach_of(&limit, length);
+        if reach < limit[0] - now {
+            return Next::Stay;
+        }
+        self.scratch.clear();
+        self.scratch.resize(2 * DEGREE + 1, 0.0);
+        for (series, sign) in [(&limit[..], 1.0), (t, -1.0), (s, -1.0)] {
+            for (j, a) in series.iter().enumerate() {
+                let (a, to) = (sign * a, &mut self.scratch[j..]);
+                to.iter_mut().zip(series).for_each(|(sum, b)| *sum += a * b);
+            }
+        }
+        rescale(&mut self.scratch, natural);
+        let size = limit[0] * self.system.limit_size(b, self.series.displacement());
+        match self.leaves(length / natural, size) {
+            Some(0.0) => Next::Now(PointState::Sliding),
+            Some(share) => Next::At(share * natural, PointState::Sliding),
+            None => Next::Stay,
+        }
+    }
+
+    /// Whether a contact that slides in a plane comes to rest.
+    fn ends_to_slide(&mut self, plane: SlipPlane, natural: f64, length: f64) -> Next {
+        let own = |slide: &Slide| slide.plane == plane;
+        let Some(slide) = self.series.slides().iter().position(own) else { return Next::Stay };
+        self.series.fill_pull(slide, &mut self.scratch);
+        rescale(&mut self.scratch, natural);
+        self.comes_to_rest(natural, length)
+    }
+
+    /// The slip limit of a point.
+    fn limit_series(&self, point: usize) -> Vec<f64> {
+        let Bound::Friction { friction, normal } = self.system.bounds[point] else {
+            let mut series = vec![0.0; DEGREE + 1];
+            series[0] = self.system.limits()[point];
+            return series;
+        };
+        let mut series: Vec<f64> = self.series.force(normal).to_vec();
+        series[0] += self.system.balanced(normal);
+        series.iter_mut().for_each(|a| *a *= friction);
+        series
+    }
+
+    /// Slip velocity in the direction of slip, on the unit interval.
+    fn fill_slip_velocity(&mut self, regime: &ContactState, point: usize, sign: f64, natural: f64) {
+        self.scratch.clear();
+        self.scratch.resize(DEGREE, 0.0);
+        let rates: Vec<(usize, f64)> = (0..self.system.points())
+            .map(|other| (other, sign * regime.slip_rate[(point, other)]))
+            .filter(|(_, rate)| *rate != 0.0)
+            .collect();
+        for (n, a) in self.scratch.iter_mut().enumerate() {
+            let parts =
+                rates.iter().map(|&(other, rate)| (rate, self.series.contact(other)[n + 1]));
+            *a = (n + 1) as f64 * sum_of_products(parts);
+        }
+        rescale(&mut self.scratch, natural);
+    }
+
+    /// Whether a normal force vanishes, or comes back.
+    fn opens_or_closes(
+        &mut self,
+        state: PointState,
+        point: usize,
+        natural: f64,
+        length: f64,
+    ) -> Next {
+        let (side, to) = match state {
+            PointState::Open => (-1.0, PointState::Stuck),
+            _ => (1.0, PointState::Open),
+        };
+        let stiffness = side * self.system.normal_stiffness(point);
+        self.scratch.clear();
+        self.scratch.extend(self.series.contact(point).iter().map(|u| stiffness * u));
+        self.scratch[0] = side * self.system.pressing(point, self.series.displacement());
+        rescale(&mut self.scratch, natural);
+        let size = self.system.normal_size(point, self.series.displacement());
+        match self.leaves(length / natural, size) {
+            Some(0.0) => Next::Now(to),
+            Some(share) => Next::At(share * natural, to),
+            None => Next::Stay,
+        }
+    }
+
+    /// Distance of the force from its limit on one side.
+    fn fill_margin(
+        &mut self,
+        point: usize,
+        side: f64,
+        constant: f64,
+        friction: Option<(f64, usize)>,
+    ) {
+        self.scratch.clear();
+        self.scratch.extend(self.series.force(point).iter().map(|f| -side * f));
+        self.scratch[0] += constant;
+        if let Some((friction, normal)) = friction {
+            let pressing = self.series.force(normal);
+            self.scratch.iter_mut().zip(pressing).for_each(|(a, f)| *a += friction * f);
+        }
+    }
+
+    /// First zero of the polynomial at hand up to `share` of the unit interval: 0 if it is at zero
+    /// and falls. `scale` is what its value counts against.
+    fn leaves(&mut self, share: f64, scale: f64) -> Option<f64> {
+        let a = &mut self.scratch;
+        let sum = |a: &[f64]| a.iter().map(|a| a.abs()).sum::<f64>();
+        let mut from = 0;
+        if a[0] <= AT_LIMIT * scale.max(sum(&a[1..])) {
+            from = 1;
+            while from < 4 && a[from].abs() <= AT_REST * sum(&a[from + 1..]) {
+                from += 1;
+            }
+            if a[from] <= 0.0 {
+                // Nothing moves: the point may stay as it is.
+                return if sum(&a[from..]) == 0.0 { None } else { Some(0.0) };
+            }
+        }
+        let a = &mut a[from..];
+        rescale(a, share);
+        first_zero(a).map(|x| x * share)
+    }
+}
+
+/// Most that a polynomial can move away from its start over a length.
+fn reach_of(a: &[f64], length: f64) -> f64 {
+    let (mut scale, mut reach) = (1.0, 0.0);
+    for a in &a[1..] {
+        scale *= length;
+        reach += a.abs() * scale;
+    }
+    reach
+}
+
+/// `Σ a_n (length x)ⁿ`.
+fn rescale(a: &mut [f64], length: f64) {
+    let mut scale = 1.0;
+    for a in a {
+        *a *= scale;
+        scale *= length;
+    }
+}
