@@ -63,7 +63,7 @@ python: $(VENV)/.developed
 	$(BIN)/pytest
 
 docs: $(VENV)/.developed
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	PYTHONPATH=docs $(BIN)/zensical build --strict
 
 bench: $(VENV)/.developed
 	cargo bench -p stickslip-core

@@ -1,4 +1,4 @@
-"""Build hook: writes the gallery and the coverage page from the catalogue of reproductions.
+"""Markdown extension: writes the gallery and the coverage page from the catalogue of reproductions.
 
 A line ``{{ gallery }}``, ``{{ coverage }}`` or ``{{ table NAME }}`` of a page is replaced. Texts,
 code and status come from the package that the pages are built with, pictures and numbers from
@@ -12,6 +12,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from markdown import Markdown
+from markdown.extensions import Extension
+from markdown.preprocessors import Preprocessor
+
 from stickslip_reproduce import SUBJECTS, costs, heading, items
 from stickslip_reproduce.folder import records
 from stickslip_reproduce.index import fact_rows, number
@@ -20,9 +24,30 @@ FOLDER = Path(__file__).parent / "assets" / "reproduction"
 _MARK = re.compile(r"^\{\{ (?P<what>gallery|coverage|table) ?(?P<name>[\w.-]*) \}\}$", re.MULTILINE)
 
 
-def on_page_markdown(markdown: str, **_: object) -> str:
-    """Replace every mark of a page."""
-    return _MARK.sub(lambda mark: _WRITERS[mark["what"]](mark["name"]), markdown)
+def written(page: str) -> str:
+    """Return a page with every mark replaced."""
+    return _MARK.sub(lambda mark: _WRITERS[mark["what"]](mark["name"]), page)
+
+
+class Marks(Preprocessor):
+    """Replaces the marks of a page."""
+
+    def run(self, lines: list[str]) -> list[str]:
+        """Return the lines of the page without marks."""
+        return written("\n".join(lines)).split("\n")
+
+
+class Gallery(Extension):
+    """The extension, before all that reads Markdown."""
+
+    def extendMarkdown(self, md: Markdown) -> None:
+        """Add what replaces the marks."""
+        md.preprocessors.register(Marks(md), "gallery", 100)
+
+
+def makeExtension(**options: Any) -> Gallery:
+    """Return the extension, as Python-Markdown asks for it."""
+    return Gallery(**options)
 
 
 def _gallery(_: str) -> str:

@@ -1,11 +1,15 @@
-"""Build hook: writes formulas as MathML, so that the pages need no script and no network."""
+"""Markdown extension: formulas as MathML, so that the pages need no script and no network."""
 
 from __future__ import annotations
 
 import html
 import re
+from typing import Any
 
 from latex2mathml.converter import convert
+from markdown import Markdown
+from markdown.extensions import Extension
+from markdown.postprocessors import Postprocessor
 
 # What pymdownx.arithmatex makes of $...$ and $$...$$.
 _FORMULA = re.compile(
@@ -13,9 +17,25 @@ _FORMULA = re.compile(
 )
 
 
-def on_page_content(content: str, **_: object) -> str:
-    """Replace every formula of a page."""
-    return _FORMULA.sub(_mathml, content)
+class Formulas(Postprocessor):
+    """Replaces every formula of a page."""
+
+    def run(self, text: str) -> str:
+        """Return the page with MathML."""
+        return _FORMULA.sub(_mathml, text)
+
+
+class MathMl(Extension):
+    """The extension, after all that restores HTML."""
+
+    def extendMarkdown(self, md: Markdown) -> None:
+        """Add what replaces the formulas."""
+        md.postprocessors.register(Formulas(md), "mathml", 0)
+
+
+def makeExtension(**options: Any) -> MathMl:
+    """Return the extension, as Python-Markdown asks for it."""
+    return MathMl(**options)
 
 
 def _mathml(formula: re.Match[str]) -> str:

@@ -264,7 +264,7 @@ def test_gallery_holds_what_the_catalogue_has():
 
 
 def test_pages_are_written_from_the_catalogue():
-    hook = runpy.run_path(str(DOCS / "gallery.py"))["on_page_markdown"]
+    hook = runpy.run_path(str(DOCS / "gallery.py"))["written"]
     coverage = hook("# Coverage\n\n{{ coverage }}\n").splitlines()
     for name in SUBJECTS:
         (line,) = [
