@@ -16,14 +16,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-from scipy.linalg import block_diag
 
 from stickslip.checks import choice, unknown
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
 
 if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
+
     from stickslip.results.nonlinear_modes import NonlinearModes
 
 _FINE = 4000
@@ -81,6 +81,8 @@ class _Shapes:
     """A nonlinear mode between its amplitudes, interpolated in their logarithm."""
 
     def __init__(self, mode: NonlinearModes) -> None:
+        from scipy.interpolate import PchipInterpolator
+
         arrays = mode.arrays
         known = np.flatnonzero(np.isfinite(arrays.omega))
         rising = known[np.r_[True, np.diff(arrays.amplitude[known]) > 0.0]] if known.size else known
@@ -181,6 +183,8 @@ def _indicator(
     the mode itself is an exact solution; across the mode the residual moves the other modes, and
     along it the amplitude.
     """
+    from scipy.linalg import block_diag
+
     structure = mode.model.structure
     rows = np.vstack([contact.rows(structure) for contact in mode.model.contacts])
     stuck = block_diag(*(contact.stuck_stiffness for contact in mode.model.contacts))
