@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stickslip.errors import ModelError
+from stickslip.model.coupling import Coupling
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
 
 M = np.diag([2.0, 1.0, 4.0])
@@ -294,6 +295,55 @@ def test_structure_of_a_structure_is_the_same(structure):
 def test_join_refuses(parts, message):
     with pytest.raises(ModelError, match=message):
         join(parts)
+
+
+def test_joined_parts_with_a_spring_are_those_of_edited_matrices():
+    parts = {"a": Structure(spd(1, 3), spd(2, 3), spd(3, 3)), "b": Structure(spd(4, 2), spd(5, 2))}
+    springs = [
+        Coupling("a.1", "b.0", stiffness=7.0, damping=0.5),
+        Coupling("b.1", "b.0", stiffness=2),
+    ]
+    pair, bare = join(parts, springs), join(parts)
+    stiffness, damping = bare.stiffness.copy(), bare.damping.copy()
+    for matrix, one, two, factor in (
+        (stiffness, 1, 3, 7.0),
+        (stiffness, 4, 3, 2.0),
+        (damping, 1, 3, 0.5),
+    ):
+        matrix[np.ix_([one, two], [one, two])] += factor * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    np.testing.assert_array_equal(pair.mass, bare.mass)
+    np.testing.assert_array_equal(pair.stiffness, stiffness)
+    np.testing.assert_array_equal(pair.damping, damping)
+    assert pair.dofs == bare.dofs
+
+
+def test_equal_parts_on_a_spring_move_alike_or_in_opposition():
+    part = Structure(M, K, Rayleigh(mass=0.3, stiffness=0.1), ["x", "y", "z"])
+    pair = join({"1": part, "2": part}, [Coupling("1.y", "2.y", stiffness=0.7)])
+    held = K + 2.0 * np.diag([0.0, 0.7, 0.0])
+    expected = np.sort(np.concatenate([scipy.linalg.eigvalsh(one, M) for one in (K, held)]))
+    np.testing.assert_allclose(scipy.linalg.eigvalsh(pair.stiffness, pair.mass), expected)
+    # The spring has no part in the damping law, so that the modes in opposition are coupled.
+    assert join({"1": part, "2": part}).proportional
+    assert not pair.proportional
+
+
+@pytest.mark.parametrize(
+    ("couplings", "message"),
+    [
+        ([Coupling("a.0", stiffness=1.0)], "coupling 1: both ends at dof 'a.0'; name the other"),
+        ([Coupling("a.0", "a.0", stiffness=1.0)], "coupling 1: both ends at dof 'a.0'"),
+        (
+            [Coupling("a.0", "a.1", stiffness=1.0), Coupling("a.0", "b.1", stiffness=1.0)],
+            "coupling 2: unknown dof 'b.1'",
+        ),
+        ([(0, 1)], r"coupling 1: \(0, 1\) is no coupling; give a Coupling"),
+        (3, "couplings"),
+    ],
+)
+def test_join_refuses_couplings(couplings, message):
+    with pytest.raises(ModelError, match=message):
+        join({"a": Structure(M, K)}, couplings)
 
 
 def test_join_refuses_names_that_collide():

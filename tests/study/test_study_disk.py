@@ -34,6 +34,16 @@ def test_a_tuned_disk():
     assert result.sector(1).converged.all()
 
 
+def test_a_spring_between_two_dofs_of_a_structure():
+    spring = COUPLING.replace('dof = "tip"', 'dof = "tip"\nother = "root"')
+    bare, coupled = (Study.parse(SMALL + more).model.structure for more in ("", spring))
+    tip, root = (bare.index(dof) for dof in ("tip", "root"))
+    expected = bare.stiffness.copy()
+    expected[np.ix_([tip, root], [tip, root])] += 20.0 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    np.testing.assert_array_equal(coupled.stiffness, expected)
+    np.testing.assert_array_equal(coupled.damping, bare.damping)
+
+
 def test_a_contact_to_the_next_sector_and_levels():
     between = ONE_CONTACT.replace('dof = "root"', 'dofs = ["tip", "next.root"]')
     text = TUNED.replace(ONE_CONTACT, between) + "levels = [1, 2]\n"
@@ -80,6 +90,14 @@ def test_engine_orders_of_harmonics():
     ("text", "message"),
     [
         (SMALL + COUPLING, "coupling 1: there are no sectors to couple; add the table"),
+        (
+            SMALL + COUPLING.replace('dof = "tip"', 'dof = "tip"\nother = "tip"'),
+            "coupling 1: both ends at dof 'tip'; name the 'other' end",
+        ),
+        (
+            SMALL + COUPLING.replace('dof = "tip"', 'dof = "tip"\nother = "tp"'),
+            "coupling 1: unknown dof 'tp'",
+        ),
         (
             TUNED.replace("sectors = 6", "sector = 6"),
             "disk: unknown key 'sector'; did you mean 'sectors'",

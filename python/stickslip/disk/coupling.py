@@ -1,10 +1,10 @@
-"""What ties a sector to the next one, springs or blocks of cyclic matrices; rings of them."""
+"""What ties a sector to the next one: blocks of cyclic matrices, and rings of them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,84 +14,15 @@ from stickslip.checks import (
     MatrixLike,
     brief,
     real_matrix,
-    real_number,
     require_finite,
-    require_keys,
     require_square,
     set_fields,
-    text,
     unknown,
 )
 from stickslip.errors import ModelError
+from stickslip.model.coupling import Coupling
 from stickslip.model.damping import makes_blocks
 from stickslip.model.structure import Rayleigh, Structure
-
-
-@dataclass(frozen=True)
-class Coupling:
-    """A spring, and a dashpot beside it, from each sector to the next, the last to the first.
-
-    Parameters
-    ----------
-    dof : str
-        Degree of freedom of a sector.
-    other : str, optional
-        Degree of freedom of the next sector at its other end. Default: the same.
-    stiffness : float
-        Stiffness [N/m].
-    damping : float, optional
-        Viscous damping [kg/s].
-
-    Raises
-    ------
-    ModelError
-        If stiffness or damping is negative or not a finite number.
-    """
-
-    dof: str
-    other: str | None = None
-    stiffness: float = field(kw_only=True)
-    damping: float = field(default=0.0, kw_only=True)
-
-    def __post_init__(self) -> None:
-        text(self.dof, "coupling: dof")
-        if self.other is not None:
-            text(self.other, "coupling: other")
-        for name, unit in (("stiffness", "N/m"), ("damping", "kg/s")):
-            entry = f"coupling at {brief(self.dof)}: {name}"
-            value = real_number(getattr(self, name), entry)
-            if value < 0.0:
-                raise ModelError(f"{entry} {value:g} is negative; give {unit} above zero")
-            object.__setattr__(self, name, value)
-
-    @property
-    def ends(self) -> tuple[str, str]:
-        """Degrees of freedom of a sector and of the next one."""
-        return self.dof, self.dof if self.other is None else self.other
-
-    def blocks(self, structure: Structure) -> tuple[Matrix, Matrix]:
-        """Return what a spring of unit stiffness adds to the matrices of a sector, twice (N, N).
-
-        The first is what it adds to the sector itself, its ends at both sides; the second what
-        couples the sector, by rows, to the next one, by columns.
-        """
-        start, end = (structure.index(dof) for dof in self.ends)
-        own, following = np.zeros((2, len(structure), len(structure)))
-        own[start, start] += 1.0
-        own[end, end] += 1.0
-        following[start, end] -= 1.0
-        return own, following
-
-    def to_spec(self) -> dict[str, object]:
-        """Return the coupling in plain values; see `coupling_from_spec`."""
-        return asdict(self)
-
-
-def coupling_from_spec(spec: Mapping[str, Any]) -> Coupling:
-    """Build a coupling from the plain values of `Coupling.to_spec`."""
-    known = ("dof", "other", "stiffness", "damping")
-    require_keys(spec, "coupling", known, ("dof", "stiffness"))
-    return Coupling(**spec)
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)

@@ -20,6 +20,7 @@ from stickslip.checks import (
     text,
 )
 from stickslip.errors import ModelError
+from stickslip.model.coupling import Coupling
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.dofs import Dofs
 
@@ -123,10 +124,33 @@ class Structure(Dofs):
         return made
 
 
-def join(structures: Mapping[str, Structure]) -> Structure:
-    """Put several structures, by name, side by side, not yet coupled.
+def join(structures: Mapping[str, Structure], couplings: Iterable[Coupling] = ()) -> Structure:
+    """Put several structures, by name, side by side, and perhaps springs between them.
 
-    The matrices are block-diagonal; the degree of freedom "tip" of part "1" is named "1.tip".
+    The matrices are block-diagonal but for the couplings; the degree of freedom "tip" of part "1"
+    is named "1.tip".
+
+    Parameters
+    ----------
+    structures : mapping of str to Structure
+        The parts by name.
+    couplings : iterable of Coupling, optional
+        Linear springs between two degrees of freedom each, of the same part or of two. The damping
+        laws of the parts do not see them.
+
+    Raises
+    ------
+    ModelError
+        If there is no part, a name or a part is none, or a coupling names an unknown degree of
+        freedom or the same one at both ends.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> beam = ss.reference.snecma_structure()
+    >>> pair = ss.join({"1": beam, "2": beam}, [ss.Coupling("1.tip", "2.tip", stiffness=1e4)])
+    >>> bool(pair.stiffness[pair.index("1.tip"), pair.index("2.tip")] == -1e4)
+    True
     """
     if not isinstance(structures, Mapping):
         raise ModelError(
@@ -139,11 +163,30 @@ def join(structures: Mapping[str, Structure]) -> Structure:
         if not isinstance(structure, Structure):
             raise ModelError(f"join: part {brief(name)} is {brief(structure)}; give a Structure")
     dofs = [f"{name}.{dof}" for name, part in structures.items() for dof in part.dofs]
-    return side_by_side(structures.values(), dofs)
+    return coupled(side_by_side(structures.values(), dofs), couplings)
+
+
+def coupled(structure: Structure, couplings: Iterable[Coupling]) -> Structure:
+    """Return a structure with linear springs between its degrees of freedom."""
+    springs = members(couplings, "couplings", "couplings=[...]")
+    if not springs:
+        return structure
+    stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
+    for number, spring in enumerate(springs, 1):
+        if not isinstance(spring, Coupling):
+            raise ModelError(f"coupling {number}: {brief(spring)} is no coupling; give a Coupling")
+        try:
+            one = spring.within(structure)
+        except ModelError as error:
+            entry = f"coupling {number}: "
+            raise ModelError(f"{entry}{error}", study=f"{entry}{error.study}") from None
+        stiffness += spring.stiffness * one
+        damping += spring.damping * one
+    return Structure(structure.mass, stiffness, damping, structure.dofs)
 
 
 def side_by_side(structures: Iterable[Structure], dofs: Iterable[str]) -> Structure:
-    """Put several structures side by side, not yet coupled, under names of all their dofs."""
+    """Put several structures side by side, uncoupled, under names of all their dofs."""
     parts = list(structures)
     starts = np.cumsum([0, *map(len, parts)])
     blocks = {name: np.zeros((starts[-1],) * 2) for name in ("mass", "stiffness", "damping")}

@@ -9,8 +9,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from stickslip.disk import BladedDisk, Interface, MistunedDisk
-from stickslip.disk.coupling import coupling_from_spec
 from stickslip.model import Model
+from stickslip.model.coupling import coupling_from_spec
 from stickslip.model.force import force_from_spec
 from stickslip.model.laws import contact_from_spec, law_from_spec
 from stickslip.model.structure import Structure

@@ -39,11 +39,12 @@ def _harmonics(value: object) -> object:
 
 
 class CouplingTable(Table):
-    """A spring from each sector to the next one."""
+    """A spring between two DOFs; of a disk, from each sector to the next one."""
 
-    dof: Dof = Field(description="DOF of a sector.", examples=["tip"])
+    dof: Dof = Field(description="DOF at one end; of a disk, of a sector.", examples=["tip"])
     other: Dof | None = Field(
-        default=None, description="DOF of the next sector; left out: the same."
+        default=None,
+        description="DOF at the other end; of a disk, of the next sector, left out: the same.",
     )
     stiffness: StiffnessValue = Field(description="Stiffness.")
     damping: Annotated[Number, Field(ge=0.0)] = Field(

@@ -19,7 +19,7 @@ from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.sector import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.model.structure import ModalDamping, Structure
+from stickslip.model.structure import ModalDamping, Structure, coupled
 from stickslip.results.result import Result
 from stickslip.settings.refusal import refusal
 from stickslip.study.analysis import level_name
@@ -264,6 +264,7 @@ def _model(tables: StudyTables, folder: Path) -> Model:
         structure = _structure(tables.structure, folder)
     if tables.disk is not None:
         return _disk(tables, tables.disk, structure, folder)
+    structure = coupled(structure, [coupling.build() for coupling in tables.coupling])
     structure, contacts, forces = _with_dampers(tables, structure)
     _check_parts(tables, structure)
     return Model(

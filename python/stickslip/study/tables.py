@@ -531,16 +531,19 @@ class StudyTables(Table):
         description="Makes the structure a sector of a bladed disk; left out: it is the whole.",
     )
     coupling: Many[CouplingTable] = Field(
-        default=(), description="Springs between neighbouring sectors of the disk."
+        default=(),
+        description="Springs between two DOFs; of a disk, between neighbouring sectors.",
     )
     analysis: Annotated[AnalysisTable, ByKind()] = Field(description="What to compute.")
     output: OutputTable = Field(default=OutputTable(), description="What to tabulate and draw.")
 
     @model_validator(mode="after")
     def _require_disk(self) -> Self:
-        if self.coupling and self.disk is None:
+        ends = [coupling.other for coupling in self.coupling]
+        if self.disk is None and None in ends:
             raise ModelError(
-                "coupling 1: there are no sectors to couple; add the table [disk], or leave it out"
+                f"coupling {ends.index(None) + 1}: there are no sectors to couple; add the table "
+                "[disk], or name the 'other' DOF of the structure"
             )
         tuned = self.disk is not None and self.disk.mistuning is None
         if self.analysis.kind == "mistuning-study" and not tuned:
