@@ -2,10 +2,11 @@
 
 from stickslip.calls import checked_names
 from stickslip.disk.bladed_disk import BladedDisk, NodalDiameters
-from stickslip.disk.coupling import Coupling, Interface, cyclic_sector
+from stickslip.disk.coupling import Interface, cyclic_sector
 from stickslip.disk.mistuned import MistunedDisk, Ring
 from stickslip.disk.pattern import mistuning_pattern
 from stickslip.disk.waves import AerodynamicWaves, InfluenceCoefficients, aerodynamic_waves
+from stickslip.model.coupling import Coupling
 
 __all__ = [
     "AerodynamicWaves",

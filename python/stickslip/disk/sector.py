@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.checks import Matrix, brief, set_fields, unknown, whole_number
-from stickslip.disk.coupling import Coupling, CyclicMatrices, Interface
+from stickslip.disk.coupling import CyclicMatrices, Interface
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.force import Force
