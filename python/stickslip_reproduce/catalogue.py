@@ -23,6 +23,8 @@ CHAPTERS = (
     "chapter_5_modes",
     "chapter_5_stability",
     "chapter_6",
+    "chapter_7_contact",
+    "chapter_7_body",
 )
 """Modules that reproduce something; every `Item` in them counts."""
 

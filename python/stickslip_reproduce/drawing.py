@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip_reproduce.numbers import Axis, Plot, Series
+from stickslip_reproduce.numbers import Axis, Panel, Plot, Series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,6 +33,12 @@ _TICKED = 7
 _DENSE = 80
 _SPARSE = 32
 """Rows of more marks than the first number are drawn with about as many as the second."""
+_FEW = 12
+"""Curves of so many points at most have a mark at each."""
+_COUNTED = 12
+"""So many whole numbers at most are all written on an axis."""
+_ROW = 3
+"""Panels beside each other."""
 _SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]\d?)\b")
 
 
@@ -44,7 +50,7 @@ def _colours(count: int) -> list[tuple[float, float, float, float]]:
 
 
 def draw(plot: Plot) -> Figure:
-    """Draw panels beside each other, with one legend for all of them.
+    """Draw panels in rows of three, with one legend beside all of them.
 
     Parameters
     ----------
@@ -59,33 +65,39 @@ def draw(plot: Plot) -> Figure:
     from matplotlib.figure import Figure
 
     looks = _looks(plot)
-    count = len(plot.panels)
-    outside = len(looks) > 6 or count > 1
-    width = (4.6 if count > 1 else 6.2) * count + (2.2 if outside else 0.4)
-    figure = Figure(figsize=(width, 4.4), layout="constrained")
-    rows = figure.subplots(1, count, squeeze=False, sharey=count > 1)
-    for ax, panel in zip(rows[0], plot.panels, strict=True):
+    columns = min(len(plot.panels), _ROW)
+    lines = -(-len(plot.panels) // _ROW)
+    beside = len(looks) > 1
+    width = (4.6 if columns > 1 else 6.2) * columns + (2.2 if beside else 0.4)
+    figure = Figure(figsize=(width, 4.4 if lines == 1 else 3.6 * lines), layout="constrained")
+    own = any(panel.y for panel in plot.panels)
+    grid = figure.subplots(lines, columns, squeeze=False, sharey=columns > 1 and not own).flat
+    drawn = dict(zip(plot.panels, grid, strict=True))
+    for place, (panel, ax) in enumerate(drawn.items()):
+        y = panel.y or plot.y
         for series in panel.series:
+            look = looks[series.label] | _thinned(series)
             ax.plot(
-                plot.x.factor * series.x,
-                plot.y.factor * series.y,
-                label=_typeset(series.label),
-                **looks[series.label] | _thinned(series),
+                plot.x.factor * series.x, y.factor * series.y, label=_typeset(series.label), **look
             )
         ax.set_title(_typeset(panel.title), fontsize="medium")
-        _frame(ax, plot)
-    _from_zero(rows[0], plot)
-    rows[0][0].set_ylabel(_typeset(plot.y.label))
+        _frame(ax, plot.x, y)
+        if place % _ROW == 0:
+            ax.set_ylabel(_typeset(y.label))
+    _from_zero(drawn, plot)
     handles: dict[str, Any] = {}
-    for ax in rows[0]:
+    for ax in drawn.values():
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)
-    if len(handles) > 1:
-        style: dict[str, Any] = {"frameon": False, "fontsize": "small", "handlelength": 3.2}
-        if outside:
-            figure.legend(handles.values(), handles, loc="outside right upper", **style)
-        else:
-            rows[0][0].legend(handles.values(), handles, **style | {"frameon": True})
+    if beside:
+        figure.legend(
+            handles.values(),
+            handles,
+            loc="outside right upper",
+            frameon=False,
+            fontsize="small",
+            handlelength=3.2,
+        )
     return figure
 
 
@@ -94,43 +106,49 @@ def _typeset(text: str) -> str:
     return _SYMBOL.sub(r"$\1_{\2}$", text)
 
 
-def _thinned(series: Series) -> dict[str, int]:
-    many = series.kind == "marks" and series.x.size > _DENSE
-    return {"markevery": series.x.size // _SPARSE} if many else {}
+def _thinned(series: Series) -> dict[str, Any]:
+    if series.kind == "marks" and series.x.size > _DENSE:
+        return {"markevery": series.x.size // _SPARSE}
+    # Where few points are joined by lines, they are shown.
+    return {"marker": ".", "ms": 6.0} if series.kind == "line" and series.x.size <= _FEW else {}
 
 
-def _frame(ax: Axes, plot: Plot) -> None:
-    from matplotlib.ticker import MaxNLocator
-
-    ax.set_xlabel(_typeset(plot.x.label))
-    _scale(ax, plot.x, "x")
-    _scale(ax, plot.y, "y")
-    marked = any(line.get_linestyle() == "None" for line in ax.lines)
-    ax.margins(x=0.02 if marked or plot.x.log else 0.0)
-    places = np.concatenate([np.asarray(line.get_xdata(), float) for line in ax.lines])
-    if not plot.x.log and places.max() < 100.0 and not np.any(places % 1.0):
-        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+def _frame(ax: Axes, x: Axis, y: Axis) -> None:
+    ax.set_xlabel(_typeset(x.label))
+    _scale(ax, x, "x")
+    _scale(ax, y, "y")
+    marked = any(line.get_marker() != "None" for line in ax.lines)
+    ax.margins(x=0.02 if marked or x.log else 0.0)
     ax.grid(visible=True, color="0.9", lw=0.7)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def _from_zero(row: Iterable[Axes], plot: Plot) -> None:
+def _from_zero(drawn: Mapping[Panel, Axes], plot: Plot) -> None:
     """Let amplitudes start at zero, unless that would press them together."""
-    values = [series.y for panel in plot.panels for series in panel.series]
-    low, high = (plot.y.factor * float(end(np.concatenate(values))) for end in (np.min, np.max))
-    if not plot.y.log and 0.0 <= low < 0.5 * high:
-        for ax in row:
-            ax.set_ylim(0.0, 1.05 * high)
+    for axis in {panel.y or plot.y for panel in drawn}:
+        row = [panel for panel in drawn if (panel.y or plot.y) == axis]
+        values = np.concatenate([series.y for panel in row for series in panel.series])
+        low, high = (axis.factor * float(end(values)) for end in (np.min, np.max))
+        if not axis.log and not axis.names and 0.0 <= low < 0.5 * high:
+            for panel in row:
+                drawn[panel].set_ylim(0.0, 1.05 * high)
 
 
 def _scale(ax: Axes, axis: Axis, which: str) -> None:
-    if not axis.log:
-        return
     from matplotlib.ticker import FuncFormatter, LogLocator
 
-    getattr(ax, f"set_{which}scale")("log")
     ruler = getattr(ax, f"{which}axis")
+    if axis.names:
+        ruler.set_ticks(range(len(axis.names)), axis.names)
+        return
+    if not axis.log:
+        values = np.concatenate([getattr(line, f"get_{which}data")() for line in ax.lines])
+        places = np.unique(values)
+        if places.size <= _COUNTED and not np.any(places % 1.0):
+            ruler.set_ticks(places)
+        return
+    getattr(ax, f"set_{which}scale")("log")
     low, high = ruler.get_data_interval()
     if low <= 0.0 or high / low > 1e4 or low < 1e-3 or high > 1e6:
         return

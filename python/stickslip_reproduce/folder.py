@@ -155,7 +155,9 @@ def _csv(rows: Iterator[tuple[Cell, ...]]) -> str:
 
 def _curve_rows(plot: Plot) -> Iterator[tuple[Cell, ...]]:
     """One row per point, in SI units."""
-    yield "panel", "curve", plot.x.heading, plot.y.heading
+    # Panels with ordinates of their own have all in one column, each in its SI unit.
+    headings = dict.fromkeys((panel.y or plot.y).heading for panel in plot.panels)
+    yield "panel", "curve", plot.x.heading, " or ".join(headings)
     for panel in plot.panels:
         for series in panel.series:
             for x, y in zip(series.x, series.y, strict=True):

@@ -54,8 +54,10 @@ class Item:
 
 
 def heading(name: str) -> str:
-    """Return how the dissertation calls a table or figure: "Table 2.3", "Fig. 4.22"."""
+    """Return how the dissertation calls it: "Table 2.3", "Fig. 4.22", "Section 7.2, wedge"."""
     kind, _, number = name.partition("-")
+    if kind not in ("table", "fig"):
+        return f"Section {kind}, {number.replace('-', ' ')}"
     return f"{'Table' if kind == 'table' else 'Fig.'} {number}"
 
 

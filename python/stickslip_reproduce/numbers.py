@@ -32,6 +32,8 @@ class Axis:
         From the SI unit to the one that is drawn.
     log : bool, optional
         Whether the axis is logarithmic.
+    names : tuple of str, optional
+        What stands at 0, 1, 2, ... instead of numbers.
     """
 
     quantity: str
@@ -39,6 +41,7 @@ class Axis:
     drawn: str = ""
     factor: float = 1.0
     log: bool = False
+    names: tuple[str, ...] = ()
 
     @property
     def heading(self) -> str:
@@ -99,15 +102,16 @@ class Series:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """Series on one pair of axes."""
+    """Series on one pair of axes; `y` only where it is not that of the plot."""
 
     series: tuple[Series, ...]
     title: str = ""
+    y: Axis | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Plot:
-    """Panels with common quantities on their axes."""
+    """Panels, and the quantities on their axes."""
 
     x: Axis
     y: Axis

@@ -1,4 +1,7 @@
-"""Every table with numbers and every figure of results of the dissertation, in its order."""
+"""Every table with numbers and every figure of results of the dissertation, in its order.
+
+Behind them the directions for future work of section 7.2, for which it has no figures.
+"""
 
 from __future__ import annotations
 
@@ -79,5 +82,10 @@ SUBJECTS: Mapping[str, str] = {
     "table-6.4": f"{_PAIR}: natural frequencies by slipping contacts",
     "fig-6.10": f"{_PAIR}: contacts 3 and 4 over frequency, 20 to 60 N",
     "fig-6.11": f"{_PAIR}: contacts 3 and 4 over frequency, 70 to 120 N",
+    "7.2-microslip": f"{_BEAM}: microslip, exponential and Iwan, against macroslip",
+    "7.2-normal-load": f"{_BEAM}: variable normal load with separation",
+    "7.2-two-directions": f"{_BEAM} in two planes: two-dimensional friction",
+    "7.2-wedge": "Two beams with a wedge between them",
+    "7.2-damper-mass": f"{_BEAM}: mass of the damper up to a tenth of the beam's",
 }
 """Subject by name."""

@@ -15,6 +15,7 @@ from stickslip.checks import Matrix, brief, set_fields, unknown, whole_number
 from stickslip.disk.coupling import CyclicMatrices, Interface
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
+from stickslip.model.coupling import Coupling
 from stickslip.model.force import Force
 from stickslip.model.model import Model, listed_items
 from stickslip.model.structure import Structure
