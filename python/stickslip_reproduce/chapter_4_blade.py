@@ -6,6 +6,7 @@ frequencies are over those of the peak with the damper stuck.
 
 from __future__ import annotations
 
+import time
 from functools import cache
 from math import inf
 
@@ -52,7 +53,7 @@ def _blade(slip_force: float) -> ss.Model:
     return ss.reference.turbine_blade(slip_force)
 
 
-def _span() -> tuple[float, float]:
+def blade_span() -> tuple[float, float]:
     """Return the range of frequencies of the figures [rad/s]."""
     blade = ss.reference.turbine_blade()
     slipping = ss.natural_frequencies(blade, slipping=[0])[0]
@@ -84,7 +85,7 @@ def figure_4_11(resolution: Resolution) -> Numbers:
 
 
 def _levels(dof: str, resolution: Resolution) -> Numbers:
-    span = _span()
+    span = blade_span()
     stuck = ss.forced_response(_blade(inf), span).peak(dof)
     best = ss.optimal_damper(ss.reference.turbine_blade(), dof="tip", omega=span, mode=0)
     series, facts = [], [Fact("F_d0", best.slip_force, "N")]
@@ -136,7 +137,7 @@ def figure_4_13(resolution: Resolution) -> Numbers:
 
 
 def _optimal(dof: str, resolution: Resolution) -> Numbers:
-    span = _span()
+    span = blade_span()
     stuck = ss.forced_response(_blade(inf), span).peak(dof)
     best = ss.optimal_damper(ss.reference.turbine_blade(), dof="tip", omega=span, mode=0)
     blade = _blade(best.slip_force)
@@ -145,7 +146,7 @@ def _optimal(dof: str, resolution: Resolution) -> Numbers:
     )
     exact = ss.exact_response(blade, np.linspace(*span, resolution.count(ORBITS)))
     times = float(ss.natural_frequencies(blade)[0]) * np.array(resolution.of(TIMES))
-    runs = _settled(best.slip_force, tuple(times.tolist()))
+    runs = settled_blade(best.slip_force, tuple(times.tolist()))
     settled = np.array([run[dof] for run in runs])
     same = ss.exact_response(blade, times).amplitude(dof)
     nine = ss.forced_response(blade, exact.omega, HARMONICS).amplitude(dof)
@@ -178,10 +179,14 @@ def _optimal(dof: str, resolution: Resolution) -> Numbers:
 
 
 @cache
-def _settled(slip_force: float, omega: tuple[float, ...]) -> tuple[dict[str, float], ...]:
-    """Return settled amplitudes from rest and the periods they took; kept, as two figures ask."""
+def settled_blade(slip_force: float, omega: tuple[float, ...]) -> tuple[dict[str, float], ...]:
+    """Return settled amplitudes from rest, and the periods and seconds of processor time they took.
+
+    They are kept, as two figures and Table 4.1 ask for them.
+    """
     rows = []
     for frequency in omega:
+        start = time.process_time()
         run = ss.transient(
             _blade(slip_force),
             frequency,
@@ -191,5 +196,6 @@ def _settled(slip_force: float, omega: tuple[float, ...]) -> tuple[dict[str, flo
             keep=1,
             observe=list(PLACES),
         )
-        rows.append({dof: run.amplitude(dof) for dof in PLACES} | {"periods": float(run.periods)})
+        taken = {"periods": float(run.periods), "seconds": time.process_time() - start}
+        rows.append({dof: run.amplitude(dof) for dof in PLACES} | taken)
     return tuple(rows)

@@ -120,7 +120,7 @@ def figure_4_18(resolution: Resolution) -> Numbers:
     "fig-4.19",
     """Three beams of one mistuned ring at one frequency: (a) one harmonic has the size of the
     motion but not its shape; (b) nine harmonics follow the time integration through several sticks
-    and slips per period.""",
+    and slips per period, beams as well as dampers.""",
     corrected=(errata.PHASES, errata.MISPRINTED_STIFFNESS, errata.BLADE_FREQUENCIES),
     inferred=(OURS, "Newton's method instead of Broyden's: the equations solved are the same."),
 )
@@ -146,14 +146,17 @@ def figure_4_19(resolution: Resolution) -> Numbers:
 
 def _beams(title: str, balance: ss.ForcedResponse, run: ss.Transient) -> Panel:
     series = []
+    stiffness = ss.reference.DAMPER_STIFFNESS
     for place, beam in enumerate((8, 11, 22)):
         moved = balance.waveform(f"{beam}.damper", 0)
         held = balance.damper_displacement((beam, 0), 0)
         marks = run.displacement(f"{beam}.damper")[:-1]
+        held_marks = run.contact_force((beam, 0))[:-1] / stiffness
         series += [
             over_period(f"x₁, beam {beam}", moved, pair=place),
             over_period(f"x_d, beam {beam}", held, kind="limit", pair=place),
             over_period(f"x₁, beam {beam}, Runge-Kutta", marks, kind="marks", pair=place),
+            over_period(f"x_d, beam {beam}, Runge-Kutta", held_marks, kind="dots", pair=place),
         ]
     return Panel(tuple(series), title)
 
@@ -191,7 +194,7 @@ def _couplings(letters: str, values: Sequence[float], resolution: Resolution) ->
             ring, SPAN, 3, method="broyden", tolerance=resolution.tolerance, observe=observe
         )
         series = [curve(shown, f"{beam}.damper", f"beam {beam}") for beam in range(1, 13)]
-        panels.append(Panel(tuple(series), f"({letter}) k_c = {value:g} N/m"))
+        panels.append(Panel(tuple(series), f"({letter}) k_c = {value:.0f} N/m"))
         peaks = shown.blade_amplitudes("damper").max(axis=0)
         ratio = float(peaks.max() / peaks.min())
         facts.append(Fact(f"highest over lowest peak at {value:g} N/m", ratio))

@@ -236,7 +236,7 @@ def table_5_3(resolution: Resolution) -> Numbers:
         found = [float(cycle.omega[at(cycle, LOWEST, side)]) for cycle in cycles]
         series += [
             Series(f"{side}, natural", numbers, natural[side], "marks", pair),
-            Series(f"{side}, limit cycle", numbers, found, "limit", pair),
+            Series(f"{side}, limit cycle", numbers, found, "dots", pair),
         ]
         for mode, name in enumerate(MODES):
             value = float(natural[side][mode])

@@ -168,15 +168,14 @@ def figure_6_11(resolution: Resolution) -> Numbers:
 
 
 def _curves(levels: tuple[float, ...], points: tuple[int, int], resolution: Resolution) -> Numbers:
-    panels: dict[int, list[Series]] = {point: [] for point in points}
-    facts = []
+    panels, facts = [], []
     for force in levels:
         pair = ss.reference.damped_pair(force)
         shown = ss.forced_response(pair, SPAN, HARMONICS, tolerance=resolution.tolerance)
-        for point in points:
+        curves = [curve(shown, DOFS[point], f"contact {point + 1}") for point in points]
+        panels.append(Panel(tuple(curves), f"{force:g} N"))
+        for point, drawn in zip(points, curves, strict=True):
             dof = DOFS[point]
-            drawn = curve(shown, dof, f"{force:g} N")
-            panels[point].append(drawn)
             # Of the tops: from 90 N on the curve rises above them at the end of the range.
             top, _ = max(maxima(drawn), key=lambda found: found[1])
             near = np.abs(shown.omega / top - 1.0) < NEAR
@@ -196,8 +195,7 @@ def _curves(levels: tuple[float, ...], points: tuple[int, int], resolution: Reso
     ]
     free = ss.natural_frequencies(ss.reference.damped_pair(), slipping=[("structural", 0)])
     facts.append(Fact("natural frequency with contact 1 slipping", float(free[1]), "rad/s"))
-    both = (Panel(tuple(series), f"contact {point + 1}") for point, series in panels.items())
-    return Numbers(Plot(FREQUENCY, DISPLACEMENT, tuple(both)), tuple(facts))
+    return Numbers(Plot(FREQUENCY, DISPLACEMENT, tuple(panels)), tuple(facts))
 
 
 @reproduces(
@@ -227,11 +225,12 @@ def table_6_4(resolution: Resolution) -> Numbers:
         ]
     columns = ("slipping", "number", "ours [rad/s]", "links cut [rad/s]", "printed [rad/s]")
     places = np.repeat(np.arange(len(PRINTED)), 3)
+    names = tuple(" + ".join(map(str, slipping)) or "none" for slipping in PRINTED)
     series = tuple(
         Series(label, places, [row[column] for row in rows], "marks")  # type: ignore[arg-type]
         for label, column in (("condensed", 2), ("links cut", 3), ("printed", 4))
     )
-    x = Axis("slipping, 0: none, 1 to 3: this one, 4: 1 and 2, 5: 1 and 3, 6: 2 and 3, 7: all")
+    x = Axis("slipping contacts", names=names)
     y = Axis("natural frequency", "rad/s")
     return Numbers(Plot(x, y, (Panel(series),)), tuple(facts), Table(columns, tuple(rows)))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import atan, pi, radians, tan
 
 import numpy as np
@@ -48,12 +49,12 @@ def wedge(resolution: Resolution) -> Numbers:
     """Wedge between two beams in opposition and with the phase of engine order 2."""
     orbits = resolution.of(ORBITS)
     variants = [
-        Variant("wedge, in opposition", lambda load: _wedge(load, pi), "left.", orbits=orbits),
-        Variant("wedge, 20 degrees", lambda load: _wedge(load, pi / 9), "left.", orbits=orbits),
+        Variant("wedge, in opposition", partial(_wedge, pi), "left.", orbits=orbits),
+        Variant("wedge, 20 degrees", partial(_wedge, pi / 9), "left.", orbits=orbits),
     ]
     facts = [Fact("load of the wedge", _wedge_load(), "N")]
     for load in SHOWN:
-        together = ss.forced_response(_wedge(load, 0.0), (155.0, 165.0), 3)
+        together = ss.forced_response(_wedge(0.0, load), (155.0, 165.0), 3)
         top = together.peak("left.tip").amplitude / load
         facts.append(Fact(f"peak / P of x₂, {load:g} N, in phase", top, "m/N"))
     free = ss.forced_response(
@@ -73,7 +74,7 @@ def _wedge_load() -> float:
     return 4.0 * SLIP_FORCE / (tan(a + cone) - tan(a - cone))
 
 
-def _wedge(load: float, phase: float) -> ss.Model:
+def _wedge(phase: float, load: float) -> ss.Model:
     """Return two beams with a wedge between them, the right one ahead by a phase."""
     beam = ss.reference.snecma_structure()
     damper = ss.WedgeDamper(
@@ -84,7 +85,7 @@ def _wedge(load: float, phase: float) -> ss.Model:
         normal_stiffness=STIFFNESS,
         load=_wedge_load(),
     )
-    platform = ["damper", {"damper": 0.0}]
+    platform: list[str | dict[str, float]] = ["damper", {"damper": 0.0}]
     forces = [ss.Force("left.tip", load), ss.Force("right.tip", load, phase)]
     return damper.between(beam, beam, left_dofs=platform, right_dofs=platform, forces=forces)
 
@@ -99,21 +100,19 @@ def _wedge(load: float, phase: float) -> ss.Model:
     inferred=(
         MEANT,
         "The mass of the beam is the 6.68 kg that it has at the damper, entry (1, 1) of its "
-        "matrix. The damper is two springs of 4.8e7 N/m in series, that of the body and that of its "
-        "contact, with the mass between them: without mass it is the elementary damper.",
+        "matrix. The damper is two springs of 4.8e7 N/m in series, that of the body and that of "
+        "its contact, with the mass between them: without mass it is the elementary damper.",
     ),
 )
 def damper_mass(resolution: Resolution) -> Numbers:
     """Damper mass from nothing to a tenth of the beam's."""
     variants = [
-        Variant(
-            f"{share:g} of the beam's mass", lambda load, share=share: _heavy(load, share), "beam."
-        )
+        Variant(f"{share:g} of the beam's mass", partial(_heavy, share), "beam.")
         for share in SHARES
     ]
     facts = []
     for share in SHARES:
-        model = _heavy(1.0, share)
+        model = _heavy(share, 1.0)
         for name, slipping in (("stuck", []), ("slipping", [0])):
             omega = ss.natural_frequencies(model, slipping=slipping)
             facts += [
@@ -121,14 +120,14 @@ def damper_mass(resolution: Resolution) -> Numbers:
                 for number, one in enumerate(omega[:2], 1)
             ]
         near = np.linspace(180.0, 205.0, 26)
-        best = ss.exact_response(_heavy(20.313, share), near, observe="beam.tip").peak("beam.tip")
+        best = ss.exact_response(_heavy(share, 20.313), near, observe="beam.tip").peak("beam.tip")
         facts.append(
             Fact(f"peak / P of x₂, 20.313 N, {share:g} of the mass", best.amplitude / 20.313, "m/N")
         )
     return compared(variants, resolution, *facts)
 
 
-def _heavy(load: float, share: float) -> ss.Model:
+def _heavy(share: float, load: float) -> ss.Model:
     """Return the beam with a damper that has a share of its mass."""
     beam = ss.reference.snecma_structure()
     body = ss.Structure(mass=[[share * beam.mass[0, 0]]], stiffness=[[0.0]], dofs=["mass"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 import stickslip as ss
@@ -83,8 +85,7 @@ def _iwan(load: float) -> ss.Model:
 def normal_load(resolution: Resolution) -> Numbers:
     """Contact with variable normal load and separation, on two slopes."""
     variants = [
-        Variant(f"slope of {slope:g} degrees", lambda load, slope=slope: _inclined(slope, load))
-        for slope in SLOPES
+        Variant(f"slope of {slope:g} degrees", partial(_inclined, slope)) for slope in SLOPES
     ]
     facts = []
     for variant in variants:
@@ -127,11 +128,11 @@ def _inclined(slope: float, load: float) -> ss.Model:
 def two_directions(resolution: Resolution) -> Numbers:
     """Friction in two tangential directions, on an ellipse and on a circle."""
     variants = [
-        Variant("ellipse", lambda load: _in_two_planes(load, 0.5), "1."),
-        Variant("circle", lambda load: _in_two_planes(load, 1.0), "1.", exact=False, harmonics=1),
+        Variant("ellipse", partial(_in_two_planes, 0.5), "1."),
+        Variant("circle", partial(_in_two_planes, 1.0), "1.", exact=False, harmonics=1),
     ]
-    straight = _in_two_planes(16.563, 0.0)
-    round_ = ss.forced_response(_in_two_planes(16.563, 1.0), [198.61], 15)
+    straight = _in_two_planes(0.0, 16.563)
+    round_ = ss.forced_response(_in_two_planes(1.0, 16.563), [198.61], 15)
     coefficients = np.abs(round_.coefficients("1.tip")[0])
     facts = (
         Fact(
@@ -148,7 +149,7 @@ def two_directions(resolution: Resolution) -> Numbers:
     return compared(variants, resolution, *facts)
 
 
-def _in_two_planes(load: float, ratio: float) -> ss.Model:
+def _in_two_planes(ratio: float, load: float) -> ss.Model:
     """Return the beam in both planes, driven in the second by a share of the force."""
     beam = ss.reference.snecma_structure()
     contact = ss.Coulomb(

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Literal
 
 import numpy as np
 
 import stickslip as ss
-from stickslip_reproduce.numbers import Axis, Series
+from stickslip_reproduce.numbers import Axis, Kind, Series
 from stickslip_reproduce.resolution import Float
 
 __all__ = [
@@ -48,7 +47,7 @@ def curve(
     label: str,
     *,
     per: float = 1.0,
-    kind: Literal["line", "marks", "limit"] = "line",
+    kind: Kind = "line",
     pair: int | None = None,
 ) -> Series:
     """Return the amplitude of a degree of freedom over frequency, per unit of something."""
@@ -59,7 +58,7 @@ def over_period(
     label: str,
     values: Float,
     *,
-    kind: Literal["line", "marks", "limit"] = "line",
+    kind: Kind = "line",
     pair: int | None = None,
 ) -> Series:
     """Return values at equidistant instants of a period, closed to a whole one."""

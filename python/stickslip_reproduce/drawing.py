@@ -107,7 +107,7 @@ def _typeset(text: str) -> str:
 
 
 def _thinned(series: Series) -> dict[str, Any]:
-    if series.kind == "marks" and series.x.size > _DENSE:
+    if series.kind in ("marks", "dots") and series.x.size > _DENSE:
         return {"markevery": series.x.size // _SPARSE}
     # Where few points are joined by lines, they are shown.
     return {"marker": ".", "ms": 6.0} if series.kind == "line" and series.x.size <= _FEW else {}
@@ -191,6 +191,8 @@ def _look(series: Series, colour: object, place: int, count: int) -> dict[str, A
             # Whole at the edge, too, where amplitudes start at zero.
             "clip_on": False,
         }
+    if series.kind == "dots":
+        return {"color": colour, "ls": "", "marker": ".", "ms": 4.0, "zorder": 3.0}
     if series.kind == "limit":
         return {"color": colour, "lw": 3.2, "alpha": 0.35, "solid_capstyle": "butt"}
     look: dict[str, Any] = {"color": colour, "lw": 1.5, "ls": DASHES[place % len(DASHES)]}

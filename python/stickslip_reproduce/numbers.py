@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike
 
 from stickslip_reproduce.resolution import Float
 
-__all__ = ["Axis", "Cell", "Fact", "Numbers", "Panel", "Plot", "Series", "Table"]
+__all__ = ["Axis", "Cell", "Fact", "Kind", "Numbers", "Panel", "Plot", "Series", "Table"]
 
 Cell: TypeAlias = str | float | None
 """A word, a number, or nothing."""
+Kind: TypeAlias = Literal["line", "marks", "dots", "limit"]
+"""How a series is drawn."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +67,8 @@ class Series:
         What it is; series of one label look alike in all panels.
     x, y : array_like, shape (n,)
         Coordinates in SI units.
-    kind : {"line", "marks", "limit"}, optional
-        How it is drawn: as a curve, as marks, or as a thin curve behind the others.
+    kind : {"line", "marks", "dots", "limit"}, optional
+        How it is drawn: as a curve, as marks, as dots, or as a broad pale curve behind the others.
     pair : int, optional
         Series of one number share a colour. Default: a colour of its own.
     """
@@ -74,7 +76,7 @@ class Series:
     label: str
     x: Float
     y: Float
-    kind: Literal["line", "marks", "limit"] = "line"
+    kind: Kind = "line"
     pair: int | None = None
 
     def __init__(
@@ -82,7 +84,7 @@ class Series:
         label: str,
         x: ArrayLike,
         y: ArrayLike,
-        kind: Literal["line", "marks", "limit"] = "line",
+        kind: Kind = "line",
         pair: int | None = None,
     ) -> None:
         ordinates = np.array(y, dtype=np.float64)

@@ -10,7 +10,7 @@ import numpy as np
 
 import stickslip as ss
 from stickslip_reproduce.curves import FREQUENCY, PER_FORCE
-from stickslip_reproduce.numbers import Cell, Fact, Numbers, Panel, Plot, Series, Table
+from stickslip_reproduce.numbers import Cell, Fact, Kind, Numbers, Panel, Plot, Series, Table
 from stickslip_reproduce.resolution import Resolution
 
 __all__ = ["REFERENCE", "SHOWN", "Variant", "compared"]
@@ -22,7 +22,7 @@ SHOWN = (6.563, 16.563, 38.438)
 NEAR = 0.02
 """How far the exact peak may be from that of 15 harmonics, over its frequency."""
 
-KINDS = ("limit", "line", "line", "line")
+KINDS: tuple[Kind, ...] = ("limit", "line", "line", "line")
 PLACES = {"damper": "x₁", "tip": "x₂"}
 
 Response: TypeAlias = ss.ForcedResponse | ss.ExactResponse
