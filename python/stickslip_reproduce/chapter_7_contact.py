@@ -10,7 +10,7 @@ import stickslip as ss
 from stickslip_reproduce.item import reproduces
 from stickslip_reproduce.numbers import Fact, Numbers
 from stickslip_reproduce.resolution import Resolution
-from stickslip_reproduce.variants import Variant, compared
+from stickslip_reproduce.variants import REFERENCE, SHOWN, Variant, compared
 
 STIFFNESS = ss.reference.DAMPER_STIFFNESS
 SLIP_FORCE = ss.reference.DAMPER_SLIP_FORCE
@@ -45,7 +45,7 @@ def microslip(resolution: Resolution) -> Numbers:
         Variant("Iwan", _iwan, exact=False),
     ]
     facts = []
-    for variant in (Variant("elementary damper", ss.reference.snecma_beam), *variants):
+    for variant in (REFERENCE, *variants):
         model = variant.model(1.0)
         best = ss.optimal_damper(model, dof="tip", parameter="level", mode=0)
         small = ss.forced_response(variant.model(0.938), (200.0, 240.0), 15).peak("tip")
@@ -73,8 +73,8 @@ def _iwan(load: float) -> ss.Model:
     sticks nothing changes. As it slips the normal load follows the motion: on a slope of 5 degrees
     the peak of the tip is 14 % lower near optimal damping and 10 % higher at a large load, where
     the contact is open for 40 % of the period. On 15 degrees it opens near optimal damping, too,
-    and the peak there is twice as high: a damper that lifts off cannot be laid out with a constant
-    normal load.""",
+    the peak there is twice as high and the curve bends back: a damper that lifts off cannot be laid
+    out with a constant normal load.""",
     inferred=(
         MEANT,
         "Slope of the contact 5 and 15 degrees, friction 0.5, preload 492 N, so that it slips at "
@@ -89,10 +89,12 @@ def normal_load(resolution: Resolution) -> Numbers:
     ]
     facts = []
     for variant in variants:
-        for load in (6.563, 16.563, 38.438):
+        for load in SHOWN:
             shown = ss.forced_response(variant.model(load), (150.0, 230.0), 15)
-            largest = 100.0 * float(shown.open_fraction(0).max())
-            facts.append(Fact(f"longest open at {load:g} N, {variant.label}", largest, "% of T"))
+            open_ = 100.0 * max(float(shown.open_fraction(0).max()), 0.0)
+            facts.append(
+                Fact(f"share of the period open at {load:g} N, {variant.label}", open_, "%")
+            )
     return compared(variants, resolution, *facts)
 
 

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from stickslip.files import make_folder, require_writable
 
-__all__ = ["reproduce"]
+if TYPE_CHECKING:
+    from stickslip_reproduce.numbers import Numbers
+
+__all__ = ["key_numbers", "reproduce"]
+
+_SHOWN = 6
+"""Facts of an item that the terminal shows."""
 
 
 def reproduce(
     names: Annotated[
         list[str] | None,
-        typer.Argument(help="Tables and figures, or all; none lists them.", metavar="NAME"),
+        typer.Argument(help="Tables and figures, or all; list or none lists them.", metavar="NAME"),
     ] = None,
     out: Annotated[
         Path, typer.Option(help="Folder for pictures, numbers and index.", metavar="DIR")
@@ -35,7 +42,7 @@ def reproduce(
     from stickslip_reproduce import COARSE, FULL, chosen, write
     from stickslip_reproduce.folder import INDEX
 
-    if not names:
+    if not names or names == ["list"]:
         _list()
         return
     wanted = chosen(names)
@@ -52,9 +59,23 @@ def reproduce(
             kept = f"{done} of {len(wanted)} complete in {out}"
             raise KeyboardInterrupt(f"{kept}, {item.name} was not finished") from None
         if not quiet:
-            print(f"{item.name:<10} {seconds:6.1f} s  {out / item.name}.png")
+            print(f"{item.name:<18} {seconds:6.1f} s  {out / item.name}.png")
+            for line in key_numbers(numbers):
+                print(f"  {line}")
     if not quiet:
         print(f"index: {out / INDEX}")
+
+
+def key_numbers(numbers: Numbers) -> Iterator[str]:
+    """Yield what a terminal shows of the facts of an item, those with a printed value first."""
+    from stickslip_reproduce.index import number
+
+    facts = sorted(numbers.facts, key=lambda fact: fact.printed is None)
+    for fact in facts[:_SHOWN]:
+        printed = "" if fact.printed is None else f" (printed {number(fact.printed)})"
+        yield f"{fact.what}: {number(fact.value)} {fact.unit}".rstrip() + printed
+    if len(facts) > _SHOWN:
+        yield f"and {len(facts) - _SHOWN} more in the index"
 
 
 def _list() -> None:
@@ -62,9 +83,9 @@ def _list() -> None:
     from stickslip_reproduce import SUBJECTS, costs, items
 
     done, measured = items(), costs()
-    print(f"{'name':<10}  {'status':<7}  {'cost [s]':>8}  subject")
+    print(f"{'name':<18}  {'status':<7}  {'cost [s]':>8}  subject")
     for name, subject in SUBJECTS.items():
         cost = f"{measured[name]:.2g}" if name in done and name in measured else ""
-        print(f"{name:<10}  {'done' if name in done else 'not yet':<7}  {cost:>8}  {subject}")
+        print(f"{name:<18}  {'done' if name in done else 'not yet':<7}  {cost:>8}  {subject}")
     whole = sum(measured.get(name, 0.0) for name in done)
     print(f"{len(done)} of {len(SUBJECTS)} are reproduced, all of them in {whole:.0f} s")

@@ -37,6 +37,7 @@ from stickslip_reproduce.folder import records
 pytestmark = pytest.mark.slow
 
 DOCS = Path(__file__).parents[2] / "docs"
+FUTURE_WORK = ("microslip", "normal-load", "two-directions", "wedge", "damper-mass")
 ERROR = "error of the tip peak to exact [%]"
 
 
@@ -134,6 +135,7 @@ def test_catalogue_is_the_dissertations():
         for chapter, first, last in figures
         for number in range(first, last + 1)
     } | {f"table-{number}" for number in ("2.3", "4.1", "5.2", "5.3", "6.4")}
+    expected |= {f"7.2-{topic}" for topic in FUTURE_WORK}
     assert set(SUBJECTS) == expected
     assert set(items()) <= expected
     assert set(items()) == set(KEY_NUMBERS), "every reproduction has its key numbers"
@@ -166,6 +168,7 @@ def test_names_are_checked():
 def test_command_lists_status_and_cost():
     outcome = invoke("reproduce")
     assert outcome.exit_code == 0
+    assert invoke("reproduce", "list").output == outcome.output
     lines = {line.split()[0]: line for line in outcome.output.splitlines()}
     for name in SUBJECTS:
         assert ("done" in lines[name]) == (name in items())
@@ -177,6 +180,7 @@ def test_command_adds_to_a_folder(tmp_path):
     for name in ("fig-2.3", "fig-4.18"):
         outcome = invoke("reproduce", name, "--coarse", "--out", tmp_path)
         assert outcome.exit_code == 0, outcome.output
+    assert "phase between adjacent beams: 20 deg (printed 20)" in outcome.output
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert "fig-2.3.png" in page
     assert "fig-4.18.png" in page
