@@ -12,7 +12,7 @@ import sys
 import time
 from pathlib import Path
 
-from stickslip.files import whole
+from stickslip.files import write
 from stickslip_reproduce import FULL, chosen, costs, items
 from stickslip_reproduce.costs import FILE
 from stickslip_reproduce.folder import write_picture, write_record
@@ -31,14 +31,13 @@ def main(names: list[str]) -> None:
         write_picture(numbers.plot, FOLDER / f"{item.name}.png", colours=COLOURS)
         write_record(item, numbers, seconds, FULL, FOLDER)
         _remember(item.name, seconds)
-        print(f"{item.name:<10} {seconds:6.2f} s")
+        print(f"{item.name:<18} {seconds:6.2f} s")
 
 
 def _remember(name: str, seconds: float) -> None:
     known = {**costs(), name: round(seconds, 2)}
     kept = {name: known[name] for name in items() if name in known}
-    with whole(FILE) as temporary:
-        temporary.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    write(FILE, (json.dumps(kept, indent=1) + "\n").encode())
 
 
 if __name__ == "__main__":

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 WANDERS = {"whether the motion is aperiodic": (1, 0), "mode with the most energy": (1, 0)}
 
+AGAINST = "peak against the elementary damper"
+
 # What the facts of an item must be: value and relative tolerance.
 KEY_NUMBERS = {
     "fig-2.3": {"largest difference of improved z": (1.17, 0.02)},
@@ -62,9 +64,15 @@ KEY_NUMBERS = {
         "exact peak at 2.4e+08 N/m": (6.9825e-5, 1e-5),
         "exact peak at 2.4e+09 N/m": (6.7453e-5, 1e-5),
         "exact peak at 2.4e+10 N/m": (6.7195e-5, 1e-5),
+        "error of 15 harmonics at 2.4e+09 N/m": (2.492, 0.02),
+        "error of 15 harmonics at 2.4e+10 N/m": (2.710, 0.02),
     },
     # of this package alone
-    "fig-4.8": {"exact peak at 2.4e+10 N/m": (1.234915e-3, 1e-5)},
+    "fig-4.8": {
+        "exact peak at 2.4e+10 N/m": (1.234915e-3, 1e-5),
+        "error of 15 harmonics at 2.4e+09 N/m": (2.682, 0.02),
+        "error of 15 harmonics at 2.4e+10 N/m": (3.033, 0.02),
+    },
     # examples/turbine-blade/study.json
     "fig-4.10": {
         "F_d0": (1.3263, 1e-4),
@@ -296,5 +304,47 @@ KEY_NUMBERS = {
         "links of 3 cut: second": (678.17, 1e-5),
         "links of 1 and 2 cut: second": (512.98, 1e-5),
         "links of 2 and 3 cut: second": (664.94, 1e-5),
+    },
+    # chapter VII: laws and motions checked in test_chapter_7, percentages those of the texts
+    "7.2-microslip": {
+        "peak x₂ / P at 0.938 N, elementary damper": (0.3709e-3 / 0.938, 1e-4),
+        "peak x₂ / P at 0.938 N, exponential": (3.07194e-4, 1e-4),
+        "peak x₂ / P at 0.938 N, Iwan": (3.09418e-4, 1e-4),
+        "peak x₂ / P there, elementary damper": (6.72e-5, 1e-3),
+        "peak x₂ / P there, exponential": (8.5159e-5, 1e-3),
+        "peak x₂ / P there, Iwan": (8.0404e-5, 1e-3),
+        f"{AGAINST}, x₂, 38.438 N, exponential": (5.432, 0.01),
+        f"{AGAINST}, x₂, 38.438 N, Iwan": (4.090, 0.01),
+    },
+    "7.2-normal-load": {
+        f"{AGAINST}, x₂, 16.563 N, slope of 5 degrees": (-14.436, 1e-3),
+        f"{AGAINST}, x₂, 38.438 N, slope of 5 degrees": (10.035, 1e-3),
+        f"{AGAINST}, x₂, 16.563 N, slope of 15 degrees": (107.213, 1e-3),
+        "share of the period open at 38.438 N, slope of 5 degrees": (41.5, 0.02),
+        "share of the period open at 16.563 N, slope of 15 degrees": (35.0, 0.02),
+    },
+    # circles: closed form of a traction of constant size
+    "7.2-two-directions": {
+        "peak / P of x₂, 6.563 N, circle": (1.043931e-4, 1e-5),
+        "peak / P of x₂, 16.563 N, circle": (5.150354e-5, 1e-6),
+        "peak / P of x₂, 38.438 N, circle": (2.022491e-4, 1e-5),
+        "peak / P of x₂, 16.563 N, driven in one plane": (7.350910e-5, 1e-6),
+        f"{AGAINST}, x₂, 16.563 N, ellipse": (-15.645, 1e-3),
+        f"{AGAINST}, x₂, 16.563 N, circle": (-29.936, 1e-3),
+        f"{AGAINST}, x₂, 38.438 N, circle": (29.500, 1e-3),
+    },
+    "7.2-wedge": {
+        "load of the wedge": (746.3456, 1e-6),
+        f"{AGAINST}, x₂, 16.563 N, wedge, in opposition": (-0.592, 0.02),
+        "peak / P of x₂, 16.563 N, in phase": (5.12665e-4, 1e-5),
+        "peak / P of x₂ without any damper": (5.12761e-4, 1e-5),
+        "peak / P of x₂, 38.438 N, wedge, 20 degrees": (5.10299e-4, 1e-4),
+    },
+    "7.2-damper-mass": {
+        f"{AGAINST}, x₂, 16.563 N, 0.1 of the beam's mass": (-7.270, 1e-3),
+        f"{AGAINST}, x₂, 38.438 N, 0.1 of the beam's mass": (-3.528, 1e-3),
+        "peak / P of x₂, 20.313 N, 0.1 of the mass": (7.319068e-5, 1e-5),
+        "stuck frequency 1, 0.1 of the mass": (225.658874, 1e-8),
+        "slipping frequency 1, 0.1 of the mass": (159.272805, 1e-8),
     },
 }

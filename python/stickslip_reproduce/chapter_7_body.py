@@ -48,10 +48,9 @@ SHARES = (0.03, 0.1)
 )
 def wedge(resolution: Resolution) -> Numbers:
     """Wedge between two beams in opposition and with the phase of engine order 2."""
-    orbits = resolution.of(ORBITS)
     variants = [
-        Variant("wedge, in opposition", partial(_wedge, pi), "left.", orbits=orbits),
-        Variant("wedge, 20 degrees", partial(_wedge, pi / 9), "left.", orbits=orbits),
+        Variant("wedge, in opposition", partial(_wedge, pi), "left.", orbits=ORBITS),
+        Variant("wedge, 20 degrees", partial(_wedge, pi / 9), "left.", orbits=ORBITS),
     ]
     facts = [Fact("load of the wedge", _wedge_load(), "N")]
     for load in SHOWN:

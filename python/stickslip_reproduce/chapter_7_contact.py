@@ -91,7 +91,7 @@ def normal_load(resolution: Resolution) -> Numbers:
     for variant in variants:
         for load in SHOWN:
             shown = ss.forced_response(variant.model(load), (150.0, 230.0), 15)
-            open_ = 100.0 * max(float(shown.open_fraction(0).max()), 0.0)
+            open_ = 100.0 * abs(float(shown.open_fraction(0).max()))
             facts.append(
                 Fact(f"share of the period open at {load:g} N, {variant.label}", open_, "%")
             )
