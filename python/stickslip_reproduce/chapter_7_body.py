@@ -93,10 +93,10 @@ def _wedge(phase: float, load: float) -> ss.Model:
 @reproduces(
     "7.2-damper-mass",
     """A damper with a mass between its spring and its friction contact. Up to a tenth of the mass
-    of the beam it changes little: stuck it lies far below its own resonance, slipping it is a mass
-    at a place that hardly moves in the first mode. The peaks fall by a few percent, most near
-    optimal damping, where the tip has strong higher harmonics and the mass moves the modes that
-    they meet; near 20 N they rise.""",
+    of the beam it changes little: stuck it is far below its own resonance, and slipping it is a
+    mass at a place that hardly moves in the first mode, whose frequency falls by 0.2 %, while that
+    of the second falls by 4 %. The peak of the tip is 7 % lower near optimal damping and 4 % lower
+    at a large load, but 2 % higher at 20.313 N.""",
     inferred=(
         MEANT,
         "The mass of the beam is the 6.68 kg that it has at the damper, entry (1, 1) of its "
