@@ -99,8 +99,12 @@ def compared(variants: Sequence[Variant], resolution: Resolution, *facts: Fact) 
                 rows[dof, load].append(shown.peak(name).amplitude / load)
                 if load not in SHOWN:
                     continue
-                values = shown.amplitude(name) / load
-                curves[dof, load].append(Series(variant.label, shown.omega, values, kind))
+                kept = shown.converged
+                values = shown.amplitude(name)[kept] / load
+                curves[dof, load].append(Series(variant.label, shown.omega[kept], values, kind))
+                if dof == "tip" and not kept.all():
+                    lost = float(np.sum(~kept))
+                    found.append(Fact(f"points not solved at {load:g} N, {variant.label}", lost))
                 omega, amplitude = variant.peak(dof, load, shown)
                 own = true.setdefault((dof, load), amplitude)
                 at = f"{place}, {load:g} N, {variant.label}"
