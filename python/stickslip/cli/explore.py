@@ -52,7 +52,9 @@ def explore(
     Draft(study)
     try:
         serve(
-            study, port, lambda address: tell(f"explorer: {address}  (Ctrl-C ends it)"),
+            study,
+            port,
+            lambda address: tell(f"explorer: {address}  (Ctrl-C ends it)"),
             browser=not no_browser,
         )
     except KeyboardInterrupt:

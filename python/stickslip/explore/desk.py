@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Generic, TypeVar
 
 from stickslip.explore.panes import Look
@@ -67,7 +68,5 @@ class Desk(Generic[Task]):
                 if self._ended:
                     return
                 task, self._dropped = self._waiting.pop(), False
-            try:
+            with suppress(OutdatedError):
                 self._work(task, self._look)
-            except OutdatedError:
-                pass

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from stickslip.errors import ModelError
-from stickslip.explore.knobs import LEVELS, Knob, Place, knobs_of
+from stickslip.explore.knobs import LEVELS, Place, knobs_of
 from stickslip.study import Study
 
 KINDS = ("forced-response", "certify", "exact", "single-harmonic")
@@ -58,7 +58,7 @@ class Draft:
         except TOMLKitError as error:
             raise ModelError(f"{path}: cannot be edited ({error})") from None
         self.knobs = knobs_of(self._file.unwrap(), self.study.tables.analysis.levels or (1.0,))
-        if "levels" in self._file["analysis"]:  # type: ignore[operator]
+        if "levels" in self._file["analysis"]:
             _put(self._file, LEVELS, [self.knobs[0].value])
         self._written = {knob.place: _at(self._file, knob.place) for knob in self.knobs}
 

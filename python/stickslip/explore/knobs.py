@@ -130,4 +130,3 @@ def _range(key: str, value: float, unit: str) -> tuple[float, float, bool]:
         return value / _DECADES, value * _DECADES, True
     reach = 2.0 * size or 1.0
     return (-reach, reach, False) if key in ("gap", "load", "stiffness") else (0.0, reach, False)
-

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, TypeAlias, cast, get_args
+from typing import Any, TypeAlias, get_args
 
 import numpy as np
 
@@ -33,7 +33,7 @@ Look: TypeAlias = Callable[[float], None]
 PARAMETERS = tuple(one for one in get_args(Parameter) if one != "gap")
 """What a damper curve can be over. A gap is not looked for by factors."""
 
-_WIDE = 30.0
+_WIDE = 10.0
 """Factor up and down between which parameters of Coulomb contacts are looked for."""
 
 ONE_DRAWS = threading.Lock()
@@ -142,9 +142,9 @@ def present(model: Model, parameter: Parameter) -> tuple[Common, float]:
 def parameters(model: Model) -> list[Parameter]:
     """Return the parameters that a damper curve of a model can be over."""
     known = {name for contact in model.contacts for name in contact.adjustable()}
-    if not known:
-        return []
-    return [name for name in PARAMETERS if name in known or name == "level"]
+    # what a level does depends on the slip forces that it is set against
+    known |= {"level"} if "slip_force" in known and force_level(model) else set()
+    return [name for name in PARAMETERS if name in known]
 
 
 def _optimum(
@@ -165,7 +165,7 @@ def _optimum(
     if parameter in COULOMB:
         keys["bounds"] = now / _WIDE, now * _WIDE
     given = {"dof": dof, "parameter": parameter, "common": common}
-    return cast("OptimalDamper", optimal_damper(result.model, **given, **keys, progress=look))
+    return optimal_damper(result.model, **given, **keys, progress=look)
 
 
 def _with_present(panel: Panel, value: float, *, ax: Axes) -> None:

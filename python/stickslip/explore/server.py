@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import atexit
+import os
+import signal
 import socket
+import sys
 import threading
+import time
 import webbrowser
 from collections.abc import Callable, Mapping
 from importlib.resources import files
@@ -23,8 +28,8 @@ HOST = "127.0.0.1"
 _MOST_PAGES = 8
 _LONGEST = 1 << 16
 """Bytes of a message of a page, and of the body of a request."""
-_PATIENCE = 1.0
-"""Seconds that computations have to end when the server does."""
+_PATIENCE = 2.0
+"""Seconds that computations have to end when the server does; most take a tenth."""
 # Styles of plotly stand in the page. Nothing is loaded from elsewhere, and no page frames this one.
 _POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src data: blob:; "
@@ -60,14 +65,42 @@ def serve(path: Path, port: int, tell: Callable[[str], None], *, browser: bool) 
         If the study is refused or the port cannot be had.
     """
     ears = _bound(port)
-    open_pages: set[Session] = set()
+    pages = _Pages()
     try:
-        asyncio.run(_serve(path, ears, open_pages, tell, browser=browser))
+        asyncio.run(_serve(path, ears, pages, tell, browser=browser))
     finally:
-        for page in open_pages:
+        pages.end()
+
+
+class _Pages:
+    """The pages that are open, and those that have gone while something is computed for them."""
+
+    def __init__(self) -> None:
+        self.open: set[Session] = set()
+        self._left: set[Session] = set()
+
+    def leave(self, page: Session) -> None:
+        page.end()
+        self.open.discard(page)
+        self._left = {one for one in self._left | {page} if not one.ended(0.0)}
+
+    def end(self) -> None:
+        """End all computations, before the interpreter takes their threads away.
+
+        A thread that is in the core then would abort the program. One that does not end in time is
+        left behind: the program leaves without looking back.
+        """
+        pages, end = self.open | self._left, time.monotonic() + _PATIENCE
+        for page in pages:
             page.end()
-        for page in open_pages:
-            page.ended(_PATIENCE)
+        if not all(page.ended(max(end - time.monotonic(), 0.0)) for page in pages):
+            atexit.register(_leave)
+
+
+def _leave() -> None:
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    os._exit(128 + signal.SIGINT)
 
 
 def _bound(port: int) -> list[socket.socket]:
@@ -82,7 +115,7 @@ def _bound(port: int) -> list[socket.socket]:
 async def _serve(
     path: Path,
     ears: list[socket.socket],
-    open_pages: set[Session],
+    pages: _Pages,
     tell: Callable[[str], None],
     *,
     browser: bool,
@@ -96,7 +129,7 @@ async def _serve(
     application = Application(
         [
             *((address, _File, one) for address, one in content.items()),
-            ("/socket", _Socket, shared | {"path": path, "open_pages": open_pages}),
+            ("/socket", _Socket, shared | {"path": path, "pages": pages}),
         ],
         default_handler_class=_Nothing,
         default_handler_args=shared,
@@ -156,8 +189,11 @@ class _Local(RequestHandler):
         self.set_header("Content-Type", "text/plain; charset=UTF-8")
         self.finish(f"{status_code}\n")
 
-    def log_exception(self, *_: Any) -> None:
-        pass
+    def log_exception(self, kind: Any, value: Any, trace: Any) -> None:
+        # what a client does wrong is answered, and no event; all else is a defect
+        if not isinstance(value, HTTPError):
+            said = " ".join(f"{type(value).__name__}: {value}".split())
+            sys.stderr.write(f"error: {said} (this is a defect of stickslip)\n")
 
 
 class _Nothing(_Local):
@@ -177,9 +213,9 @@ class _File(_Local):
 
 
 class _Socket(_Local, WebSocketHandler):
-    def initialize(self, names: frozenset[str], path: Path, open_pages: set[Session]) -> None:  # type: ignore[override]
+    def initialize(self, names: frozenset[str], path: Path, pages: _Pages) -> None:  # type: ignore[override]
         super().initialize(names)
-        self.path, self.open_pages = path, open_pages
+        self.path, self.pages = path, pages
         self.session: Session | None = None
 
     def prepare(self) -> None:
@@ -193,7 +229,7 @@ class _Socket(_Local, WebSocketHandler):
 
     def open(self, *_: str, **__: str) -> None:
         loop = asyncio.get_running_loop()
-        if len(self.open_pages) >= _MOST_PAGES:
+        if len(self.pages.open) >= _MOST_PAGES:
             self._send({"refused": f"{_MOST_PAGES} pages are open; close one, and load this again"})
             self.close()
             return
@@ -212,7 +248,7 @@ class _Socket(_Local, WebSocketHandler):
             self._send({"refused": str(error)})
             self.close()
             return
-        self.open_pages.add(self.session)
+        self.pages.open.add(self.session)
         self._send(self.session.greeting())
 
     def on_message(self, message: str | bytes) -> None:
@@ -221,8 +257,7 @@ class _Socket(_Local, WebSocketHandler):
 
     def on_close(self) -> None:
         if self.session is not None:
-            self.session.end()
-            self.open_pages.discard(self.session)
+            self.pages.leave(self.session)
 
     def _send(self, message: Mapping[str, Any] | str) -> None:
         text = message if isinstance(message, str) else packed(dict(message))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import base64
 import json
-import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Literal, NamedTuple, cast
@@ -18,7 +17,7 @@ from stickslip.analyses.arguments import physical_dofs
 from stickslip.checks import choice
 from stickslip.errors import ModelError
 from stickslip.explore import panes
-from stickslip.explore.desk import Desk
+from stickslip.explore.desk import Desk, OutdatedError
 from stickslip.explore.draft import Draft
 from stickslip.explore.panes import Look, Pane
 from stickslip.results.forced_response import ForcedResponse
@@ -86,6 +85,8 @@ class Session:
         self._panels: dict[str, list[Panel]] = {}
         self._curves: Desk[Position] = Desk(self._guarded(PANES[:2], self._curve))
         self._dampers: Desk[Computed] = Desk(self._guarded(PANES[2:], self._damper))
+        self._pictures: Desk[str] = Desk(self._picture)
+        self._desks: tuple[Desk[Any], ...] = self._curves, self._dampers, self._pictures
 
     def greeting(self) -> dict[str, Any]:
         """Return what a page is told first: the study and its sliders."""
@@ -113,19 +114,19 @@ class Session:
                 file = f"{self.draft.name}.toml"
                 self._tell({"file": file, "text": self.draft.exported(asked.values)})
             case "picture":
-                threading.Thread(target=self._picture, daemon=True).start()
+                self._pictures.give(f"{self.draft.name}.png")
             case "panes":
                 self._dampers.drop()
                 self._curves.give(Position(asked.number, text, asked.dof, asked.over))
 
     def end(self) -> None:
         """Drop everything; the page has gone."""
-        self._curves.end()
-        self._dampers.end()
+        for desk in self._desks:
+            desk.end()
 
     def ended(self, patience: float) -> bool:
         """Wait until nothing is computed any more; False if it takes longer [s]."""
-        return self._curves.ended(patience) and self._dampers.ended(patience)
+        return all(desk.ended(patience) for desk in self._desks)
 
     def _read(self, message: str | bytes) -> Asked:
         try:
@@ -160,13 +161,10 @@ class Session:
 
             try:
                 work(task, heeded)
-            except ModelError as error:
-                self._failed(position, names, str(error))
-            except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-                said = " ".join(f"{type(error).__name__}: {error}".split())
-                self._failed(position, names, f"{said} (this is a defect of stickslip)")
-            except MemoryError:
-                self._failed(position, names, "the memory does not suffice")
+            except OutdatedError:
+                raise
+            except Exception as error:
+                self._failed(position, names, _line(error))
 
         return safe
 
@@ -202,21 +200,29 @@ class Session:
         self._panels[pane.name] = pane.panels
         self._tell({"number": position.number} | pane.message())
 
-    def _picture(self) -> None:
+    def _picture(self, name: str, _: Look) -> None:
         """Send everything that is shown as one picture."""
         panels = [panel for name in PANES for panel in self._panels.get(name, [])]
         try:
             if not panels:
                 raise ModelError("picture: nothing is drawn yet; wait for the curve")
             with TemporaryDirectory() as folder:
-                file = Path(folder) / f"{self.draft.name}.png"
+                file = Path(folder) / name
                 with panes.ONE_DRAWS:
                     draw(panels, file)
                 data = base64.b64encode(file.read_bytes()).decode()
-        except (ModelError, OSError) as error:
-            self._tell({"refused": str(error)})
+        except Exception as error:
+            self._tell({"refused": _line(error)})
         else:
-            self._tell({"file": file.name, "picture": data})
+            self._tell({"file": name, "picture": data})
+
+
+def _line(error: Exception) -> str:
+    """Word an error in a line."""
+    if isinstance(error, ModelError):
+        return str(error)
+    said = " ".join(f"{type(error).__name__}: {error}".split())
+    return f"{said} (this is a defect of stickslip)"
 
 
 def packed(message: dict[str, Any]) -> str:

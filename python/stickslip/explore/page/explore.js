@@ -152,6 +152,25 @@
     }
   };
 
+  // the server counts the rows of a legend on a wide page
+  const fit = (layout, data, width) => {
+    const wanted = data.filter((one) => one.showlegend).map((one) => 7 * one.name.length + 60);
+    const rows = (room) => {
+      let count = wanted.length ? 1 : 0, used = 0;
+      for (const size of wanted) {
+        if (used && used + size > room) {
+          count += 1;
+          used = 0;
+        }
+        used += size;
+      }
+      return count;
+    };
+    const more = 22 * Math.max(rows(width - 90) - rows(800), 0);
+    layout.height += more;
+    layout.margin.b += more;
+  };
+
   const draw = (figure, told) => {
     const old = figure.querySelector(told.still ? "img" : ".plot");
     figure.lastChild.textContent = told.caption;
@@ -164,11 +183,13 @@
     }
     const plot = old ?? element("div", { class: "plot", role: "group" });
     plot.setAttribute("aria-label", told.description);
-    plot.style.height = `${told.height}px`;
     if (!old) figure.replaceChildren(plot, figure.lastChild);
-    const { data, layout } = JSON.parse(told.data);
+    const { data, layout } = JSON.parse(told.data), width = plot.clientWidth;
     keepScale(plot.layout, layout);
-    Plotly.react(plot, data, layout, options);
+    fit(layout, data, width);
+    plot.style.height = `${layout.height}px`;
+    // the buttons would lie on the title of a narrow figure
+    Plotly.react(plot, data, layout, width < 600 ? { ...options, displayModeBar: false } : options);
   };
 
   const table = (told) => {
