@@ -6,10 +6,6 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT / "tests"))
-
-from browser import Browser
-from explorer import Explorer
 
 SETTLED = (
     "document.querySelectorAll('.plot').length > 2 && "
@@ -19,11 +15,17 @@ SETTLED = (
 
 def picture(file: Path) -> None:
     """Take a picture of the page of the SNECMA beam."""
+    sys.path.insert(0, str(ROOT / "tests"))
+    from browser import Browser
+    from explorer import Explorer
+
     study = ROOT / "examples" / "snecma-beam" / "study.toml"
     with Explorer(study) as explorer, Browser() as browser:
         browser.open(explorer.address)
         browser.shape(width=1280, height=1300)
         browser.until(SETTLED)
+        # what was computed fades in
+        browser.run("new Promise(done => setTimeout(done, 1000))")
         browser.screenshot(file)
 
 

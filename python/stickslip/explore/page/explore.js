@@ -248,6 +248,7 @@
     const told = JSON.parse(data);
     if (told.knobs) greeted(told);
     else if (told.file) saved(told);
+    else if (told.refused && !knobs.length) lost(told.refused);
     else if (told.refused) {
       said(told.refused);
       for (const name of names) state(name, "");
@@ -265,11 +266,13 @@
       }
     }
   });
-  socket.addEventListener("close", () => {
-    id("lost").textContent =
-      "The explorer has ended. Start it again with stickslip explore, then load this page again.";
+  const lost = (text) => {
+    if (id("lost").hidden) id("lost").textContent = text;
     id("lost").hidden = false;
     for (const name of names) state(name, "");
+  };
+  socket.addEventListener("close", () => {
+    lost("The explorer has ended. Start it again with stickslip explore, then load this page again.");
   });
   for (const name of ["dof", "over"]) id(name).addEventListener("change", changed);
   id("controls").addEventListener("submit", (event) => event.preventDefault());
