@@ -3,6 +3,8 @@
 import json
 import signal
 import socket
+import subprocess
+import sys
 from contextlib import suppress
 
 import pytest
@@ -126,6 +128,21 @@ def test_it_ends_with_a_line_while_it_computes(number, code):
         while "share" not in page.read():
             pass
         assert explorer.end(number) == (code, "interrupted: the explorer has ended\n")
+
+
+def test_what_does_not_end_is_left_behind():
+    code = (
+        "from stickslip.explore.server import _Pages\n"
+        "class Deaf:\n"
+        "    def end(self): pass\n"
+        "    def ended(self, patience): return False\n"
+        "pages = _Pages()\n"
+        "pages.open.add(Deaf())\n"
+        "pages.end()\n"
+        "print('said')"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (130, "said\n", "")
 
 
 def test_a_busy_port_is_refused_in_a_line(study):
