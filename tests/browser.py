@@ -90,8 +90,8 @@ class Browser:
         os.close(self._read)
         self._folder.cleanup()
 
-    def open(self, file: Path) -> None:
-        """Show a file, and wait until it is loaded."""
+    def open(self, page: Path | str) -> None:
+        """Show a file or an address, and wait until it is loaded."""
         self._session = None
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         session = self.call("Target.attachToTarget", targetId=target, flatten=True)
@@ -102,7 +102,8 @@ class Browser:
         self._events.clear()
         self.complaints.clear()
         self.requests.clear()
-        self.call("Page.navigate", url=file.resolve().as_uri())
+        url = page if isinstance(page, str) else page.resolve().as_uri()
+        self.call("Page.navigate", url=url)
         self._until(lambda: "Page.loadEventFired" in self._events)
 
     def shape(self, *, width: int = 1100, height: int = 900, dark: bool = False) -> None:
@@ -128,6 +129,15 @@ class Browser:
         for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
             pressed = {} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
             self.call("Input.dispatchMouseEvent", type=kind, **at, **pressed)
+
+    def press(self, key: str, code: int) -> None:
+        """Press a key on what has the focus: its name, and its number on Windows."""
+        text = {"text": key} if len(key) == 1 else {}
+        for kind in ("keyDown", "keyUp"):
+            typed = text if kind == "keyDown" else {}
+            self.call(
+                "Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code, **typed
+            )
 
     def until(self, script: str) -> None:
         """Wait until an expression is true in the page."""

@@ -151,3 +151,11 @@ def _refusal(value: object, unit: str, entry: str, problem: str) -> EntryError:
     return EntryError(
         entry, f" = {brief(value)} {problem}; write for instance '{example}' or {plain}"
     )
+
+
+def parted(text: str) -> tuple[float, str]:
+    """Part a text such as ``"24 kN/mm"``, which `quantity` reads, into its number and its unit."""
+    match = _TEXT.fullmatch(text)
+    if match is None:
+        raise EntryError("", f" = {brief(text)} is not a number with a unit")
+    return float(match["number"]), match["unit"]
