@@ -22,12 +22,13 @@ _NAMES = {
     "analyses.forced_response": "forced_response",
     "analyses.limit_cycles": "limit_cycles",
     "analyses.mistuning_study": "mistuning_study",
-    "analyses.pattern_store": "merge_stores",
     "analyses.nonlinear_modes": "nonlinear_modes",
     "analyses.optimal_damper": "optimal_damper",
     "analyses.single_harmonic": "single_harmonic",
     "analyses.stability_map": "stability_map",
+    "analyses.stores": "merge_stores",
     "analyses.transient": "transient",
+    "analyses.uncertainty": "uncertainty",
     "damper": "BodyDamper Centrifugal ContactPoint CylinderDamper Face FlexibleBody RigidBody "
     "SplitDamper StripDamper WedgeDamper",
     "disk": "BladedDisk Coupling InfluenceCoefficients Interface MistunedDisk "
@@ -56,6 +57,8 @@ _NAMES = {
     "results.optimal_damper": "OptimalDamper",
     "results.store": "load",
     "results.transient": "Transient",
+    "results.uncertainty": "Uncertainty",
+    "settings.quantities": "Backbone HighestPeak Optimum",
 }
 """What each module holds of what is public."""
 

@@ -17,8 +17,8 @@ from stickslip.analyses.design_map import speed_response as speed_response
 from stickslip.analyses.design_map import spinning as spinning
 from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle
 from stickslip.analyses.flutter_formulas import single_harmonic_cycles as single_harmonic_cycles
-from stickslip.analyses.pattern_store import merge_stores as merge_stores
 from stickslip.analyses.run import Progress
+from stickslip.analyses.stores import merge_stores as merge_stores
 from stickslip.damper import BodyDamper as BodyDamper
 from stickslip.damper import Centrifugal as Centrifugal
 from stickslip.damper import ContactPoint as ContactPoint
@@ -95,6 +95,10 @@ from stickslip.results.static_response import StaticResponse
 from stickslip.results.store import load as load
 from stickslip.results.synthesis import SynthesizedResponse as SynthesizedResponse
 from stickslip.results.transient import Transient as Transient
+from stickslip.results.uncertainty import Uncertainty as Uncertainty
+from stickslip.settings.quantities import Backbone as Backbone
+from stickslip.settings.quantities import HighestPeak as HighestPeak
+from stickslip.settings.quantities import Optimum as Optimum
 from stickslip.settings.variation import Contacts
 
 def basin_map(
@@ -319,3 +323,22 @@ def transient(
     start: State | Mapping[str, float] | None = None,
     progress: Progress = None,
 ) -> Transient: ...
+def uncertainty(
+    model: Model,
+    parameters: Mapping[str, object],
+    quantity: HighestPeak | Optimum | Backbone,
+    *,
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float | None = None,
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 0.001,
+    max_harmonics: int = 255,
+    samples: int = 512,
+    sampling: Literal["sobol", "random"] = "sobol",
+    seed: int = 0,
+    store: str | PathLike[str] | None = None,
+    portion: tuple[int, int] = (0, 1),
+    threads: int | None = None,
+    client: Client | None = None,
+    progress: Progress = None,
+) -> Uncertainty: ...

@@ -136,13 +136,13 @@ def members(value: Iterable[_Member], entry: str, remedy: str) -> tuple[_Member,
     return tuple(walk)
 
 
-def optional_package(module: str, entry: str, package: str = "") -> Any:
+def optional_package(module: str, entry: str, package: str = "", extra: str = "fe") -> Any:
     """Return a module that not every installation has; `entry` says what needs it."""
     try:
         return import_module(module)
     except ImportError:
         raise ModelError(
-            f"{entry} need the package {package or module}: pip install 'stickslip[fe]'"
+            f"{entry} need the package {package or module}: pip install 'stickslip[{extra}]'"
         ) from None
 
 

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import stickslip as ss
 from packed import numbers
@@ -59,6 +60,13 @@ def results():
             harmonics=1,
         ),
         "backbone": ss.nonlinear_modes(BEAM, amplitude=np.geomspace(1e-4, 1e-2, 5), harmonics=3),
+        "uncertain": ss.uncertainty(
+            BEAM,
+            {"slip_force": stats.uniform(200.0, 100.0)},
+            ss.HighestPeak("tip", omega=(100.0, 300.0)),
+            samples=20,
+            harmonics=1,
+        ),
         "rest": ss.static_response(ss.Model(BEAM.structure, BEAM.contacts, [LOAD])),
     }
 

@@ -1,9 +1,9 @@
-"""Studies on a Dask cluster: patterns go out in batches, rows come back into the same store."""
+"""Studies on a Dask cluster: work goes out in batches, rows come back into the same store."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TypeVar
 
 from stickslip import _core
 from stickslip.analyses.pattern_store import Row
@@ -22,10 +22,19 @@ if TYPE_CHECKING:
 _BATCHES = 16
 """Batches per thread of the cluster: enough to share the work evenly, and to lose little."""
 _LARGEST = 256
-"""Most disks of a batch."""
+"""Most disks or samples of a batch."""
 
-Deliver = Callable[[int, Sequence[Row], int], None]
-"""Takes the number of a disk, its rows, and the solutions it took."""
+
+class Work(Protocol):
+    """What is computed, in batches."""
+
+    @property
+    def numbers(self) -> list[int]: ...  # noqa: D102
+
+    def part(self, place: slice) -> Self: ...  # noqa: D102
+
+
+Kind = TypeVar("Kind", bound=Work)
 
 
 class Batch(NamedTuple):
@@ -38,6 +47,14 @@ class Batch(NamedTuple):
     which: list[int]
     deviations: Float
     numbers: list[int]
+
+    def part(self, place: slice) -> Batch:
+        """Return some of the disks."""
+        return self._replace(
+            which=self.which[place],
+            deviations=self.deviations[place],
+            numbers=self.numbers[place],
+        )
 
 
 def computed(batch: Batch) -> tuple[str, list[tuple[int, list[Row], int]]]:
@@ -63,10 +80,17 @@ def computed(batch: Batch) -> tuple[str, list[tuple[int, list[Row], int]]]:
     return _core.__version__, found
 
 
-def compute_on(client: Client, whole: Batch, run: Run, deliver: Deliver) -> bool:
-    """Compute all disks of a batch on a cluster; False if Ctrl-C has ended it.
+def compute_on(
+    client: Client,
+    compute: Callable[[Kind], tuple[str, Sequence[tuple[Any, ...]]]],
+    whole: Kind,
+    run: Run,
+    deliver: Callable[..., None],
+) -> bool:
+    """Compute work on a cluster; False if Ctrl-C has ended it.
 
-    A worker that is lost costs the batches that it was computing, which others take over.
+    `compute` returns the version of stickslip with the rows of a batch, of which `deliver` takes
+    each. A worker that is lost costs the batches that it was computing, which others take over.
     """
     try:
         from distributed import as_completed
@@ -77,7 +101,7 @@ def compute_on(client: Client, whole: Batch, run: Run, deliver: Deliver) -> bool
     threads = sum(getattr(client, "nthreads", dict)().values())
     if not threads:
         raise ModelError(f"client: {brief(client)} has no workers; start some, or leave it out")
-    futures = client.map(computed, list(_split(whole, threads)), pure=False)
+    futures = client.map(compute, list(_split(whole, threads)), pure=False)
     waiting = as_completed(futures)  # type: ignore[no-untyped-call, unused-ignore]
     try:
         for _ in futures:
@@ -89,8 +113,8 @@ def compute_on(client: Client, whole: Batch, run: Run, deliver: Deliver) -> bool
                     f"client: a worker has stickslip {version}, and this is {_core.__version__}; "
                     "install the same version everywhere"
                 )
-            for number, rows, points in found:
-                deliver(number, rows, points)
+            for row in found:
+                deliver(*row)
     except KeyboardInterrupt:
         return False
     finally:
@@ -110,13 +134,8 @@ def _result_of(future: Any) -> Any:
     )
 
 
-def _split(whole: Batch, threads: int) -> Iterator[Batch]:
+def _split(whole: Kind, threads: int) -> Iterator[Kind]:
     count = len(whole.numbers)
     size = min(_LARGEST, max(1, count // (_BATCHES * threads)))
     for start in range(0, count, size):
-        part = slice(start, start + size)
-        yield whole._replace(
-            which=whole.which[part],
-            deviations=whole.deviations[part],
-            numbers=whole.numbers[part],
-        )
+        yield whole.part(slice(start, start + size))

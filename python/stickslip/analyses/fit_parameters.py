@@ -17,6 +17,7 @@ from stickslip.results.arrays import Float
 
 DAMPING = "damping"
 LEVEL = "level"
+LOAD = "load"
 
 _DAMPING_KEYS = {ModalDamping: ("ratio",), Rayleigh: ("mass", "stiffness")}
 
@@ -29,7 +30,8 @@ class FitParameter:
     ----------
     name : str
         "pad.friction"; "friction", of all contacts that have it; "damping.ratio", "damping.mass",
-        "damping.stiffness", of the law of the structure's damping; "level", a factor on all forces.
+        "damping.stiffness", of the law of the structure's damping; "level", a factor on all forces;
+        "load", a factor on the static ones.
     low, high : float
         Bounds.
     """
@@ -86,6 +88,8 @@ class FitParameter:
         try:
             if self.name == LEVEL:
                 return model.scaled(force=value)
+            if self.name == LOAD:
+                return _loaded(model, value)
             if self.is_damping:
                 return model.with_structure(_damped(model.structure, self.key, value))
             return model.replaced(contacts=self._changed(model, value))
@@ -112,6 +116,16 @@ def applied(model: Model, parameters: Sequence[FitParameter], values: Float) -> 
     for parameter, value in zip(parameters, values, strict=True):
         model = parameter.apply(model, float(value))
     return model
+
+
+def _loaded(model: Model, factor: float) -> Model:
+    forces = [
+        one if one.harmonic else replace(one, amplitude=factor * one.amplitude)
+        for one in model.forces
+    ]
+    if all(one.harmonic for one in forces):
+        raise ModelError("the model has no static load; give it a ss.Force(..., harmonic=0)")
+    return model.replaced(forces=forces)
 
 
 def _damped(structure: Structure, key: str, value: float) -> Structure:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
-from stickslip.analyses.cluster import Batch, compute_on
+from stickslip.analyses.cluster import Batch, compute_on, computed
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.analyses.peak_assumptions import mistuning_assumptions
 from stickslip.analyses.run import Run, refusals
@@ -160,7 +160,7 @@ class Work:
             numbers=list(range(len(missing))),
         )
         if client is not None:
-            return compute_on(client, work, run, deliver)
+            return compute_on(client, computed, work, run, deliver)
         with refusals(self.disk):
             return _core.mistuning_study(
                 [tuned_disk(one) for one in work.disks],

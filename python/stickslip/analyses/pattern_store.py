@@ -1,4 +1,4 @@
-"""The file in which the results of a mistuning study are kept as they come.
+"""The file in which the results of a study are kept as they come, and that of a mistuning study.
 
 It is an SQLite data base: a row is there whole or not at all, whatever ends the program. Every row
 carries a digest of itself and of its study, so that a row that was changed is no row.
@@ -10,18 +10,15 @@ import hashlib
 import json
 import math
 import sqlite3
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from os import PathLike
-from pathlib import Path
 from time import monotonic, sleep
-from typing import Any, NamedTuple, TypeAlias
-from urllib.parse import quote
+from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import brief, file_path, is_file, members
+from stickslip.checks import brief, file_path, is_file
 from stickslip.errors import ModelError
 from stickslip.files import require_place
 
@@ -98,13 +95,26 @@ _REMEDIES = {
 """What to do where the file itself is not at fault."""
 
 
-class PatternStore:
-    """The results of a study, in a file.
+class RowStore:
+    """The results of a study, in a file; a kind of study names its table.
 
     The file is made if there is none. Refused is one of another study, of a newer format, damaged,
     no store, or that cannot be written. `look` is called several times per second while another
     program holds the file; it may raise.
     """
+
+    application: ClassVar[int]
+    """Marks the data bases of the kind."""
+    study: ClassVar[str]
+    """What the kind of study is called."""
+    table: ClassVar[str]
+    """Name of the table of the rows."""
+    kinds: ClassVar[tuple[Any, ...]]
+    """Types of its columns but the digest."""
+    remedy: ClassVar[str]
+    """What to do about a row that was changed."""
+    tables: ClassVar[Mapping[int, set[str]]]
+    """What makes the tables of each format, the newest last."""
 
     def __init__(
         self, path: object, identity: Identity, look: Callable[[], None] = lambda: None
@@ -126,56 +136,48 @@ class PatternStore:
             self._base.close()
             raise
 
-    def __enter__(self) -> PatternStore:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._base.close()
 
-    def rows(self) -> Iterator[tuple[Key, int, Row, int]]:
-        """Yield what is there: what it belongs to, the DOF, the row, and the solutions it took."""
-        with self._named():
-            found = self._execute("SELECT * FROM summit").fetchall()
-        for *values, mark in found:
-            if mark != self._digest(values):
-                raise self.damaged(values[0], values[2], "its digest differs")
-            deviation, coupling, pattern, dof, *numbers, points = values
-            yield Key(deviation, float.fromhex(coupling), pattern), dof, _row(numbers), points
+    @classmethod
+    def place(cls, values: Sequence[Any]) -> str:
+        """Say by its values which row it is."""
+        raise NotImplementedError
 
-    def add(self, key: Key, rows: Sequence[Row], points: int) -> None:
-        """Keep the rows of one pattern, one per DOF, together or not at all."""
-        found = [
-            (key.deviation, float(key.coupling).hex(), key.pattern, dof, *map(_kept, row), points)
-            for dof, row in enumerate(rows)
-        ]
-        with self._named(), self._transaction():
-            self._insert(found)
-
-    def take(self, other: PatternStore) -> int:
+    def take(self, other: RowStore) -> int:
         """Take over the rows of another store of the same study; return how many."""
-        found = []
-        with other._named():
-            rows = other._execute("SELECT * FROM summit").fetchall()
-        for *values, mark in rows:
-            if mark != other._digest(values):
-                raise other.damaged(values[0], values[2], "its digest differs")
-            found.append(values)
-        with self._named(), self._transaction():
-            self._insert(found)
+        found = list(other._values())
+        self._keep(found)
         return len(found)
 
-    def damaged(self, deviation: object, pattern: object, cause: str) -> ModelError:
+    def _values(self) -> Iterator[list[Any]]:
+        """Yield the values of all rows but their digests, which are right."""
+        with self._named():
+            found = self._execute(f"SELECT * FROM {self.table}").fetchall()
+        for *values, mark in found:
+            if mark != self._digest(values):
+                raise self._damaged(values, "its digest differs")
+            yield values
+
+    def _keep(self, found: Sequence[Sequence[object]]) -> None:
+        """Keep rows together or not at all."""
+        with self._named(), self._transaction():
+            self._insert(found)
+
+    def _damaged(self, values: Sequence[Any], cause: str) -> ModelError:
         """Return the error that names a row which cannot be right."""
         return ModelError(
-            f"{self.path}: the row of deviation {brief(deviation)}, pattern {brief(pattern)} is "
-            f"damaged ({cause}); delete the rows of this pattern to compute it again, or remove "
-            "the file to begin anew"
+            f"{self.path}: the row of {self.place(values)} is damaged ({cause}{self.remedy} to "
+            "compute it again, or remove the file to begin anew"
         )
 
     def _insert(self, found: Sequence[Sequence[object]]) -> None:
-        marks = ", ".join("?" * (len(_KINDS) + 1))
+        marks = ", ".join("?" * (len(self.kinds) + 1))
         self._base.executemany(
-            f"INSERT OR REPLACE INTO summit VALUES ({marks})",
+            f"INSERT OR REPLACE INTO {self.table} VALUES ({marks})",
             [(*values, self._digest(values)) for values in found],
         )
 
@@ -189,49 +191,36 @@ class PatternStore:
         self._execute("PRAGMA synchronous = NORMAL")
         with self._transaction():
             if not self._execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
-                for statement in sorted(_TABLES[FORMAT]):
+                for statement in sorted(self.tables[self._newest()]):
                     self._execute(statement)
-                self._execute(f"PRAGMA application_id = {_APPLICATION}")
-                self._execute(f"PRAGMA user_version = {FORMAT}")
+                self._execute(f"PRAGMA application_id = {self.application}")
+                self._execute(f"PRAGMA user_version = {self._newest()}")
                 self._base.executemany("INSERT INTO identity VALUES (?, ?)", identity.items())
                 return
         version = self._required_format()
         self._require_same(dict(self._execute("SELECT name, value FROM identity")), identity)
-        if version < FORMAT:
-            self._add_digests()
+        self._update(version)
 
-    def _add_digests(self) -> None:
-        """Bring a store of the first format, whose rows have no digest, to this one."""
-        with self._transaction():
-            found = self._execute("SELECT * FROM summit").fetchall()
-            for values in found:
-                kinds = zip(values, _KINDS, strict=True)
-                if not all(isinstance(value, kind) for value, kind in kinds):
-                    raise self.damaged(values[0], values[2], "not a number in every column")
-                try:
-                    float.fromhex(values[1])
-                except (ValueError, OverflowError):
-                    raise self.damaged(values[0], values[2], "its coupling is no number") from None
-            self._execute("DROP TABLE summit")
-            for statement in _TABLES[FORMAT] - _TABLES[1]:
-                self._execute(statement)
-            self._insert(found)
-            self._execute(f"PRAGMA user_version = {FORMAT}")
+    @classmethod
+    def _newest(cls) -> int:
+        return max(cls.tables)
+
+    def _update(self, version: int) -> None:
+        """Bring a store of an older format to the newest."""
 
     def _required_format(self) -> int:
-        if self._execute("PRAGMA application_id").fetchone()[0] != _APPLICATION:
+        if self._execute("PRAGMA application_id").fetchone()[0] != self.application:
             raise ModelError(
-                f"{self.path}: is no store of a mistuning study; give another name, nothing was "
-                "changed"
+                f"{self.path}: is no store of {self.study}; give another name, nothing was changed"
             )
         version: int = self._execute("PRAGMA user_version").fetchone()[0]
-        if version not in _TABLES:
+        if version not in self.tables:
             raise ModelError(
                 f"{self.path}: a store of format {version}, this version of stickslip reads format "
-                f"1 to {FORMAT}; upgrade stickslip, or give another store"
+                f"1 to {self._newest()}; upgrade stickslip, or give another store"
             )
         there = {row[0] for row in self._execute("SELECT sql FROM sqlite_master")}
-        if there != _TABLES[version]:
+        if there != self.tables[version]:
             raise sqlite3.DatabaseError("its tables are not those of a store")
         said = self._execute("PRAGMA quick_check").fetchone()[0]
         if said != "ok":
@@ -297,54 +286,68 @@ class PatternStore:
             ) from None
 
 
-def merge_stores(
-    target: str | PathLike[str], sources: Iterable[str | PathLike[str]]
-) -> dict[str, int]:
-    """Put the rows of several stores of one study together, as runs of its parts made them.
+class PatternStore(RowStore):
+    """The results of a mistuning study."""
 
-    Parameters
-    ----------
-    target : path-like
-        The store that takes all rows; made if there is none. One that is there may be a part, too.
-    sources : iterable of path-like
-        The other stores, which are left as they are.
+    application = _APPLICATION
+    study = "a mistuning study"
+    table = "summit"
+    kinds = _KINDS
+    remedy = "); delete the rows of this pattern"
+    tables = _TABLES
 
-    Returns
-    -------
-    dict of int
-        How many rows each source held.
+    def rows(self) -> Iterator[tuple[Key, int, Row, int]]:
+        """Yield what is there: what it belongs to, the DOF, the row, and the solutions it took."""
+        for deviation, coupling, pattern, dof, *numbers, points in self._values():
+            yield Key(deviation, float.fromhex(coupling), pattern), dof, _row(numbers), points
 
-    Raises
-    ------
-    ModelError
-        If a store is missing, damaged, or of another study.
-    """
-    files = [file_path(one, "store") for one in members(sources, "sources", "[...]")]
-    counts: dict[str, int] = {}
-    for file in files:
-        if not is_file(file):
-            raise ModelError(f"{file}: no such store")
-        same = stored_identity(file)
-        with PatternStore(file, same) as source, PatternStore(target, same) as whole:
-            counts[str(file)] = whole.take(source)
-    return counts
+    def add(self, key: Key, rows: Sequence[Row], points: int) -> None:
+        """Keep the rows of one pattern, one per DOF, together or not at all."""
+        self._keep(
+            [
+                (
+                    key.deviation,
+                    float(key.coupling).hex(),
+                    key.pattern,
+                    dof,
+                    *map(kept, row),
+                    points,
+                )
+                for dof, row in enumerate(rows)
+            ]
+        )
+
+    @classmethod
+    def place(cls, values: Sequence[Any]) -> str:
+        """Say by its values which row it is."""
+        return f"deviation {brief(values[0])}, pattern {brief(values[2])}"
+
+    def damaged(self, deviation: object, pattern: object, cause: str) -> ModelError:
+        """Return the error that names a row which cannot be right."""
+        return self._damaged((deviation, None, pattern), cause)
+
+    def _update(self, version: int) -> None:
+        """Bring a store of the first format, whose rows have no digest, to this one."""
+        if version == FORMAT:
+            return
+        with self._transaction():
+            found = self._execute("SELECT * FROM summit").fetchall()
+            for values in found:
+                kinds = zip(values, _KINDS, strict=True)
+                if not all(isinstance(value, kind) for value, kind in kinds):
+                    raise self._damaged(values, "not a number in every column")
+                try:
+                    float.fromhex(values[1])
+                except (ValueError, OverflowError):
+                    raise self._damaged(values, "its coupling is no number") from None
+            self._execute("DROP TABLE summit")
+            for statement in _TABLES[FORMAT] - _TABLES[1]:
+                self._execute(statement)
+            self._insert(found)
+            self._execute(f"PRAGMA user_version = {FORMAT}")
 
 
-def stored_identity(file: Path) -> Identity:
-    """Return what makes the study of a store, or refuse a file that is none."""
-    try:
-        base = sqlite3.connect(f"file:{quote(str(file.resolve()))}?mode=ro", uri=True)
-        try:
-            found = dict(base.execute("SELECT name, value FROM identity"))
-        finally:
-            base.close()
-        return {name: json.loads(value) for name, value in found.items()}
-    except (sqlite3.Error, ValueError, TypeError) as error:
-        cause = " ".join(str(error).split())
-        raise ModelError(f"{file}: no store, or a damaged one ({cause})") from None
-
-
-def _kept(value: float) -> float | None:
+def kept(value: float) -> float | None:
     """Return a number as SQLite gives it back: no not-a-number, no truth value, no -0."""
     if isinstance(value, float):
         return None if math.isnan(value) else float(value) + 0.0

@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.damper_curve import damper_curve
-from stickslip.analyses.fit_parameters import LEVEL, FitParameter, applied
+from stickslip.analyses.fit_parameters import LEVEL, LOAD, FitParameter, applied
 from stickslip.analyses.forced_response import forced_response
 from stickslip.model import Model
 from stickslip.model.measurement import Measured, MeasuredLoop, MeasuredPeak, Measurement
@@ -26,7 +26,7 @@ class Prediction:
 
     The model is that of the measurement, or else `base`, at values of the parameters. Derivatives
     of curves in parameters of contacts and in the level of the forces are exact; those in the
-    damping of the structure, of peaks and of loops are differences.
+    damping of the structure and in static loads, of peaks and of loops are differences.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class Prediction:
 
     def _slope(self, place: int) -> Float:
         one = self._parameters[place]
-        if self._found.slope is None or one.is_damping:
+        if self._found.slope is None or one.is_damping or one.name == LOAD:
             return self._difference(place)
         return self._found.slope(one) / (self._at[place] if one.name == LEVEL else 1.0)
 

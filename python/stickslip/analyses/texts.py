@@ -107,6 +107,16 @@ TEXTS = {
     "noise is larger than given.",
     "predictions-missing": "{count} of {total} numbers could not be predicted by the best fit and "
     "count as zero; look at the forced response of the fitted model.",
+    # uncertainty
+    "samples-drawn/sobol": "The {count} samples are points of a scrambled Sobol sequence (seed "
+    "{seed}), which fill the space more evenly than chance would: intervals of percentiles, which "
+    "take them for random, are wider than need be.",
+    "samples-drawn/random": "The {count} samples were drawn at random (seed {seed}).",
+    "independent": "The {parameters} uncertain parameters are taken to be independent.",
+    "samples-failed": "{count} of {total} samples failed, most of them so: {_common}. Intervals of "
+    "percentiles let them lie anywhere; surrogates leave them out.",
+    "truncation/samples": "The discarded harmonics could still change a number of a sample by up "
+    "to {share:.1%}; keep more harmonics.",
     "branch-not-followed": "The equations of the contacts have {unknowns} unknowns, too many to "
     "follow the curve around folds: jumps to another branch were not looked for. Sweep in both "
     "directions and compare.",

@@ -103,10 +103,11 @@ def warned(results: Sequence[tuple[str, Result]]) -> bool:
 
 def _stored(study: Study, folder: Path) -> Study:
     """Return a study that can go on where it was stopped with a store beside its result."""
-    from stickslip.study.analysis import MistuningStudyTable
+    from stickslip.study.analysis import MistuningStudyTable, UncertaintyTable
 
     analysis = study.tables.analysis
-    if not isinstance(analysis, MistuningStudyTable) or analysis.store is not None:
+    kinds = MistuningStudyTable | UncertaintyTable
+    if not isinstance(analysis, kinds) or analysis.store is not None:
         return study
     kept = analysis.model_copy(update={"store": str(folder / f"{study.name}.db")})
     return replace(study, tables=study.tables.model_copy(update={"analysis": kept}))
@@ -120,11 +121,11 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Resu
     cases = study.cases
 
     def complete() -> str:
-        nouns = {"transient": "runs", "mistuning-study": "studies"}
+        nouns = {"transient": "runs", "mistuning-study": "studies", "uncertainty": "studies"}
         noun = nouns.get(study.tables.analysis.kind, "curves")
         return f"{len(computed)} of {len(cases)} {noun} complete in {out}"
 
-    stored = study.tables.analysis.kind == "mistuning-study"
+    stored = study.tables.analysis.kind in ("mistuning-study", "uncertainty")
     rest = "; run it again to go on from there" if stored else ""
 
     def save(result: Result, file: Path) -> None:

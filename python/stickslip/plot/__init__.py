@@ -16,11 +16,13 @@ from stickslip.plot.modes import backbone, mode_damping
 from stickslip.plot.multipliers import cycle_multipliers, multipliers
 from stickslip.plot.statics import static_forces
 from stickslip.plot.transients import contact_history, history, phase, poincare, spectrum
+from stickslip.plot.uncertainty import backbone_band, sobol_indices, uncertainty_distribution
 
 __all__ = [
     "aerodynamic",
     "amplification",
     "backbone",
+    "backbone_band",
     "basins",
     "blade_bars",
     "blade_curves",
@@ -47,9 +49,11 @@ __all__ = [
     "poincare",
     "safe",
     "slip",
+    "sobol_indices",
     "spectrum",
     "stability_map",
     "static_forces",
+    "uncertainty_distribution",
     "waveform",
 ]
 

@@ -239,3 +239,22 @@ class DistributionOptions(Confidence, total=False):
     deviation: Annotated[float | None, None, "See `MistuningStudy.factors`."]
     coupling: Annotated[float | None, None, "See `MistuningStudy.factors`."]
     percentile: Annotated[float | None, 99.9, "That of the fit that is marked, with its interval."]
+
+
+class PercentileOptions(Confidence, total=False):
+    """Keywords of `uncertainty_distribution`."""
+
+    percentiles: Annotated[Sequence[float], (5.0, 50.0, 95.0), "Percentiles that are marked."]
+
+
+class ShareOptions(Drawing, total=False):
+    """Keywords of `sobol_indices`."""
+
+    confidence: Annotated[float, 0.95, "Probability that an interval holds the share."]
+
+
+class BandOptions(Spectral, total=False):
+    """Keywords of `backbone_band`."""
+
+    band: Annotated[tuple[float, float], (5.0, 95.0), "Percentiles at the sides of the band."]
+    damping: Annotated[bool, False, "Draw the damping ratio instead of the frequency."]

@@ -32,7 +32,8 @@ _CODES = {
         exact-orbits frequencies observed-dofs tolerances-missed static-traction start-of-march
         start time-steps kept-periods criterion modes peak-range varied-together rigid-limit
         coarse-search patterns deviations onset forces-ignored stability-undecided multipliers
-        unbounded-branch folds unstable intervals noise-estimated mode-at-rest turns text
+        unbounded-branch folds unstable intervals noise-estimated mode-at-rest turns
+        samples-drawn independent text
     """,
     Severity.CAUTION: """
         truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps
@@ -42,6 +43,7 @@ _CODES = {
     """,
     Severity.FAILURE: """
         mode-not-reached branch-stalled branch-turned-back branch-end no-limit predictions-missing
+        samples-failed
     """,
 }
 SEVERITIES: Mapping[str, Severity] = MappingProxyType(

@@ -129,7 +129,7 @@ class WeibullFit(Frozen):
         q : float
             From 0 to 100, exclusive: 99.9.
         """
-        share = _share(q)
+        share = share_of(q)
         value = float(self.quantile(share))
         return Percentile(value, *interval(self.factors, self.best, self.confidence, share))
 
@@ -159,7 +159,7 @@ class WeibullFit(Frozen):
 
 def fit_weibull(factors: ArrayLike, confidence: float = 0.95) -> WeibullFit:
     """Fit a Weibull distribution of maxima to factors, of which not-a-number is left out."""
-    level = _confidence(confidence)
+    level = confidence_of(confidence)
     data = _sorted(factors)
     if data.size < FEWEST:
         raise ModelError(
@@ -173,27 +173,29 @@ def fit_weibull(factors: ArrayLike, confidence: float = 0.95) -> WeibullFit:
     return WeibullFit(confidence=level, factors=constant(data), best=best_fit(data))
 
 
-def empirical_percentile(factors: ArrayLike, q: float, confidence: float = 0.95) -> Percentile:
+def empirical_percentile(
+    factors: ArrayLike, q: float, confidence: float = 0.95, missing: int = 0
+) -> Percentile:
     """Return a percentile of the factors themselves, whatever their distribution.
 
     Its interval is that of order statistics (binomial); ends for which there are too few factors
-    are infinite.
+    are infinite. Factors that are `missing` may be any number, which makes the interval wider.
     """
     from scipy.stats import binom
 
-    share, level = _share(q), _confidence(confidence)
+    share, level = share_of(q), confidence_of(confidence)
     data = _sorted(factors)
     if not data.size:
         raise ModelError("percentile: no factor; compute at least one pattern")
     tail = 0.5 * (1.0 - level)
     # P(X_(k) <= x_q) is that of at least k factors below.
-    below = binom.cdf(np.arange(data.size), data.size, share)
-    low = np.flatnonzero(below <= tail)
-    high = np.flatnonzero(below >= 1.0 - tail)
+    below = binom.cdf(np.arange(data.size + missing), data.size + missing, share)
+    low = np.flatnonzero(below <= tail)[-1:] - missing
+    high = np.flatnonzero(below >= 1.0 - tail)[:1]
     return Percentile(
         float(np.quantile(data, share)),
-        float(data[low[-1]]) if low.size else -np.inf,
-        float(data[high[0]]) if high.size else np.inf,
+        float(data[low[0]]) if low.size and low[0] >= 0 else -np.inf,
+        float(data[high[0]]) if high.size and high[0] < data.size else np.inf,
     )
 
 
@@ -202,11 +204,13 @@ def _sorted(factors: ArrayLike) -> Float:
     return data[np.isfinite(data)]
 
 
-def _share(q: float) -> float:
+def share_of(q: float) -> float:
+    """Return a percentage as a share, or refuse what is none."""
     return _inside(q, "q", 100.0, "a percentile between 0 and 100, 99.9") / 100.0
 
 
-def _confidence(value: float) -> float:
+def confidence_of(value: float) -> float:
+    """Return a confidence, or refuse what is none."""
     return _inside(value, "confidence", 1.0, "a probability between 0 and 1, 0.95")
 
 

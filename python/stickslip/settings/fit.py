@@ -47,7 +47,8 @@ class FitSettings(HarmonicSettings):
         description='Names of the parameters with their bounds: "pad.friction" of one contact; '
         '"friction" of all contacts that have it; "damping.ratio", "damping.mass" and '
         '"damping.stiffness" of the damping law of the structure; "level", a factor on all '
-        "forces. Where the lower bound is above 0 the logarithm is fitted.",
+        'forces; "load", one on the static forces. Where the lower bound is above 0 the logarithm '
+        "is fitted.",
         examples=[{"pad.friction": [0.1, 1.0]}],
     )
     tolerance: Tolerance = Field(

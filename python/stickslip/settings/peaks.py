@@ -84,7 +84,7 @@ def _unsigned(remedy: str) -> Callable[[Any], Float]:
     return read
 
 
-_Portion = Annotated[tuple[int, int], Or(Some[Index], "tuple[int, int]", "(int, int)", _portion)]
+Portion = Annotated[tuple[int, int], Or(Some[Index], "tuple[int, int]", "(int, int)", _portion)]
 _SEVERAL = "ArrayLike", "float or array_like"
 _Deviations = Annotated[Float, Or(ListOr[Ratio, Ratio], *_SEVERAL, _unsigned("0.05 for 5 %"))]
 _Couplings = Annotated[Float, Or(Some[StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m"))]
@@ -96,7 +96,7 @@ _Patterns = Annotated[
         "int or array_like, shape (p, n)",
     ),
 ]
-_Path = Annotated[str | PathLike[str], Or(Text, "str | PathLike[str]", "path-like")]
+StorePath = Annotated[str | PathLike[str], Or(Text, "str | PathLike[str]", "path-like")]
 
 
 class PeakSettings(HarmonicSettings):
@@ -225,7 +225,7 @@ class MistuningKeys(PeakSettings):
         "disk.",
         examples=[["1e3 N/m", "1e4 N/m"]],
     )
-    store: _Path | None = Field(
+    store: StorePath | None = Field(
         default=None,
         description="File in which the results are kept as they come. If there is one of the same "
         "study already, with as many patterns, deviations and couplings or with others, only what "
@@ -241,7 +241,7 @@ class MistuningKeys(PeakSettings):
         default="normal",
         description="Distribution of zero mean and unit deviation of the patterns drawn.",
     )
-    portion: _Portion = Field(
+    portion: Portion = Field(
         default=(0, 1),
         description="Which part of the patterns this run computes, (0, 4) the first of four: for "
         "job arrays, with a store each. `merge_stores` joins them.",

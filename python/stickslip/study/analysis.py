@@ -24,6 +24,7 @@ from stickslip.analyses.run import Progress, share
 from stickslip.analyses.single_harmonic import single_harmonic
 from stickslip.analyses.static_response import static_response
 from stickslip.analyses.transient import transient
+from stickslip.analyses.uncertainty import uncertainty
 from stickslip.checks import real_matrix
 from stickslip.model import Model
 from stickslip.model.measurement import Measured
@@ -36,6 +37,7 @@ from stickslip.settings.modes import ModeKeys
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys
+from stickslip.settings.uncertainty import UncertaintyKeys
 from stickslip.study.matrices import (
     DampingSource,
     ModalDampingTable,
@@ -240,6 +242,14 @@ class FitTable(FitSettings, AnalysisTable):
         return fit(model, tests, settings=self, progress=progress)
 
 
+class UncertaintyTable(UncertaintyKeys, AnalysisTable):
+    """A peak, an optimum or a backbone of a model whose parameters are uncertain."""
+
+    kind: Literal["uncertainty"] = Field(description="The analysis.")
+    analysis: ClassVar = uncertainty
+    dof_keys = ()
+
+
 class NonlinearModesTable(ModeKeys, AnalysisTable):
     """Frequency, damping and shape of a mode against its amplitude."""
 
@@ -262,6 +272,7 @@ KINDS: Mapping[str, type[AnalysisTable]] = {
         MistuningStudyTable,
         LimitCyclesTable,
         FitTable,
+        UncertaintyTable,
         NonlinearModesTable,
     )
 }

@@ -26,6 +26,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "mistuning_study": ("stickslip.views.mistuning", "MistuningView"),
     "static_response": ("stickslip.views.statics", "StaticView"),
     "fit": ("stickslip.views.fits", "FitView"),
+    "uncertainty": ("stickslip.views.uncertainty", "UncertaintyView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
     "nonlinear_modes": ("stickslip.views.modes", "ModeView"),

@@ -1,0 +1,447 @@
+"""Uncertain parameters: samples, percentiles, surrogates and Sobol indices."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sqlite3
+
+import numpy as np
+import pytest
+from numpy.polynomial.legendre import leggauss
+from scipy import stats
+
+import stickslip as ss
+from stickslip.results.expansion import drawn_shares, fit_expansion
+
+BEAM = ss.reference.snecma_beam()
+SPAN = (100.0, 300.0)
+PARAMETERS = {"slip_force": stats.uniform(200.0, 100.0), "stiffness": stats.lognorm(0.1, scale=2e7)}
+PEAK = ss.HighestPeak("tip", omega=SPAN)
+KEYS = {"samples": 12, "harmonics": 1}
+
+
+def same(one, other) -> bool:
+    arrays = all(
+        np.array_equal(getattr(one.arrays, name), getattr(other.arrays, name), equal_nan=True)
+        for name in one.arrays.table()
+    )
+    return arrays and one.reasons == other.reasons
+
+
+# ------------------------------------------------------------- a peak with friction in closed form
+
+MASS, STIFFNESS, FORCE = 1.0, 1e4, 4.0
+SLIP = stats.uniform(5.0, 5.0)
+SPRING = stats.uniform(2e3, 2e3)
+
+
+def closed_peak(slip, spring):
+    """Return amplitude and frequency of the peak of a mass whose only damping is a Jenkins element.
+
+    Of one harmonic the element has h = 4 F/pi (1 - F/(k A)) out of phase, whatever the frequency:
+    the peak is where the rest is in balance, h = P.
+    """
+    amplitude = 4.0 * slip**2 / (spring * (4.0 * slip - np.pi * FORCE))
+    turn = np.arccos(1.0 - 2.0 * slip / (spring * amplitude))
+    stiffness = spring / np.pi * (turn - 0.5 * np.sin(2.0 * turn))
+    return amplitude, np.sqrt((STIFFNESS + stiffness) / MASS)
+
+
+@pytest.fixture(scope="module")
+def rubbing():
+    structure = ss.Structure([[MASS]], [[STIFFNESS]], dofs=["mass"])
+    pad = ss.Jenkins("mass", stiffness=3e3, slip_force=7.0, name="pad")
+    model = ss.Model(structure, [pad], [ss.Force("mass", FORCE)])
+    return ss.uncertainty(
+        model,
+        {"pad.slip_force": SLIP, "pad.stiffness": SPRING},
+        ss.HighestPeak("mass", omega=(50.0, 150.0), measure="fundamental"),
+        samples=256,
+        harmonics=1,
+    )
+
+
+def test_every_peak_is_that_of_the_closed_form(rubbing):
+    assert rubbing.failed == 0
+    slip, spring = (rubbing.parameter(name) for name in ("pad.slip_force", "pad.stiffness"))
+    amplitude, omega = closed_peak(slip, spring)
+    np.testing.assert_allclose(rubbing.values("amplitude"), amplitude, rtol=1e-6)
+    np.testing.assert_allclose(rubbing.values("omega"), omega, rtol=1e-4)
+
+
+@pytest.mark.slow
+def test_shares_of_the_variance_are_those_of_the_closed_form(rubbing):
+    nodes, weights = leggauss(40)
+    shares, weights = 0.5 * (nodes + 1.0), 0.5 * weights
+    values = closed_peak(SLIP.ppf(shares)[:, np.newaxis], SPRING.ppf(shares))[0]
+    mean = weights @ values @ weights
+    variance = weights @ values**2 @ weights - mean**2
+    first = [
+        (weights @ (values @ weights) ** 2 - mean**2) / variance,
+        ((weights @ values) ** 2 @ weights - mean**2) / variance,
+    ]
+    found = rubbing.sobol("amplitude")
+    assert found.error < 1e-4
+    assert [one.value for one in found.first.values()] == pytest.approx(first, abs=1e-4)
+    total = [1.0 - first[1], 1.0 - first[0]]
+    assert [one.value for one in found.total.values()] == pytest.approx(total, abs=1e-4)
+    for shares_of in (found.first, found.total):
+        assert all(one.low <= one.value <= one.high for one in shares_of.values())
+    expansion = rubbing.expansion("amplitude")
+    assert expansion.mean == pytest.approx(mean, rel=1e-4)
+    assert expansion.deviation**2 == pytest.approx(variance, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_percentiles_are_those_of_the_closed_form(rubbing):
+    shares = drawn_shares("sobol", 2, 2**16, seed=5)
+    values = closed_peak(SLIP.ppf(shares[:, 0]), SPRING.ppf(shares[:, 1]))[0]
+    for q in (5.0, 50.0, 95.0):
+        true = np.quantile(values, q / 100.0)
+        surrogate = rubbing.expansion("amplitude").percentile(q)
+        assert surrogate.value == pytest.approx(true, rel=2e-3)
+        own = rubbing.percentile("amplitude", q)
+        assert own.low < true < own.high
+        assert own.failed == 0
+
+
+# -------------------------------------------------------------------------------------- estimators
+
+
+@pytest.mark.slow
+def test_ishigami():
+    """Ishigami and Homma (1990); Saltelli et al. (2008) for the indices."""
+    law = stats.uniform(-np.pi, 2.0 * np.pi)
+    at = law.ppf(drawn_shares("sobol", 3, 512, seed=0))
+    values = np.sin(at[:, 0]) * (1.0 + 0.1 * at[:, 2] ** 4) + 7.0 * np.sin(at[:, 1]) ** 2
+    expansion = fit_expansion(("a", "b", "c"), (law,) * 3, at, values)
+    found = expansion.sobol()
+    variance = np.pi**4 / 50.0 + np.pi**8 / 1800.0 + 0.5 + 49.0 / 8.0
+    alone = 0.5 * (1.0 + np.pi**4 / 50.0) ** 2, 49.0 / 8.0, 0.0
+    joint = variance - sum(alone)
+    assert [one.value for one in found.first.values()] == pytest.approx(
+        [one / variance for one in alone], abs=2e-3
+    )
+    total = (alone[0] + joint, alone[1], joint)
+    assert [one.value for one in found.total.values()] == pytest.approx(
+        [one / variance for one in total], abs=2e-3
+    )
+    unseen = law.ppf(drawn_shares("random", 3, 2000, seed=9))
+    true = np.sin(unseen[:, 0]) * (1.0 + 0.1 * unseen[:, 2] ** 4) + 7 * np.sin(unseen[:, 1]) ** 2
+    said = expansion({name: unseen[:, place] for place, name in enumerate("abc")})
+    error = ((said - true) ** 2).mean() / true.var()
+    assert error < 1e-3
+    # Five parts of the samples know less than all of them.
+    assert 0.1 * error < expansion.cross_validation < 30.0 * error
+
+
+def test_parameters_without_bounds_have_hermite_polynomials():
+    laws = (stats.norm(2.0, 0.5), stats.lognorm(0.3, scale=4.0))
+    shares = drawn_shares("sobol", 2, 128, seed=3)
+    at = np.stack([law.ppf(one) for law, one in zip(laws, shares.T, strict=True)], axis=1)
+    # A polynomial of degree 3 in the standard variables, which is found exactly.
+    values = at[:, 0] ** 2 * np.log(at[:, 1])
+    expansion = fit_expansion(("a", "b"), laws, at, values)
+    assert expansion.cross_validation < 1e-20
+    assert expansion.mean == pytest.approx((2.0**2 + 0.5**2) * np.log(4.0))
+
+
+def test_intervals_of_percentiles_cover_whatever_the_distribution():
+    from stickslip.results.weibull import empirical_percentile
+
+    draw, law = np.random.default_rng(2), stats.lognorm(1.0)
+    held = 0
+    for _ in range(400):
+        found = empirical_percentile(law.rvs(60, random_state=draw), 80.0, 0.9)
+        held += found.low < law.ppf(0.8) < found.high
+    assert 0.89 * 400 < held < 0.97 * 400
+
+
+def test_missing_samples_may_lie_anywhere():
+    from stickslip.results.weibull import empirical_percentile
+
+    data = np.arange(100.0)
+    known, missing = (empirical_percentile(data, 50.0, missing=n) for n in (0, 10))
+    for hidden in (-1e9, 1e9):
+        whole = empirical_percentile(np.append(data, np.full(10, hidden)), 50.0)
+        assert missing.low <= whole.low
+        assert whole.high <= missing.high
+    assert missing.low < known.low < known.high < missing.high
+    assert empirical_percentile(data, 97.0, missing=10).high == np.inf
+
+
+# ----------------------------------------------------------------------------------------- samples
+
+
+@pytest.fixture(scope="module")
+def study():
+    return ss.uncertainty(BEAM, PARAMETERS, PEAK, **KEYS)
+
+
+def test_a_sample_is_the_peak_of_its_model(study):
+    slip, stiffness = (study.parameter(name)[3] for name in PARAMETERS)
+    contact = ss.Jenkins("damper", stiffness=stiffness, slip_force=slip)
+    model = BEAM.replaced(contacts=[contact])
+    peak = ss.forced_response(model, SPAN, 1, tolerance=1e-4).peak("tip")
+    assert study.values("amplitude")[3] == pytest.approx(peak.amplitude, rel=1e-4)
+    assert study.values("omega")[3] == pytest.approx(peak.omega, rel=1e-3)
+
+
+def test_samples_follow_their_distributions():
+    many = ss.uncertainty(BEAM, PARAMETERS, PEAK, samples=64, harmonics=1)
+    for name, law in PARAMETERS.items():
+        shares = np.sort(law.cdf(many.parameter(name)))
+        assert np.abs(shares - (np.arange(64) + 0.5) / 64).max() < 1.5 / 64
+
+
+@pytest.mark.slow
+def test_threads_stores_and_portions_have_the_same_bits(study, tmp_path):
+    assert same(ss.uncertainty(BEAM, PARAMETERS, PEAK, threads=3, **KEYS), study)
+    for number in range(2):
+        part = ss.uncertainty(
+            BEAM, PARAMETERS, PEAK, portion=(number, 2), store=tmp_path / f"{number}.db", **KEYS
+        )
+        assert part.computed == 6
+        assert (part.status == "not computed").sum() == 6
+    counts = ss.merge_stores(tmp_path / "all.db", [tmp_path / "0.db", tmp_path / "1.db"])
+    assert list(counts.values()) == [12, 12]
+    stamp = (tmp_path / "all.db").read_bytes()
+    assert same(ss.uncertainty(BEAM, PARAMETERS, PEAK, store=tmp_path / "all.db", **KEYS), study)
+    assert (tmp_path / "all.db").read_bytes() == stamp
+    more = ss.uncertainty(
+        BEAM, PARAMETERS, PEAK, store=tmp_path / "all.db", **KEYS | {"samples": 14}
+    )
+    np.testing.assert_array_equal(more.values("amplitude")[:12], study.values("amplitude"))
+    with pytest.raises(ss.ModelError, match="seed is 0 there and 1 here"):
+        ss.uncertainty(BEAM, PARAMETERS, PEAK, store=tmp_path / "all.db", seed=1, **KEYS)
+    with pytest.raises(ss.ModelError, match="is no store of a mistuning study"):
+        ss.mistuning_study(
+            ss.reference.beam_ring(), 0.1, omega=SPAN, patterns=1, store=tmp_path / "all.db"
+        )
+
+
+@pytest.mark.slow
+def test_a_row_that_was_changed_is_refused_by_name(tmp_path):
+    store = tmp_path / "a.db"
+    ss.uncertainty(BEAM, PARAMETERS, PEAK, store=store, **KEYS | {"samples": 2})
+    with sqlite3.connect(store) as base:
+        base.execute("UPDATE sample SET value = 2 * value WHERE sample = 1 AND number = 0")
+    base.close()
+    with pytest.raises(ss.ModelError, match=r"the row of sample 1 is damaged \(its digest differs"):
+        ss.uncertainty(BEAM, PARAMETERS, PEAK, store=store, **KEYS)
+    with sqlite3.connect(store) as base:
+        base.execute("DELETE FROM sample WHERE sample = 1 AND number = 0")
+    base.close()
+    assert ss.uncertainty(BEAM, PARAMETERS, PEAK, store=store, **KEYS).computed == 12
+
+
+def test_ctrl_c_keeps_what_was_computed(study, tmp_path):
+    def stop(share: float) -> None:
+        if share > 0.0:
+            raise KeyboardInterrupt
+
+    store = tmp_path / "a.db"
+    slow = {"samples": 40, "harmonics": "auto", "tolerance": 1e-5, "threads": 1}
+    with pytest.raises(ss.Interrupted, match=r"of 40 samples.* goes on from there") as caught:
+        ss.uncertainty(BEAM, PARAMETERS, PEAK, store=store, progress=stop, **slow)
+    part = caught.value.result
+    assert 0 < part.computed < 40
+    with sqlite3.connect(store) as base:
+        assert base.execute("SELECT count(*) FROM sample").fetchone()[0] == 2 * part.computed
+    base.close()
+
+
+@pytest.mark.slow
+def test_a_cluster_that_loses_a_worker_computes_the_same_bits():
+    distributed = pytest.importorskip("distributed")
+    many = {"samples": 200, "harmonics": 15}
+    cluster = distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
+    )
+    with cluster, distributed.Client(cluster) as client:
+        victim = next(iter(client.run(os.getpid).values()))
+        killed = []
+
+        def kill(share: float) -> None:
+            if 0.0 < share < 1.0 and not killed:
+                killed.append(share)
+                os.kill(victim, signal.SIGKILL)
+
+        spread = ss.uncertainty(BEAM, PARAMETERS, PEAK, client=client, progress=kill, **many)
+    assert killed
+    assert same(spread, ss.uncertainty(BEAM, PARAMETERS, PEAK, **many))
+
+
+def test_what_fails_is_kept_with_its_reason(tmp_path):
+    narrow = ss.HighestPeak("tip", omega=(150.0, 175.0))
+    wide = {"stiffness": stats.uniform(1e5, 4e7), "slip_force": stats.norm(20.0, 40.0)}
+    study = ss.uncertainty(BEAM, wide, narrow, samples=32, harmonics=1)
+    edge = "peak: the highest point lies at an end of omega; give a wider range"
+    assert edge in study.reasons
+    assert any("slip_force" in one and "-" in one for one in study.reasons)
+    assert 0 < study.failed < 32
+    assert study.computed + study.failed == 32
+    np.testing.assert_array_equal(study.status == "failed", [bool(one) for one in study.reasons])
+    np.testing.assert_array_equal(np.isnan(study.values("amplitude")), study.arrays.failed)
+    assert study.percentile("amplitude", 50.0).failed == study.failed
+    assert [one.code for one in study.diagnostics].count("samples-failed") == 1
+    study.save(tmp_path / "a.nc")
+    again = ss.load(tmp_path / "a.nc")
+    assert same(again, study)
+    assert again.settings == study.settings
+    assert again.inputs == study.inputs
+
+
+# -------------------------------------------------------------------------------------- quantities
+
+
+@pytest.mark.slow
+def test_backbones_are_those_of_the_modes():
+    backbone = ss.Backbone([1e-4, 1e-3, 1e-2])
+    study = ss.uncertainty(BEAM, PARAMETERS, backbone, samples=3, harmonics=3)
+    assert study.numbers[0] == "omega[0]"
+    contact = ss.Jenkins(
+        "damper",
+        stiffness=study.parameter("stiffness")[1],
+        slip_force=study.parameter("slip_force")[1],
+    )
+    modes = ss.nonlinear_modes(
+        BEAM.replaced(contacts=[contact]), amplitude=[1e-4, 1e-3, 1e-2], harmonics=3
+    )
+    np.testing.assert_array_equal(study.arrays.value[1, :3], modes.omega)
+    np.testing.assert_array_equal(study.arrays.value[1, 3:], modes.damping_ratio)
+    ax = study.plot_backbone()
+    assert ax.get_xscale() == "log"
+    with pytest.raises(ss.ModelError, match="3 samples; compute at least 16"):
+        study.sobol("omega[0]")
+
+
+def test_optima_are_those_of_the_damper():
+    study = ss.uncertainty(
+        BEAM,
+        {"level": stats.uniform(0.8, 0.4)},
+        ss.Optimum("tip", bounds=(50.0, 2e3), omega=SPAN),
+        samples=2,
+        harmonics=1,
+    )
+    own = ss.optimal_damper(
+        BEAM.scaled(force=study.parameter("level")[0]),
+        dof="tip",
+        bounds=(50.0, 2e3),
+        omega=SPAN,
+        harmonics=1,
+    )
+    assert study.arrays.value[0].tolist() == [own.value, own.amplitude, own.omega]
+    # Friction depends on the ratio of force and slip force.
+    ratio = study.values("value") / study.parameter("level")
+    assert ratio[0] == pytest.approx(ratio[1], rel=1e-3)
+
+
+def test_mistuning_is_a_deviation_of_every_sector():
+    ring = ss.reference.beam_ring(sectors=3, coupling=7e3, engine_order=1)
+    study = ss.uncertainty(
+        ring,
+        {"mistuning": stats.norm(0.0, 0.03), "slip_force": stats.uniform(200.0, 100.0)},
+        ss.HighestPeak("tip", omega=(150.0, 260.0)),
+        samples=2,
+        harmonics=1,
+    )
+    assert study.inputs == ("mistuning[0]", "mistuning[1]", "mistuning[2]", "slip_force")
+    pattern = study.arrays.parameter[:, :3]
+    contact = ss.Jenkins("damper", stiffness=2.4e7, slip_force=study.parameter("slip_force")[0])
+    own = ss.mistuning_study(
+        ring.replaced(contacts=[contact]),
+        1.0,
+        patterns=pattern[:1],
+        omega=(150.0, 260.0),
+        harmonics=1,
+        dofs="tip",
+    )
+    assert study.values("amplitude")[0] == pytest.approx(own.amplitude("tip").item(), rel=1e-6)
+    with pytest.raises(ss.ModelError, match="it is for the highest peak of a tuned BladedDisk"):
+        ss.uncertainty(BEAM, {"mistuning": stats.norm()}, PEAK, **KEYS)
+
+
+def test_loads_and_held_forces_are_parameters():
+    static = BEAM.replaced(forces=[*BEAM.forces, ss.Force("tip", 5.0, harmonic=0)])
+    study = ss.uncertainty(static, {"load": stats.uniform(1.0, 3.0)}, PEAK, samples=2, harmonics=2)
+    forces = [*BEAM.forces, ss.Force("tip", 5.0 * study.parameter("load")[0], harmonic=0)]
+    own = ss.uncertainty(
+        BEAM.replaced(forces=forces),
+        {"level": stats.uniform(1.0, 1e-12)},
+        PEAK,
+        samples=1,
+        harmonics=2,
+    )
+    assert own.values("amplitude")[0] == pytest.approx(study.values("amplitude")[0], rel=1e-6)
+    with pytest.raises(ss.ModelError, match="the model has no static load"):
+        ss.uncertainty(BEAM, {"load": stats.uniform(1.0, 3.0)}, PEAK, **KEYS)
+    held = ss.uncertainty(BEAM, {"residual": stats.norm(0.0, 5.0)}, PEAK, **KEYS)
+    assert held.computed == 12
+
+
+# -------------------------------------------------------------------------------------- refusals
+
+
+@pytest.mark.parametrize("quantity", [170.0, "tip", None, {"kind": "amplitude"}, np.array([170.0])])
+def test_a_fixed_frequency_is_refused_and_explained(quantity):
+    with pytest.raises(ss.ModelError, match="a resonance moves across a fixed frequency"):
+        ss.uncertainty(BEAM, PARAMETERS, quantity, **KEYS)
+
+
+@pytest.mark.parametrize("omega", [170.0, (170.0, 170.0), [170.0], None])
+def test_a_peak_needs_a_range(omega):
+    with pytest.raises(ss.ModelError, match="a resonance moves across a fixed frequency"):
+        ss.HighestPeak("tip", omega=omega)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({}, 'give {"friction"'),
+        ({"slip_force": 3.0}, "'slip_force']: 3.0; give a frozen distribution"),
+        ({"slip_force": stats.poisson(3.0)}, "give a frozen distribution"),
+        ({"slip_force": stats.uniform}, "give a frozen distribution"),
+        ({"slip_force": stats.uniform(1.0, -1.0)}, "is no distribution"),
+        ({"slip_force": {"distribution": "unifrm"}}, "did you mean 'uniform'"),
+        ({"slip_force": {"distribution": "uniform", "lok": 1.0}}, "did you mean 'loc'"),
+        ({"slip_force": {"distribution": "lognorm"}}, "lognorm lacks 's'"),
+        ({"slip_force": {"distribution": "uniform", "loc": np.nan}}, "loc"),
+        ({"slip": stats.uniform(1.0, 2.0)}, "parameters: 'slip'"),
+        ({"pad.slip_force": stats.uniform(1.0, 2.0)}, "unknown contact 'pad'"),
+    ],
+)
+def test_parameters_that_are_none_are_refused(parameters, message):
+    with pytest.raises(ss.ModelError) as caught:
+        ss.uncertainty(BEAM, parameters, PEAK, **KEYS)
+    assert message.lower().replace("'", "") in str(caught.value).lower().replace("'", "")
+
+
+def test_numbers_and_parameters_that_are_none_are_refused(study):
+    with pytest.raises(ss.ModelError, match="amplitude"):
+        study.values("amplitudes")
+    with pytest.raises(ss.ModelError, match="slip_force"):
+        study.parameter("slip")
+    with pytest.raises(ss.ModelError, match="12 samples; compute at least 16"):
+        study.expansion("amplitude")
+    with pytest.raises(ss.ModelError, match="no backbone"):
+        study.plot_backbone()
+
+
+def test_figures_say_how_many_failed(study):
+    from matplotlib import pyplot
+
+    ax = study.plot_distribution("amplitude")
+    assert ax.get_title() == "12 samples"
+    pyplot.close(ax.figure)
+
+
+def test_bars_of_the_shares(rubbing):
+    from matplotlib import pyplot
+
+    ax = rubbing.plot_sobol("amplitude")
+    named = [label.get_text() for label in ax.get_xticklabels()]
+    assert named == ["pad.slip_force", "pad.stiffness"]
+    assert "surrogate misses" in ax.get_title()
+    pyplot.close(ax.figure)
