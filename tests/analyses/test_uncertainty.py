@@ -131,9 +131,9 @@ def test_ishigami():
     true = np.sin(unseen[:, 0]) * (1.0 + 0.1 * unseen[:, 2] ** 4) + 7 * np.sin(unseen[:, 1]) ** 2
     said = expansion({name: unseen[:, place] for place, name in enumerate("abc")})
     error = ((said - true) ** 2).mean() / true.var()
-    assert error < 1e-3
-    # Five parts of the samples know less than all of them.
-    assert 0.1 * error < expansion.cross_validation < 30.0 * error
+    assert error < 1e-5
+    # Four fifths of the samples know less than all of them.
+    assert error < expansion.cross_validation < 1e-3
 
 
 def test_parameters_without_bounds_have_hermite_polynomials():
@@ -142,7 +142,7 @@ def test_parameters_without_bounds_have_hermite_polynomials():
     at = np.stack([law.ppf(one) for law, one in zip(laws, shares.T, strict=True)], axis=1)
     # A polynomial of degree 3 in the standard variables, which is found exactly.
     values = at[:, 0] ** 2 * np.log(at[:, 1])
-    expansion = fit_expansion(("a", "b"), laws, at, values)
+    expansion = fit_expansion(("a", "b"), laws, at, values, degree=4)
     assert expansion.cross_validation < 1e-20
     assert expansion.mean == pytest.approx((2.0**2 + 0.5**2) * np.log(4.0))
 
@@ -274,7 +274,7 @@ def test_a_cluster_that_loses_a_worker_computes_the_same_bits():
 
 
 def test_what_fails_is_kept_with_its_reason(tmp_path):
-    narrow = ss.HighestPeak("tip", omega=(150.0, 175.0))
+    narrow = ss.HighestPeak("tip", omega=(159.6, 175.0))
     wide = {"stiffness": stats.uniform(1e5, 4e7), "slip_force": stats.norm(20.0, 40.0)}
     study = ss.uncertainty(BEAM, wide, narrow, samples=32, harmonics=1)
     edge = "peak: the highest point lies at an end of omega; give a wider range"

@@ -156,8 +156,9 @@ def _completed(given: Mapping[str, object], example: Mapping[str, object]) -> di
     for name in ("structure", "analysis"):
         table, sample = given.get(name), example[name]
         if isinstance(table, dict) and isinstance(sample, dict):
-            # Limit cycles, modes and fits have frequencies of their own, statics have none.
-            driven = table.get("kind") not in ("limit-cycles", "nonlinear-modes", "static", "fit")
+            # These have frequencies of their own, or none.
+            own = ("limit-cycles", "nonlinear-modes", "static", "fit", "uncertainty")
+            driven = table.get("kind") not in own
             needed = ("mass", "stiffness", "omega") if driven else ("mass", "stiffness")
             whole[name] = {key: sample[key] for key in needed if key in sample} | table
     return whole

@@ -12,8 +12,10 @@ import math
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from time import monotonic, sleep
 from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
+from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
@@ -345,6 +347,24 @@ class PatternStore(RowStore):
                 self._execute(statement)
             self._insert(found)
             self._execute(f"PRAGMA user_version = {FORMAT}")
+
+
+def looked_at(file: Path, statement: str) -> list[Any]:
+    """Return what a query finds in a file that is left as it is."""
+    try:
+        base = sqlite3.connect(f"file:{quote(str(file.resolve()))}?mode=ro", uri=True)
+        try:
+            return base.execute(statement).fetchall()
+        finally:
+            base.close()
+    except sqlite3.Error as error:
+        raise no_store(file, error) from None
+
+
+def no_store(file: Path, error: Exception) -> ModelError:
+    """Return the error that refuses a file which is no store."""
+    cause = " ".join(str(error).split())
+    return ModelError(f"{file}: no store, or a damaged one ({cause})")
 
 
 def kept(value: float) -> float | None:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
-import sqlite3
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
-from typing import Any
-from urllib.parse import quote
 
-from stickslip.analyses.pattern_store import Identity, PatternStore, RowStore
+from stickslip.analyses.pattern_store import (
+    Identity,
+    PatternStore,
+    RowStore,
+    looked_at,
+    no_store,
+)
 from stickslip.analyses.sample_store import SampleStore
 from stickslip.checks import file_path, is_file, members
 from stickslip.errors import ModelError
@@ -51,31 +54,14 @@ def merge_stores(
 
 def _stored_kind(file: Path) -> type[RowStore]:
     """Return the class of a store; of a file that is none, any, which refuses it."""
-    named = _looked_at(file, "SELECT name FROM sqlite_master")
+    named = looked_at(file, "SELECT name FROM sqlite_master")
     return SampleStore if (SampleStore.table,) in named else PatternStore
 
 
 def stored_identity(file: Path) -> Identity:
     """Return what makes the study of a store, or refuse a file that is none."""
-    found = dict(_looked_at(file, "SELECT name, value FROM identity"))
+    found = dict(looked_at(file, "SELECT name, value FROM identity"))
     try:
         return {name: json.loads(value) for name, value in found.items()}
     except (ValueError, TypeError) as error:
-        raise _no_store(file, error) from None
-
-
-def _looked_at(file: Path, statement: str) -> list[Any]:
-    """Return what a query finds in a file that is left as it is."""
-    try:
-        base = sqlite3.connect(f"file:{quote(str(file.resolve()))}?mode=ro", uri=True)
-        try:
-            return base.execute(statement).fetchall()
-        finally:
-            base.close()
-    except sqlite3.Error as error:
-        raise _no_store(file, error) from None
-
-
-def _no_store(file: Path, error: Exception) -> ModelError:
-    cause = " ".join(str(error).split())
-    return ModelError(f"{file}: no store, or a damaged one ({cause})")
+        raise no_store(file, error) from None

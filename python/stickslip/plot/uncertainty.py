@@ -49,7 +49,8 @@ def uncertainty_distribution(
         ends = np.array([[found.value - found.low], [found.high - found.value]])
         bars = np.where(np.isfinite(ends), ends, 0.0)
         label = f"{q:g} %: {found.value:.4g} ({found.low:.4g} to {found.high:.4g})"
-        ax.errorbar([found.value], [q / 100.0], xerr=bars, fmt="D", ms=5, capsize=3, label=label)
+        (mark,) = ax.plot([found.value], [q / 100.0], ls="", marker="D", ms=5, label=label)
+        ax.errorbar([found.value], [q / 100.0], xerr=bars, color=mark.get_color(), capsize=3)
     unit = result.settings.quantity.numbers[number]
     ax.set(xlabel=f"{number} [{unit}]", ylabel="share of the samples", ylim=(0.0, 1.02))
     failed = f", {result.failed} failed" if result.failed else ""
