@@ -121,11 +121,11 @@ def test_ishigami():
     alone = 0.5 * (1.0 + np.pi**4 / 50.0) ** 2, 49.0 / 8.0, 0.0
     joint = variance - sum(alone)
     assert [one.value for one in found.first.values()] == pytest.approx(
-        [one / variance for one in alone], abs=2e-3
+        [one / variance for one in alone], abs=1e-4
     )
     total = (alone[0] + joint, alone[1], joint)
     assert [one.value for one in found.total.values()] == pytest.approx(
-        [one / variance for one in total], abs=2e-3
+        [one / variance for one in total], abs=1e-4
     )
     unseen = law.ppf(drawn_shares("random", 3, 2000, seed=9))
     true = np.sin(unseen[:, 0]) * (1.0 + 0.1 * unseen[:, 2] ** 4) + 7 * np.sin(unseen[:, 1]) ** 2

@@ -2,6 +2,7 @@ import os
 import runpy
 from pathlib import Path
 
+import numpy as np
 import pytest
 from matplotlib import pyplot
 
@@ -167,3 +168,21 @@ def test_wedge_between_two_blades_as_followed_in_time():
     at = curve.index(108.0)
     run = ss.transient(curve.model, omega=108.0, periods=200, scheme="exact")
     assert curve.amplitude("left.x")[at] == pytest.approx(run.amplitude("left.x"), rel=1e-2)
+
+
+@pytest.mark.slow
+def test_a_contact_is_found_from_what_another_integrator_made():
+    study = Study.load(EXAMPLES / "friction-test" / "study.toml")
+    (found,) = study.run()
+    true = {"pad.stiffness": 2e5, "pad.slip_force": 12.0, "damping.stiffness": 1e-4}
+    for name, value in true.items():
+        low, high = found.intervals[name]
+        assert low < value < high
+        assert found.values[name] == pytest.approx(value, rel=0.01)
+        assert found.identifiable[name]
+    assert 0.8 < found.scatter < 1.2
+    rig = runpy.run_path(os.fspath(EXAMPLES / "friction-test" / "rig.py"))
+    # The file is what the script computes, but for its noise.
+    settled = rig["settled"]
+    hertz, seen = np.loadtxt(EXAMPLES / "friction-test" / "level-8.csv", delimiter=",")[9]
+    assert 1e6 * settled(2.0 * np.pi * hertz, 8.0) == pytest.approx(seen, rel=0.08)
