@@ -1,6 +1,6 @@
 """A beam with a friction contact on a test rig, by Newmark's method: nothing of stickslip is used.
 
-Two masses, the second of which rubs on the ground: a spring of 2e5 N/m that slips at 12 N. The force
+Two masses, the second of which rubs on the ground: a spring of 2e5 N/m that slips at 12 N. A force
 on the first is stepped through 24 frequencies at three levels; each is held until the motion has
 settled. Amplitudes have 2 % noise. Writes level-2.csv, level-8.csv and level-20.csv.
 """
