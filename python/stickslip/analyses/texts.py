@@ -125,8 +125,8 @@ TEXTS = {
     "that nodes which never slip hold the traction that they built up from zero displacement.",
     # transients and free motions
     "start": "The run starts from {_begun}.",
-    "start/forces": "{_starts} given by displacements alone: there the velocities and contact forces "
-    "at the start are zero. What a start leads to depends on its contact forces as well; give "
+    "start/forces": "{_starts} given by displacements alone: their velocities and contact forces "
+    "are zero at first. What a start leads to depends on its contact forces as well; give "
     "ss.State(model, displacement, contact_force=...) for others.",
     "start/given-forces": "The contact forces at the start were given, the largest is "
     "{contact_force:g} N.",
