@@ -127,9 +127,11 @@ def claim(
 def claims() -> dict[str, Claim]:
     """Return the claims by name, in the order of the text."""
     modules = [import_module(f"stickslip_reproduce.{chapter}") for chapter in CHAPTERS]
-    every = [
-        value for module in modules for value in vars(module).values() if isinstance(value, Claim)
-    ]
+    values = [value for module in modules for value in vars(module).values()]
+    # Several claims of one kind stand together in a tuple.
+    listed = [one for value in values if isinstance(value, tuple) for one in value]
+    every = [value for value in (*values, *listed) if isinstance(value, Claim)]
+    every = list({id(one): one for one in every}.values())
     found = {one.name: one for one in sorted(every, key=_place)}
     if len(found) < len(every):
         raise ValueError("two claims have the same name")
