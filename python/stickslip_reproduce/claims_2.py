@@ -67,7 +67,9 @@ def mass(ratio: float) -> tuple[ss.ExactResponse, ss.ForcedResponse]:
 def griffin(resolution: Resolution) -> Found:
     """Difference of the first harmonic of z."""
     shown = numbers_of("fig-2.3", resolution)
-    return Found((Fact("largest difference", shown.fact("largest difference of Griffin's z"), "%"),))
+    return Found(
+        (Fact("largest difference", shown.fact("largest difference of Griffin's z"), "%"),)
+    )
 
 
 @claim(
@@ -123,12 +125,10 @@ def single_dof(resolution: Resolution) -> Found:
     see="fig-2.5",
 )
 def subresonances(resolution: Resolution) -> Found:
-    """Number of subresonances with and without higher harmonics."""
+    """Return the number of subresonances with and without higher harmonics."""
     true, rough = mass(2.0)
     tops = [
-        sum(
-            top < 80.0 for top, _ in maxima(Series("", one.omega, one.amplitude("mass")))
-        )
+        sum(top < 80.0 for top, _ in maxima(Series("", one.omega, one.amplitude("mass"))))
         for one in (true, rough)
     ]
     return Found((Fact("of exact orbits", tops[0]), Fact("of one harmonic", tops[1])))
@@ -180,9 +180,7 @@ def single_dof_optimum(resolution: Resolution) -> Found:
     """Periods from rest until a period changes the state of the single DOF by less than 1e-6 and by
     less than 1e-3, the slowest of twelve frequencies around the resonance at P = 2 F_d. Viscous
     damping alone takes e-fold every 6 periods.""",
-    rule=lambda n: verdict(
-        n["periods to 1e-3"] >= 200.0, n["periods to 1e-6"] >= 100.0
-    ),
+    rule=lambda n: verdict(n["periods to 1e-3"] >= 200.0, n["periods to 1e-6"] >= 100.0),
 )
 def cycles(resolution: Resolution) -> Found:
     """Periods from rest to the steady state."""
@@ -190,9 +188,7 @@ def cycles(resolution: Resolution) -> Found:
     facts = []
     for tolerance in (1e-3, 1e-6):
         periods = [
-            ss.transient(
-                model, float(omega), periods=5000, tolerance=tolerance, keep=1
-            ).periods
+            ss.transient(model, float(omega), periods=5000, tolerance=tolerance, keep=1).periods
             for omega in np.linspace(100.0, 300.0, 12)
         ]
         facts.append(Fact(f"periods to {tolerance:.0e}".replace("e-0", "e-"), float(max(periods))))
@@ -214,9 +210,7 @@ def faster(resolution: Resolution) -> Found:
     omega = np.linspace(100.0, 300.0, 12)
     begin = time.process_time()
     for frequency in omega:
-        ss.transient(
-            model, float(frequency), periods=5000, scheme="rk4", tolerance=1e-6, keep=1
-        )
+        ss.transient(model, float(frequency), periods=5000, scheme="rk4", tolerance=1e-6, keep=1)
     middle = time.process_time()
     repeats = 20
     for _ in range(repeats):
@@ -240,7 +234,7 @@ def faster(resolution: Resolution) -> Found:
     see="table-2.3 fig-2.8 fig-2.9",
 )
 def tip_less_exact(resolution: Resolution) -> Found:
-    """Loads at which the tip has the larger error."""
+    """Return the loads at which the tip has the larger error."""
     apart = [error(load, "tip") - error(load, "damper") for load in EIGHT]
     return Found(
         (
@@ -270,8 +264,7 @@ def amplified(resolution: Resolution) -> Found:
         true = exact(load)
         at = int(true.amplitude("tip").argmax())
         third, first = (
-            np.array([abs(true.coefficients(dof)[at, order]) for dof in PLACES])
-            for order in (3, 1)
+            np.array([abs(true.coefficients(dof)[at, order]) for dof in PLACES]) for order in (3, 1)
         )
         sizes.append(third[0] / third[1])
         shares.append(third[0] / first[0] / (third[1] / first[1]))
@@ -416,8 +409,9 @@ def real_amplitudes(resolution: Resolution) -> Found:
     "Runge-Kutta numerical time integration procedure is virtually perfect.",
     """Largest distance of the curves of the mass over the peak, at P = 0.5 and 2 F_d: small in the
     picture, as the subresonances are small against the peak.""",
-    rule=lambda n: verdict(n["largest distance over the peak"] < 1.0,
-        n["largest distance over the peak"] < 5.0),
+    rule=lambda n: verdict(
+        n["largest distance over the peak"] < 1.0, n["largest distance over the peak"] < 5.0
+    ),
     see="fig-2.4 fig-2.5",
 )
 def virtually_perfect(resolution: Resolution) -> Found:
@@ -483,9 +477,12 @@ def blade_at_optimum() -> tuple[ss.ExactResponse, ss.ForcedResponse]:
     rule=lambda n: verdict(n["converged"] == n["runs"], 2.0 * n["converged"] > n["runs"]),
 )
 def initial_guess(resolution: Resolution) -> Found:
-    """Runs of Broyden's method from the single harmonic."""
+    """Return the runs of Broyden's method from the single harmonic."""
     from stickslip_reproduce.claims_3 import runs
 
-    (good,) = (row for row in runs(resolution) if row.start == "single harmonic"
-               and row.method == "Broyden, QR updated")
+    (good,) = (
+        row
+        for row in runs(resolution)
+        if row.start == "single harmonic" and row.method == "Broyden, QR updated"
+    )
     return Found((Fact("converged", good.converged), Fact("runs", good.runs)))

@@ -78,11 +78,16 @@ def no_scaling(resolution: Resolution) -> Found:
 def lu_unstable(resolution: Resolution) -> Found:
     """Newton and Broyden by LU and by QR."""
     every = runs(resolution)
-    lost = {method: sum(row.converged for row in every if row.method == method) for method in METHODS}
+    lost = {
+        method: sum(row.converged for row in every if row.method == method) for method in METHODS
+    }
     panel = [
-        Series(method, np.arange(len(begins(resolution))), [
-            100.0 * row.converged / row.runs for row in every if row.method == method
-        ], "marks")
+        Series(
+            method,
+            np.arange(len(begins(resolution))),
+            [100.0 * row.converged / row.runs for row in every if row.method == method],
+            "marks",
+        )
         for method in METHODS
     ]
     plot = Plot(
@@ -197,11 +202,12 @@ def printed_norm(resolution: Resolution) -> Found:
     "the Broyden method seems to have better stability than NR schemes",
     """Runs that converge from a good and three poor starts, by the plain methods of section 3.4,
     without any safeguard. Newton's method with one, as in this package, converges in all.""",
-    rule=lambda n: verdict(n["Broyden"] > n["Newton"] and n["Newton here"] < n["Broyden"],
-                           n["Broyden"] > n["Newton"]),
+    rule=lambda n: verdict(
+        n["Broyden"] > n["Newton"] and n["Newton here"] < n["Broyden"], n["Broyden"] > n["Newton"]
+    ),
 )
 def better_stability(resolution: Resolution) -> Found:
-    """Runs of Newton's and Broyden's method that converge."""
+    """Return the runs of Newton's and Broyden's method that converge."""
     every = runs(resolution)
     solved = [
         ss.forced_response(ss.reference.snecma_beam(load), list(OMEGA), HARMONICS).converged
@@ -220,15 +226,17 @@ def better_stability(resolution: Resolution) -> Found:
     "faster-than-newton",
     "3.4.2",
     "the Broyden method turns out to be faster than the NR algorithm",
-    """Processor time of Newton's method with the exact tangent over that of Broyden's: over all rows
-    of Table 4.1, with one damper, and on the mistuned ring of 36 dampers with 3 harmonics. Within a
-    quarter neither is faster.""",
-    rule=lambda n: verdict(
-        min(n.values()) > NOISE,
-        max(n.values()) > NOISE,
-    )
-    if not all(1.0 / NOISE < value < NOISE for value in n.values())
-    else "open",
+    """Processor time of Newton's method with the exact tangent over that of Broyden's: over all
+    rows of Table 4.1, with one damper, and on the mistuned ring of 36 dampers with 3 harmonics.
+    Within a quarter neither is faster.""",
+    rule=lambda n: (
+        verdict(
+            min(n.values()) > NOISE,
+            max(n.values()) > NOISE,
+        )
+        if not all(1.0 / NOISE < value < NOISE for value in n.values())
+        else "open"
+    ),
     see="table-4.1",
 )
 def faster_than_newton(resolution: Resolution) -> Found:
@@ -267,7 +275,7 @@ def faster_than_newton(resolution: Resolution) -> Found:
     see="table-4.1",
 )
 def more_iterations(resolution: Resolution) -> Found:
-    """Iterations of both methods."""
+    """Return the iterations of both methods."""
     table = numbers_of("table-4.1", resolution).table
     assert table is not None
     rows = {row[:2]: row[table.columns.index("iterations")] for row in table.rows}
@@ -284,7 +292,7 @@ def more_iterations(resolution: Resolution) -> Found:
     rule=lambda n: verdict(n["poor starts"] >= 95.0, n["poor starts"] >= 80.0),
 )
 def poor_guess(resolution: Resolution) -> Found:
-    """Runs of Broyden's method from poor starts."""
+    """Return the runs of Broyden's method from poor starts."""
     every = runs(resolution)
     good = [row for row in every if row.start not in POOR]
     poor = [row for row in every if row.start in POOR]
@@ -366,9 +374,7 @@ def few_harmonics(resolution: Resolution) -> Found:
     """Largest error of the tip's peak at the eight loads with 24 harmonics, with 15 for comparison,
     and with 24 at 20.313 N with a damper a hundred times as stiff, the nearly rigid one of Figs 4.7
     and 4.8; virtually the same is 1 %.""",
-    rule=lambda n: verdict(
-        max(n["H = 24"], n["H = 24, stiff damper"]) < 1.0, n["H = 24"] < 1.0
-    ),
+    rule=lambda n: verdict(max(n["H = 24"], n["H = 24, stiff damper"]) < 1.0, n["H = 24"] < 1.0),
 )
 def couple_dozens(resolution: Resolution) -> Found:
     """Errors with 24 harmonics."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 from math import inf
 
 import numpy as np
@@ -168,7 +169,9 @@ def sticking_group(resolution: Resolution) -> Found:
 def optimal_group(resolution: Resolution) -> Found:
     """Best loads."""
     return Found(
-        tuple(Fact(f"best load, {dof}", float(optimum(dof).value), "N") for dof in ("damper", "tip"))
+        tuple(
+            Fact(f"best load, {dof}", float(optimum(dof).value), "N") for dof in ("damper", "tip")
+        )
     )
 
 
@@ -190,7 +193,7 @@ def two_optima(resolution: Resolution) -> Found:
     """Best of the eight loads and over all."""
     facts = []
     for dof, printed in (("tip", 20.313), ("damper", 6.563)):
-        among = min(EIGHT, key=lambda load: exact(load).peak(dof).amplitude / load)  # noqa: B023
+        among = min(EIGHT, key=lambda load: exact(load).peak(dof).amplitude / load)
         facts += [
             Fact(f"best of eight, {dof}", among, "N", printed),
             Fact(f"best load, {dof}", float(optimum(dof).value), "N", printed),
@@ -277,9 +280,9 @@ def stiffer_is_lower(resolution: Resolution) -> Found:
     see="fig-4.7 fig-4.8",
 )
 def rigid_damper(resolution: Resolution) -> Found:
-    """Changes of the peak with the last decades of stiffness."""
+    """Return the changes of the peak with the last decades of stiffness."""
     peaks = [stiffened_peak(value, "damper")[0] for value in STIFFNESSES[-3:]]
-    changes = [100.0 * abs(b / a - 1.0) for a, b in zip(peaks, peaks[1:], strict=False)]
+    changes = [100.0 * abs(b / a - 1.0) for a, b in pairwise(peaks)]
     return Found(
         tuple(
             Fact(f"to 2.4e{power} N/m", change, "%")
@@ -326,7 +329,7 @@ def _around(mode: int, margin: float = 0.05) -> tuple[float, float]:
     see="fig-4.10 fig-4.11",
 )
 def three_groups(resolution: Resolution) -> Found:
-    """Number of curves in each group."""
+    """Return the number of curves in each group."""
     blade = ss.reference.turbine_blade()
     free = float(ss.natural_frequencies(blade, slipping=[0])[0])
     held = float(ss.natural_frequencies(blade)[0])
@@ -461,7 +464,9 @@ def ten_thousand(resolution: Resolution) -> Found:
     "The results predicted by the two methods are virtually identical.",
     """Open blade at the best slip force: largest difference of 9 harmonics to exact orbits, over
     the peak, and of Runge-Kutta to exact orbits.""",
-    rule=lambda n: verdict(n["9 harmonics"] < 2.0 and n["Runge-Kutta"] < 0.1, n["9 harmonics"] < 5.0),
+    rule=lambda n: verdict(
+        n["9 harmonics"] < 2.0 and n["Runge-Kutta"] < 0.1, n["9 harmonics"] < 5.0
+    ),
     see="fig-4.12 fig-4.13",
 )
 def virtually_identical(resolution: Resolution) -> Found:
@@ -506,12 +511,10 @@ def hundreds_of_times(resolution: Resolution) -> Found:
     "correspond to a near optimal damping situation where the Broyden method is the slowest",
     """Iterations of Broyden's method with 15 harmonics over 400 frequencies at the eight loads: the
     load that takes most, and 20.313 N over it. Near optimal damping is from 6.563 to 25 N.""",
-    rule=lambda n: verdict(
-        n["20.313 N over the slowest"] == 1.0, 6.5 < n["slowest load"] < 26.0
-    ),
+    rule=lambda n: verdict(n["20.313 N over the slowest"] == 1.0, 6.5 < n["slowest load"] < 26.0),
 )
 def slowest(resolution: Resolution) -> Found:
-    """Iterations by load."""
+    """Return the iterations by load."""
     omega = np.linspace(20.0, 350.0, resolution.count(400))
     taken = {
         load: ss.forced_response(

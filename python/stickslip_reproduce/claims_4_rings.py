@@ -221,7 +221,7 @@ def one_harmonic(resolution: Resolution) -> Found:
     rule=lambda n: verdict(n["equations"] == 2052 and n["non-linear"] == 684),
 )
 def unknowns(resolution: Resolution) -> Found:
-    """Number of equations."""
+    """Return the number of equations."""
     whole = ring(7e3, 0)
     one = ss.reference.snecma_beam()
     parts = 2 * 9 + 1
@@ -328,7 +328,8 @@ def _ratio(values: Float) -> float:
     "with large differences in the peak resonant amplitudes of the various beams",
     """Frequencies of the lowest and the highest of the 36 beams' own peaks, k_c = 6000 N/m, seed 0,
     and the slip fractions of the dampers there. The frequencies differ by as much as those of the
-    slipping and the stuck beam would at one stiffness, 1.41, where they differ by more than 1.2.""",
+    slipping and the stuck beam would at one stiffness, 1.41, where they differ by more than
+    1.2.""",
     rule=lambda n: verdict(
         n["highest over lowest frequency"] > 1.2 and n["smallest slip fraction"] < 0.2,
         n["highest over lowest frequency"] > 1.05,
@@ -357,8 +358,7 @@ def two_kinds(resolution: Resolution) -> Found:
     "mostly slipping motion at a few blades",
     """Share of the 36 beams whose damper slips more than half of the period at the frequency of the
     highest peak, k_c = 6000 and 7000 N/m, eight patterns: mean. A few is a third at most.""",
-    rule=lambda n: verdict(0.0 < n["slip more than half"] <= 33.0,
-        n["slip more than half"] < 50.0),
+    rule=lambda n: verdict(0.0 < n["slip more than half"] <= 33.0, n["slip more than half"] < 50.0),
 )
 def few_slipping(resolution: Resolution) -> Found:
     """Share of the blades that mostly slip."""
@@ -384,9 +384,7 @@ def few_slipping(resolution: Resolution) -> Found:
 )
 def factor_five(resolution: Resolution) -> Found:
     """Largest ratio of peaks by pattern."""
-    largest = [
-        max(_ratio(peaks(coupling, seed)) for coupling in COUPLINGS) for seed in SEEDS
-    ]
+    largest = [max(_ratio(peaks(coupling, seed)) for coupling in COUPLINGS) for seed in SEEDS]
     return Found((Fact("least", min(largest), "", 5.0), Fact("most", max(largest), "", 5.0)))
 
 
@@ -441,9 +439,7 @@ def ring_subresonances(resolution: Resolution) -> Found:
     "coupling stiffnesses are attached",
     """Patterns of eight in which the largest magnification factor over the couplings is higher at
     x₁ than at x₂, and the couplings and patterns in which it is.""",
-    rule=lambda n: verdict(
-        n["patterns"] == len(SEEDS), n["patterns"] > 0.5 * len(SEEDS)
-    ),
+    rule=lambda n: verdict(n["patterns"] == len(SEEDS), n["patterns"] > 0.5 * len(SEEDS)),
     see="fig-4.22",
 )
 def stronger(resolution: Resolution) -> Found:

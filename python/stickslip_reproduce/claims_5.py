@@ -95,9 +95,9 @@ def two_amplitudes(resolution: Resolution) -> Found:
     "5.2.1",
     "The hybrid frequency/time method is able to find periodic solutions, but it cannot predict "
     "their stability.",
-    """Share of the cycles of 5 harmonics whose multipliers, along the cycle of the balance, give the
-    stability of their side: sticking stable, slipping unstable, within 0.1 % of the fold left out.
-    With multipliers it can.""",
+    """Share of the cycles of 5 harmonics whose multipliers, along the cycle of the balance, give
+    the stability of their side: sticking stable, slipping unstable, within 0.1 % of the fold left
+    out. With multipliers it can.""",
     rule=lambda n: verdict(n["right"] < 50.0, n["right"] < 99.0),
 )
 def stability_by_balance(resolution: Resolution) -> Found:
@@ -119,13 +119,11 @@ def stability_by_balance(resolution: Resolution) -> Found:
     """Starts at 0.98 and 1.02 of the exact slipping cycle at seven ratios with both friction forces
     that the text leaves open: those that do as it says. It holds with the force of the cycle
     itself, f = F_d.""",
-    rule=lambda n: verdict(
-        min(n.values()) == 100.0, n["f(0) = F_d"] == 100.0
-    ),
+    rule=lambda n: verdict(min(n.values()) == 100.0, n["f(0) = F_d"] == 100.0),
     see="fig-5.4",
 )
 def high_branch(resolution: Resolution) -> Found:
-    """Starts beside the slipping branch with two friction forces."""
+    """Return the starts beside the slipping branch with two friction forces."""
     facts = []
     for name, force in (("f(0) = 0", 0.0), ("f(0) = F_d", LIMIT)):
         right = []
@@ -155,7 +153,7 @@ def high_branch(resolution: Resolution) -> Found:
     "the frequency of the motion has to be lower than the frequency when the friction damper is "
     "fully stuck, ω_max (sticking natural frequency) and it has to higher to the slipping natural "
     "frequency, ω_min",
-    """Least and largest frequency of the exact branch from r = 0.1, over 159.40 and 225.42 rad/s.""",
+    """Least and largest frequency of the exact branch, over 159.40 and 225.42 rad/s.""",
     rule=lambda n: verdict(n["least over ω_min"] > 1.0 and n["largest over ω_max"] < 1.0),
     see="fig-5.2",
 )
@@ -337,9 +335,9 @@ def two_rigid(resolution: Resolution) -> Found:
 @claim(
     "rigid-values",
     "5.2.3",
-    "the one-harmonic approximation in the rigid friction damper case predicts ω_min = 159.5 rad/s, "
-    "and A = 2.65·10⁻⁴ m, and these are the values also found by the multi-harmonic, Broyden "
-    "method",
+    "the one-harmonic approximation in the rigid friction damper case predicts ω_min = 159.5 "
+    "rad/s, and A = 2.65·10⁻⁴ m, and these are the values also found by the multi-harmonic, "
+    "Broyden method",
     """Eq. (5.20) at r = 1, and the exact rigid damper. The print's frequency is rounded, its
     amplitude is not reproduced at r = 1.""",
     rule=lambda n: verdict(

@@ -46,8 +46,9 @@ def cases(ratio: float, forces: str) -> ss.BasinMap:
 @claim(
     "cannot-be-reduced",
     "5.3.1",
-    "all equations, the ones corresponding to the nonlinear DOF's as well as the ones corresponding "
-    "to the linear DOF's, must be solved simultaneously. Thus, the system size cannot be reduced.",
+    "all equations, the ones corresponding to the nonlinear DOF's as well as the ones "
+    "corresponding to the linear DOF's, must be solved simultaneously. Thus, the system size "
+    "cannot be reduced.",
     """Limit cycle of mode 1 at r = 1, 15 harmonics: largest difference of its tip and x₃ to what
     follows from the damper's place alone at the frequency found, over the amplitude. With ω as one
     more unknown the system can be condensed.""",
@@ -62,11 +63,7 @@ def cannot_be_reduced(resolution: Resolution) -> Found:
     worst = 0.0
     for order in range(1, 16, 2):
         turned = order * float(cycles.omega[place])
-        dynamic = (
-            structure.stiffness
-            - turned**2 * structure.mass
-            + 1j * turned * structure.damping
-        )
+        dynamic = structure.stiffness - turned**2 * structure.mass + 1j * turned * structure.damping
         others = -np.linalg.solve(dynamic[1:, 1:], dynamic[1:, 0] * found[0, order])
         sizes = np.abs(found[1:]).max(axis=1)
         worst = max(worst, float((np.abs(others - found[1:, order]) / sizes).max()))
@@ -84,7 +81,7 @@ def cannot_be_reduced(resolution: Resolution) -> Found:
     see="table-5.2 fig-5.10 fig-5.11 fig-5.12",
 )
 def all_its_modes(resolution: Resolution) -> Found:
-    """Number of modes that the starts settle in."""
+    """Return the number of modes that the starts settle in."""
     facts = []
     for forces in ("zero", "pulled"):
         ends = cases(0.15, forces)
@@ -212,9 +209,9 @@ def higher_damping(resolution: Resolution) -> Found:
 @claim(
     "mode-3-stable-between",
     "5.4.1",
-    "There is a range of damping ratio, 2 to 4.5, for which mode 3 seems to be stable. Outside this "
-    "range, the system fails to converge or is unstable, or converges towards mode 2 for low values "
-    "of the negative viscous damping.",
+    "There is a range of damping ratio, 2 to 4.5, for which mode 3 seems to be stable. Outside "
+    "this range, the system fails to converge or is unstable, or converges towards mode 2 for low "
+    "values of the negative viscous damping.",
     """Exact sticking orbits of mode 3: the ratio up to which they are stable, and the lowest ratio
     at which they are. The print's starts lack the signs of mode 3 (+, +, −), which makes its lower
     end.""",
@@ -247,7 +244,7 @@ def mode_3_stable(resolution: Resolution) -> Found:
     rule=lambda n: verdict(n["unbounded"] == n["starts"], n["unbounded"] > 0.5 * n["starts"]),
 )
 def one_unstable_mode(resolution: Resolution) -> Found:
-    """Starts in other modes where mode 1 has no limit cycle."""
+    """Return the starts in other modes where mode 1 has no limit cycle."""
     from scipy.linalg import eigh
 
     driven = ss.destabilised(BEAM, NEGATIVE, 5.25)
@@ -321,12 +318,13 @@ def _nearest(found: ss.LimitCycles) -> float:
 @claim(
     "highest-mode",
     "5.4.1",
-    "It is also found that the higher mode seems to be the preponderant one in the free response of "
-    "the system.",
+    "It is also found that the higher mode seems to be the preponderant one in the free response "
+    "of the system.",
     """Share of the starts of Table 5.2 that end in or about mode 3, at eleven ratios from 0.1 to 4,
     both friction forces; and among ratios of 2.5 and more.""",
-    rule=lambda n: verdict(n["all ratios"] > 50.0 and n["ratios up to 1"] > 50.0,
-        n["ratios of 2.5 and more"] > 50.0),
+    rule=lambda n: verdict(
+        n["all ratios"] > 50.0 and n["ratios up to 1"] > 50.0, n["ratios of 2.5 and more"] > 50.0
+    ),
     see="table-5.2",
 )
 def highest_mode(resolution: Resolution) -> Found:
@@ -384,14 +382,16 @@ def around_35_hz(resolution: Resolution) -> Found:
     """Share of the power around 35 Hz."""
     (line,) = numbers_of("fig-5.24", resolution).plot.panels[0].series[:1]
     near = (line.x > 30.0) & (line.x < 41.0)
-    return Found((Fact("share of the power", 100.0 * float(line.y[near].sum() / line.y.sum()), "%"),))
+    return Found(
+        (Fact("share of the power", 100.0 * float(line.y[near].sum() / line.y.sum()), "%"),)
+    )
 
 
 @claim(
     "three-small-lines",
     "5.4.1",
-    "There is a small amplitude component around 225 Hz, which corresponds to the sticking frequency "
-    "of the second mode [...] two other small components around 180 Hz and 250 Hz, which "
+    "There is a small amplitude component around 225 Hz, which corresponds to the sticking "
+    "frequency of the second mode [...] two other small components around 180 Hz and 250 Hz, which "
     "correspond, respectively, to the fifth harmonic and the seventh harmonic",
     """Lines nearest to these frequencies; they are to be within 2 %.""",
     rule=lambda n: verdict(
@@ -407,7 +407,11 @@ def three_lines(resolution: Resolution) -> Found:
     return Found(
         tuple(
             Fact(name, shown.fact(f"line of {name}"), "Hz", printed)
-            for name, printed in (("5th harmonic", 180.0), ("mode 2", 225.0), ("7th harmonic", 250.0))
+            for name, printed in (
+                ("5th harmonic", 180.0),
+                ("mode 2", 225.0),
+                ("7th harmonic", 250.0),
+            )
         )
     )
 
@@ -451,8 +455,8 @@ def orthogonal(resolution: Resolution) -> Found:
 @claim(
     "modal-coefficients",
     "5.4.2",
-    "They are computed from the nominal SNECMA values given in Eq. (2.32): c₁ = 5.789, c₂ = 27.627, "
-    "c₃ = 12.095",
+    "They are computed from the nominal SNECMA values given in Eq. (2.32): c₁ = 5.789, c₂ = "
+    "27.627, c₃ = 12.095",
     """Modal damping of the three modes, eigenvectors of unit length: the numbers are right, their
     order is reversed.""",
     rule=lambda n: verdict(
@@ -509,9 +513,9 @@ def only_third(resolution: Resolution) -> Found:
     "upper-branch-decides",
     "5.4.2",
     "the upper branch determines the stability limit: any motion with an initial displacement "
-    "larger than the value at the upper branch will be unstable, and any motion initiated below the "
-    "upper branch will be stable and converge towards to mostly sticking motion. This stability "
-    "analysis was checked by numerical time integration.",
+    "larger than the value at the upper branch will be unstable, and any motion initiated below "
+    "the upper branch will be stable and converge towards to mostly sticking motion. This "
+    "stability analysis was checked by numerical time integration.",
     """Starts at 0.98 and 1.02 of the amplitudes of the exact slipping orbit, no velocity, at r = 1,
     2 and 3, with the signs of mode 3 and unsigned: those that do as it says, with f(0) = F_d and
     with f(0) = 0. What a start leads to depends on its whole state.""",
@@ -520,7 +524,7 @@ def only_third(resolution: Resolution) -> Found:
     ),
 )
 def upper_branch(resolution: Resolution) -> Found:
-    """Starts beside the slipping branch of mode 3."""
+    """Return the starts beside the slipping branch of mode 3."""
     beam, negative = ss.reference.flutter_beam(mode=2)
     ratios = (1.0, 2.0, 3.0)
     cycles = ss.limit_cycles(beam, negative, mode=2, ratio=ratios, method="exact")
@@ -547,7 +551,9 @@ def upper_branch(resolution: Resolution) -> Found:
             share = 100.0 * float(np.mean(found))
             facts.append(Fact(f"{factor:g}, {name}", share, "% as said"))
         series.append(
-            Series(name, [0.98, 1.02], [100.0 * float(np.mean(one)) for one in right.values()], "marks")
+            Series(
+                name, [0.98, 1.02], [100.0 * float(np.mean(one)) for one in right.values()], "marks"
+            )
         )
     plot = Plot(
         Axis("start over the slipping orbit"),
@@ -634,7 +640,7 @@ def several_modes(resolution: Resolution) -> Found:
     see="table-5.2 fig-5.17",
 )
 def friction_forces(resolution: Resolution) -> Found:
-    """Starts that lead elsewhere with another friction force."""
+    """Return the starts that lead elsewhere with another friction force."""
     changed = 0
     for ratio in EVERY:
         zero, pulled = cases(ratio, "zero"), cases(ratio, "pulled")

@@ -37,9 +37,7 @@ def stuck(omega: float, force: float) -> Float:
 def _with_limits(force: float, limits: list[float]) -> ss.Model:
     pair = ss.reference.damped_pair(force)
     (damper,) = pair.contacts
-    other = ss.StructuralDamper(
-        list(DOFS), stiffness=damper.stuck_stiffness, slip_forces=limits
-    )
+    other = ss.StructuralDamper(list(DOFS), stiffness=damper.stuck_stiffness, slip_forces=limits)
     return pair.replaced(contacts=[other])
 
 
@@ -50,9 +48,7 @@ def _forces(omega: float, force: float) -> Float:
 @cache
 def curves(force: float) -> ss.ForcedResponse:
     """Return the pair over the range of the figures."""
-    return ss.forced_response(
-        ss.reference.damped_pair(force), np.linspace(*SPAN, 201), HARMONICS
-    )
+    return ss.forced_response(ss.reference.damped_pair(force), np.linspace(*SPAN, 201), HARMONICS)
 
 
 @cache
@@ -69,13 +65,11 @@ def sets() -> frozenset[frozenset[int]]:
 @claim(
     "property-1",
     "6.2",
-    "When the damper relative displacement is maximum, the force transmitted by the friction damper "
-    "is equal to its maximum value, F_d, and the damper starts sticking.",
+    "When the damper relative displacement is maximum, the force transmitted by the friction "
+    "damper is equal to its maximum value, F_d, and the damper starts sticking.",
     """Force at the largest displacement over F_d, exact orbits of the beam at 20.313 N: at 170
     rad/s, where the damper slips, and at 120, where it does not.""",
-    rule=lambda n: verdict(
-        min(n.values()) > 0.99, n["with slip"] > 0.99
-    ),
+    rule=lambda n: verdict(min(n.values()) > 0.99, n["with slip"] > 0.99),
 )
 def property_1(resolution: Resolution) -> Found:
     """Force at the largest displacement."""
@@ -166,15 +160,15 @@ def procedure_2(samples: int, periods: int, force: float, zero_start: bool = Tru
 @claim(
     "overshooting",
     "6.3.3",
-    "With this simple correction, it is ensured that the slipping values of the friction forces are "
-    "equal to the maximum values, ±F_i, Eq. (6.22).",
+    "With this simple correction, it is ensured that the slipping values of the friction forces "
+    "are equal to the maximum values, ±F_i, Eq. (6.22).",
     """Procedure 2 with (6.21) on the exact displacements at 550 rad/s, 550 N: by how much a force
     exceeds its limit, with 64 and with 1024 samples per period. It looks at the state one step
     late: the error falls with the step and is there for one step each time.""",
     rule=lambda n: verdict(n["64 samples"] < 0.01, n["1024 samples"] < 0.01),
 )
 def overshooting(resolution: Resolution) -> Found:
-    """Forces beyond their limits by Procedure 2."""
+    """Return the forces beyond their limits by Procedure 2."""
     facts = []
     for samples in (64, 1024):
         forces = np.abs(procedure_2(samples, 3, 550.0, zero_start=False)[:, :3])
@@ -206,9 +200,7 @@ def true_solution(resolution: Resolution) -> Found:
         ]
         panels.append(Panel(tuple(series), f"contacts {points[0] + 1} and {points[1] + 1}"))
     plot = Plot(PERIOD_SHARE, Axis("contact force", "N"), tuple(panels))
-    return Found(
-        (Fact("by Procedure 2", means[0], "N"), Fact("exact", means[1], "N", 0.0)), plot
-    )
+    return Found((Fact("by Procedure 2", means[0], "N"), Fact("exact", means[1], "N", 0.0)), plot)
 
 
 def _middle(forces: Float) -> Float:
@@ -224,7 +216,7 @@ def _middle(forces: Float) -> Float:
     see="fig-6.4",
 )
 def mere_stiffness(resolution: Resolution) -> Found:
-    """Forces without slip."""
+    """Return the forces without slip."""
     found, linear = np.abs(_forces(250.0, 15.0)).max(axis=0), np.abs(stuck(250.0, 15.0)).max(axis=0)
     return Found((Fact("largest difference", float(np.abs(found - linear).max()), "N"),))
 
@@ -235,9 +227,7 @@ def mere_stiffness(resolution: Resolution) -> Found:
     "the force at damper 2 is non-smooth, although damper 2 is never slipping",
     """Largest jump of the slope of f₂ from one sample of the period to the next, over the largest
     slope, at 550 rad/s, 35 N, and of the force if all stuck; whether contact 2 slips.""",
-    rule=lambda n: verdict(
-        n["jump"] > 5.0 * n["jump if stuck"] and n["contact 2 slips"] == 0
-    ),
+    rule=lambda n: verdict(n["jump"] > 5.0 * n["jump if stuck"] and n["contact 2 slips"] == 0),
     see="fig-6.5",
 )
 def non_smooth(resolution: Resolution) -> Found:
@@ -289,7 +279,12 @@ def two_at_once(resolution: Resolution) -> Found:
     forces = np.abs(_forces(550.0, 140.0)).max(axis=0)
     return Found(
         (
-            Fact("slip at once", max(map(len, orbit(550.0, 140.0).contact_states(0, 0).sets)), "", 2.0),
+            Fact(
+                "slip at once",
+                max(map(len, orbit(550.0, 140.0).contact_states(0, 0).sets)),
+                "",
+                2.0,
+            ),
             Fact("share of the limit", float((forces / LIMITS)[1:3].max())),
         )
     )
@@ -306,7 +301,7 @@ def two_at_once(resolution: Resolution) -> Found:
     see="fig-6.6 fig-6.7",
 )
 def greater(resolution: Resolution) -> Found:
-    """Forces over those of the stuck damper."""
+    """Return the forces over those of the stuck damper."""
     slipping, any_one = 0.0, 0.0
     for force in (35.0, 140.0, 550.0):
         ratio = np.abs(_forces(550.0, force)).max(axis=0) / np.abs(stuck(550.0, force)).max(axis=0)
@@ -332,9 +327,7 @@ def never_elementary(resolution: Resolution) -> Found:
     for load in ss.reference.SNECMA_LOADS:
         model = ss.reference.snecma_beam(load)
         held = model.replaced(
-            contacts=[
-                ss.Jenkins("damper", stiffness=ss.reference.DAMPER_STIFFNESS, slip_force=inf)
-            ]
+            contacts=[ss.Jenkins("damper", stiffness=ss.reference.DAMPER_STIFFNESS, slip_force=inf)]
         )
         true = ss.forced_response(model, omega, 15)
         linear = ss.forced_response(held, omega, 1).damper_amplitude((0, 0))
@@ -354,14 +347,19 @@ def never_elementary(resolution: Resolution) -> Found:
     see="fig-6.7",
 )
 def three_at_once(resolution: Resolution) -> Found:
-    """Forces while three contacts slip."""
+    """Return the forces while three contacts slip."""
     forces = _forces(550.0, 550.0)
     on = (np.abs(np.abs(forces[:, :3]) - LIMITS[:3]) < 1e-9 * LIMITS[:3]).all(axis=1)
     change = np.abs(np.diff(forces, axis=0))
     both = on[1:] & on[:-1] & (np.sign(forces[1:]) == np.sign(forces[:-1])).all(axis=1)
     return Found(
         (
-            Fact("slip at once", max(map(len, orbit(550.0, 550.0).contact_states(0, 0).sets)), "", 3.0),
+            Fact(
+                "slip at once",
+                max(map(len, orbit(550.0, 550.0).contact_states(0, 0).sets)),
+                "",
+                3.0,
+            ),
             Fact("largest change", float(change[both].max() / change.max())),
         )
     )
@@ -370,9 +368,9 @@ def three_at_once(resolution: Resolution) -> Found:
 @claim(
     "linear-at-20-n",
     "6.4.2",
-    "For a low force amplitude, F_ex = 20N, none of the dampers slip at any time and the response of "
-    "the system is linear. In this case, the displacement amplitudes at dampers 1 and 2 on one "
-    "hand, and at damper 3 and 4 on the other hand, are very similar.",
+    "For a low force amplitude, F_ex = 20N, none of the dampers slip at any time and the "
+    "response of the system is linear. In this case, the displacement amplitudes at dampers 1 "
+    "and 2 on one hand, and at damper 3 and 4 on the other hand, are very similar.",
     """Largest slip fraction at 20 N from 500 to 700 rad/s, and the differences of the peaks there;
     very similar is 5 %.""",
     rule=lambda n: verdict(
@@ -399,8 +397,8 @@ def _apart(force: float) -> tuple[Fact, ...]:
 @claim(
     "increasingly-different",
     "6.4.2",
-    "As the amplitude of external forcing increases, F_ex ≥ 30N, the displacements at dampers 1 and "
-    "2, and 3 and 4, become increasingly different.",
+    "As the amplitude of external forcing increases, F_ex ≥ 30N, the displacements at dampers 1 "
+    "and 2, and 3 and 4, become increasingly different.",
     """Largest distance of the curves of 1 and 2, and of 3 and 4, over the larger peak, at 20, 40
     and 60 N: how it grows.""",
     rule=lambda n: verdict(
@@ -440,8 +438,8 @@ def more_dampers(resolution: Resolution) -> Found:
     "continuum",
     "6.4.2",
     "There are six separate resonance frequencies from 500 rad/s to 700 rad/s. This might explain "
-    "the fact that for force amplitudes greater than 60N, there is a continuum of resonant response "
-    "of the beam system.",
+    "the fact that for force amplitudes greater than 60N, there is a continuum of resonant "
+    "response of the beam system.",
     """Natural frequencies from 500 to 700 rad/s of all eight slip configurations, of those that
     occur on exact orbits to 120 N, and by how much the curve of contact 1 at 120 N varies from 560
     to 640 rad/s, over its mean.""",
@@ -482,9 +480,7 @@ def continuum(resolution: Resolution) -> Found:
 )
 def interesting(resolution: Resolution) -> Found:
     """Maximum of contact 1 beyond the printed axis."""
-    shown = ss.forced_response(
-        ss.reference.damped_pair(120.0), np.linspace(*WIDE, 311), HARMONICS
-    )
+    shown = ss.forced_response(ss.reference.damped_pair(120.0), np.linspace(*WIDE, 311), HARMONICS)
     size = shown.amplitude(DOFS[0])
     free = ss.natural_frequencies(ss.reference.damped_pair(), slipping=[("structural", 0)])
     inside = (shown.omega >= SPAN[0]) & (shown.omega <= SPAN[1])
@@ -508,8 +504,8 @@ def interesting(resolution: Resolution) -> Found:
 @claim(
     "independent-beams",
     "6.4.2",
-    "When both dampers 1 and 3 are slipping, the two SNECMA beams are actually independent from each "
-    "other.",
+    "When both dampers 1 and 3 are slipping, the two SNECMA beams are actually independent from "
+    "each other.",
     """Natural frequency from 500 to 700 rad/s with 1 and 3 slipping, and its distance from the
     nearest one of a single beam.""",
     rule=lambda n: verdict(n["distance"] < 1.0),
@@ -535,9 +531,9 @@ def independent(resolution: Resolution) -> Found:
     "6.4.2",
     "The steepness of the resonant curves may be attributed to the antisymmetry of the external "
     "forcing",
-    """Steepest slope |d ln x / d ln ω| at contact 1 from 450 to 760 rad/s, tips driven in opposition
-    and in phase: at 60 N, and at 1 N, where nothing slips and both have the same resonance of 541
-    rad/s.""",
+    """Steepest slope |d ln x / d ln ω| at contact 1 from 450 to 760 rad/s, tips driven in
+    opposition and in phase: at 60 N, and at 1 N, where nothing slips and both have the same
+    resonance of 541 rad/s.""",
     rule=lambda n: verdict(
         n["60 N, in opposition"] > 1.5 * n["60 N, in phase"]
         and n["1 N, in opposition"] > 1.1 * n["1 N, in phase"],

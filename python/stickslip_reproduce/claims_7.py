@@ -12,8 +12,8 @@ PROPOSED = {
     "accurately predict the energy dissipated at an interface undergoing microslip",
     "7.2-normal-load": "It might be important to consider the effects of the variations of the "
     "normal load across the frictional interface.",
-    "7.2-two-directions": "This assumption may not always be valid, especially if there is coupling "
-    "between motions of the structure in more than one direction",
+    "7.2-two-directions": "This assumption may not always be valid, especially if there is "
+    "coupling between motions of the structure in more than one direction",
     "7.2-wedge": "the dampers may need to be considered as wedge elements connecting two adjacent "
     "blades",
     "7.2-damper-mass": "In some cases, the mass of the damper may need to be taken into account in "

@@ -16,6 +16,7 @@ from stickslip_reproduce.resolution import Float
 
 __all__ = [
     "AMPLITUDES",
+    "FORCES",
     "LOWEST",
     "MODES",
     "NEWTON",
@@ -23,7 +24,6 @@ __all__ = [
     "RATIO",
     "STARTS",
     "at",
-    "FORCES",
     "beside",
     "held",
     "quantity",
