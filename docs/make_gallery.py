@@ -14,7 +14,7 @@ from pathlib import Path
 
 from stickslip.files import write
 from stickslip_reproduce import FULL, chosen, costs, items
-from stickslip_reproduce.claims import claims
+from stickslip_reproduce.claims import claims, computed
 from stickslip_reproduce.claims_page import PAGE, counts, write_claims
 from stickslip_reproduce.costs import FILE
 from stickslip_reproduce.folder import write_picture, write_record
@@ -28,7 +28,7 @@ def main(names: list[str]) -> None:
     FOLDER.mkdir(exist_ok=True)
     for item in chosen([name for name in names if name != "claims"] or ["all"] * (not names)):
         begin = time.process_time()
-        numbers = item.compute(FULL)
+        numbers = computed(item, FULL)
         seconds = time.process_time() - begin
         write_picture(numbers.plot, FOLDER / f"{item.name}.png", colours=COLOURS)
         write_record(item, numbers, seconds, FULL, FOLDER)
@@ -40,7 +40,10 @@ def main(names: list[str]) -> None:
             begin = time.process_time()
             findings.append(one.finding(FULL))
             seconds = time.process_time() - begin
-            print(f"{one.section:<6} {findings[-1].verdict:<17} {seconds:6.2f} s  {one.name}")
+            print(
+                f"{one.section:<6} {findings[-1].verdict:<17} {seconds:6.2f} s  {one.name}",
+                flush=True,
+            )
         print(counts(write_claims(findings, FOLDER, colours=COLOURS)))
         (FOLDER / PAGE).unlink()
 
