@@ -233,7 +233,7 @@ def _history(dof: str) -> Numbers:
         Series("time integration", periods, followed),
     )
     error = np.sqrt(np.mean((followed - predicted) ** 2) / np.mean(predicted**2))
-    facts = (
+    facts: tuple[Fact, ...] = (
         Fact("difference over the limit cycle, mean squares", 100.0 * float(error), "%"),
         Fact("amplitude of the limit cycle", float(cycles.amplitude(dof)[place]), "m"),
         Fact("amplitude of the motion", motion.amplitude(dof), "m"),

@@ -251,8 +251,8 @@ def faster_than_newton(resolution: Resolution) -> Found:
         )
         for method in ("Newton", "Broyden")
     }
-    ring = ss.reference.beam_ring(coupling=7e3, engine_order=3)
-    ring = ring.mistuned(ss.mistuning_pattern(36, 0.07, "uniform", seed=0))
+    tuned = ss.reference.beam_ring(coupling=7e3, engine_order=3)
+    ring = tuned.mistuned(ss.mistuning_pattern(36, 0.07, "uniform", seed=0))
     whole = []
     for method in ("newton", "broyden"):
         begin = time.process_time()

@@ -530,7 +530,7 @@ def upper_branch(resolution: Resolution) -> Found:
     cycles = ss.limit_cycles(beam, negative, mode=2, ratio=ratios, method="exact")
     facts, series = [], []
     for name, force in (("f(0) = F_d", LIMIT), ("f(0) = 0", 0.0)):
-        right = {0.98: [], 1.02: []}
+        right: dict[float, list[bool]] = {0.98: [], 1.02: []}
         for ratio in ratios:
             place = at(cycles, ratio, "slipping")
             driven = cycles.model_at(place)

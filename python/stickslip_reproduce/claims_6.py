@@ -193,18 +193,20 @@ def true_solution(resolution: Resolution) -> Found:
     means = [float(np.abs(_middle(one)[1:]).max()) for one in (marched, true)]
     panels = []
     for points in ((0, 1), (2, 3)):
-        series = [
-            over_period(f"f{'₁₂₃₄'[point]}, {name}", one[:, point], kind=kind, pair=point)
-            for point in points
-            for name, one, kind in (("exact", true, "limit"), ("from f(0) = 0", marched, "line"))
-        ]
+        series = []
+        for point in points:
+            name = f"f{'₁₂₃₄'[point]}"
+            series += [
+                over_period(f"{name}, exact", true[:, point], kind="limit", pair=point),
+                over_period(f"{name}, from f(0) = 0", marched[:, point], pair=point),
+            ]
         panels.append(Panel(tuple(series), f"contacts {points[0] + 1} and {points[1] + 1}"))
     plot = Plot(PERIOD_SHARE, Axis("contact force", "N"), tuple(panels))
     return Found((Fact("by Procedure 2", means[0], "N"), Fact("exact", means[1], "N", 0.0)), plot)
 
 
 def _middle(forces: Float) -> Float:
-    return 0.5 * (forces.max(axis=0) + forces.min(axis=0))
+    return np.asarray(0.5 * (forces.max(axis=0) + forces.min(axis=0)))
 
 
 @claim(

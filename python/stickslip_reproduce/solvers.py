@@ -123,13 +123,15 @@ class Factors(NamedTuple):
 def _qr_begin(matrix: Float) -> tuple[Float, ...]:
     from scipy.linalg import qr
 
-    return tuple(qr(matrix))
+    q, r = qr(matrix)
+    return np.asarray(q, np.float64), np.asarray(r, np.float64)
 
 
 def _qr_change(kept: tuple[Float, ...], u: Float, v: Float) -> tuple[Float, ...]:
     from scipy.linalg import qr_update
 
-    return tuple(qr_update(*kept, u, v, check_finite=False))
+    q, r = qr_update(kept[0], kept[1], u, v, check_finite=False)
+    return np.asarray(q, np.float64), np.asarray(r, np.float64)
 
 
 def _qr_solve(kept: tuple[Float, ...], right: Float) -> Float:
