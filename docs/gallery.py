@@ -20,6 +20,7 @@ from stickslip_reproduce import SUBJECTS, costs, heading, items
 from stickslip_reproduce.claims_page import chapters, counts, entries, values
 from stickslip_reproduce.folder import records
 from stickslip_reproduce.index import fact_rows, number
+from stickslip_reproduce.numbered import NUMBERED
 
 FOLDER = Path(__file__).parent / "assets" / "reproduction"
 _MARK = re.compile(
@@ -114,7 +115,21 @@ def _coverage(_: str) -> str:
         else:
             cells = heading(name), subject, "not yet", ""
         lines.append(_row(cells))
+    lines += [
+        "",
+        "Sketches, parameters and algorithms:",
+        "",
+        "| | subject | where |",
+        "|---|---|---|",
+    ]
+    lines += [_row([name, subject, _place(place)]) for name, (subject, place) in NUMBERED.items()]
     return "\n".join(lines)
+
+
+def _place(place: str) -> str:
+    """Return a claim as a link, and a name as code."""
+    kind, _, name = place.partition(" ")
+    return f"[{name}](claims.md#{name})" if kind == "claim" else f"`{place}`"
 
 
 def _claims(_: str) -> str:

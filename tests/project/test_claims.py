@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import stickslip as ss
 from beam_study import invoke
 from claim_numbers import CLAIM_NUMBERS, TIMED
-from stickslip_reproduce import COARSE, SUBJECTS, Axis, Fact, Panel, Plot, Series, items
+from stickslip_reproduce import COARSE, SUBJECTS, Axis, Fact, Panel, Plot, Series, heading, items
 from stickslip_reproduce.claims import VERDICTS, Claim, Finding, Found, claims, verdict
 from stickslip_reproduce.claims_page import chapters, counts, entries, write_claims
 from stickslip_reproduce.drawing import draw
+from stickslip_reproduce.numbered import NUMBERED
 
 DOCS = Path(__file__).parents[2] / "docs"
 PROPOSED = [name for name in claims() if name.startswith("proposed-")]
@@ -151,12 +153,36 @@ def test_docs_hold_what_the_claims_come_to():
 
 
 def test_page_of_the_docs_is_written_from_the_record():
-    hook = runpy.run_path(str(DOCS / "gallery.py"))["on_page_markdown"]
+    hook = runpy.run_path(str(DOCS / "gallery.py"))["written"]
     page = hook("{{ claims }}")
     for one in claims().values():
         assert f'id="{one.name}"' in page
         assert one.quote.replace("|", "&#124;") in page
     assert "## Chapter VI" in page
+
+
+def test_everything_numbered_is_listed():
+    figures = {2: 11, 3: 1, 4: 22, 5: 28, 6: 11}
+    tables = {2: 3, 3: 1, 4: 1, 5: 3, 6: 4}
+    wanted = {
+        f"Fig. {chapter}.{n}" for chapter, last in figures.items() for n in range(1, last + 1)
+    }
+    wanted |= {
+        f"Table {chapter}.{n}" for chapter, last in tables.items() for n in range(1, last + 1)
+    }
+    wanted |= {f"{kind} {n}" for kind in ("Procedure", "Property") for n in (1, 2)}
+    listed = {heading(name) for name in SUBJECTS if not name.startswith("7.")}
+    assert listed | set(NUMBERED) == wanted
+    assert not listed & set(NUMBERED)
+    for _, place in NUMBERED.values():
+        kind, _, name = place.partition(" ")
+        if kind == "claim":
+            assert name in claims()
+        elif kind != "none":
+            ss_name = kind.removeprefix("stickslip.").split(".")
+            assert hasattr(ss.reference if len(ss_name) > 1 else ss, ss_name[-1])
+    page = runpy.run_path(str(DOCS / "gallery.py"))["written"]("{{ coverage }}")
+    assert all(f"| {name} |" in page for name in NUMBERED)
 
 
 def test_quotes_are_plain():
