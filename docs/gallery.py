@@ -1,8 +1,8 @@
 """Markdown extension: writes the gallery and the coverage page from the catalogue of reproductions.
 
-A line ``{{ gallery }}``, ``{{ coverage }}`` or ``{{ table NAME }}`` of a page is replaced. Texts,
-code and status come from the package that the pages are built with, pictures and numbers from
-``docs/assets/reproduction``, which ``docs/make_gallery.py`` fills.
+A line ``{{ gallery }}``, ``{{ coverage }}``, ``{{ claims }}`` or ``{{ table NAME }}`` is
+replaced. Texts, code and status come from the package that the pages are built with, pictures and
+numbers from ``docs/assets/reproduction``, which ``docs/make_gallery.py`` fills.
 """
 
 from __future__ import annotations
@@ -17,11 +17,15 @@ from markdown.extensions import Extension
 from markdown.preprocessors import Preprocessor
 
 from stickslip_reproduce import SUBJECTS, costs, heading, items
+from stickslip_reproduce.claims_page import chapters, counts, entries, values
 from stickslip_reproduce.folder import records
 from stickslip_reproduce.index import fact_rows, number
+from stickslip_reproduce.numbered import NUMBERED
 
 FOLDER = Path(__file__).parent / "assets" / "reproduction"
-_MARK = re.compile(r"^\{\{ (?P<what>gallery|coverage|table) ?(?P<name>[\w.-]*) \}\}$", re.MULTILINE)
+_MARK = re.compile(
+    r"^\{\{ (?P<what>gallery|coverage|claims|table) ?(?P<name>[\w.-]*) \}\}$", re.MULTILINE
+)
 
 
 def written(page: str) -> str:
@@ -111,11 +115,53 @@ def _coverage(_: str) -> str:
         else:
             cells = heading(name), subject, "not yet", ""
         lines.append(_row(cells))
+    lines += [
+        "",
+        "Sketches, parameters and algorithms:",
+        "",
+        "| | subject | where |",
+        "|---|---|---|",
+    ]
+    lines += [_row([name, subject, _place(place)]) for name, (subject, place) in NUMBERED.items()]
     return "\n".join(lines)
+
+
+def _place(place: str) -> str:
+    """Return a claim as a link, and a name as code."""
+    kind, _, name = place.partition(" ")
+    return f"[{name}](claims.md#{name})" if kind == "claim" else f"`{place}`"
+
+
+def _claims(_: str) -> str:
+    kept = entries(FOLDER)
+    parts = [counts(kept)]
+    for title, own in chapters(kept):
+        lines = [
+            f"## {title}",
+            "",
+            "| section | the text, and what was computed | verdict | numbers |",
+        ]
+        lines.append("|---|---|---|---|")
+        for one in own:
+            known = [name for name in one["see"] if name in items()]
+            links = ", ".join(f"[{heading(name)}](gallery.md#{name})" for name in known)
+            text = f'<span id="{one["name"]}"></span>“{one["quote"]}”<br><br>{one["done"]} {links}'
+            cells = one["section"], text, f"**{one['verdict']}**", "<br>".join(values(one))
+            # A bar ends a cell.
+            lines.append(_row([cell.replace("|", "&#124;") for cell in cells]))
+        parts.append("\n".join(lines))
+        parts += [
+            f"![{one['done']}](assets/reproduction/{one['picture']})\n\n"
+            f"*[{one['section']}](#{one['name']}): {one['verdict']}*"
+            for one in own
+            if one["picture"]
+        ]
+    return "\n\n".join(parts)
 
 
 _WRITERS: dict[str, Callable[[str], str]] = {
     "gallery": _gallery,
     "coverage": _coverage,
+    "claims": _claims,
     "table": _table,
 }

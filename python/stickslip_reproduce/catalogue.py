@@ -71,7 +71,7 @@ def chosen(names: Iterable[str]) -> list[Item]:
         elif name in SUBJECTS:
             raise ModelError(f"{name}: {heading(name)} is not reproduced yet; see the list")
         else:
-            near = get_close_matches(name, [*known, "all"], 1)
+            near = get_close_matches(name, [*known, "all", "claims"], 1)
             hint = f"did you mean {near[0]!r}?" if near else "stickslip reproduce lists them"
             raise ModelError(f"unknown table or figure {name!r}; {hint}")
     return list(wanted.values())

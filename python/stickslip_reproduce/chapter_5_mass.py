@@ -36,7 +36,7 @@ MARKED = (0.1, 5.0, 0.2)
 
 TIME = (
     "The ratios and starts of the time integration are not printed: ours are 0.1 to 5 from 2 % "
-    "below and 2 % above the slipping limit cycle, by the exact flow between stick and slip."
+    "below and 2 % above the slipping limit cycle, with its friction force F_d, by the exact flow."
 )
 
 

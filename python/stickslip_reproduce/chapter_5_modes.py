@@ -9,12 +9,14 @@ from stickslip_reproduce import errata
 from stickslip_reproduce.curves import PERIOD_SHARE, over_period
 from stickslip_reproduce.cycles import (
     AMPLITUDES,
+    FORCES,
     LOWEST,
     MODES,
     NEWTON,
     OMEGA,
     RATIO,
     at,
+    held,
     quantity,
     turn,
 )
@@ -40,6 +42,16 @@ END = 4.9
 
 OUR_RATIO = "The ratio r of Figs 5.10-5.12 is not printed: r = 0.15, at which all three settle."
 
+OPEN_FORCES = (
+    "Friction forces at the start are not printed: the starts are tried with f(0) = 0 and with "
+    "f(0) = clip(k_d x₁(0), −F_d, F_d), as if the damper had been pulled along from rest."
+)
+
+SAME_FORCES = (
+    "Friction force at the start: zero; with f(0) = clip(k_d x₁(0), −F_d, F_d) the motion "
+    "settles in the same limit cycle, see the numbers."
+)
+
 LETTERS = {"damper": "x₁", "tip": "x₂", "mode": "x₃"}
 
 
@@ -47,35 +59,64 @@ LETTERS = {"damper": "x₁", "tip": "x₂", "mode": "x₃"}
     "table-5.2",
     """The three starts lead to the modes 1, 2 and 3 at small ratios. With a growing ratio the
     higher modes win, and from 2.5 on only the third is left; where mode 1 has no limit cycle any
-    more (5), all grow without bound.""",
-    inferred=(OUR_RATIO, "Integrated exactly between stick and slip, over 3000 periods of mode 1."),
+    more (5), all grow without bound. What changes with the friction force at the start is marked:
+    case 2 at r = 1 and case 1 at 1.5.""",
+    inferred=(OUR_RATIO, OPEN_FORCES, "Integrated exactly, over 3000 periods of mode 1."),
 )
 def table_5_2(resolution: Resolution) -> Numbers:
     """Three starts and the modes they lead to."""
     beam, negative = ss.reference.flutter_beam()
     ratios = resolution.of(TRIED)
     rows: list[tuple[str | float | None, ...]] = []
-    modes = []
+    modes: dict[str, list[list[int]]] = {forces: [] for forces in FORCES}
+    changed: list[tuple[float, float]] = []
     for ratio in ratios:
-        ends = ss.basin_map(ss.destabilised(beam, negative, ratio), starts=STARTS)
-        modes.append(ends.mode + 1)
+        driven = ss.destabilised(beam, negative, ratio)
+        states = {forces: [held(driven, one, forces) for one in STARTS] for forces in FORCES}
+        ends = {forces: ss.basin_map(driven, starts=states[forces]) for forces in FORCES}
         for case, start in enumerate(STARTS):
-            settled = ends.motion[case] == "settled"
-            name = MODES[ends.mode[case]] if ends.mode[case] >= 0 else None
-            omega = float(ends.omega[case]) if settled else None
-            rows.append((case + 1, *start.values(), ratio, str(ends.motion[case]), name, omega))
-    columns = ("case", "x₁(0) [m]", "x₂(0) [m]", "x₃(0) [m]", "r", "motion", "about", "ω [rad/s]")
-    series = tuple(
-        Series(f"case {case + 1}", ratios, [row[case] for row in modes], "marks")
+            found = {(one.motion[case], int(one.mode[case])) for one in ends.values()}
+            for forces, one in ends.items():
+                mode = int(one.mode[case])
+                omega = float(one.omega[case]) if one.motion[case] == "settled" else None
+                began = float(states[forces][case].contact_force[0])
+                name = MODES[mode] if mode >= 0 else None
+                mark = "changed" if len(found) > 1 else None
+                motion = str(one.motion[case])
+                rows.append((case + 1, *start.values(), began, ratio, motion, name, omega, mark))
+            if len(found) > 1:
+                changed.append((ratio, float(ends["pulled"].mode[case] + 1)))
+        for forces, one in ends.items():
+            modes[forces].append((one.mode + 1).tolist())
+    columns = (
+        "case",
+        "x₁(0) [m]",
+        "x₂(0) [m]",
+        "x₃(0) [m]",
+        "f(0) [N]",
+        "r",
+        "motion",
+        "about",
+        "ω [rad/s]",
+        "with the force",
+    )
+    series = [
+        Series(f"case {case + 1}", ratios, [row[case] for row in modes["zero"]], "marks")
         for case in range(len(STARTS))
-    )
-    shown = ss.basin_map(ss.destabilised(beam, negative, SHOWN), starts=STARTS)
-    facts = tuple(
+    ]
+    if changed:
+        places, found_modes = zip(*changed, strict=True)
+        label = f"other motion with {FORCES['pulled']}"
+        series.append(Series(label, places, found_modes, "marks"))
+    driven = ss.destabilised(beam, negative, SHOWN)
+    facts = [
         Fact(f"mode of case {case + 1} at r = {SHOWN:g}", float(mode + 1), "", case + 1.0)
-        for case, mode in enumerate(shown.mode)
-    )
+        for case, mode in enumerate(ss.basin_map(driven, starts=STARTS).mode)
+    ]
+    facts.append(Fact("motions that change with the friction force", float(len(changed))))
     y = Axis("mode with the most energy, 0: unbounded")
-    return Numbers(Plot(RATIO, y, (Panel(series),)), facts, Table(columns, tuple(rows)))
+    plot = Plot(RATIO, y, (Panel(tuple(series), FORCES["zero"]),))
+    return Numbers(plot, tuple(facts), Table(columns, tuple(rows)))
 
 
 @reproduces(
@@ -83,14 +124,14 @@ def table_5_2(resolution: Resolution) -> Numbers:
     """Case 1 settles in mode 1: nearly harmonic at the tip, while higher harmonics are plain in
     x₁ and x₃. The damper slips for a small part of each half period.""",
     corrected=(errata.HARMONICS_OF_MODE_1,),
-    inferred=(OUR_RATIO,),
+    inferred=(OUR_RATIO, SAME_FORCES),
 )
 def figure_5_10(resolution: Resolution) -> Numbers:
     """Time histories of case 1."""
     return _history(0)
 
 
-@reproduces("fig-5.11", """Case 2 settles in mode 2.""", inferred=(OUR_RATIO,))
+@reproduces("fig-5.11", """Case 2 settles in mode 2.""", inferred=(OUR_RATIO, SAME_FORCES))
 def figure_5_11(resolution: Resolution) -> Numbers:
     """Time histories of case 2."""
     return _history(1)
@@ -100,7 +141,7 @@ def figure_5_11(resolution: Resolution) -> Numbers:
     "fig-5.12",
     """Case 3, of the smallest displacements, settles in mode 3, in which x₃ moves against the
     others.""",
-    inferred=(OUR_RATIO,),
+    inferred=(OUR_RATIO, SAME_FORCES),
 )
 def figure_5_12(resolution: Resolution) -> Numbers:
     """Time histories of case 3."""
@@ -110,7 +151,7 @@ def figure_5_12(resolution: Resolution) -> Numbers:
 def _history(case: int) -> Numbers:
     beam, negative = ss.reference.flutter_beam()
     driven = ss.destabilised(beam, negative, SHOWN)
-    end = ss.classify(driven, STARTS[case])
+    end, pulled = (ss.classify(driven, held(driven, STARTS[case], one)) for one in FORCES)
     run = ss.transient(driven, end.omega, periods=1, start=end.final, samples=256)
     # The period begins where the damper's place is farthest out.
     first = int(run.displacement("damper")[:-1].argmax())
@@ -134,6 +175,11 @@ def _history(case: int) -> Numbers:
         for dof, letter in LETTERS.items()
     ]
     facts.append(Fact("mode", float((end.mode or 0) + 1), "", case + 1.0))
+    for forces, one in zip(FORCES.values(), (end, pulled), strict=True):
+        facts += [
+            Fact(f"friction force at the start, {forces}", float(one.start.contact_force[0]), "N"),
+            Fact(f"ω, {forces}", one.omega, "rad/s"),
+        ]
     y = Axis("displacement over amplitude")
     title = f"case {case + 1}, r = {SHOWN:g}, ω = {end.omega:.2f} rad/s"
     return Numbers(Plot(PERIOD_SHARE, y, (Panel(tuple(series), title),)), tuple(facts))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 import stickslip as ss
@@ -10,6 +12,7 @@ from stickslip_reproduce import errata
 from stickslip_reproduce.curves import DAMPER
 from stickslip_reproduce.cycles import (
     AMPLITUDES,
+    FORCES,
     LOWEST,
     MODES,
     NEWTON,
@@ -18,6 +21,7 @@ from stickslip_reproduce.cycles import (
     STARTS,
     at,
     beside,
+    held,
     quantity,
     sides,
     smooth,
@@ -37,6 +41,15 @@ SHOWN = (LOWEST, 6.5)
 WILD = 0.361
 """Ratio of Figs 5.21 to 5.24."""
 
+SETTLED = "settled"
+APERIODIC = "aperiodic, row below"
+UNBOUNDED = "unbounded, lowest row"
+CHANGED = "another motion with f(0) = clip(k_d x₁)"
+OUTCOMES = (SETTLED, APERIODIC, UNBOUNDED)
+
+ROWS = {CHANGED: 0.7, APERIODIC: 0.5, UNBOUNDED: 0.35}
+"""Heights of the rows of marks that lie on no branch, over the lowest point of any."""
+
 PERIODS = 3
 """Periods of the histories of Figs 5.21 to 5.23."""
 
@@ -45,7 +58,18 @@ HIGHEST = 300.0
 
 BEGUN = (
     "The ratios of the marks are ours. The print puts motions that are unbounded or do not settle "
-    "at zero; here they are marked where they began. Starts are those of the print and signed ones."
+    "at zero; here they have rows of their own below the branches. Starts are those of the print "
+    "and signed ones."
+)
+
+READINGS = (
+    "Friction forces at the start are not printed: marks are of f(0) = 0; what becomes of another "
+    "class or mode with f(0) = clip(k_d x₁(0), −F_d, F_d) has a mark of its own."
+)
+
+BOTH = (
+    "The friction force at the start is not printed: zero, and in the numbers also "
+    "clip(k_d x₁(0), −F_d, F_d) = F_d; both motions stay aperiodic about mode 1."
 )
 
 FOLLOWED = "Integrated exactly between stick and slip; starts from 5 harmonics."
@@ -57,7 +81,7 @@ FOLLOWED = "Integrated exactly between stick and slip; starts from 5 harmonics."
     ratio up to 4.5. Unsigned ones, as tried in print, lead elsewhere below 2. At 5 all grow
     without bound.""",
     corrected=(errata.UNSIGNED, errata.FIRST_FOLD),
-    inferred=(NEWTON, BEGUN, FOLLOWED),
+    inferred=(NEWTON, BEGUN, READINGS, FOLLOWED),
 )
 def figure_5_17(resolution: Resolution) -> Numbers:
     """Amplitude of DOF 1, sticking branches and starts beside mode 3."""
@@ -68,7 +92,7 @@ def figure_5_17(resolution: Resolution) -> Numbers:
     "fig-5.18",
     """The same starts seen in DOF 2.""",
     corrected=(errata.UNSIGNED, errata.FIRST_FOLD),
-    inferred=(NEWTON, BEGUN, FOLLOWED),
+    inferred=(NEWTON, BEGUN, READINGS, FOLLOWED),
 )
 def figure_5_18(resolution: Resolution) -> Numbers:
     """Amplitude of DOF 2, sticking branches and starts beside mode 3."""
@@ -79,7 +103,7 @@ def figure_5_18(resolution: Resolution) -> Numbers:
     "fig-5.19",
     """The same starts seen in DOF 3.""",
     corrected=(errata.UNSIGNED, errata.FIRST_FOLD),
-    inferred=(NEWTON, BEGUN, FOLLOWED),
+    inferred=(NEWTON, BEGUN, READINGS, FOLLOWED),
 )
 def figure_5_19(resolution: Resolution) -> Numbers:
     """Amplitude of DOF 3, sticking branches and starts beside mode 3."""
@@ -90,7 +114,7 @@ def figure_5_19(resolution: Resolution) -> Numbers:
     "fig-5.20",
     """The frequencies show which mode the same starts come to.""",
     corrected=(errata.UNSIGNED, errata.FIRST_FOLD),
-    inferred=(NEWTON, BEGUN, FOLLOWED),
+    inferred=(NEWTON, BEGUN, READINGS, FOLLOWED),
 )
 def figure_5_20(resolution: Resolution) -> Numbers:
     """Frequency, sticking branches and starts beside mode 3."""
@@ -107,25 +131,39 @@ def _starts(dof: str, resolution: Resolution) -> Numbers:
         stuck = next(sides(branch, dof))
         lines.append(Series(f"{name}, H = 3", stuck.x, stuck.y))
     ratios = resolution.of(TRIED)
-    begun = ss.limit_cycles(beam, negative, mode=2, ratio=ratios, harmonics=5, stability=False)
+    lowest = min(float(line.y.min()) for line in lines)
     for kind in STARTS:
-        settled, lost = [], []
-        for ratio, ends in zip(ratios, beside(tuple(ratios), kind), strict=True):
-            first = float(quantity(begun, dof)[at(begun, ratio, "sticking")])
-            found = np.array([motion == "settled" for motion in ends.motion])
-            settled += [(ratio, last) for last in quantity(ends, dof)[found].tolist()]
-            lost += [(ratio, first)] * int((~found).sum())
-            third = float((found & (ends.mode == 2)).sum())
-            facts.append(Fact(f"{kind} starts that come to mode 3 at r = {ratio:g}", third))
-        marks = (
-            _marks("where starts settle", settled),
-            _marks("starts without steady motion", lost),
-        )
-        panels.append(Panel((*lines, *marks), f"{kind} starts around mode 3"))
+        zero, pulled = (beside(tuple(ratios), kind, forces) for forces in FORCES)
+        points: dict[str, list[tuple[float, float]]] = {label: [] for label in OUTCOMES}
+        changed = []
+        for ratio, ends, others in zip(ratios, zero, pulled, strict=True):
+            rows = zip(ends.motion, quantity(ends, dof), ends.mode, strict=True)
+            for (motion, last, mode), other, there in zip(
+                rows, others.motion, others.mode, strict=True
+            ):
+                label = _label(motion)
+                height = float(last) if label == SETTLED else ROWS[label] * lowest
+                points[label].append((ratio, height))
+                if (motion, mode) != (other, there):
+                    changed.append((ratio, ROWS[CHANGED] * lowest))
+            for forces, one in zip(FORCES.values(), (ends, others), strict=True):
+                settled = np.array([motion == "settled" for motion in one.motion])
+                third = float((settled & (one.mode == 2)).sum())
+                what = f"{kind} starts that come to mode 3 at r = {ratio:g}"
+                facts.append(Fact(what if one is ends else f"{what}, {forces}", third))
+        facts.append(Fact(f"{kind} starts that change with f(0)", float(len(changed))))
+        points[CHANGED] = changed
+        marks = [_marks(label, found) for label, found in points.items() if found]
+        panels.append(Panel((*lines, *marks), f"{kind} starts around mode 3, f(0) = 0"))
     third_mode = ss.limit_cycles(beam, negative, mode=2, method="exact")
     facts.append(Fact("mode 3 sticking stable up to r", third_mode.changes[0].value))
     y = OMEGA if dof == "omega" else AMPLITUDES[dof]
     return Numbers(Plot(RATIO, y, tuple(panels)), tuple(facts))
+
+
+def _label(motion: str) -> str:
+    """Return the row of marks that a motion belongs to."""
+    return {"settled": SETTLED, "unbounded": UNBOUNDED}.get(motion, APERIODIC)
 
 
 def _marks(label: str, points: list[tuple[float, float]]) -> Series:
@@ -136,7 +174,7 @@ def _marks(label: str, points: list[tuple[float, float]]) -> Series:
     "fig-5.21",
     """A start 2 % below the slipping branch of mode 3 comes to a motion around the sticking
     orbit of mode 1 that never repeats itself: that orbit is unstable.""",
-    inferred=(NEWTON, FOLLOWED),
+    inferred=(NEWTON, FOLLOWED, BOTH),
 )
 def figure_5_21(resolution: Resolution) -> Numbers:
     """Time history of DOF 1 at r = 0.361 beside the limit cycle of mode 1."""
@@ -146,7 +184,7 @@ def figure_5_21(resolution: Resolution) -> Numbers:
 @reproduces(
     "fig-5.22",
     """The tip moves nearly as in the limit cycle of mode 1.""",
-    inferred=(NEWTON, FOLLOWED),
+    inferred=(NEWTON, FOLLOWED, BOTH),
 )
 def figure_5_22(resolution: Resolution) -> Numbers:
     """Time history of DOF 2 at r = 0.361 beside the limit cycle of mode 1."""
@@ -157,20 +195,22 @@ def figure_5_22(resolution: Resolution) -> Numbers:
     "fig-5.23",
     """DOF 3, which mode 1 hardly moves, shows what else there is: a part in mode 2.""",
     corrected=(errata.HARMONICS_OF_MODE_1,),
-    inferred=(NEWTON, FOLLOWED),
+    inferred=(NEWTON, FOLLOWED, BOTH),
 )
 def figure_5_23(resolution: Resolution) -> Numbers:
     """Time history of DOF 3 at r = 0.361 beside the limit cycle of mode 1."""
     return _history("mode")
 
 
-def _wild() -> tuple[ss.MotionClass, ss.LimitCycles, int]:
+@cache
+def _wild(forces: str = "zero") -> tuple[ss.MotionClass, ss.LimitCycles, int]:
     """Return the motion at r = 0.361, and the limit cycles of mode 1 there with their place."""
     beam, negative = ss.reference.flutter_beam()
     third = ss.limit_cycles(beam, negative, mode=2, ratio=[WILD], harmonics=5, stability=False)
     place = at(third, WILD, "slipping")
     start = {dof: 0.98 * float(third.amplitude(dof)[place]) for dof in beam.structure.dofs}
-    motion = ss.classify(third.model_at(place), start, periods=1500)
+    driven = third.model_at(place)
+    motion = ss.classify(driven, held(driven, start, forces), periods=1500)
     first = ss.limit_cycles(beam, negative, mode=0, ratio=[WILD], harmonics=15)
     return motion, first, at(first, WILD, "sticking")
 
@@ -193,7 +233,7 @@ def _history(dof: str) -> Numbers:
         Series("time integration", periods, followed),
     )
     error = np.sqrt(np.mean((followed - predicted) ** 2) / np.mean(predicted**2))
-    facts = (
+    facts: tuple[Fact, ...] = (
         Fact("difference over the limit cycle, mean squares", 100.0 * float(error), "%"),
         Fact("amplitude of the limit cycle", float(cycles.amplitude(dof)[place]), "m"),
         Fact("amplitude of the motion", motion.amplitude(dof), "m"),
@@ -201,9 +241,27 @@ def _history(dof: str) -> Numbers:
         Fact("mode with the most energy", float((motion.mode or 0) + 1), "", 1.0),
         Fact("largest multiplier of the limit cycle", float(abs(cycles.multipliers[place, 0]))),
     )
+    facts += _readings(dof)
     y = Axis({"damper": "x₁", "tip": "x₂", "mode": "x₃"}[dof], "m", DAMPER.drawn, DAMPER.factor)
     x = Axis("time over the period of the limit cycle")
     return Numbers(Plot(x, y, (Panel(series, f"r = {WILD:g}"),)), facts)
+
+
+def _readings(dof: str) -> tuple[Fact, ...]:
+    """Return how the motion starts and what it becomes with both friction forces."""
+    facts = []
+    for forces, name in FORCES.items():
+        motion = _wild(forces)[0]
+        facts += [
+            Fact(f"friction force at the start, {name}", float(motion.start.contact_force[0]), "N"),
+            Fact(f"aperiodic about mode 1, {name}", float(_about_first(motion))),
+            Fact(f"amplitude, {name}", motion.amplitude(dof), "m"),
+        ]
+    return tuple(facts)
+
+
+def _about_first(motion: ss.MotionClass) -> bool:
+    return motion.motion == "aperiodic" and motion.mode == 0
 
 
 @reproduces(
@@ -211,7 +269,7 @@ def _history(dof: str) -> Numbers:
     """The strongest line is mode 1 at 36 Hz. At 222 Hz is a part in mode 2, at 179 and 251 Hz are
     the 5th and 7th harmonics of the first.""",
     corrected=(errata.HARMONICS_OF_MODE_1,),
-    inferred=(FOLLOWED, "Welch's method in Hann windows."),
+    inferred=(FOLLOWED, BOTH, "Welch's method in Hann windows."),
 )
 def figure_5_24(resolution: Resolution) -> Numbers:
     """Power spectral density of DOF 3 at r = 0.361."""
@@ -229,10 +287,15 @@ def figure_5_24(resolution: Resolution) -> Numbers:
         Fact(f"{n}th harmonic of x₃ in the limit cycle", 100.0 * float(orbit[n] / orbit[1]), "%")
         for n in (5, 7)
     ]
-    series = Series("x₃", frequency[kept], density[kept])
+    facts += _readings("mode")
+    other = _wild("pulled")[0].spectrum("mode")
+    series = (
+        Series(f"x₃, {FORCES['zero']}", frequency[kept], density[kept]),
+        Series(f"x₃, {FORCES['pulled']}", other[0][kept], other[1][kept]),
+    )
     y = Axis("power spectral density of x₃", "m²/Hz", log=True)
     return Numbers(
-        Plot(Axis("frequency", "Hz"), y, (Panel((series,), f"r = {WILD:g}"),)), tuple(facts)
+        Plot(Axis("frequency", "Hz"), y, (Panel(series, f"r = {WILD:g}"),)), tuple(facts)
     )
 
 

@@ -13,6 +13,7 @@ from stickslip.files import make_folder, require_writable
 
 if TYPE_CHECKING:
     from stickslip_reproduce.numbers import Numbers
+    from stickslip_reproduce.resolution import Resolution
 
 __all__ = ["key_numbers", "reproduce"]
 
@@ -23,7 +24,9 @@ _SHOWN = 6
 def reproduce(
     names: Annotated[
         list[str] | None,
-        typer.Argument(help="Tables and figures, or all; list or none lists them.", metavar="NAME"),
+        typer.Argument(
+            help="Tables and figures, claims, or all; list or none lists them.", metavar="NAME"
+        ),
     ] = None,
     out: Annotated[
         Path, typer.Option(help="Folder for pictures, numbers and index.", metavar="DIR")
@@ -37,22 +40,25 @@ def reproduce(
 
     stickslip reproduce table-2.3 fig-4.22
 
+    stickslip reproduce claims
+
     stickslip reproduce all --out reproduction
     """
     from stickslip_reproduce import COARSE, FULL, chosen, write
+    from stickslip_reproduce.claims import computed
     from stickslip_reproduce.folder import INDEX
 
     if not names or names == ["list"]:
         _list()
         return
-    wanted = chosen(names)
+    wanted = chosen(name for name in names if name != "claims")
     make_folder(out)
     require_writable(out)
     resolution = COARSE if coarse else FULL
     for done, item in enumerate(wanted):
         begin = time.perf_counter()
         try:
-            numbers = item.compute(resolution)
+            numbers = computed(item, resolution)
             seconds = time.perf_counter() - begin
             write(item, numbers, seconds, resolution, out)
         except KeyboardInterrupt:
@@ -62,6 +68,8 @@ def reproduce(
             print(f"{item.name:<18} {seconds:6.1f} s  {out / item.name}.png")
             for line in key_numbers(numbers):
                 print(f"  {line}")
+    if {"claims", "all"} & set(names):
+        _claims(resolution, out, quiet=quiet)
     if not quiet:
         print(f"index: {out / INDEX}")
 
@@ -76,6 +84,25 @@ def key_numbers(numbers: Numbers) -> Iterator[str]:
         yield f"{fact.what}: {number(fact.value)} {fact.unit}".rstrip() + printed
     if len(facts) > _SHOWN:
         yield f"and {len(facts) - _SHOWN} more in the index"
+
+
+def _claims(resolution: Resolution, out: Path, *, quiet: bool) -> None:
+    """Judge what the text claims, and write the page."""
+    from stickslip_reproduce.claims import claims
+    from stickslip_reproduce.claims_page import PAGE, counts, write_claims
+    from stickslip_reproduce.folder import write_index
+
+    begin = time.perf_counter()
+    findings = []
+    for one in claims().values():
+        findings.append(one.finding(resolution))
+        if not quiet:
+            print(f"{one.section:<6} {findings[-1].verdict:<17} {one.name}")
+    kept = write_claims(findings, out)
+    write_index(out)
+    if not quiet:
+        print(f"claims     {time.perf_counter() - begin:6.1f} s  {out / PAGE}")
+        print(counts(kept))
 
 
 def _list() -> None:

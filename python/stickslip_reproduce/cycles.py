@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from itertools import product
 
@@ -16,6 +16,7 @@ from stickslip_reproduce.resolution import Float
 
 __all__ = [
     "AMPLITUDES",
+    "FORCES",
     "LOWEST",
     "MODES",
     "NEWTON",
@@ -24,6 +25,7 @@ __all__ = [
     "STARTS",
     "at",
     "beside",
+    "held",
     "quantity",
     "sides",
     "smooth",
@@ -36,6 +38,9 @@ MODES = ("mode 1", "mode 2", "mode 3")
 
 STARTS = {"unsigned": (1.0, 1.0, 1.0), "signed": (1.0, 1.0, -1.0)}
 """Signs of the displacements at the start: of the dissertation, and of mode 3."""
+
+FORCES = {"zero": "f(0) = 0", "pulled": "f(0) = clip(k_d x₁)"}
+"""Friction forces at starts given by displacements alone, which the dissertation leaves open."""
 
 LOWEST = 0.01
 """Ratio at which the curves begin."""
@@ -103,8 +108,27 @@ def at(cycles: ss.LimitCycles, value: float, branch: str) -> int:
     return int(place)
 
 
+def held(model: ss.Model, start: Mapping[str, float], forces: str) -> ss.State:
+    """Return displacements as a state with the friction force of a reading.
+
+    Parameters
+    ----------
+    model : Model
+        A model with one damper, at its first degree of freedom.
+    start : mapping of str to float
+        Displacements [m].
+    forces : str
+        A name in `FORCES`: none, or as if the damper had been pulled along from rest.
+    """
+    (damper,) = (contact.parameters() for contact in model.contacts)
+    limit = damper["slip_force"]
+    pulled = damper["stiffness"] * start[model.structure.dofs[0]]
+    force = float(np.clip(pulled, -limit, limit)) if forces == "pulled" else 0.0
+    return ss.State(model, start, contact_force=[force])
+
+
 @cache
-def beside(ratios: tuple[float, ...], kind: str) -> tuple[ss.BasinMap, ...]:
+def beside(ratios: tuple[float, ...], kind: str, forces: str) -> tuple[ss.BasinMap, ...]:
     """Return what becomes of the eight starts around the sticking orbit of mode 3, per ratio.
 
     All displacements are 2 % above or below those of 5 harmonics, all velocities are zero. Four
@@ -116,6 +140,8 @@ def beside(ratios: tuple[float, ...], kind: str) -> tuple[ss.BasinMap, ...]:
         Ratios of negative damping.
     kind : str
         Name of the signs in `STARTS`.
+    forces : str
+        Name of the friction forces in `FORCES`.
     """
     beam, negative = ss.reference.flutter_beam()
     cycles = ss.limit_cycles(beam, negative, mode=2, ratio=ratios, harmonics=5, stability=False)
@@ -131,5 +157,7 @@ def beside(ratios: tuple[float, ...], kind: str) -> tuple[ss.BasinMap, ...]:
             {dof: size * factor for dof, size, factor in zip(dofs, sizes, factors, strict=True)}
             for factors in product((0.98, 1.02), repeat=3)
         ]
-        maps.append(ss.basin_map(cycles.model_at(place), starts=starts, periods=PERIODS))
+        driven = cycles.model_at(place)
+        states = [held(driven, start, forces) for start in starts]
+        maps.append(ss.basin_map(driven, starts=states, periods=PERIODS))
     return tuple(maps)

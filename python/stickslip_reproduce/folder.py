@@ -13,6 +13,7 @@ from typing import Any
 from stickslip import ModelError
 from stickslip.files import make_folder
 from stickslip.files import write as write_file
+from stickslip_reproduce.claims_page import PAGE
 from stickslip_reproduce.index import page
 from stickslip_reproduce.item import Item
 from stickslip_reproduce.numbers import Cell, Numbers, Plot, Table
@@ -138,7 +139,8 @@ def _record(file: Path) -> dict[str, Any]:
 
 def write_index(folder: Path) -> None:
     """Write the index of what a folder holds."""
-    _write_text(folder / INDEX, page(records(folder)))
+    claims = PAGE if (folder / PAGE).is_file() else ""
+    _write_text(folder / INDEX, page(records(folder), claims=claims))
 
 
 def _write_text(file: Path, text: str) -> None:

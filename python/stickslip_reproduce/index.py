@@ -9,9 +9,9 @@ from typing import Any
 from stickslip_reproduce.item import heading
 from stickslip_reproduce.subjects import SUBJECTS
 
-__all__ = ["fact_rows", "number", "page"]
+__all__ = ["STYLE", "fact_rows", "number", "page"]
 
-_STYLE = """
+STYLE = """
 body { font: 16px/1.45 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem;
        color: #222; background: #fff; }
 h2 { margin: 2.6rem 0 0.4rem; border-top: 1px solid #ccc; padding-top: 1rem; }
@@ -42,23 +42,26 @@ def fact_rows(record: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
     ]
 
 
-def page(records: Mapping[str, Mapping[str, Any]]) -> str:
+def page(records: Mapping[str, Mapping[str, Any]], *, claims: str = "") -> str:
     """Return an HTML page that shows records, with their pictures beside it.
 
     Parameters
     ----------
     records : mapping of str to mapping
         What `folder.write_record` wrote, by name.
+    claims : str, optional
+        The page of claims beside it.
     """
     missing = [name for name in SUBJECTS if name not in records]
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width">',
-        f"<title>Reproduction of Guillen (1999)</title><style>{_STYLE}</style></head><body>",
+        f"<title>Reproduction of Guillen (1999)</title><style>{STYLE}</style></head><body>",
         "<h1>Reproduction of Guillen (1999)</h1>",
         "<p>J. Guillen, <i>Studies of the dynamics of dry-friction-damped blade assemblies</i>, "
         f"University of Michigan, 1999: {len(records)} of {len(SUBJECTS)} tables and figures.</p>",
+        *([f'<p><a href="{claims}">What the text claims</a>, with verdicts</p>'] if claims else []),
         *(part for name, record in records.items() for part in _section(name, record)),
     ]
     if missing:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from stickslip import _core
 from stickslip.analyses.texts import TEXTS, told
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
+from stickslip.model.state import State
 from stickslip.results.arrays import STABILITY, Arrays, Float, amplitude_of
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
@@ -104,9 +105,11 @@ def transient_assumptions(
     history: _core.History,
 ) -> tuple[Diagnostic, ...]:
     """Say what a transient took for granted; `start` as it was given."""
-    begun = "rest" if start is None else "a given state"
-    if isinstance(start, Mapping):
-        begun = "given displacements, without velocities and contact forces"
+    begun = "rest"
+    if isinstance(start, State):
+        begun = f"a given state, with contact forces up to {_largest_force([start]):g} N"
+    elif isinstance(start, Mapping):
+        begun = "given displacements, with velocities and contact forces of zero"
     scheme, turn = settings.scheme, turn_per_step(model, settings)
     needed = int(np.ceil(settings.steps * turn / COARSE_TURN))
     open_end = not (history.settled or history.unbounded) and settings.tolerance is None
@@ -125,17 +128,33 @@ def transient_assumptions(
     )
 
 
-def free_assumptions(model: Model, settings: ClassifySettings) -> tuple[Diagnostic, ...]:
-    """Say what a classification of free motions took for granted."""
+def free_assumptions(
+    model: Model, settings: ClassifySettings, starts: Sequence[object]
+) -> tuple[Diagnostic, ...]:
+    """Say what a classification of free motions took for granted; `starts` as they were given."""
     forces = len(model.forces)
+    states = [start for start in starts if isinstance(start, State)]
+    bare = len(starts) - len(states)
+    counted = "The start was" if len(starts) == 1 else f"Of {len(starts)} starts {bare} were"
     return present(
         (
             told("method/free"),
+            bare > 0
+            and bool(model.contacts)
+            and told("start/forces", without_forces=bare, _starts=counted),
+            bool(states)
+            and bool(model.contacts)
+            and told("start/given-forces", contact_force=_largest_force(states)),
             forces > 0 and told("forces-left-out", forces=forces),
             told("criterion", tolerance=settings.tolerance, periods=settings.periods),
             told("modes"),
         )
     )
+
+
+def _largest_force(states: Sequence[State]) -> float:
+    """Return the largest contact force of some states [N]."""
+    return max(float(np.abs(state.contact_force).max(initial=0.0)) for state in states)
 
 
 def _static_traction(

@@ -67,11 +67,13 @@ def basin_map(
         grid = _axes(alone, settings.axes)
         base = state_of(alone, settings.base or {}, "base")
         states = _over_axes(alone, grid, base)
+        given: list[object] = [settings.base] * len(states)
     else:
         for name in ("axes", "base"):
             if getattr(settings, name) is not None:
                 raise ModelError(f"{name}: given beside starts; give one of them")
-        states = _listed(alone, starts)
+        given = list(members(starts, "starts", "starts=[...]"))
+        states = _listed(alone, given)
     kept = BasinSettings.of(**settings.part(ClassifySettings), axes=grid)
     with Run("basin map", progress, alone) as run:
         fates = fates_of(alone, states, kept, settings.threads or 0, run)
@@ -85,7 +87,7 @@ def basin_map(
             interrupted=fates.interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
-            diagnostics=free_assumptions(model, kept),
+            diagnostics=free_assumptions(model, kept, given),
         )
         done = sum(reason != "interrupted" for reason in result.reason)
         return run.ended(result, f"{done} of {len(result)} starts")
@@ -126,8 +128,7 @@ def _direction(model: Model, axis: Axis) -> Float:
     return np.asarray(shape / shape[np.abs(shape).argmax()], dtype=np.float64)
 
 
-def _listed(model: Model, starts: Iterable[State | Mapping[str, float]]) -> Float:
-    given: Sequence[object] = members(starts, "starts", "starts=[...]")
+def _listed(model: Model, given: Sequence[object]) -> Float:
     if not given:
         raise ModelError("starts: empty; give at least one")
     states = [state_of(model, one, f"starts[{place}]") for place, one in enumerate(given)]

@@ -100,7 +100,7 @@ def classify(
             interrupted=interrupted,
             timings={"total": fates.seconds},
             counters={"events": int(arrays.events.sum())},
-            diagnostics=free_assumptions(model, kept),
+            diagnostics=free_assumptions(model, kept, [start]),
         )
         if interrupted:
             raise Interrupted(

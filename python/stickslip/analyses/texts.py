@@ -135,6 +135,11 @@ TEXTS = {
     "that nodes which never slip hold the traction that they built up from zero displacement.",
     # transients and free motions
     "start": "The run starts from {_begun}.",
+    "start/forces": "{_starts} given by displacements alone: their velocities and contact forces "
+    "are zero at first. What a start leads to depends on its contact forces as well; give "
+    "ss.State(model, displacement, contact_force=...) for others.",
+    "start/given-forces": "The contact forces at the start were given, the largest is "
+    "{contact_force:g} N.",
     "start/contacts": "The run starts from {_begun}; a contact that never slips keeps for ever the "
     "mean force of its start, so that means depend on it while half ranges do not.",
     "time-steps/exact": "The motion was followed exactly between the instants of stick and slip.",

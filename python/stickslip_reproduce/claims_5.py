@@ -1,0 +1,366 @@
+"""Claims of chapter V on one mass with negative damping."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+import stickslip as ss
+from stickslip_reproduce.claims import Found, claim, verdict
+from stickslip_reproduce.cycles import at, turn
+from stickslip_reproduce.numbers import Fact
+from stickslip_reproduce.resolution import Resolution
+
+MODEL, NEGATIVE = ss.reference.flutter_mass()
+NOMINAL, LIMIT = ss.reference.DAMPER_STIFFNESS, ss.reference.DAMPER_SLIP_FORCE
+FREE = float(ss.natural_frequencies(MODEL, slipping=[0])[0])
+STUCK = float(ss.natural_frequencies(MODEL)[0])
+TRIED = (0.1, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0)
+
+
+@cache
+def exact() -> ss.LimitCycles:
+    """Return the whole exact branch."""
+    return ss.limit_cycles(MODEL, NEGATIVE, method="exact")
+
+
+@cache
+def kept(harmonics: int) -> ss.LimitCycles:
+    """Return the whole branch of a number of harmonics."""
+    return ss.limit_cycles(MODEL, NEGATIVE, harmonics=harmonics)
+
+
+@cache
+def tried() -> ss.LimitCycles:
+    """Return the exact cycles at the ratios that are tried."""
+    return ss.limit_cycles(MODEL, NEGATIVE, ratio=TRIED, method="exact")
+
+
+@claim(
+    "some-slipping",
+    "5.2",
+    "all periodic motions predicted by a harmonic balance analysis will exhibit at least some "
+    "slipping during each period of the motion",
+    """Smallest slip fraction on the whole branch of 5 harmonics.""",
+    rule=lambda n: verdict(n["smallest slip fraction"] > 0.0),
+    see="fig-5.3",
+)
+def some_slipping(resolution: Resolution) -> Found:
+    """Slip of the limit cycles."""
+    return Found((Fact("smallest slip fraction", float(kept(5).slip_fraction(0).min())),))
+
+
+@claim(
+    "no-motion-beyond",
+    "5.2.1",
+    "For values of the negative viscous damping ratio large enough, r > r_max, the friction damper "
+    "is not able to dissipate all the energy brought into the system by negative viscous damping. "
+    "Therefore, there is a net increase of energy, and no stable motion.",
+    """Exact r_max; of seven starts from 1e-6 to 1e-3 m at 1.01 r_max those that grow without bound,
+    and of the same at 0.99 r_max.""",
+    rule=lambda n: verdict(n["beyond, unbounded"] == 7 and n["before, unbounded"] < 7),
+    see="fig-5.1 fig-5.3",
+)
+def no_motion_beyond(resolution: Resolution) -> Found:
+    """Fates of starts beyond r_max."""
+    last = turn(exact()).ratio
+    facts = [Fact("r_max, exact", last)]
+    for name, factor in (("beyond", 1.01), ("before", 0.99)):
+        driven = ss.destabilised(MODEL, NEGATIVE, factor * last)
+        ends = ss.basin_map(
+            driven, starts=[{"mass": float(size)} for size in np.geomspace(1e-6, 1e-3, 7)]
+        )
+        facts.append(Fact(f"{name}, unbounded", sum(one == "unbounded" for one in ends.motion)))
+    return Found(tuple(facts))
+
+
+@claim(
+    "two-amplitudes",
+    "5.2.1",
+    "For lower values of the damping ratio, there are two amplitudes of harmonic motion predicted "
+    "by the method.",
+    """Exact limit cycles per ratio, least and most over seven ratios.""",
+    rule=lambda n: verdict(n["least"] == 2 and n["most"] == 2),
+    see="fig-5.1",
+)
+def two_amplitudes(resolution: Resolution) -> Found:
+    """Limit cycles per ratio."""
+    counts = [int(np.isclose(tried().values, ratio).sum()) for ratio in TRIED]
+    return Found((Fact("least", min(counts)), Fact("most", max(counts))))
+
+
+@claim(
+    "cannot-predict-stability",
+    "5.2.1",
+    "The hybrid frequency/time method is able to find periodic solutions, but it cannot predict "
+    "their stability.",
+    """Share of the cycles of 5 harmonics whose multipliers, along the cycle of the balance, give
+    the stability of their side: sticking stable, slipping unstable, within 0.1 % of the fold left
+    out. With multipliers it can.""",
+    rule=lambda n: verdict(n["right"] < 50.0, n["right"] < 99.0),
+)
+def stability_by_balance(resolution: Resolution) -> Found:
+    """Stability by multipliers of harmonic balance."""
+    found = kept(5)
+    counted = found.values < 0.999 * turn(found).value
+    states = np.where(found.branch == "sticking", "stable", "unstable")
+    right = np.asarray(found.stability)[counted] == states[counted]
+    return Found((Fact("right", 100.0 * float(right.mean()), "%"),))
+
+
+@claim(
+    "high-branch-decides",
+    "5.2.1",
+    "the system is unstable when the initial displacement is larger than the amplitude of the high "
+    "branch, and the initial velocity is zero. When the initial displacement is lower than the "
+    "converged amplitude of the high branch, and the initial velocity is zero, the system is "
+    "stable, and converges toward the lower branch.",
+    """Starts at 0.98 and 1.02 of the exact slipping cycle at seven ratios with both friction forces
+    that the text leaves open: those that do as it says. It holds with the force of the cycle
+    itself, f = F_d.""",
+    rule=lambda n: verdict(min(n.values()) == 100.0, n["f(0) = F_d"] == 100.0),
+    see="fig-5.4",
+)
+def high_branch(resolution: Resolution) -> Found:
+    """Return the starts beside the slipping branch with two friction forces."""
+    facts = []
+    for name, force in (("f(0) = 0", 0.0), ("f(0) = F_d", LIMIT)):
+        right = []
+        for ratio in TRIED:
+            slips, sticks = (at(tried(), ratio, side) for side in ("slipping", "sticking"))
+            driven = tried().model_at(slips)
+            size = float(tried().amplitude("mass")[slips])
+            ends = ss.basin_map(
+                driven,
+                starts=[
+                    ss.State(driven, {"mass": factor * size}, contact_force=[force])
+                    for factor in (0.98, 1.02)
+                ],
+            )
+            low = tried().amplitude("mass")[sticks]
+            back = ends.motion[0] == "settled" and bool(
+                np.isclose(ends.amplitude("mass")[0], low, rtol=1e-3)
+            )
+            right += [back, ends.motion[1] == "unbounded"]
+        facts.append(Fact(name, 100.0 * float(np.mean(right)), "% as said"))
+    return Found(tuple(facts))
+
+
+@claim(
+    "between-the-frequencies",
+    "5.2.1",
+    "the frequency of the motion has to be lower than the frequency when the friction damper is "
+    "fully stuck, ω_max (sticking natural frequency) and it has to higher to the slipping natural "
+    "frequency, ω_min",
+    """Least and largest frequency of the exact branch, over 159.40 and 225.42 rad/s.""",
+    rule=lambda n: verdict(n["least over ω_min"] > 1.0 and n["largest over ω_max"] < 1.0),
+    see="fig-5.2",
+)
+def between(resolution: Resolution) -> Found:
+    """Frequencies of the branch."""
+    omega = exact().omega
+    return Found(
+        (
+            Fact("least over ω_min", float(omega.min()) / FREE),
+            Fact("largest over ω_max", float(omega.max()) / STUCK),
+        )
+    )
+
+
+@claim(
+    "limits-of-frequency",
+    "5.2.1",
+    "The values of the limiting resonance frequencies computed in Eqs. (5.10) and (5.11) match the "
+    "values found by the method as the negative viscous damping tends to zero",
+    """Frequencies of both exact cycles at r = 0.01 over these values.""",
+    rule=lambda n: verdict(max(abs(value - 1.0) for value in n.values()) < 1e-3),
+    see="fig-5.2",
+)
+def limits_of_frequency(resolution: Resolution) -> Found:
+    """Frequencies at r = 0.01."""
+    ends = ss.limit_cycles(MODEL, NEGATIVE, ratio=[0.01], method="exact")
+    return Found(
+        (
+            Fact("slipping", float(ends.omega[at(ends, 0.01, "slipping")]) / FREE),
+            Fact("sticking", float(ends.omega[at(ends, 0.01, "sticking")]) / STUCK),
+        )
+    )
+
+
+@claim(
+    "number-of-harmonics",
+    "5.2.2",
+    "Note that the number of harmonics has nearly no effect on the response.",
+    """r_max of one harmonic to the exact one; nearly none is 1 %.""",
+    rule=lambda n: verdict(n["difference of r_max"] < 1.0),
+    see="fig-5.3",
+)
+def number_of_harmonics(resolution: Resolution) -> Found:
+    """Difference of r_max."""
+    apart = abs(turn(kept(1)).ratio / turn(exact()).ratio - 1.0)
+    return Found((Fact("difference of r_max", 100.0 * apart, "%"),))
+
+
+@claim(
+    "mono-harmonic",
+    "5.2.2",
+    "The free response of a single-DOF system attached to a flexible friction damper is mostly "
+    "mono-harmonic",
+    """Largest third harmonic of the mass over the first, on the whole branch of 5 harmonics.""",
+    rule=lambda n: verdict(n["third over first"] < 5.0),
+)
+def mono_harmonic(resolution: Resolution) -> Found:
+    """Third harmonic of the limit cycles."""
+    found = np.abs(kept(5).coefficients("mass"))
+    return Found((Fact("third over first", 100.0 * float((found[:, 3] / found[:, 1]).max()), "%"),))
+
+
+@claim(
+    "good-agreement",
+    "5.2.2",
+    "The agreement between the two methods is very good. Only the stable, mostly sticking motion "
+    "could be obtained by forward numerical integration.",
+    """Largest difference of amplitude and frequency of 5 harmonics to motions in time at seven
+    ratios, from 2 % below the slipping cycle with f = F_d, and how many come to the sticking
+    one.""",
+    rule=lambda n: verdict(n["amplitude"] < 1.0 and n["frequency"] < 1.0 and n["sticking"] == 7),
+    see="fig-5.4 fig-5.5 fig-5.6 fig-5.7",
+)
+def good_agreement(resolution: Resolution) -> Found:
+    """Harmonic balance against motions in time."""
+    balance = ss.limit_cycles(MODEL, NEGATIVE, ratio=TRIED, harmonics=5, stability=False)
+    sizes, omegas, reached = [], [], 0
+    for ratio in TRIED:
+        slips = at(tried(), ratio, "slipping")
+        driven = tried().model_at(slips)
+        start = ss.State(
+            driven, {"mass": 0.98 * tried().amplitude("mass")[slips]}, contact_force=[LIMIT]
+        )
+        ends = ss.basin_map(driven, starts=[start])
+        sticks = at(balance, ratio, "sticking")
+        sizes.append(balance.amplitude("mass")[sticks] / ends.amplitude("mass")[0] - 1.0)
+        omegas.append(balance.omega[sticks] / ends.omega[0] - 1.0)
+        reached += abs(sizes[-1]) < 0.05
+    return Found(
+        (
+            Fact("amplitude", 100.0 * float(np.abs(sizes).max()), "%"),
+            Fact("frequency", 100.0 * float(np.abs(omegas).max()), "%"),
+            Fact("sticking", reached),
+        )
+    )
+
+
+@cache
+def softest() -> ss.LimitCycles:
+    """Return the exact branch over the stiffness of the damper at r = 1."""
+    return ss.limit_cycles(MODEL, NEGATIVE, stiffness=(4e6, 2.4e10), method="exact")
+
+
+@claim(
+    "too-soft",
+    "5.2.3",
+    "no periodic motion is possible if the damper stiffness is too small",
+    """Smallest stiffness with an exact limit cycle at r = 1, over the nominal one.""",
+    rule=lambda n: verdict(n["smallest ν"] > 0.0),
+    see="fig-5.8",
+)
+def too_soft(resolution: Resolution) -> Found:
+    """Smallest stiffness with a limit cycle."""
+    return Found((Fact("smallest ν", turn(softest()).value / NOMINAL),))
+
+
+@claim(
+    "unique-solution",
+    "5.2.3",
+    "the mostly sticking and the mostly slipping solutions defined in Section 5.2.1 tend toward a "
+    "unique solution as the damper stiffness decreases to zero",
+    """Stiffness at which the two meet, at r = 1, over the nominal one: they do so long before
+    zero.""",
+    rule=lambda n: verdict(n["they meet at ν"] < 1e-3, n["they meet at ν"] < 1.0),
+    see="fig-5.8 fig-5.9",
+)
+def unique_solution(resolution: Resolution) -> Found:
+    """Stiffness at which both solutions meet."""
+    return Found((Fact("they meet at ν", turn(softest()).value / NOMINAL),))
+
+
+@claim(
+    "soft-frequency",
+    "5.2.3",
+    "there is no periodic solution for values of the friction damper stiffness that are small "
+    "enough, and then the frequency of oscillation tends towards the minimum frequency, ω_min",
+    """Frequency where the two solutions meet, at r = 1, between ω_min = 0 and ω_max = 1 of that
+    stiffness.""",
+    rule=lambda n: verdict(n["place between ω_min and ω_max"] < 0.1),
+    see="fig-5.9",
+)
+def soft_frequency(resolution: Resolution) -> Found:
+    """Frequency of the softest limit cycle."""
+    limit = turn(softest())
+    stuck = FREE * np.sqrt(1.0 + limit.value / NOMINAL)
+    return Found(
+        (Fact("place between ω_min and ω_max", float((limit.omega - FREE) / (stuck - FREE))),)
+    )
+
+
+@claim(
+    "two-rigid-solutions",
+    "5.2.3",
+    "there are two periodic solutions. One solution corresponds to the trivial case: A = 0, and "
+    "the other one has an amplitude and frequency independent of the damper stiffness.",
+    """Exact amplitudes at ν = 10 and 1000: the sticking one at 1000 over that at 10, and the change
+    of the slipping one.""",
+    rule=lambda n: verdict(n["sticking, ratio"] < 0.02 and n["slipping, change"] < 1.0),
+    see="fig-5.8 fig-5.9",
+)
+def two_rigid(resolution: Resolution) -> Found:
+    """Amplitudes of stiff dampers."""
+    found = ss.limit_cycles(
+        MODEL, NEGATIVE, stiffness=[10 * NOMINAL, 1000 * NOMINAL], method="exact"
+    )
+    size = found.amplitude("mass")
+    low, high = (
+        [size[at(found, nu * NOMINAL, side)] for nu in (10, 1000)]
+        for side in ("sticking", "slipping")
+    )
+    return Found(
+        (
+            Fact("sticking, ratio", float(low[1] / low[0])),
+            Fact("slipping, change", 100.0 * abs(float(high[1] / high[0]) - 1.0), "%"),
+        )
+    )
+
+
+@claim(
+    "rigid-values",
+    "5.2.3",
+    "the one-harmonic approximation in the rigid friction damper case predicts ω_min = 159.5 "
+    "rad/s, and A = 2.65·10⁻⁴ m, and these are the values also found by the multi-harmonic, "
+    "Broyden method",
+    """Eq. (5.20) at r = 1, and the exact rigid damper. The print's frequency is rounded, its
+    amplitude is not reproduced at r = 1.""",
+    rule=lambda n: verdict(
+        abs(n["A of (5.20)"] / 2.65e-4 - 1.0) < 0.01 and abs(n["ω_min"] - 159.5) < 0.15
+    ),
+    see="fig-5.8 fig-5.9",
+)
+def rigid_values(resolution: Resolution) -> Found:
+    """Amplitude and frequency of the rigid damper."""
+    rigid, rough = (
+        ss.rigid_limit_cycle(
+            mass=MODEL.structure.mass[0, 0],
+            damping=NEGATIVE[0, 0],
+            stiffness=MODEL.structure.stiffness[0, 0],
+            slip_force=LIMIT,
+            single_harmonic=single,
+        )
+        for single in (False, True)
+    )
+    return Found(
+        (
+            Fact("A of (5.20)", rough.amplitude, "m", 2.65e-4),
+            Fact("A, exact", rigid.amplitude, "m", 2.65e-4),
+            Fact("ω_min", rough.omega, "rad/s", 159.5),
+        )
+    )
