@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from stickslip.checks import (
     brief,
     members,
-    real_number,
     text,
     unknown,
     whole_number,
@@ -19,6 +18,7 @@ from stickslip.checks import (
 from stickslip.errors import ModelError
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.sparse import Factor, lowest_modes, symmetric_sparse
+from stickslip.units import physical_number
 
 Dof: TypeAlias = int | str
 _FIRST = 20
@@ -113,7 +113,7 @@ def craig_bampton(
     if not squares[0] > _NOISE * np.finfo(np.float64).eps * highest:
         raise _moves_rigidly(names)
     if omega is not None:
-        limit = real_number(omega, "omega")
+        limit = physical_number(omega, "rad/s", "omega")
         while squares[-1] < limit**2 and count < inner.size - 1:
             count = min(2 * count, inner.size - 1)
             squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
@@ -180,7 +180,7 @@ def _mode_count(modes: int | None, omega: float | None, inner: int) -> int:
     largest = max(inner - 1, 1)
     if modes is not None:
         return whole_number(modes, "modes", smallest=1, largest=largest)
-    if real_number(omega, "omega") <= 0.0:
+    if physical_number(omega, "rad/s", "omega") <= 0.0:
         raise ModelError(f"omega: {omega:g} must be positive")
     return min(_FIRST, largest)
 

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from stickslip.checks import brief, real_number, require_keys, set_fields, text, whole_number
+from stickslip.checks import brief, require_keys, set_fields, text, whole_number
 from stickslip.errors import ModelError
+from stickslip.units import physical_number
 
 
 @dataclass(frozen=True)
@@ -41,12 +42,12 @@ class Force:
     def __post_init__(self) -> None:
         entry = f"force at {brief(text(self.dof, 'force: dof'))}"
         harmonic = whole_number(self.harmonic, f"{entry}: harmonic")
-        phase = real_number(self.phase, f"{entry}: phase")
+        phase = physical_number(self.phase, "rad", f"{entry}: phase")
         if harmonic == 0 and phase != 0.0:
             raise ModelError(
                 f"{entry}: phase {phase:g} on a static load (harmonic 0); leave the phase out"
             )
-        amplitude = real_number(self.amplitude, f"{entry}: amplitude")
+        amplitude = physical_number(self.amplitude, "N", f"{entry}: amplitude")
         set_fields(self, amplitude=amplitude, phase=phase, harmonic=harmonic)
 
     @property

@@ -9,10 +9,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.checks import Matrix, brief, real_number, set_fields
+from stickslip.checks import Matrix, brief, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.contact import Sliders, real_numbers
 from stickslip.model.ends import TwoEnds
+from stickslip.units import physical_number
 
 
 @dataclass(frozen=True)
@@ -77,8 +78,8 @@ class Jenkins(_Elements):
     def __post_init__(self) -> None:
         super().__post_init__()
         entry = f"jenkins contact at {brief(self.dof)}"
-        stiffness = real_number(self.stiffness, f"{entry}: stiffness", finite=False)
-        slip_force = real_number(self.slip_force, f"{entry}: slip_force", finite=False)
+        stiffness = physical_number(self.stiffness, "N/m", f"{entry}: stiffness", finite=False)
+        slip_force = physical_number(self.slip_force, "N", f"{entry}: slip_force", finite=False)
         if stiffness < 0.0:
             raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
         if np.isinf(stiffness):
@@ -133,8 +134,8 @@ class ParallelJenkins(_Elements, Sliders):
     def __post_init__(self) -> None:
         super().__post_init__()
         entry = f"{self.law} contact at {brief(self.dof)}"
-        stiffness = real_numbers(self.stiffness, entry, "stiffness", finite=True)
-        limits = real_numbers(self.slip_forces, entry, "slip_forces", finite=False)
+        stiffness = real_numbers(self.stiffness, "N/m", entry, "stiffness", finite=True)
+        limits = real_numbers(self.slip_forces, "N", entry, "slip_forces", finite=False)
         if not stiffness:
             raise ModelError(f"{entry}: stiffness: empty; give at least one element")
         if len(stiffness) != len(limits):

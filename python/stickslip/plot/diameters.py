@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stickslip.checks import brief, members, real_number, whole_number
+from stickslip.checks import brief, members, whole_number
 from stickslip.disk import BladedDisk, NodalDiameters
 from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
@@ -18,6 +18,7 @@ from stickslip.plot.figure import figure
 from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
 from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float
+from stickslip.units import physical_number
 
 
 @figure
@@ -44,7 +45,7 @@ def safe(
     speed : float
         Angular speed of the rotor [rad/s].
     """
-    rate = real_number(speed, "speed")
+    rate = physical_number(speed, "rad/s", "speed")
     if rate <= 0.0:
         raise ModelError(f"speed: {rate:g} is not above zero; give the speed of the rotor in rad/s")
     table, omega = _table_of(table), style.OMEGA[options["omega_unit"]]

@@ -7,9 +7,9 @@ from os import PathLike
 from typing import Annotated, Any, Literal, Self, get_args
 
 import numpy as np
-from pydantic import BeforeValidator, Field, PlainValidator, Strict, model_validator
+from pydantic import BeforeValidator, Field, PlainValidator, Strict, ValidationInfo, model_validator
 
-from stickslip.checks import brief, real_number, whole_number
+from stickslip.checks import brief, whole_number
 from stickslip.errors import EntryError, ModelError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import (
@@ -40,7 +40,8 @@ from stickslip.settings.ranges import (
     Stiffnesses,
     numbers,
 )
-from stickslip.settings.variation import ContactKeys, Parameter, Variation, one_of
+from stickslip.settings.variation import ContactKeys, Parameter, Variation, one_of, unit_of
+from stickslip.units import physical_number
 
 
 def _ascending(span: object) -> tuple[float, float]:
@@ -52,10 +53,12 @@ _PeakRange = Annotated[tuple[float, float], BeforeValidator(_ascending)]
 _Distribution = Annotated[Literal["normal", "uniform"], ONE_OF]
 
 
-def _bounds(bounds: object) -> tuple[float, float]:
+def _bounds(bounds: object, info: ValidationInfo) -> tuple[float, float]:
     if not isinstance(bounds, tuple | list) or len(bounds) != 2:
         raise EntryError("", ": give two values, (lowest, highest)")
-    low, high = (real_number(value, "") for value in bounds)
+    factor = info.data.get("common") == "factor"
+    unit = "" if factor else unit_of(info.data.get("parameter", "level"))
+    low, high = (physical_number(value, unit, "") for value in bounds)
     if not 0.0 < low < high:
         raise EntryError("", f": ({low:g}, {high:g}); give 0 < lowest < highest")
     return low, high
@@ -70,12 +73,12 @@ def _portion(part: object) -> tuple[int, int]:
     return number, of
 
 
-def _unsigned(remedy: str) -> Callable[[Any], Float]:
+def _unsigned(remedy: str, unit: str) -> Callable[[Any], Float]:
     """Return what reads one or several finite numbers, none of them negative, each once."""
 
     def read(values: Any) -> Float:
         found = numbers(
-            values, f"give {remedy}, not negative", lambda x: np.isfinite(x) & (x >= 0.0)
+            values, f"give {remedy}, not negative", lambda x: np.isfinite(x) & (x >= 0.0), unit
         )
         if np.unique(found).size < found.size:
             raise EntryError("", f": {brief(values)} holds a value twice; give each once")
@@ -86,8 +89,10 @@ def _unsigned(remedy: str) -> Callable[[Any], Float]:
 
 _Portion = Annotated[tuple[int, int], Or(Some[Index], "tuple[int, int]", "(int, int)", _portion)]
 _SEVERAL = "ArrayLike", "float or array_like"
-_Deviations = Annotated[Float, Or(ListOr[Ratio, Ratio], *_SEVERAL, _unsigned("0.05 for 5 %"))]
-_Couplings = Annotated[Float, Or(Some[StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m"))]
+_Deviations = Annotated[Float, Or(ListOr[Ratio, Ratio], *_SEVERAL, _unsigned("0.05 for 5 %", ""))]
+_Couplings = Annotated[
+    Float, Or(Some[StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m", "N/m"))
+]
 _Patterns = Annotated[
     int | Float,
     Or(

@@ -45,9 +45,11 @@ from stickslip.settings.entries import (
     Dof,
     Friction,
     Index,
+    Inertia,
     Length,
     ListOr,
     Many,
+    Mass,
     Newtons,
     NormalLoad,
     Number,
@@ -404,7 +406,7 @@ class DamperTable(Table):
         default="sector",
         description="Of a disk: whether each sector has axes of its own, or all are parallel.",
     )
-    mass: Annotated[Number, Field(ge=0.0)] = Field(description="Mass [kg].")
+    mass: Mass = Field(description="Mass.")
     friction: ListOr[Friction, Friction] = Field(
         description="Coefficient of friction, of both faces or (left, right)."
     )
@@ -461,8 +463,8 @@ class CylinderTable(AngledTable):
     makes = CylinderDamper
     kind: Literal["cylinder"] = Field(description="Kind of damper.")
     cylinder_radius: Length = Field(description="Radius of the cylinder.")
-    inertia: Annotated[Number, Field(ge=0.0)] | None = Field(
-        default=None, description="Moment of inertia [kg m2]; left out: of a full cylinder."
+    inertia: Inertia | None = Field(
+        default=None, description="Moment of inertia; left out: of a full cylinder."
     )
 
 
