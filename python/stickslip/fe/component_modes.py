@@ -18,6 +18,7 @@ from stickslip.checks import (
 from stickslip.errors import ModelError
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.sparse import Factor, lowest_modes, symmetric_sparse
+from stickslip.model.matrix_units import MatrixUnits, Units
 from stickslip.units import physical_number
 
 Dof: TypeAlias = int | str
@@ -37,6 +38,7 @@ def craig_bampton(
     modes: int | None = None,
     omega: float | None = None,
     dofs: Iterable[str] | None = None,
+    units: Units = None,
 ) -> Reduction:
     """Reduce a structure to boundary degrees of freedom and fixed-interface modes.
 
@@ -59,6 +61,8 @@ def craig_bampton(
         one of interest is usual.
     dofs : iterable of str, optional
         Names of the N rows, as `read_dofs` gives them.
+    units : str, optional
+        Mass, length and time of the matrices, as of `Structure`: "t-mm-s". Default: SI.
 
     Returns
     -------
@@ -93,6 +97,9 @@ def craig_bampton(
     if K.shape != M.shape:
         raise ModelError(f"stiffness: {K.shape[0]} rows, but the mass has {size}")
     rows = _row_names(dofs, size)
+    if units is not None:
+        known, ways = MatrixUnits.of(units), rows or ("",) * size
+        M, K = known.in_si(M, "mass", ways).tocsc(), known.in_si(K, "stiffness", ways).tocsc()
     names, kept = _boundary(boundary, rows, size)
     inner = np.setdiff1d(np.arange(size), kept)
     count = _mode_count(modes, omega, inner.size)

@@ -261,7 +261,11 @@ class MeasuredPeak(Measured):
         ends = _numbers(span, "rad/s", "measured peak: span", above=0.0)
         if ends.size != _ENDS or ends[0] == ends[1]:
             raise ModelError(f"measured peak: span: {brief(span)}; give (from, to) in rad/s")
-        heights = [amplitude] if omega is None else [amplitude, omega]
+        found = [_numbers([amplitude], "m", "measured peak", above=0.0)]
+        if omega is not None:
+            found.append(_numbers([omega], "rad/s", "measured peak: omega", above=0.0))
+        values = np.concatenate(found)
+        values.flags.writeable = False
         known = noise is not None or relative_noise is not None
         if omega is not None and (frequency_noise is None or not known):
             raise ModelError(
@@ -270,7 +274,7 @@ class MeasuredPeak(Measured):
             )
         self._keep(
             dof=text(dof, "measured peak: dof"),
-            values=_numbers(heights, "measured peak", above=0.0),
+            values=values,
             span=(float(ends.min()), float(ends.max())),
             measure=choice(measure, "measured peak: measure", _MEASURES),
             frequency_noise=_positive(frequency_noise, "", "measured peak: frequency_noise"),

@@ -24,7 +24,9 @@ class Drawing(TypedDict, total=False):
 class Frame(Drawing, total=False):
     """Keywords of figures of displacements."""
 
-    length_unit: Annotated[LengthUnit, "m", "Unit of displacements."]
+    length_unit: Annotated[
+        LengthUnit, "auto", "Unit of displacements. Default: m with a prefix that suits the data."
+    ]
 
 
 class Swept(Drawing, total=False):

@@ -126,6 +126,11 @@ class StructureTable(Table):
         description="Damping matrix, Rayleigh or modal damping; left out: none.",
         examples=[{"rayleigh": {"mass": 7.49, "stiffness": 2.6e-5}}, {"modal": 0.001}],
     )
+    units: Text | None = Field(
+        default=None,
+        description="Mass, length and time of all matrices; left out: SI.",
+        examples=["t-mm-s"],
+    )
     dofs: Many[Dof] | None = Field(
         default=None,
         description="Names of the DOFs, row by row; left out: '0', '1', ...",

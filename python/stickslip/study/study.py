@@ -339,7 +339,7 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
             structure, interface = cyclic_sector(structure, table.boundary)
     if table.interface is not None:
         with named("disk: interface"):
-            interface = _interface(table.interface, folder)
+            interface = _interface(table.interface, folder, tables.structure.units, structure.dofs)
     structure, contacts, forces = _with_dampers(tables, structure)
     _check_parts(tables, structure)
     with named("disk"):
@@ -358,7 +358,9 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
         return disk.mistuned(table.mistuning.values(table.sectors))
 
 
-def _interface(table: InterfaceTable, folder: Path) -> Interface:
+def _interface(
+    table: InterfaceTable, folder: Path, units: str | None, dofs: Sequence[str]
+) -> Interface:
     stiffness = matrix_of(table.stiffness, folder, "stiffness")
     mass = None if table.mass is None else matrix_of(table.mass, folder, "mass")
     damping = damping_of(table.damping, folder)
@@ -366,13 +368,14 @@ def _interface(table: InterfaceTable, folder: Path) -> Interface:
         raise ModelError(
             "damping: modes belong to the whole disk; give a matrix or {rayleigh = ...}"
         )
-    return Interface(stiffness, mass, damping)
+    return Interface(stiffness, mass, damping, units=units, dofs=dofs)
 
 
 def _structure(table: StructureTable, folder: Path) -> Structure:
     mass = matrix_of(table.mass, folder, "mass")
     stiffness = matrix_of(table.stiffness, folder, "stiffness")
-    return Structure(mass, stiffness, damping_of(table.damping, folder), table.dofs)
+    damping = damping_of(table.damping, folder)
+    return Structure(mass, stiffness, damping, table.dofs, units=table.units)
 
 
 def _check_name(name: str) -> None:

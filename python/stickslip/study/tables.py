@@ -502,11 +502,15 @@ class OutputTable(Table):
         description="DOFs tabulated and drawn; left out: those that carry a force or a contact.",
         examples=[["tip", "damper"]],
     )
-    omega_unit: Annotated[Literal["rad/s", "Hz"], ONE_OF] = Field(
-        default="rad/s", description="Unit of the frequency axis."
+    omega_unit: Annotated[Literal["rad/s", "Hz", "rpm"], ONE_OF] = Field(
+        default="rad/s",
+        description="Unit of the frequency axis; rpm of a disk are those of the rotor.",
     )
-    length_unit: Annotated[Literal["m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)] = Field(
-        default="m", description="Unit of the amplitudes."
+    length_unit: Annotated[
+        Literal["auto", "m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)
+    ] = Field(
+        default="auto",
+        description="Unit of the amplitudes; auto: that which suits the numbers.",
     )
 
 
