@@ -27,6 +27,7 @@ _NAMES = {
     "analyses.optimal_damper": "optimal_damper",
     "analyses.single_harmonic": "single_harmonic",
     "analyses.stability_map": "stability_map",
+    "analyses.sweep": "sweep",
     "analyses.transient": "transient",
     "damper": "BodyDamper Centrifugal ContactPoint CylinderDamper Face FlexibleBody RigidBody "
     "SplitDamper StripDamper WedgeDamper",
@@ -55,6 +56,7 @@ _NAMES = {
     "results.synthesis": "SynthesizedResponse",
     "results.optimal_damper": "OptimalDamper",
     "results.store": "load",
+    "results.sweep": "Sweep",
     "results.transient": "Transient",
 }
 """What each module holds of what is public."""

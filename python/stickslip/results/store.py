@@ -34,6 +34,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "mistuning_study": ("stickslip.results.mistuning", "MistuningStudy"),
     "static_response": ("stickslip.results.static_response", "StaticResponse"),
     "fit": ("stickslip.results.fit", "Fit"),
+    "sweep": ("stickslip.results.sweep", "Sweep"),
     "stability_map": ("stickslip.results.limit_cycles", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from os import PathLike
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, PlainValidator, Strict, ValidationInfo, model_validator
+from pydantic import BeforeValidator, Field, PlainValidator, Strict, ValidationInfo
 
 from stickslip.checks import brief, whole_number
-from stickslip.errors import EntryError, ModelError
+from stickslip.errors import EntryError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import (
     ONE_OF,
@@ -29,18 +29,12 @@ from stickslip.settings.entries import (
 from stickslip.settings.ranges import (
     Dofs,
     Float,
-    Frictions,
-    Gaps,
-    Levels,
     Or,
     PeakSpan,
-    Preloads,
-    SlipForces,
-    Springs,
-    Stiffnesses,
     numbers,
 )
-from stickslip.settings.variation import ContactKeys, Parameter, Variation, one_of, unit_of
+from stickslip.settings.sweep import ParameterKeys
+from stickslip.settings.variation import ContactKeys, Parameter, Variation, unit_of
 from stickslip.units import physical_number
 
 
@@ -131,48 +125,8 @@ class PeakKeys(_FollowedPeak, ContactKeys):
     )
 
 
-class DamperKeys(PeakKeys):
+class DamperKeys(ParameterKeys, PeakKeys):
     """Along which parameter a peak is followed, and how; give exactly one of the parameters."""
-
-    slip_force: SlipForces | None = Field(
-        default=None,
-        description="Slip forces F_d [N], in the order to follow; an infinite one never slips.",
-        examples=[{"from": "1 N", "to": "10 kN", "points": 60}],
-    )
-    stiffness: Stiffnesses | None = Field(
-        default=None,
-        description="Instead: stiffnesses k_d of the contacts [N/m]. An infinite one is the limit "
-        "of a rigid contact, and common values above 500 times the stiffness of the structure lie "
-        "on the line in 1/k_d towards it.",
-    )
-    level: Levels | None = Field(default=None, description="Instead: factors on all forces.")
-    friction: Frictions | None = Field(
-        default=None, description="Instead: coefficients of friction of Coulomb contacts."
-    )
-    preload: Preloads | None = Field(
-        default=None, description="Instead: normal forces without motion [N]."
-    )
-    gap: Gaps | None = Field(
-        default=None, description="Instead: gaps [m], negative for an interference."
-    )
-    tangential_stiffness: Springs | None = Field(
-        default=None, description="Instead: tangential stiffnesses k_t of a node [N/m]."
-    )
-    normal_stiffness: Springs | None = Field(
-        default=None, description="Instead: normal stiffnesses k_n of a node [N/m]."
-    )
-
-    @property
-    def varied(self) -> Parameter:
-        """Which parameter is given."""
-        return one_of(self, *get_args(Parameter))
-
-    @model_validator(mode="after")
-    def _require_one(self) -> Self:
-        name = self.varied
-        if isinstance(getattr(self, name), tuple):
-            raise ModelError(f"{name}: a range needs 'points' here; values are not chosen")
-        return self
 
 
 class OptimumKeys(PeakKeys):

@@ -310,6 +310,10 @@ Amplitudes = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_BOTH, _bra
 Ratios = Annotated[Float | Span, Or(_Ratios, *_BOTH, _branch(""))]
 BranchStiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_BOTH, _branch("N/m"))]
 BranchSlipForces = Annotated[Float | Span, Or(_SlipForces, *_BOTH, _branch("N"))]
+Speeds = Annotated[
+    Float | Span,
+    Or(_Omegas, *_LIST, _listed("rad/s", "finite speeds above 0 rad/s", positive)),
+]
 SlipForceList = Annotated[Float, Or(Some[SlipForce], *_LIST, _above_zero("N"))]
 StiffnessList = Annotated[Float, Or(Some[StiffnessValue], *_LIST, _above_zero("N/m"))]
 Dofs = Annotated[tuple[str, ...], Or(Some[Dof], "Iterable[str] | str", "iterable of str", _names)]

@@ -61,6 +61,7 @@ from stickslip.settings.entries import (
     Text,
     chosen_by,
 )
+from stickslip.settings.sweep import SweepKeys
 from stickslip.study.analysis import AnalysisTable, ByKind
 from stickslip.study.disk_table import CouplingTable, DiskTable
 from stickslip.study.matrices import Rows, StructureTable
@@ -514,6 +515,10 @@ class OutputTable(Table):
     )
 
 
+class SweepTable(SweepKeys):
+    """A parameter and its values: one result that knows them."""
+
+
 # Something other than dots and blanks, so that it is no folder.
 _SIGN = r'/\\:*?"<>|\x00-\x1f'
 _FILE_NAME = rf"^[^{_SIGN}]*[^{_SIGN}.\s][^{_SIGN}]*$"
@@ -541,6 +546,10 @@ class StudyTables(Table):
         description="Springs between two DOFs; of a disk, between neighbouring sectors.",
     )
     analysis: Annotated[AnalysisTable, ByKind()] = Field(description="What to compute.")
+    sweep: SweepTable | None = Field(
+        default=None,
+        description="Computes the analysis along a parameter; left out: of the model as written.",
+    )
     output: OutputTable = Field(default=OutputTable(), description="What to tabulate and draw.")
 
     @model_validator(mode="after")
