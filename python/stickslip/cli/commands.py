@@ -40,7 +40,7 @@ def show(results: Files) -> None:
         console.grid(view.facts(result))
         console.tell("")
         shown = notable_dofs(result.model, result.dofs)
-        console.show_all(view.tables([("", result)], "", shown, "m"))
+        console.show_all(view.tables([("", result)], "", shown, "auto"))
         for text in failures(result):
             console.complain("warning", f"{file.name}: {text}")
 

@@ -34,6 +34,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "mistuning_study": ("stickslip.results.mistuning", "MistuningStudy"),
     "static_response": ("stickslip.results.static_response", "StaticResponse"),
     "fit": ("stickslip.results.fit", "Fit"),
+    "campbell": ("stickslip.results.campbell", "Campbell"),
     "sweep": ("stickslip.results.sweep", "Sweep"),
     "stability_map": ("stickslip.results.limit_cycles", "StabilityMap"),
 }

@@ -90,7 +90,8 @@ class Sweep(Result):
                 "a time; write sweep.results[0].plot(...)"
             )
         options.setdefault("labels", self.labels)
-        return getattr(plots, name)(list(self.results), *args, **options)
+        drawn: Axes = getattr(plots, name)(list(self.results), *args, **options)
+        return drawn
 
     def to_dataset(self, *, derived: bool = True) -> Dataset:
         """Return the numbers along the parameter, a dimension with its values and its unit.
@@ -152,7 +153,7 @@ class Sweep(Result):
         module, name = KINDS[dataset.attrs["member_kind"]]
         kind = getattr(import_module(module), name)
         settings = SweepSettings.stored(json.loads(dataset.attrs["settings"]))
-        results = []
+        results: list[Result] = []
         while f"{_prefix(len(results))}attributes" in dataset:
             own = _unpacked(dataset, _prefix(len(results)))
             results.append(kind.from_dataset(own, model_of(own)))

@@ -7,7 +7,7 @@ from os import PathLike
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, PlainValidator, Strict, ValidationInfo
+from pydantic import BeforeValidator, Field, PlainValidator, Strict, ValidationInfo, WithJsonSchema
 
 from stickslip.checks import brief, whole_number
 from stickslip.errors import EntryError
@@ -56,6 +56,11 @@ def _bounds(bounds: object, info: ValidationInfo) -> tuple[float, float]:
     if not 0.0 < low < high:
         raise EntryError("", f": ({low:g}, {high:g}); give 0 < lowest < highest")
     return low, high
+
+
+_PAIR = WithJsonSchema(
+    {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2}
+)
 
 
 def _portion(part: object) -> tuple[int, int]:
@@ -137,7 +142,7 @@ class OptimumKeys(PeakKeys):
         description='What is varied. With "level", a factor on all forces, the amplitude per unit '
         "of level is made least, as friction depends on the ratio of force and slip force.",
     )
-    bounds: Annotated[tuple[float, float], PlainValidator(_bounds)] | None = Field(
+    bounds: Annotated[tuple[float, float], PlainValidator(_bounds), _PAIR] | None = Field(
         default=None,
         description="Values to look between. Default, for slip forces: from 1/1000 to all of the "
         "largest force that the stuck contacts bear in the range of frequencies, beyond which "

@@ -58,7 +58,7 @@ class ParameterKeys(Settings):
     @property
     def varied(self) -> Parameter:
         """Which parameter is given."""
-        return one_of(self, *self.parameters)  # type: ignore[arg-type, return-value]
+        return one_of(self, *self.parameters)  # type: ignore[arg-type]
 
     @model_validator(mode="after")
     def _require_one(self) -> Self:

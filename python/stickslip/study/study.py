@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -200,13 +201,14 @@ class Study:
     def _result(self, case: Case, progress: Progress, shown: Sequence[str]) -> Result:
         """Compute a case: one result, or the sweep that the study asks for."""
         analysis, keys = self.tables.analysis, self.tables.sweep
-        if keys is None:
-            return analysis.run(case.model, progress, shown)
 
         def at_speed(speed: float) -> Model:
             model = _model(at_speed_of(self.tables, speed), self.folder)
             return model if case.level is None else model.scaled(force=case.level)
 
+        if keys is None:
+            turns = analysis.of_speed and _turns(self.tables)
+            return analysis.run(at_speed if turns else case.model, progress, shown)  # type: ignore[arg-type]
         models = at_speed if keys.speed is not None else case.model
         return swept(models, keys, lambda model, part: analysis.run(model, part, shown), progress)
 
@@ -289,7 +291,7 @@ def _model(tables: StudyTables, folder: Path) -> Model:
     return Model(
         structure,
         contacts=[*contacts, *(contact.build() for contact in tables.contact)],
-        forces=[*forces, *(force.build() for force in tables.force)],
+        forces=[*forces, *(one for force in tables.force for one in force.build(structure.dofs))],
     )
 
 
@@ -320,7 +322,10 @@ def _check_parts(tables: StudyTables, structure: Structure) -> None:
     for entry, part in parts:
         with named(entry):
             _check_touched(part, structure.dofs, between_sectors=tables.disk is not None)
-            part.build()
+            if isinstance(part, ForceTable):
+                part.build(structure.dofs)
+            else:
+                part.build()
 
 
 def _check_touched(
@@ -367,7 +372,7 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
             table.sectors,
             [coupling.build() for coupling in tables.coupling],
             [*contacts, *(contact.build() for contact in tables.contact)],
-            [*forces, *(force.build() for force in tables.force)],
+            [*forces, *(one for force in tables.force for one in force.build(structure.dofs))],
             engine_order=table.engine_order,
             engine_orders=table.engine_orders,
             interface=widened(interface, len(structure)),
@@ -390,6 +395,14 @@ def _interface(
     return Interface(stiffness, mass, damping, units=units, dofs=dofs)
 
 
+def _turns(tables: StudyTables) -> bool:
+    """Return whether the model depends on the speed of rotation."""
+    loads = (one.load for one in tables.damper)
+    return tables.structure.stiffening is not None or any(
+        isinstance(load, LoadTable) for load in loads
+    )
+
+
 def at_speed_of(tables: StudyTables, speed: float) -> StudyTables:
     """Return the tables at another speed of rotation, of the structure and of damper loads."""
     structure = tables.structure.model_copy(update={"speed": speed})
@@ -409,7 +422,7 @@ def _structure(table: StructureTable, folder: Path) -> Structure:
     structure = Structure(mass, stiffness, damping, table.dofs, units=table.units)
     if table.stiffening is None:
         return structure
-    added = {
+    added: dict[str, Any] = {
         key: matrix_of(source, folder, key)
         for key, source in (("stiffening", table.stiffening), ("softening", table.softening))
         if source is not None

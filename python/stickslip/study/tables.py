@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -38,6 +38,7 @@ from stickslip.model import (
     StructuralDamper,
 )
 from stickslip.model.contact import Contact
+from stickslip.model.force import engine_order_forces
 from stickslip.settings.entries import (
     ONE_OF,
     Angle,
@@ -149,7 +150,13 @@ class JenkinsTable(EndsTable):
     makes = Jenkins
     law: Literal["jenkins"] = Field(description="Friction law.")
     stiffness: StiffnessValue = Field(description="Contact stiffness k_d.")
-    slip_force: SlipForce = Field(description="Slip limit F_d; inf: it never slips.")
+    slip_force: SlipForce | None = Field(
+        default=None, description="Slip limit F_d; inf: it never slips."
+    )
+    friction: Friction | None = Field(
+        default=None, description="Instead: coefficient of friction of the slip force mu N."
+    )
+    normal_load: NormalLoad | None = Field(default=None, description="Normal load N beside it.")
 
 
 class ParallelJenkinsTable(EndsTable):
@@ -336,19 +343,40 @@ class StructuralTable(LawTable):
 class ForceTable(Table):
     """A harmonic force, amplitude cos(harmonic omega t + phase)."""
 
-    dof: Dof = Field(description="The DOF it acts on.")
+    dof: Dof = Field(
+        description='The DOF it acts on; "*.tip" are those of all sectors of a structure, with an '
+        "engine order."
+    )
     amplitude: Newtons = Field(description="Amplitude.", examples=["20.3 N", 20.3])
     phase: Angle = Field(default=0.0, description="Phase.", examples=["90 deg"])
     harmonic: Index = Field(default=1, description="Multiple of omega; 0: a static load.")
+    engine_order: Index | None = Field(
+        default=None,
+        description='Of dof = "*.tip": each sector is ahead of the one before by 2 pi E / n.',
+    )
+
+    @model_validator(mode="after")
+    def _require_order(self) -> Self:
+        if (self.engine_order is None) == ("*" in self.dof):
+            raise ValueError(
+                "'dof' with a star, \"*.tip\", and 'engine_order' belong together; give both, or "
+                "neither"
+            )
+        return self
 
     @property
     def touched(self) -> tuple[str, ...]:
         """The DOFs it acts on."""
-        return (self.dof,)
+        return () if self.engine_order is not None else (self.dof,)
 
-    def build(self) -> Force:
-        """Return the force."""
-        return Force(**dict(self))
+    def build(self, dofs: Sequence[str] = ()) -> list[Force]:
+        """Return the force, or those on all sectors among some DOFs."""
+        values = dict(self)
+        order = values.pop("engine_order")
+        if order is None:
+            return [Force(**values)]
+        dof = values.pop("dof")
+        return engine_order_forces(dof, dofs=dofs, engine_order=order, **values)
 
 
 ContactTable = Annotated[

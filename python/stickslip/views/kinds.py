@@ -29,6 +29,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "static_response": ("stickslip.views.statics", "StaticView"),
     "fit": ("stickslip.views.fits", "FitView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
+    "campbell": ("stickslip.views.campbell", "CampbellView"),
     "sweep": ("stickslip.views.sweeps", "SweepView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
     "nonlinear_modes": ("stickslip.views.modes", "ModeView"),
