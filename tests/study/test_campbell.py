@@ -151,6 +151,7 @@ def test_friction_times_normal_load_is_the_slip_force():
         ({}, "slip_force is missing; give slip_force=..., or friction=... and normal_load"),
         ({"friction": 0.3}, "slip_force is missing"),
         ({"friction": 0.3, "normal_load": 3, "slip_force": 1}, "slip_force is given beside them"),
+        ({"friction": 0.3, "slip_force": 1}, "slip_force is given beside them"),
         ({"friction": -0.3, "normal_load": 3}, "friction -0.3 is negative"),
         ({"friction": 0.3, "normal_load": "3 m"}, "normal_load = '3 m' is not a force"),
     ],

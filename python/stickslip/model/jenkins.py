@@ -102,8 +102,8 @@ class Jenkins(_Elements):
     def _product(self, entry: str, friction: float | None, normal_load: float | None) -> float:
         """Return the slip force that friction and normal load make."""
         both = friction is not None and normal_load is not None
-        if both == (self.slip_force is not None):
-            given = "is given beside them" if both else "is missing"
+        if self.slip_force is not None or not both:
+            given = "is missing" if self.slip_force is None else "is given beside them"
             raise ModelError(
                 f"{entry}: slip_force {given}; give slip_force=..., or friction=... and "
                 "normal_load=...",

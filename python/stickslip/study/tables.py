@@ -158,6 +158,12 @@ class JenkinsTable(EndsTable):
     )
     normal_load: NormalLoad | None = Field(default=None, description="Normal load N beside it.")
 
+    @model_validator(mode="after")
+    def _require_slip_force(self) -> Self:
+        if self.slip_force is None and self.friction is None and self.normal_load is None:
+            raise ValueError("'slip_force' is missing; give it, or 'friction' and 'normal_load'")
+        return self
+
 
 class ParallelJenkinsTable(EndsTable):
     """Jenkins elements in parallel on one displacement: the discrete Iwan model."""
