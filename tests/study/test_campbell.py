@@ -113,7 +113,7 @@ def test_safe_shows_the_next_family_and_no_more():
 def test_nodal_diameters_need_no_speed():
     (found,) = Study.parse(DISK + 'kind = "nodal-diameters"').run()
     (table,) = view_of([found]).tables([("", found)], "", (), "auto")
-    assert table.row_count == 2 * 13 * 3
+    assert table.row_count == 2 * 13
     assert found.stuck.shape == (1, 13, 3)
 
 
@@ -223,3 +223,18 @@ def test_the_optimal_damper_is_a_study():
     assert found.value == direct.value
     with pytest.raises(ss.ModelError, match="bounds = '1 m' is not a force"):
         Study.parse(text.replace('["1 N"', '["1 m"'))
+
+
+@pytest.mark.slow
+def test_reports_draw_them(tmp_path):
+    from report_page import Page
+
+    studies = (
+        'kind = "campbell"\nspeed = ["1000 rpm", "6000 rpm"]',
+        'kind = "safe"\nspeed = [314]',
+    )
+    (one,), (two,) = (Study.parse(DISK + text).run() for text in studies)
+    ss.report({"campbell": one, "safe": two}, tmp_path / "a.html")
+    figures = Page(tmp_path / "a.html").figures
+    titles = [figure["layout"]["xaxis"]["title"]["text"] for figure in figures]
+    assert titles == ["rotor speed [rpm]", "nodal diameter"]

@@ -198,3 +198,13 @@ def test_run_saves_one_file(tmp_path, monkeypatch):
     assert done.exit_code == 0, done.output
     assert sorted(one.name for one in Path("results").iterdir()) == ["s.nc", "s.png"]
     assert "1 N" in done.output
+
+
+@pytest.mark.slow
+def test_reports_draw_the_family(swept, tmp_path):
+    from report_page import Page
+
+    ss.report(swept, tmp_path / "a.html", dofs="tip")
+    (figure, *_) = Page(tmp_path / "a.html").figures
+    names = {trace.get("name") for trace in figure["data"]}
+    assert {"slip force = 50 N", "slip force = 200 N", "slip force = 400 N"} <= names

@@ -27,14 +27,15 @@ class CampbellView(View[Campbell]):
     def rows(self, result: Campbell, dofs: Dofs, length: float) -> Rows:
         """Return a row per resonance; at one speed the nearest modes of every order.
 
-        Without excitation a row per nodal diameter and mode, the lowest ones.
+        Without excitation a row per nodal diameter, with the lowest modes.
         """
         if result.settings.diagram == "nodal-diameters":
             for name, values in (("stuck", result.stuck), ("slipping", result.slipping)):
                 for diameter, own in zip(result.diameter, values[0], strict=True):
-                    for mode, omega in enumerate(own[:_NEAR]):
-                        where = (name, "", f"{diameter}", f"{mode}")
-                        yield *where, "", f"{omega / (2 * pi):.6g}", ""
+                    lowest = own[:_NEAR] / (2 * pi)
+                    modes = f"0 to {lowest.size - 1}" if lowest.size > 1 else "0"
+                    hertz = ", ".join(f"{one:.6g}" for one in lowest)
+                    yield name, "", f"{diameter}", modes, "", hertz, ""
             return
         if result.settings.diagram == "campbell":
             for name, slipping in (("stuck", False), ("slipping", True)):
