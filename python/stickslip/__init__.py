@@ -11,6 +11,7 @@ from importlib import import_module
 _NAMES = {
     "_core": "__version__",
     "analyses.basin_map": "basin_map",
+    "analyses.campbell": "campbell",
     "analyses.certify": "certify",
     "analyses.classify": "classify",
     "analyses.static_response": "static_response",
@@ -27,6 +28,7 @@ _NAMES = {
     "analyses.single_harmonic": "single_harmonic",
     "analyses.stability_map": "stability_map",
     "analyses.stores": "merge_stores",
+    "analyses.sweep": "sweep",
     "analyses.transient": "transient",
     "analyses.uncertainty": "uncertainty",
     "damper": "BodyDamper Centrifugal ContactPoint CylinderDamper Face FlexibleBody RigidBody "
@@ -41,10 +43,12 @@ _NAMES = {
     "ParallelJenkins Rayleigh Stop StructuralDamper Structure Tangents join natural_frequencies "
     "slip_configurations",
     "model.destabilised": "destabilised modal_damping",
+    "model.force": "engine_order_forces",
     "model.measurement": "MeasuredLoop MeasuredPeak Measurement",
     "model.state": "State",
     "results": "ForcedResponse Status",
     "results.basin_map": "BasinMap",
+    "results.campbell": "Campbell",
     "results.damper_curve": "DamperCurve",
     "results.diagnostic": "Diagnostic Severity",
     "results.exact_response": "ExactResponse",
@@ -56,6 +60,7 @@ _NAMES = {
     "results.synthesis": "SynthesizedResponse",
     "results.optimal_damper": "OptimalDamper",
     "results.store": "load",
+    "results.sweep": "Sweep",
     "results.transient": "Transient",
     "results.uncertainty": "Uncertainty",
     "settings.quantities": "Backbone HighestPeak Optimum",

@@ -1,6 +1,6 @@
 """What the package exports; written by `docs/make_stub.py`."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Literal
 
@@ -70,6 +70,7 @@ from stickslip.model import slip_configurations as slip_configurations
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import destabilised as destabilised
 from stickslip.model.destabilised import modal_damping as modal_damping
+from stickslip.model.force import engine_order_forces as engine_order_forces
 from stickslip.model.measurement import Measured
 from stickslip.model.measurement import MeasuredLoop as MeasuredLoop
 from stickslip.model.measurement import MeasuredPeak as MeasuredPeak
@@ -78,6 +79,7 @@ from stickslip.model.state import State as State
 from stickslip.results import ForcedResponse as ForcedResponse
 from stickslip.results import Status as Status
 from stickslip.results.basin_map import BasinMap as BasinMap
+from stickslip.results.campbell import Campbell as Campbell
 from stickslip.results.damper_curve import DamperCurve as DamperCurve
 from stickslip.results.diagnostic import Diagnostic as Diagnostic
 from stickslip.results.diagnostic import Severity as Severity
@@ -91,8 +93,10 @@ from stickslip.results.mistuning import MistuningStudy as MistuningStudy
 from stickslip.results.motion_class import MotionClass as MotionClass
 from stickslip.results.nonlinear_modes import NonlinearModes as NonlinearModes
 from stickslip.results.optimal_damper import OptimalDamper as OptimalDamper
+from stickslip.results.result import Result
 from stickslip.results.static_response import StaticResponse
 from stickslip.results.store import load as load
+from stickslip.results.sweep import Sweep as Sweep
 from stickslip.results.synthesis import SynthesizedResponse as SynthesizedResponse
 from stickslip.results.transient import Transient as Transient
 from stickslip.results.uncertainty import Uncertainty as Uncertainty
@@ -113,6 +117,14 @@ def basin_map(
     starts: Iterable[State | Mapping[str, float]] | None = None,
     progress: Progress = None,
 ) -> BasinMap: ...
+def campbell(
+    models: Model | Callable[[float], Model],
+    *,
+    orders: Sequence[int] | None = None,
+    diagram: Literal["campbell", "safe", "nodal-diameters"] = "campbell",
+    speed: ArrayLike | None = None,
+    progress: Progress = None,
+) -> Campbell: ...
 def certify(
     result: ForcedResponse,
     points: int | Literal["all"] | Sequence[int] = 20,
@@ -309,6 +321,23 @@ def static_response(
     observe: Iterable[str] | str | None = None,
     progress: Progress = None,
 ) -> StaticResponse: ...
+def sweep(
+    models: Model | Callable[[float], Model],
+    analysis: Callable[[Model], Result],
+    *,
+    common: Literal["value", "factor"] = "value",
+    contacts: Contacts | None = None,
+    slip_force: ArrayLike | None = None,
+    stiffness: ArrayLike | None = None,
+    level: ArrayLike | None = None,
+    friction: ArrayLike | None = None,
+    preload: ArrayLike | None = None,
+    gap: ArrayLike | None = None,
+    tangential_stiffness: ArrayLike | None = None,
+    normal_stiffness: ArrayLike | None = None,
+    speed: ArrayLike | None = None,
+    progress: Progress = None,
+) -> Sweep: ...
 def transient(
     model: Model,
     omega: float,

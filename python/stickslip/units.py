@@ -6,9 +6,11 @@ import math
 import re
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from stickslip.checks import brief, vanished
+import numpy as np
+
+from stickslip.checks import brief, real_number, vanished
 from stickslip.errors import EntryError
 
 if TYPE_CHECKING:
@@ -45,6 +47,8 @@ newton = kilogram * metre / second ** 2 = N
 kilogram_force = 9.80665 * newton = kgf
 pound_force = 4.4482216152605 * newton = lbf
 joule = newton * metre = J
+pascal = newton / metre ** 2 = Pa
+bar = 1e5 * pascal
 """
 
 _KINDS = {
@@ -56,6 +60,14 @@ _KINDS = {
     "m": ("a length", "10 um"),
     "s": ("a time", "2.6e-5 s"),
     "1/s": ("a rate", "7.49 1/s"),
+    "deg": ("an angle", "30 deg"),
+    "kg": ("a mass", "12 g"),
+    "kg/s": ("a damping", "7.5 N s/m"),
+    "kg*m^2": ("a moment of inertia", "3 kg mm^2"),
+    "kg/m^3": ("a density", "7.85 g/cm^3"),
+    "m/s": ("a velocity", "1 mm/s"),
+    "m^2": ("an area", "4 mm^2"),
+    "Pa": ("a pressure", "210 GPa"),
 }
 
 _TEXT = re.compile(
@@ -91,6 +103,36 @@ def quantity(value: float | str, unit: str, entry: str, *, finite: bool = True) 
     if math.isnan(number) or (finite and math.isinf(number)):
         raise _refusal(number, unit, entry, "is not finite" if finite else "is not a number")
     return number
+
+
+def physical_number(value: object, unit: str, entry: str, *, finite: bool = True) -> float:
+    """Return a number that a call gives, in SI units as it is, or as a text with its unit.
+
+    The arguments are those of `quantity`.
+    """
+    if _has_unit(value):
+        return quantity(value, unit, entry, finite=finite)  # type: ignore[arg-type]
+    return real_number(value, entry, finite=finite)
+
+
+def without_units(values: Any, unit: str, entry: str) -> Any:
+    """Return values with every text among them read as a number in SI units; see `quantity`."""
+    if _has_unit(values):
+        return quantity(values, unit, entry)
+    if isinstance(values, np.ndarray):
+        return without_units(values.tolist(), unit, entry) if values.dtype.kind in "UO" else values
+    if not isinstance(values, list | tuple) or not any(map(_has_unit, values)):
+        return values
+    return [
+        quantity(one, unit, f"{entry}[{place}]") if _has_unit(one) else one
+        for place, one in enumerate(values)
+    ]
+
+
+def _has_unit(value: object) -> bool:
+    """Return whether it is a text of a number and something behind it."""
+    match = _TEXT.fullmatch(value) if isinstance(value, str) else None
+    return match is not None and bool(match["unit"])
 
 
 def _parse(text: str, unit: str, entry: str) -> float:

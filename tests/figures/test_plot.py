@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip import plot
+from stickslip.plot import style
 from stickslip.plot.limits import force_level, limit_curve, limit_model
 from stickslip.reference import snecma_beam
 
@@ -71,13 +72,13 @@ def test_curve(frf, ax):
     np.testing.assert_array_equal(response.get_xdata(), GRID)
     np.testing.assert_array_equal(response.get_ydata(), frf.amplitude("tip"))
     assert ax.get_xlabel() == "angular frequency ω [rad/s]"
-    assert ax.get_ylabel() == "half peak-to-peak of tip [m]"
+    assert ax.get_ylabel() == "half peak-to-peak of tip [mm]"
     assert ax.get_yscale() == "log"
     assert ax.get_xlim() == (150.0, 250.0)
     texts = legend(ax)
     assert texts[:3] == ["stuck (linear)", "free (linear)", "P = 20.313 N"]
     peak = frf.peak("tip")
-    assert texts[-1] == f"peak {peak.amplitude:.4g} m at {peak.omega:.5g} rad/s"
+    assert texts[-1] == f"peak {1e3 * peak.amplitude:.4g} mm at {peak.omega:.5g} rad/s"
 
 
 def test_units(frf, ax):
@@ -271,7 +272,7 @@ def test_single_point_and_linear_model(ax):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"omega_unit": "rpm"}, "omega_unit: unknown choice 'rpm'; known: 'rad/s', 'Hz'"),
+        ({"omega_unit": "kHz"}, "omega_unit: unknown choice 'kHz'; did you mean 'Hz'"),
         ({"length_unit": "nm"}, "length_unit: unknown choice 'nm'"),
         ({"normalise": "forces"}, r"normalise: unknown choice 'forces'; did you mean 'force'\?"),
         ({"measure": "peak"}, "measure: unknown choice 'peak'"),
@@ -345,3 +346,47 @@ def test_methods_make_figures(frf, levels, tmp_path):
             assert target.stat().st_size > 10_000
     finally:
         plt.close("all")
+
+
+@pytest.mark.parametrize(
+    ("size", "unit", "written"),
+    [
+        (3.2e-5, "m", "[µm]"),
+        (4.5e-4, "m", "[µm]"),
+        (2e-3, "m/N", "[mm/N]"),
+        (0.9, "m", "[mm]"),
+        (1.5, "m", "[m]"),
+        (24e6, "N/m", "[MN/m]"),
+        (4200.0, "N", "[kN]"),
+        (0.02, "s", "[s]"),
+    ],
+)
+def test_axes_get_the_prefix_that_suits_the_data(ax, size, unit, written):
+    ax.plot([0.0, 1.0], [0.0, size])
+    ax.set(ylabel=f"amplitude [{unit}]", ylim=(0.0, size))
+    style.finish(ax, made=True)
+    assert ax.get_ylabel() == f"amplitude {written}"
+    # What is drawn stays in SI.
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), [0.0, size])
+    numbers = [
+        text for text in ax.yaxis.get_major_formatter().format_ticks(ax.get_yticks()) if text
+    ]
+    largest = float(numbers[-1].replace("\N{MINUS SIGN}", "-"))
+    assert 0.5 < largest < 2000.0 or unit == "s"
+
+
+def test_a_named_unit_gets_no_prefix(frf, ax):
+    plot.curves(frf, "tip", ax=ax, length_unit="m")
+    assert ax.get_ylabel() == "half peak-to-peak of tip [m]"
+
+
+def test_rotor_speeds_of_a_disk(ax):
+    beam = snecma_beam()
+    disk = ss.BladedDisk(
+        beam.structure, 4, contacts=beam.contacts, forces=beam.forces, engine_order=2
+    )
+    disk_response = ss.forced_response(disk, GRID, 3)
+    plot.curves(disk_response, "tip", ax=ax, omega_unit="rpm", stuck=False, free=False)
+    assert ax.get_xlabel() == "rotor speed at engine order 2 [rpm]"
+    line = next(one for one in ax.lines if one.get_gid() == style.RESPONSE)
+    np.testing.assert_allclose(line.get_xdata(), disk_response.omega * 30 / np.pi / 2, rtol=1e-12)

@@ -49,7 +49,7 @@ def test_waveform(frf, ax):
 def test_waveforms(frf, ax):
     plot.waveform(frf, ["tip", "mode"], -1, ax=ax)
     assert legend(ax) == ["tip", "mode"]
-    assert ax.get_ylabel() == "displacement [m]"
+    assert ax.get_ylabel() == "displacement [µm]"
 
 
 def test_hysteresis(frf, ax):

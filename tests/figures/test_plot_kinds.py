@@ -141,7 +141,7 @@ def test_phase_plane(run, ax):
     motion, sections = ax.lines
     np.testing.assert_array_equal(motion.get_ydata(), run.velocity("tip")[-385:])
     assert sections.get_xdata().size == 4
-    assert ax.get_ylabel() == "velocity of tip [m/s]"
+    assert ax.get_ylabel() == "velocity of tip [mm/s]"
 
 
 def test_poincare_section(run, ax):
@@ -181,7 +181,7 @@ def test_what_cannot_be_drawn(exact, run, ax):
     for draw, message in (
         (lambda: plot.multipliers(exact, index=[], ax=ax), "index: empty"),
         (lambda: plot.multipliers(exact, index=99, ax=ax), "index: 99; there are 31 points"),
-        (lambda: plot.multipliers(exact, omega_unit="rpm", ax=ax), "omega_unit: unknown"),
+        (lambda: plot.multipliers(exact, omega_unit="kHz", ax=ax), "omega_unit: unknown"),
         (lambda: plot.history(run, "tpi", ax=ax), "unknown dof 'tpi'"),
         (lambda: plot.history(run, "tip", last=31, ax=ax), "last: 31 is too large"),
         (lambda: plot.poincare(run, "tip", skip=31, ax=ax), "skip: 31 is too large"),

@@ -157,7 +157,10 @@ def test_curves_are_those_of_the_picture(results, tmp_path):
     traces = {trace.get("name"): trace for trace in figure["data"]}
     curve = traces["P = 20.313 N"]
     np.testing.assert_allclose(numbers(curve["x"]), frf.omega / (2 * np.pi), rtol=1e-12)
-    np.testing.assert_allclose(numbers(curve["y"]), frf.amplitude("tip"), rtol=1e-12)
+    np.testing.assert_allclose(numbers(curve["y"]), 1e3 * frf.amplitude("tip"), rtol=1e-12)
+    assert figure["layout"]["yaxis"]["title"]["text"].endswith("[mm]")
+    low, high = figure["layout"]["yaxis"]["range"]
+    assert 10**low < 1e3 * frf.amplitude("tip").min() < 1e3 * frf.amplitude("tip").max() < 10**high
     assert figure["layout"]["xaxis"]["title"]["text"] == "frequency [Hz]"
     assert figure["layout"]["yaxis"]["type"] == "log"
     dashes = {name: traces[name]["line"]["dash"] for name in ("stuck (linear)", "free (linear)")}

@@ -4,6 +4,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+import stickslip as ss
 from stickslip import ModelError
 from stickslip.units import quantity
 
@@ -117,3 +118,67 @@ def test_numbers_do_not_load_pint():
         "sys.exit('pint' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def _two_masses(**changes):
+    values = {"stiffness": "1e4 N/m", "slip_force": "2 N"} | changes
+    structure = ss.Structure(
+        np.eye(2),
+        [[2e4, -1e4], [-1e4, 1e4]],
+        ss.Rayleigh(mass="3 1/s", stiffness="10 us"),
+        ["a", "b"],
+    )
+    return ss.Model(structure, [ss.Jenkins("a", **values)], [ss.Force("b", "20 N", "90 deg")])
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        (lambda: ss.Jenkins("a", stiffness="24 kN/mm", slip_force="246 N").stiffness, 24e6),
+        (lambda: ss.Iwan("a", stiffness="1 kN/m", slip_force=1, chi=-0.5, beta="20 %").beta, 0.2),
+        (lambda: ss.Stop("a", stiffness=1.0, gap="0.3 mm").gap, 3e-4),
+        (lambda: ss.Cubic("a", stiffness="2 N/mm^3").stiffness, 2e9),
+        (lambda: ss.ParallelJenkins("a", stiffness=[1], slip_forces=["1 kN"]).slip_forces[0], 1e3),
+        (lambda: ss.Coulomb(["a", "b"], normal=None, friction="30 %", tangential_stiffness=1.0,
+                            preload="1.2 kN").preload, 1200.0),
+        (lambda: ss.Force("a", "20 mN", "180 deg").phase, np.pi),
+        (lambda: ss.Rayleigh(stiffness="26 us").stiffness, 26e-6),
+        (lambda: ss.ModalDamping(["0.1 %", 0.002]).ratio[0], 1e-3),
+        (lambda: ss.Coupling("a", stiffness="1 kN/mm", damping="2 N s/mm").damping, 2e3),
+        (lambda: ss.Centrifugal("300 mm", "3000 rpm").speed, 100 * np.pi),
+        (lambda: ss.WedgeDamper(angle="0.5 rad", mass="12 g", friction=0.5, tangential_stiffness=1,
+                                normal_stiffness=1, load="120 N").angle, np.rad2deg(0.5)),
+        (lambda: ss.State(_two_masses(), {"a": "2 mm"}, {"b": "1 mm/s"}).displacement[0], 2e-3),
+        (lambda: ss.forced_response(_two_masses(), ["10 Hz", 70.0], 3).omega[0], 20 * np.pi),
+        (lambda: ss.forced_response(_two_masses(), ("5 Hz", "900 rpm"), 3).omega[-1], 30 * np.pi),
+        (lambda: ss.damper_curve(_two_masses(), dof="b", slip_force=["2 kN"]).values[0], 2e3),
+        (lambda: ss.transient(_two_masses(), omega="10 Hz", periods=3).omega, 20 * np.pi),
+        (lambda: ss.Measurement(["10 Hz"], "a", ["2 um"], noise="1 um").noise, 1e-6),
+    ],
+)  # fmt: skip
+def test_python_takes_texts_with_units(text, number):
+    assert text() == pytest.approx(number, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: _two_masses(stiffness="24 kg"), r"'a': stiffness = '24 kg' is not a stiffness"),
+        (lambda: _two_masses(slip_force="3 Nm"), "slip_force = '3 Nm' has an unknown unit 'Nm'"),
+        (lambda: _two_masses(slip_force="20,5 N"), "has a decimal comma"),
+        (lambda: ss.forced_response(_two_masses(), ["10 Hz", "6 mm"], 3),
+         "omega = '6 mm' is not a frequency"),
+        (lambda: ss.forced_response(_two_masses(), ("10 Hz", "6 mm"), 3),
+         "omega: end of the range = '6 mm' is not a frequency"),
+        (lambda: ss.damper_curve(_two_masses(), dof="b", slip_force=["1 N/m"]),
+         r"slip_force.* = '1 N/m' is not a force"),
+        (lambda: ss.optimal_damper(_two_masses(), dof="b", bounds=("1 N", "1 m")),
+         "bounds = '1 m' is not a force"),
+        (lambda: ss.fit(_two_masses(), [], parameters={"slip_force": ("1 N", "1 m")}),
+         r"slip_force.*'1 m' is not a force"),
+        (lambda: ss.State(_two_masses(), ["1 N", 0.0]), r"\[0\] = '1 N' is not a length"),
+    ],
+)  # fmt: skip
+def test_python_names_a_wrong_dimension(call, message):
+    with pytest.raises(ss.ModelError, match=message):
+        call()

@@ -202,7 +202,7 @@ def test_points_share_the_stiffness_of_a_face():
         ({"positions": TURNING}, "give inertia and positions together"),
         ({"inertia": 1e-5, "positions": [(0.1,)]}, "is no point"),
         ({"inertia": 1e-5, "positions": []}, "a face without points"),
-        ({"load": "120 N"}, "load: '120 N' is not a number"),
+        ({"load": "120 kg"}, "load = '120 kg' is not a force"),
     ],
 )
 def test_refused_numbers(changes, message):

@@ -43,7 +43,7 @@ def disk(*dofs, force="tip.x"):
             lambda: ss.Jenkins("tip", stifness=1.0, slip_force=1.0),
             "Jenkins: unknown keyword 'stifness'; did you mean 'stiffness'?",
         ),
-        (lambda: ss.Jenkins("tip", stiffness=1.0), "Jenkins: slip_force is missing; give slip_f"),
+        (lambda: ss.Stop("tip", stiffness=1.0), "Stop: gap is missing; give gap=..."),
         (
             lambda: ss.Jenkins("tip", None, 1.0, 2.0),
             "Jenkins: 4 arguments without a name, and it takes 2; give the others by name: "

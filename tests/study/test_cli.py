@@ -52,8 +52,8 @@ def test_run_saves_a_file_per_level_a_picture_and_prints_the_peaks(folder):
     _, _, omega, hertz, amplitude, error, harmonics, *converged = lines[2].split()
     assert float(omega) == pytest.approx(peak.omega, rel=1e-5)
     assert float(hertz) == pytest.approx(peak.omega / (2 * np.pi), rel=1e-5)
-    assert float(amplitude) == pytest.approx(peak.amplitude, rel=1e-4)
-    true = peak.amplitude - 1.455e-3
+    assert float(amplitude) == pytest.approx(1e3 * peak.amplitude, rel=1e-4)  # mm
+    true = 1e3 * peak.amplitude - 1.455
     assert true < float(error) < 3.0 * true
     assert harmonics == "5"
     assert converged == ["12", "of", "12"]

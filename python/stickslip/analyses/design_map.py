@@ -15,6 +15,7 @@ from stickslip.checks import brief, members, real_matrix, real_number, set_field
 from stickslip.errors import ModelError
 from stickslip.model import Model, Structure
 from stickslip.results.design_map import DesignMap, SpeedResponse
+from stickslip.units import physical_number
 
 _COARSE = 3
 """Harmonics with which resonances are located."""
@@ -72,7 +73,7 @@ def design_map(
         If there are not two parameters with values, or a value makes no model.
     """
     names, values = _two(parameters)
-    low, high = sorted(real_number(one, "omega") for one in omega)
+    low, high = sorted(physical_number(one, "rad/s", "omega") for one in omega)
     if not 0.0 < low < high or points < 3:
         raise ModelError(
             f"omega: {brief(omega)} with {points} points; give 0 < from < to, 3 points"
@@ -213,7 +214,8 @@ def speed_response(
         If a speed is not positive, or makes no model.
     """
     order = real_number(engine_order, "engine_order")
-    speeds = np.array([real_number(one, "speed") for one in members(speed, "speed", "[...]")])  # type: ignore[arg-type]
+    given = members(speed, "speed", "[...]")  # type: ignore[arg-type]
+    speeds = np.array([physical_number(one, "rad/s", "speed") for one in given])
     if not (speeds.size and (speeds > 0.0).all() and order > 0.0):
         raise ModelError(f"speed: {brief(speed)} of order {order:g}; give numbers above zero")
     found = [_amplitudes(build(one), dof, np.array([order * one]), harmonics)[0] for one in speeds]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from math import acos, pi, sin, sqrt, tanh
 from typing import NamedTuple
 
-from stickslip.checks import real_number
 from stickslip.errors import ModelError
+from stickslip.units import physical_number
 
 
 class SingleCycle(NamedTuple):
@@ -123,8 +124,11 @@ def rigid_limit_cycle(
     return SingleCycle(limit / k / tanh(0.5 * rate * pi / omega), omega)
 
 
+_UNITS = defaultdict(lambda: "N/m", mass="kg", slip_force="N")
+
+
 def _positive(**values: float) -> list[float]:
-    numbers = [real_number(value, name) for name, value in values.items()]
+    numbers = [physical_number(value, _UNITS[name], name) for name, value in values.items()]
     for name, number in zip(values, numbers, strict=True):
         if number <= 0.0:
             raise ModelError(f"{name}: {number:g} must be above 0")
@@ -132,7 +136,7 @@ def _positive(**values: float) -> list[float]:
 
 
 def _negative(damping: float) -> float:
-    number = real_number(damping, "damping")
+    number = physical_number(damping, "kg/s", "damping")
     if number >= 0.0:
         raise ModelError(f"damping: {number:g} must be below 0; without it nothing is excited")
     return number

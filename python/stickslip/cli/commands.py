@@ -40,7 +40,7 @@ def show(results: Files) -> None:
         console.grid(view.facts(result))
         console.tell("")
         shown = notable_dofs(result.model, result.dofs)
-        console.show_all(view.tables([("", result)], "", shown, "m"))
+        console.show_all(view.tables([("", result)], "", shown, "auto"))
         for text in failures(result):
             console.complain("warning", f"{file.name}: {text}")
 
@@ -169,8 +169,8 @@ def report(
     dof: Dofs = None,
     hertz: Hertz = False,
     length: Annotated[
-        str, typer.Option("--length-unit", help="Of amplitudes: m, mm or um.", metavar="UNIT")
-    ] = "m",
+        str, typer.Option("--length-unit", help="Of amplitudes: auto, m, mm or um.", metavar="UNIT")
+    ] = "auto",
 ) -> None:
     """Write results of any kind as one HTML page that is read without a network."""
     from stickslip import report
@@ -183,6 +183,6 @@ def report(
         title=title,
         dofs=dof,
         omega_unit="Hz" if hertz else "rad/s",
-        length_unit=cast("Literal['m', 'mm', 'um']", length),
+        length_unit=cast("Literal['auto', 'm', 'mm', 'um']", length),
     )
     tell(f"report: {page}")

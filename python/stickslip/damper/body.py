@@ -9,9 +9,10 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.checks import brief, members, real_matrix, real_number, set_fields, text
+from stickslip.checks import brief, members, real_matrix, set_fields, text
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
+from stickslip.units import physical_number
 
 Sum: TypeAlias = dict[str, float]
 """Factors of degrees of freedom, whose sum is a displacement."""
@@ -42,8 +43,9 @@ class Centrifugal:
     speed: float
 
     def __post_init__(self) -> None:
-        for name in ("radius", "speed"):
-            set_fields(self, **{name: positive(getattr(self, name), f"centrifugal load: {name}")})
+        for name, unit in (("radius", "m"), ("speed", "rad/s")):
+            number = positive(getattr(self, name), unit, f"centrifugal load: {name}")
+            set_fields(self, **{name: number})
 
     def force(self, mass: float) -> float:
         """Return the load of a mass [N]."""
@@ -85,8 +87,8 @@ class ContactPoint:
             raise ModelError(f"{entry}: position and dofs; give the dofs of an elastic body alone")
         set_fields(
             self,
-            normal=_vector(normal, f"{entry}: normal"),
-            position=None if position is None else _vector(position, f"{entry}: position"),
+            normal=_vector(normal, "", f"{entry}: normal"),
+            position=None if position is None else _vector(position, "m", f"{entry}: position"),
             dofs=None
             if dofs is None
             else tuple(
@@ -156,9 +158,9 @@ class RigidBody:
         self, mass: float, inertia: ArrayLike | None = None, *, load: Sequence[float] = (0.0, 0.0)
     ) -> None:
         entry = "rigid body"
-        forces = _vector(load, f"{entry}: load")
+        forces = _vector(load, "N", f"{entry}: load")
         turns = None if inertia is None else _inertia(inertia, len(forces))
-        set_fields(self, mass=positive(mass, f"{entry}: mass"), load=forces, inertia=turns)
+        set_fields(self, mass=positive(mass, "kg", f"{entry}: mass"), load=forces, inertia=turns)
 
     @property
     def axes(self) -> int:
@@ -250,7 +252,7 @@ class FlexibleBody:
             raise ModelError(f'{entry}: load {brief(load)}; write {{"y": 120.0}}')
         for dof in given:
             structure.index(dof)
-        forces = {dof: real_number(one, f"{entry}: load") for dof, one in given.items()}
+        forces = {dof: physical_number(one, "N", f"{entry}: load") for dof, one in given.items()}
         set_fields(self, own=structure, forces=forces, axes=int(axes))
 
     @property
@@ -274,16 +276,17 @@ class FlexibleBody:
         return self.own
 
 
-def positive(value: object, entry: str) -> float:
+def positive(value: object, unit: str, entry: str) -> float:
     """Return a number that is not negative."""
-    number = real_number(value, entry)
+    number = physical_number(value, unit, entry)
     if number < 0.0:
         raise ModelError(f"{entry} {number:g} is negative; give a number from zero, in SI units")
     return number
 
 
-def _vector(value: Iterable[object], entry: str) -> Vector:
-    numbers = tuple(real_number(one, entry) for one in members(value, entry, "[0.0, 1.0]"))
+def _vector(value: Iterable[object], unit: str, entry: str) -> Vector:
+    given = members(value, entry, "[0.0, 1.0]")
+    numbers = tuple(physical_number(one, unit, entry) for one in given)
     if len(numbers) not in (2, 3):
         raise ModelError(f"{entry}: {len(numbers)} numbers; give 2 in a plane, 3 in space")
     return numbers
@@ -292,7 +295,7 @@ def _vector(value: Iterable[object], entry: str) -> Vector:
 def _inertia(value: ArrayLike, axes: int) -> Vector:
     entry = "rigid body: inertia"
     if axes == 2:
-        return (positive(value, entry),)
+        return (positive(value, "kg*m^2", entry),)
     matrix = real_matrix(value, entry)
     if matrix.shape != (3, 3) or np.abs(matrix - matrix.T).max() > 1e-9 * np.abs(matrix).max():
         raise ModelError(f"{entry}: {brief(value)}; give a symmetric tensor, 3 x 3, in kg m2")

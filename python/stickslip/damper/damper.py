@@ -356,8 +356,8 @@ def _contact(face: Face, first: list[list[Sum]], other: list[list[Sum]] | None) 
         *(one if count > 1 else one[0] for one in ends),
         normal=[point.normal for point in face.points] if count > 1 else face.points[0].normal,
         friction=face.friction,
-        tangential_stiffness=positive(face.tangential_stiffness, "face: stiffness") / count,
-        normal_stiffness=positive(face.normal_stiffness, "face: stiffness") / count,
+        tangential_stiffness=positive(face.tangential_stiffness, "N/m", "face: stiffness") / count,
+        normal_stiffness=positive(face.normal_stiffness, "N/m", "face: stiffness") / count,
         gap=face.gap,
         name=face.name or face.to,
     )

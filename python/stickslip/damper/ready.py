@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from math import atan, cos, pi, radians, sin
 from typing import Any, TypeAlias
 
-from stickslip.checks import brief, members, real_number
+from stickslip.checks import brief, members, set_fields
 from stickslip.damper.body import Body, Centrifugal, ContactPoint, RigidBody, positive
 from stickslip.damper.damper import LEFT, RIGHT, Damper, Face
 from stickslip.errors import ModelError
+from stickslip.units import physical_number
 
 Pair: TypeAlias = float | tuple[float, float]
 """One number for both faces, or one for the left and one for the right face."""
@@ -31,13 +32,14 @@ class _TwoFaces(Damper):
     gap: Pair = 0.0
 
     def __post_init__(self) -> None:
-        positive(self.mass, f"{self._entry}: mass")
-        for key in ("friction", "tangential_stiffness", "normal_stiffness"):
+        set_fields(self, mass=positive(self.mass, "kg", f"{self._entry}: mass"))
+        stiffness = dict.fromkeys(("tangential_stiffness", "normal_stiffness"), "N/m")
+        self._keep_pairs(friction="", **stiffness, gap="m")
+        for key in ("friction", *stiffness):
             for one in self._pair(key):
-                positive(one, f"{self._entry}: {key}")
-        self._pair("gap")
+                positive(one, "", f"{self._entry}: {key}")
         if not isinstance(self.load, Centrifugal):
-            real_number(self.load, f"{self._entry}: load")
+            set_fields(self, load=physical_number(self.load, "N", f"{self._entry}: load"))
 
     @property
     def _entry(self) -> str:
@@ -50,9 +52,22 @@ class _TwoFaces(Damper):
             return self.load.force(self.mass)
         return float(self.load)
 
+    def _keep_pairs(self, **units: str) -> None:
+        """Keep numbers of one or both faces, which may be texts with units."""
+        for key, unit in units.items():
+            pair = _one_or_two(getattr(self, key), unit, f"{self._entry}: {key}")
+            set_fields(self, **{key: pair})
+
+    def _keep_angles(self) -> None:
+        """Keep the angles of the faces [deg]."""
+        self._keep_pairs(angle="deg")
+        for one in self._pair("angle"):
+            _require_angle(one, f"{self._entry}: angle")
+
     def _pair(self, key: str) -> tuple[float, float]:
         """Return the numbers of the left and the right face."""
-        return _both(getattr(self, key), f"{self._entry}: {key}")
+        value: Pair = getattr(self, key)
+        return value if isinstance(value, tuple) else (value, value)
 
     def _face(self, side: int, points: Sequence[ContactPoint], body: str = "damper") -> Face:
         return Face(
@@ -118,15 +133,14 @@ class WedgeDamper(_TwoFaces):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for one in self._pair("angle"):
-            _require_angle(one, f"{self._entry}: angle")
+        self._keep_angles()
         if (self.inertia is None) != (self.positions is None):
             raise ModelError(
                 f"{self._entry}: give inertia and positions together: what turns does so by the "
                 "lever arms of its contact points"
             )
         _places(self.positions)
-        _inertia(self.inertia, self._entry)
+        set_fields(self, inertia=_inertia(self.inertia, self._entry))
 
     @property
     def locks(self) -> bool:
@@ -179,11 +193,12 @@ class CylinderDamper(_TwoFaces):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for one in self._pair("angle"):
-            _require_angle(one, f"{self._entry}: angle")
-        if not positive(self.cylinder_radius, f"{self._entry}: cylinder_radius") > 0.0:
+        self._keep_angles()
+        radius = positive(self.cylinder_radius, "m", f"{self._entry}: cylinder_radius")
+        set_fields(self, cylinder_radius=radius)
+        if not radius > 0.0:
             raise ModelError(f"{self._entry}: cylinder_radius 0; give the radius in m")
-        _inertia(self.inertia, self._entry)
+        set_fields(self, inertia=_inertia(self.inertia, self._entry))
 
     @property
     def bodies(self) -> Mapping[str, Body]:
@@ -233,9 +248,9 @@ class SplitDamper(_TwoFaces):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for one in self._pair("angle"):
-            _require_angle(one, f"{self._entry}: angle")
-        real_number(self.split_angle, f"{self._entry}: split_angle")
+        self._keep_angles()
+        turned = physical_number(self.split_angle, "deg", f"{self._entry}: split_angle")
+        set_fields(self, split_angle=turned)
 
     @property
     def bodies(self) -> Mapping[str, Body]:
@@ -298,7 +313,7 @@ class StripDamper(_TwoFaces):
         if (self.inertia is None) != (self.positions is None):
             raise ModelError(f"{self._entry}: give inertia and positions together, or neither")
         _places(self.positions)
-        _inertia(self.inertia, self._entry)
+        set_fields(self, inertia=_inertia(self.inertia, self._entry))
 
     @property
     def bodies(self) -> Mapping[str, Body]:
@@ -315,18 +330,16 @@ class StripDamper(_TwoFaces):
         )
 
 
-def _both(value: object, entry: str) -> tuple[float, float]:
+def _one_or_two(value: object, unit: str, entry: str) -> Pair:
     if isinstance(value, tuple | list):
         if len(value) != 2:
             raise ModelError(f"{entry}: {len(value)} numbers; give one, or (left, right)")
-        return real_number(value[0], entry), real_number(value[1], entry)
-    number = real_number(value, entry)
-    return number, number
+        return physical_number(value[0], unit, entry), physical_number(value[1], unit, entry)
+    return physical_number(value, unit, entry)
 
 
-def _inertia(value: float | None, entry: str) -> None:
-    if value is not None:
-        positive(value, f"{entry}: inertia")
+def _inertia(value: float | None, entry: str) -> float | None:
+    return None if value is None else positive(value, "kg*m^2", f"{entry}: inertia")
 
 
 def _require_angle(angle: float, entry: str) -> None:
@@ -363,7 +376,7 @@ def _places(
 
 
 def _place(value: object) -> Place:
-    numbers = [real_number(one, "positions") for one in _listed(value)]
+    numbers = [physical_number(one, "m", "positions") for one in _listed(value)]
     if len(numbers) != 2:
         raise ModelError(f"positions: {brief(value)} is no point; {_POINTS}")
     return numbers[0], numbers[1]

@@ -22,6 +22,7 @@ from stickslip.checks import (
 from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
 from stickslip.model.damping import makes_blocks
+from stickslip.model.matrix_units import MatrixUnits, Units
 from stickslip.model.structure import Rayleigh, Structure
 
 
@@ -41,6 +42,10 @@ class Interface:
         M1 [kg]. Default: none.
     damping : array_like, scipy.sparse matrix or Rayleigh, optional
         C1 [kg/s]; with `Rayleigh` it is made of M1 and K1. Default: none.
+    units : str, optional
+        Mass, length and time of the blocks, as of `Structure`. Default: SI.
+    dofs : sequence of str, optional
+        Names of the degrees of freedom; with `units` they tell which are rotations. Default: none.
 
     Raises
     ------
@@ -57,9 +62,18 @@ class Interface:
         stiffness: MatrixLike,
         mass: MatrixLike | None = None,
         damping: MatrixLike | Rayleigh | None = None,
+        *,
+        units: Units = None,
+        dofs: Sequence[str] | None = None,
     ) -> None:
         K = _block(stiffness, "stiffness", None)
         M = np.zeros_like(K) if mass is None else _block(mass, "mass", len(K))
+        if units is not None:
+            known = MatrixUnits.of(units)
+            names = [""] * len(K) if dofs is None else dofs
+            K, M = known.in_si(K, "stiffness", names), known.in_si(M, "mass", names)
+            if damping is not None and not isinstance(damping, Rayleigh):
+                damping = known.in_si(_block(damping, "damping", len(K)), "damping", names)
         if damping is None:
             C = np.zeros_like(K)
         elif isinstance(damping, Rayleigh):

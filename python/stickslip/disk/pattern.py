@@ -7,8 +7,9 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import choice, real_number, whole_number
+from stickslip.checks import choice, whole_number
 from stickslip.errors import ModelError
+from stickslip.units import physical_number
 
 Distribution: TypeAlias = Literal["normal", "uniform"]
 DISTRIBUTIONS: tuple[str, ...] = get_args(Distribution)
@@ -41,7 +42,7 @@ def mistuning_pattern(
     Guillen (1999), section 4.5: E_i = (1 + S r_i) E_0.
     """
     count = whole_number(sectors, "sectors", smallest=1)
-    size = real_number(deviation, "deviation")
+    size = physical_number(deviation, "", "deviation")
     if size < 0.0:
         raise ModelError(f"deviation: {size:g} is negative; give 0.05 for 5 %")
     return size * _drawn(whole_number(seed, "seed"), count, distribution)

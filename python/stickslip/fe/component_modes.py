@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from stickslip.checks import (
     brief,
     members,
-    real_number,
     text,
     unknown,
     whole_number,
@@ -19,6 +18,8 @@ from stickslip.checks import (
 from stickslip.errors import ModelError
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.sparse import Factor, lowest_modes, symmetric_sparse
+from stickslip.model.matrix_units import MatrixUnits, Units
+from stickslip.units import physical_number
 
 Dof: TypeAlias = int | str
 _FIRST = 20
@@ -37,6 +38,7 @@ def craig_bampton(
     modes: int | None = None,
     omega: float | None = None,
     dofs: Iterable[str] | None = None,
+    units: Units = None,
 ) -> Reduction:
     """Reduce a structure to boundary degrees of freedom and fixed-interface modes.
 
@@ -59,6 +61,8 @@ def craig_bampton(
         one of interest is usual.
     dofs : iterable of str, optional
         Names of the N rows, as `read_dofs` gives them.
+    units : str, optional
+        Mass, length and time of the matrices, as of `Structure`: "t-mm-s". Default: SI.
 
     Returns
     -------
@@ -93,6 +97,9 @@ def craig_bampton(
     if K.shape != M.shape:
         raise ModelError(f"stiffness: {K.shape[0]} rows, but the mass has {size}")
     rows = _row_names(dofs, size)
+    if units is not None:
+        known, ways = MatrixUnits.of(units), rows or ("",) * size
+        M, K = known.in_si(M, "mass", ways).tocsc(), known.in_si(K, "stiffness", ways).tocsc()
     names, kept = _boundary(boundary, rows, size)
     inner = np.setdiff1d(np.arange(size), kept)
     count = _mode_count(modes, omega, inner.size)
@@ -113,7 +120,7 @@ def craig_bampton(
     if not squares[0] > _NOISE * np.finfo(np.float64).eps * highest:
         raise _moves_rigidly(names)
     if omega is not None:
-        limit = real_number(omega, "omega")
+        limit = physical_number(omega, "rad/s", "omega")
         while squares[-1] < limit**2 and count < inner.size - 1:
             count = min(2 * count, inner.size - 1)
             squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
@@ -180,7 +187,7 @@ def _mode_count(modes: int | None, omega: float | None, inner: int) -> int:
     largest = max(inner - 1, 1)
     if modes is not None:
         return whole_number(modes, "modes", smallest=1, largest=largest)
-    if real_number(omega, "omega") <= 0.0:
+    if physical_number(omega, "rad/s", "omega") <= 0.0:
         raise ModelError(f"omega: {omega:g} must be positive")
     return min(_FIRST, largest)
 

@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 from scipy.sparse import csc_array, diags_array
 
-from stickslip.checks import Matrix, MatrixLike, real_number, unknown, whole_number
+from stickslip.checks import Matrix, MatrixLike, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.fe.sparse import Factor, lowest_modes
 from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
 from stickslip.model.structure import Structure
+from stickslip.units import physical_number
 
 
 class Reduction:
@@ -135,7 +136,8 @@ class Reduction:
         for dof, value in (springs or {}).items():
             if dof not in self.boundary:
                 raise ModelError(f"springs: {unknown('dof', dof, self.boundary)}")
-            place, spring = self.boundary.index(dof), real_number(value, f"springs: {dof}")
+            place = self.boundary.index(dof)
+            spring = physical_number(value, "N/m", f"springs: {dof}")
             added[self.rows[place]] += spring
             reduced[place, place] += spring
         K, M = (self.full_stiffness + diags_array(added)).tocsc(), self.full_mass

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.checks import file_path, optional_package, real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.files import refusal, write
+from stickslip.units import physical_number
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -67,9 +68,11 @@ class Solid:
 
     def __post_init__(self) -> None:
         skfem = _skfem()
-        for name in ("young", "density"):
-            if real_number(getattr(self, name), f"solid: {name}") <= 0.0:
-                raise ModelError(f"solid: {name} {getattr(self, name):g} must be positive")
+        for name, unit in (("young", "Pa"), ("density", "kg/m^3")):
+            number = physical_number(getattr(self, name), unit, f"solid: {name}")
+            if number <= 0.0:
+                raise ModelError(f"solid: {name} {number:g} must be positive")
+            object.__setattr__(self, name, number)
         if not -1.0 < real_number(self.poisson, "solid: poisson") < 0.5:
             raise ModelError(f"solid: poisson {self.poisson:g} must lie between -1 and 0.5")
         # Order 4 integrates the mass of a brick exactly.

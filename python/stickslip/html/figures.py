@@ -18,7 +18,7 @@ from matplotlib.transforms import Transform
 
 from stickslip.html.artists import Trace, UndrawableError, proxy, traces
 from stickslip.html.notation import label, plain
-from stickslip.plot.style import RESPONSE, fit
+from stickslip.plot.style import RESPONSE, Prefixed, fit
 from stickslip.results.arrays import Float
 from stickslip.views.picture import Panel
 
@@ -112,6 +112,8 @@ def _plotly(figure: Figure, ax: Axes) -> tuple[list[Trace], Trace]:
     beside = [one for one in figure.axes if one is not ax and one not in bars]
     if len(beside) > 1 or not all(one.bbox.bounds == ax.bbox.bounds for one in beside):
         raise UndrawableError("several frames")
+    # What is drawn is in SI; the page has no formatter that could write it with a prefix.
+    factors = {letter: _factor(ax, letter) for letter in "xy"}
     data = list(traces(ax, "y"))
     layout = _layout(ax)
     for one in beside:
@@ -138,7 +140,39 @@ def _plotly(figure: Figure, ax: Axes) -> tuple[list[Trace], Trace]:
         # buttons stand between title and frame, below those of plotly
         layout["margin"]["t"] += _BUTTONS
         layout["height"] += _BUTTONS
+    for letter, factor in factors.items():
+        _rescale(data, layout, letter, factor)
     return data, layout
+
+
+def _factor(ax: Axes, letter: str) -> float:
+    formatter = getattr(ax, f"{letter}axis").get_major_formatter()
+    return formatter.factor if isinstance(formatter, Prefixed) else 1.0
+
+
+def _rescale(data: Sequence[Trace], layout: Trace, letter: str, factor: float) -> None:
+    """Multiply what is drawn along an axis."""
+    if factor == 1.0:
+        return
+
+    def scaled(ends: Sequence[float], kind: str) -> list[float]:
+        return [end + log10(factor) if kind == "log" else factor * end for end in ends]
+
+    for trace in data:
+        if trace[f"{letter}axis"] != letter:
+            continue
+        upright = trace["type"] == "bar" and (trace["orientation"] == "v") == (letter == "y")
+        for key in (letter, "base") if upright else (letter,):
+            trace[key] = [None if one is None else factor * one for one in trace[key]]
+    axis = layout[f"{letter}axis"]
+    axis["range"] = scaled(axis["range"], axis["type"])
+    for note in layout["annotations"]:
+        if note[f"{letter}ref"] == letter:
+            (note[letter],) = scaled([note[letter]], axis["type"])
+    for menu in layout["updatemenus"] if letter == "y" else ():
+        for button in menu["buttons"]:
+            (shown,) = button["args"]
+            shown["yaxis.range"] = scaled(shown["yaxis.range"], shown["yaxis.type"])
 
 
 def _layout(ax: Axes) -> Trace:

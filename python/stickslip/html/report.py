@@ -26,8 +26,8 @@ def report(
     *,
     title: str | None = None,
     dofs: Iterable[str] | str | None = None,
-    omega_unit: Literal["rad/s", "Hz"] = "rad/s",
-    length_unit: Literal["m", "mm", "um"] = "m",
+    omega_unit: Literal["rad/s", "Hz", "rpm"] = "rad/s",
+    length_unit: Literal["auto", "m", "mm", "um"] = "auto",
 ) -> None:
     """Write results as a self-contained HTML page, whole or not at all.
 
@@ -46,10 +46,10 @@ def report(
         Heading of the page. Default: the names of the results.
     dofs : str or iterable of str, optional
         Degrees of freedom to show. Default: those with a force or a contact.
-    omega_unit : {"rad/s", "Hz"}, optional
-        Unit of the frequency axes.
-    length_unit : {"m", "mm", "um"}, optional
-        Unit of the amplitudes.
+    omega_unit : {"rad/s", "Hz", "rpm"}, optional
+        Unit of the frequency axes; rpm of a disk are those of the rotor.
+    length_unit : {"auto", "m", "mm", "um"}, optional
+        Unit of the amplitudes. Default: that which suits the numbers.
 
     Raises
     ------
@@ -62,8 +62,8 @@ def report(
     if target.suffix.lower() not in (".html", ".htm"):
         raise ModelError(f"{target}: a report is a page of HTML; let its name end in .html")
     require_place(target)
-    choice(omega_unit, "omega_unit", ["rad/s", "Hz"])
-    choice(length_unit, "length_unit", ["m", "mm", "um"])
+    choice(omega_unit, "omega_unit", ["rad/s", "Hz", "rpm"])
+    choice(length_unit, "length_unit", ["auto", "m", "mm", "um"])
     entries = _entries(results)
     shown = _dofs(dofs, entries)
     if title is not None:

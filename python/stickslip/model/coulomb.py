@@ -14,7 +14,6 @@ from stickslip.checks import (
     Matrix,
     brief,
     members,
-    real_number,
     require_keys,
     set_fields,
     whole_number,
@@ -24,6 +23,7 @@ from stickslip.model.bonded import Bonded
 from stickslip.model.contact import OPEN, Contact
 from stickslip.model.dofs import Dofs
 from stickslip.model.nodes import Displacement, Nodes
+from stickslip.units import physical_number
 
 Each: TypeAlias = float | tuple[float, ...]
 """One number for all nodes, or one per node."""
@@ -32,6 +32,18 @@ Vectors: TypeAlias = tuple[float, ...] | tuple[tuple[float, ...], ...]
 
 _ENTRY = "coulomb contact"
 _OPTIONAL = ("normal_stiffness", "preload", "gap")
+_UNITS = {
+    "friction": "",
+    "tangential_stiffness": "N/m",
+    "normal_stiffness": "N/m",
+    "preload": "N",
+    "gap": "m",
+}
+_UNITS_PER_AREA = _UNITS | {
+    "tangential_stiffness": "N/m^3",
+    "normal_stiffness": "N/m^3",
+    "preload": "Pa",
+}
 _ON_CONE = 1e-9
 """Distance from the cone, relative to it, that is none."""
 _SPACE = 3
@@ -155,10 +167,11 @@ class Coulomb(Contact):
             "preload": preload,
             "gap": gap,
         }
+        units = _UNITS if areas is None else _UNITS_PER_AREA
         each = {
             key: None
             if one is None and key in _OPTIONAL
-            else _each(one, key, shape, negative=key == "gap")
+            else _each(one, key, units[key], shape, negative=key == "gap")
             for key, one in given.items()
         }
         if areas is not None:
@@ -412,23 +425,24 @@ def _closure(preload: Any, gap: Any, *, constant: bool) -> tuple[Any, Any]:
     return preload, 0.0 if preload is None and gap is None else gap
 
 
-def _each(value: object, key: str, shape: tuple[int, ...], *, negative: bool) -> Each:
+def _each(value: object, key: str, unit: str, shape: tuple[int, ...], *, negative: bool) -> Each:
     """Return the number of all nodes, or one per node."""
     entry = f"{_ENTRY}: {key}"
     if not (isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim)):
-        return _number(value, entry, negative=negative)
+        return _number(value, unit, entry, negative=negative)
     listed = tuple(value)
     if len(shape) == 1 or len(listed) != shape[0]:
         nodes = "one node" if len(shape) == 1 else f"{shape[0]} nodes"
         expected = "one number" if len(shape) == 1 else "one number, or one per node"
         raise ModelError(f"{entry}: {len(listed)} numbers for {nodes}; give {expected}")
     return tuple(
-        _number(one, f"{entry}[{place}]", negative=negative) for place, one in enumerate(listed)
+        _number(one, unit, f"{entry}[{place}]", negative=negative)
+        for place, one in enumerate(listed)
     )
 
 
-def _number(value: object, entry: str, *, negative: bool) -> float:
-    number = real_number(value, entry)
+def _number(value: object, unit: str, entry: str, *, negative: bool) -> float:
+    number = physical_number(value, unit, entry)
     if number < 0.0 and not negative:
         raise ModelError(f"{entry} {number:g} is negative; give a number from zero, in SI units")
     return number
@@ -441,7 +455,7 @@ def _spread(each: dict[str, Each | None], areas: object, shape: tuple[int, ...])
             f"{_ENTRY}: areas {brief(areas)} of one node; give its stiffness in N/m, or a list of "
             "nodes"
         )
-    sizes = np.asarray(_each(areas, "areas", shape, negative=False))
+    sizes = np.asarray(_each(areas, "areas", "m^2", shape, negative=False))
     for key in ("tangential_stiffness", "normal_stiffness", "preload"):
         if (one := each[key]) is not None:
             each[key] = tuple((sizes * np.asarray(one) * np.ones(shape[0])).tolist())

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.checks import Matrix, brief, real_number, require_keys, text
+from stickslip.checks import Matrix, brief, require_keys, text
 from stickslip.errors import ModelError
 from stickslip.model.dofs import Dofs
+from stickslip.units import physical_number
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Coupling:
             text(self.other, "coupling: other")
         for name, unit in (("stiffness", "N/m"), ("damping", "kg/s")):
             entry = f"coupling at {brief(self.dof)}: {name}"
-            value = real_number(getattr(self, name), entry)
+            value = physical_number(getattr(self, name), unit, entry)
             if value < 0.0:
                 raise ModelError(f"{entry} {value:g} is negative; give {unit} above zero")
             object.__setattr__(self, name, value)

@@ -10,9 +10,10 @@ from typing import Protocol, TypeAlias, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import Matrix, brief, members, real_number, set_fields
+from stickslip.checks import Matrix, brief, members, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.dofs import Dofs
+from stickslip.units import physical_number
 
 _ROUNDING = 1e-13
 # Ratio of stiffness over mass between dofs from which their order decides how many digits slow
@@ -72,8 +73,8 @@ class Rayleigh(_DampingLaw):
     stiffness: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("mass", "stiffness"):
-            factor = real_number(getattr(self, name), f"Rayleigh {name} factor")
+        for name, unit in (("mass", "1/s"), ("stiffness", "s")):
+            factor = physical_number(getattr(self, name), unit, f"Rayleigh {name} factor")
             object.__setattr__(self, name, factor)
 
     @property
@@ -121,11 +122,11 @@ class ModalDamping(_DampingLaw):
         ratio: float | tuple[float, ...]
         if isinstance(given, Sequence) and not isinstance(given, str):
             ratio = tuple(
-                real_number(value, f"damping ratio at position {mode}")
+                physical_number(value, "", f"damping ratio at position {mode}")
                 for mode, value in enumerate(given)
             )
         else:
-            ratio = real_number(given, "damping ratio")
+            ratio = physical_number(given, "", "damping ratio")
         set_fields(self, ratio=ratio, stuck=_contacts(self.stuck))
 
     @property

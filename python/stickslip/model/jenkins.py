@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from dataclasses import InitVar, dataclass, field
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from stickslip.checks import Matrix, brief, real_number, set_fields
+from stickslip.checks import Matrix, brief, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.contact import Sliders, real_numbers
 from stickslip.model.ends import TwoEnds
+from stickslip.units import physical_number
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,8 @@ class Jenkins(_Elements):
         Stiffness k_d while it sticks [N/m].
     slip_force : float
         Force F_d at which it slips [N]. Zero is no friction, infinity never slips.
+    friction, normal_load : float, optional
+        Instead: coefficient of friction and normal load [N], whose product the slip force is.
     name : str, optional
         By which results and settings refer to it.
 
@@ -72,13 +75,17 @@ class Jenkins(_Elements):
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "slip_force")
 
     stiffness: float = field(kw_only=True)
-    slip_force: float = field(kw_only=True)
+    slip_force: float = field(kw_only=True, default=cast("float", None))
+    friction: InitVar[float | None] = field(kw_only=True, default=None)
+    normal_load: InitVar[float | None] = field(kw_only=True, default=None)
 
-    def __post_init__(self) -> None:
+    def __post_init__(self, friction: float | None, normal_load: float | None) -> None:
         super().__post_init__()
         entry = f"jenkins contact at {brief(self.dof)}"
-        stiffness = real_number(self.stiffness, f"{entry}: stiffness", finite=False)
-        slip_force = real_number(self.slip_force, f"{entry}: slip_force", finite=False)
+        if friction is not None or normal_load is not None or self.slip_force is None:
+            set_fields(self, slip_force=self._product(entry, friction, normal_load))
+        stiffness = physical_number(self.stiffness, "N/m", f"{entry}: stiffness", finite=False)
+        slip_force = physical_number(self.slip_force, "N", f"{entry}: slip_force", finite=False)
         if stiffness < 0.0:
             raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
         if np.isinf(stiffness):
@@ -91,6 +98,24 @@ class Jenkins(_Elements):
                 f"{entry}: slip_force {slip_force:g} is negative; give N, 0 for no friction"
             )
         set_fields(self, stiffness=stiffness, slip_force=slip_force)
+
+    def _product(self, entry: str, friction: float | None, normal_load: float | None) -> float:
+        """Return the slip force that friction and normal load make."""
+        both = friction is not None and normal_load is not None
+        if self.slip_force is not None or not both:
+            given = "is missing" if self.slip_force is None else "is given beside them"
+            raise ModelError(
+                f"{entry}: slip_force {given}; give slip_force=..., or friction=... and "
+                "normal_load=...",
+                study=f"slip_force {given}; give 'slip_force', or 'friction' and 'normal_load'",
+            )
+        values = []
+        for name, value, unit in (("friction", friction, ""), ("normal_load", normal_load, "N")):
+            number = physical_number(value, unit, f"{entry}: {name}")
+            if number < 0.0:
+                raise ModelError(f"{entry}: {name} {number:g} is negative; give it from zero")
+            values.append(number)
+        return values[0] * values[1]
 
     @property
     def _elements(self) -> Iterable[tuple[float, float]]:
@@ -133,8 +158,8 @@ class ParallelJenkins(_Elements, Sliders):
     def __post_init__(self) -> None:
         super().__post_init__()
         entry = f"{self.law} contact at {brief(self.dof)}"
-        stiffness = real_numbers(self.stiffness, entry, "stiffness", finite=True)
-        limits = real_numbers(self.slip_forces, entry, "slip_forces", finite=False)
+        stiffness = real_numbers(self.stiffness, "N/m", entry, "stiffness", finite=True)
+        limits = real_numbers(self.slip_forces, "N", entry, "slip_forces", finite=False)
         if not stiffness:
             raise ModelError(f"{entry}: stiffness: empty; give at least one element")
         if len(stiffness) != len(limits):

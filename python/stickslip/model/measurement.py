@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, choice, real_number, set_fields, text
+from stickslip.checks import brief, choice, set_fields, text
 from stickslip.errors import EntryError, ModelError
 from stickslip.model.model import ContactRef, Model, require_model
+from stickslip.units import physical_number, without_units
 
 if TYPE_CHECKING:
     from stickslip.io.frf import Frf
@@ -34,6 +35,8 @@ class Measured(ABC):
 
     kind: ClassVar[str]
     """Name in messages."""
+    noise_unit: ClassVar[str] = "m"
+    """Unit of what is measured."""
 
     relative_noise: float | None
     noise: float | None
@@ -55,8 +58,8 @@ class Measured(ABC):
             require_model(model)
         set_fields(
             self,
-            relative_noise=_positive(relative_noise, f"{self.kind}: relative_noise"),
-            noise=_positive(noise, f"{self.kind}: noise"),
+            relative_noise=_positive(relative_noise, "", f"{self.kind}: relative_noise"),
+            noise=_positive(noise, self.noise_unit, f"{self.kind}: noise"),
             model=model,
             name=None if name is None else text(name, f"{self.kind}: name"),
             **own,
@@ -153,8 +156,8 @@ class Measurement(Measured):
         model: Model | None = None,
         name: str | None = None,
     ) -> None:
-        grid = _numbers(omega, "measurement: omega", above=0.0)
-        values = _numbers(amplitude, "measurement: amplitude", above=0.0)
+        grid = _numbers(omega, "rad/s", "measurement: omega", above=0.0)
+        values = _numbers(amplitude, "m", "measurement: amplitude", above=0.0)
         if grid.shape != values.shape:
             raise ModelError(
                 f"measurement: {grid.size} frequencies for {values.size} amplitudes; give one "
@@ -186,7 +189,7 @@ class Measurement(Measured):
         **more
             Noise, model and name.
         """
-        level = real_number(force, "measurement: force")
+        level = physical_number(force, "N", "measurement: force")
         kept = frf.omega > 0.0
         omega, amplitude = frf.omega[kept], abs(level) * np.abs(frf.receptance()[kept])
         return cls(omega, dof, amplitude, "fundamental", **more)
@@ -255,10 +258,14 @@ class MeasuredPeak(Measured):
         model: Model | None = None,
         name: str | None = None,
     ) -> None:
-        ends = _numbers(span, "measured peak: span", above=0.0)
+        ends = _numbers(span, "rad/s", "measured peak: span", above=0.0)
         if ends.size != _ENDS or ends[0] == ends[1]:
             raise ModelError(f"measured peak: span: {brief(span)}; give (from, to) in rad/s")
-        heights = [amplitude] if omega is None else [amplitude, omega]
+        found = [_numbers([amplitude], "m", "measured peak", above=0.0)]
+        if omega is not None:
+            found.append(_numbers([omega], "rad/s", "measured peak: omega", above=0.0))
+        values = np.concatenate(found)
+        values.flags.writeable = False
         known = noise is not None or relative_noise is not None
         if omega is not None and (frequency_noise is None or not known):
             raise ModelError(
@@ -267,10 +274,10 @@ class MeasuredPeak(Measured):
             )
         self._keep(
             dof=text(dof, "measured peak: dof"),
-            values=_numbers(heights, "measured peak", above=0.0),
+            values=values,
             span=(float(ends.min()), float(ends.max())),
             measure=choice(measure, "measured peak: measure", _MEASURES),
-            frequency_noise=_positive(frequency_noise, "measured peak: frequency_noise"),
+            frequency_noise=_positive(frequency_noise, "", "measured peak: frequency_noise"),
             relative_noise=relative_noise,
             noise=noise,
             model=model,
@@ -329,6 +336,7 @@ class MeasuredLoop(Measured):
     """
 
     kind: ClassVar[str] = "measured loop"
+    noise_unit: ClassVar[str] = "N"
 
     contact: ContactRef
     displacement: NDArray[np.float64]
@@ -347,8 +355,8 @@ class MeasuredLoop(Measured):
         model: Model | None = None,
         name: str | None = None,
     ) -> None:
-        u = _numbers(displacement, "measured loop: displacement")
-        f = _numbers(force, "measured loop: force")
+        u = _numbers(displacement, "m", "measured loop: displacement")
+        f = _numbers(force, "N", "measured loop: force")
         if u.shape != f.shape or u.size < _FEWEST:
             raise ModelError(
                 f"measured loop: {u.size} displacements for {f.size} forces; give one force per "
@@ -398,8 +406,9 @@ class MeasuredLoop(Measured):
 
 
 def _numbers(
-    values: ArrayLike | Sequence[float], entry: str, above: float = -np.inf
+    values: ArrayLike | Sequence[float], unit: str, entry: str, above: float = -np.inf
 ) -> NDArray[np.float64]:
+    values = without_units(values, unit, entry)
     try:
         found = np.atleast_1d(np.array(values, dtype=np.float64))
     except (TypeError, ValueError):
@@ -414,10 +423,10 @@ def _numbers(
     return found
 
 
-def _positive(value: float | None, entry: str) -> float | None:
+def _positive(value: float | None, unit: str, entry: str) -> float | None:
     if value is None:
         return None
-    number = real_number(value, entry)
+    number = physical_number(value, unit, entry)
     if not number > 0.0:
         raise EntryError(entry, f": {number:g}; give a number above 0")
     return number

@@ -9,10 +9,11 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.checks import Matrix, brief, members, real_number, set_fields
+from stickslip.checks import Matrix, brief, members, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.ends import TwoEnds
 from stickslip.model.jenkins import Jenkins
+from stickslip.units import physical_number
 
 Table: TypeAlias = tuple[tuple[float, ...], tuple[float, ...]]
 """Displacements [m] and forces [N] of a backbone."""
@@ -33,10 +34,10 @@ class _Microslip(TwoEnds):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        stiffness = self._number("stiffness")
+        stiffness = self._number("stiffness", "N/m")
         if stiffness < 0.0:
             raise self._refusal("stiffness", "is negative; give N/m above zero")
-        slip_force = self._number("slip_force", finite=False)
+        slip_force = self._number("slip_force", "N", finite=False)
         if slip_force < 0.0:
             raise self._refusal("slip_force", "is negative; give N, 0 for no friction")
         set_fields(self, stiffness=stiffness, slip_force=slip_force)
@@ -45,8 +46,8 @@ class _Microslip(TwoEnds):
     def _entry(self) -> str:
         return f"{self.law} contact at {brief(self.dof)}"
 
-    def _number(self, key: str, *, finite: bool = True) -> float:
-        return real_number(getattr(self, key), f"{self._entry}: {key}", finite=finite)
+    def _number(self, key: str, unit: str = "", *, finite: bool = True) -> float:
+        return physical_number(getattr(self, key), unit, f"{self._entry}: {key}", finite=finite)
 
     def _refusal(self, key: str, text: str) -> ModelError:
         return ModelError(f"{self._entry}: {key} {getattr(self, key):g} {text}")
@@ -234,6 +235,9 @@ class Masing(_Microslip):
         return f"{shape}, {super().summary()}"
 
 
+_COLUMNS = (("displacement", "m"), ("force", "N"))
+
+
 def _table(given: Sequence[ArrayLike], entry: str) -> Table:
     """Return the rows of a backbone without the one at zero; refuse what is not concave."""
     columns = members(given, entry, "backbone=(displacements, forces)")
@@ -241,10 +245,10 @@ def _table(given: Sequence[ArrayLike], entry: str) -> Table:
         raise ModelError(f"{entry}: {len(columns)} columns; give displacements and forces")
     rows = [
         [
-            real_number(value, f"{entry}: {name}[{place}]")
+            physical_number(value, unit, f"{entry}: {name}[{place}]")
             for place, value in enumerate(members(column, f"{entry}: {name}", "a list"))  # type: ignore[arg-type]
         ]
-        for name, column in zip(("displacement", "force"), columns, strict=True)
+        for (name, unit), column in zip(_COLUMNS, columns, strict=True)
     ]
     if len(rows[0]) != len(rows[1]):
         raise ModelError(f"{entry}: {len(rows[0])} displacements and {len(rows[1])} forces")

@@ -8,10 +8,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from stickslip.checks import Matrix, brief, real_number, set_fields
+from stickslip.checks import Matrix, brief, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.ends import TwoEnds
 from stickslip.model.jenkins import Jenkins
+from stickslip.units import physical_number
 
 
 @dataclass(frozen=True)
@@ -89,10 +90,11 @@ class Stop(_Spring):
     def __post_init__(self) -> None:
         super().__post_init__()
         entry = f"stop at {brief(self.dof)}"
-        stiffness = real_number(self.stiffness, f"{entry}: stiffness")
+        stiffness = physical_number(self.stiffness, "N/m", f"{entry}: stiffness")
         if stiffness < 0.0:
             raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
-        set_fields(self, stiffness=stiffness, gap=real_number(self.gap, f"{entry}: gap"))
+        gap = physical_number(self.gap, "m", f"{entry}: gap")
+        set_fields(self, stiffness=stiffness, gap=gap)
 
     @property
     def _at_rest(self) -> float:
@@ -134,7 +136,7 @@ class Cubic(_Spring):
     def __post_init__(self) -> None:
         super().__post_init__()
         entry = f"cubic spring at {brief(self.dof)}: stiffness"
-        set_fields(self, stiffness=real_number(self.stiffness, entry))
+        set_fields(self, stiffness=physical_number(self.stiffness, "N/m^3", entry))
 
     @property
     def _at_rest(self) -> float:

@@ -9,9 +9,10 @@ from typing import Self, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, real_number, set_fields, unknown
+from stickslip.checks import brief, set_fields, unknown
 from stickslip.errors import ModelError
 from stickslip.model.model import Model, PointRef, require_model
+from stickslip.units import physical_number, without_units
 
 Float: TypeAlias = NDArray[np.float64]
 
@@ -58,8 +59,8 @@ class State:
         set_fields(
             self,
             dofs=model.structure.dofs,
-            displacement=_motion(model, displacement, "displacement"),
-            velocity=_motion(model, velocity, "velocity"),
+            displacement=_motion(model, displacement, "displacement", "m"),
+            velocity=_motion(model, velocity, "velocity", "m/s"),
             contact_force=forces,
         )
 
@@ -108,17 +109,17 @@ class State:
         _require_held(model, self.contact_force, entry)
 
 
-def _motion(model: Model, values: object, entry: str) -> Float:
+def _motion(model: Model, values: object, entry: str, unit: str) -> Float:
     known = model.structure.dofs
     motion = np.zeros(len(known))
     if values is None:
         return motion
     if not isinstance(values, Mapping):
-        return _row(values, entry, len(known), "dofs")
+        return _row(values, entry, len(known), "dofs", unit)
     for name, value in values.items():
         if name not in known:
             raise ModelError(f"{entry}: {unknown('dof', name, known)}")
-        motion[known.index(name)] = real_number(value, f"{entry} of {name!r}")
+        motion[known.index(name)] = physical_number(value, unit, f"{entry} of {name!r}")
     return motion
 
 
@@ -134,14 +135,15 @@ def _forces(model: Model, values: object) -> Float:
                     "the model in one list"
                 )
             place = sum(sizes[:contact]) + point
-            forces[place] = real_number(value, f"contact_force of {reference!r}")
+            forces[place] = physical_number(value, "N", f"contact_force of {reference!r}")
     elif values is not None:
-        forces = _row(values, "contact_force", forces.size, "contact points")
+        forces = _row(values, "contact_force", forces.size, "contact points", "N")
     _require_held(model, forces, "contact_force")
     return forces
 
 
-def _row(values: object, entry: str, size: int, of: str) -> Float:
+def _row(values: object, entry: str, size: int, of: str, unit: str) -> Float:
+    values = without_units(values, unit, entry)
     try:
         row = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):

@@ -84,7 +84,7 @@ class StructuralDamper(Sliders):
             raise ModelError(
                 f"{entry}: dofs {brief(list(ends))} are all the ground; name at least one dof"
             )
-        limits = real_numbers(slip_forces, entry, "slip_forces", finite=False)
+        limits = real_numbers(slip_forces, "N", entry, "slip_forces", finite=False)
         if len(limits) != len(ends):
             raise ModelError(
                 f"{entry}: {len(limits)} slip_forces for {len(ends)} dofs; give one per contact, "

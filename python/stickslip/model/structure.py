@@ -23,6 +23,7 @@ from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.dofs import Dofs
+from stickslip.model.matrix_units import MatrixUnits, Units
 
 __all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
 
@@ -48,6 +49,9 @@ class Structure(Dofs):
     dofs : sequence of str, optional
         One name per degree of freedom, by which contacts, forces and results refer to it.
         Default "0", "1", ...
+    units : str, optional
+        Mass, length and time of the matrices: "t-mm-s" for tonne, millimetre and second, so that
+        stiffnesses are in N/mm. Rotations ("12.4", "tip.rx") stay radians. Default: SI.
 
     Raises
     ------
@@ -79,12 +83,19 @@ class Structure(Dofs):
         stiffness: MatrixLike,
         damping: MatrixLike | DampingLaw | None = None,
         dofs: Iterable[str] | None = None,
+        *,
+        units: Units = None,
     ) -> None:
         M, K = real_matrix(mass, "mass"), real_matrix(stiffness, "stiffness")
         if not M.size:
             raise ModelError("mass: 0 x 0; a structure needs at least one dof")
         require_square(M, "mass")
         names = _names(dofs, len(M))
+        if units is not None:
+            known = MatrixUnits.of(units)
+            M, K = known.in_si(M, "mass", names), known.in_si(K, "stiffness", names)
+            if damping is not None and not isinstance(damping, DampingLaw):
+                damping = known.in_si(real_matrix(damping, "damping"), "damping", names)
         M, K = _symmetric(M, "mass", names), _symmetric(K, "stiffness", names)
         _require_positive(M, names)
         C = _damping(damping, M, K, names)

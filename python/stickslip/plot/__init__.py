@@ -4,6 +4,7 @@ from stickslip.calls import checked_names
 from stickslip.plot.basins import basins, lines
 from stickslip.plot.blades import blade_bars, blade_curves
 from stickslip.plot.bodies import damper_drawing
+from stickslip.plot.campbell import campbell
 from stickslip.plot.contacts import contact_forces, events, hysteresis, waveform
 from stickslip.plot.curves import curves, slip
 from stickslip.plot.cycles import limit_cycles, stability_map
@@ -26,6 +27,7 @@ __all__ = [
     "basins",
     "blade_bars",
     "blade_curves",
+    "campbell",
     "contact_forces",
     "contact_history",
     "curves",

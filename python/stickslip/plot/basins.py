@@ -64,7 +64,7 @@ def basins(ax: Axes, /, result: BasinMap, **options: Unpack[Frame]) -> None:
 @figure
 def lines(ax: Axes, /, result: MotionClass, dof: str, **options: Unpack[LineOptions]) -> None:
     """Draw the spectrum of a motion that neither decays nor grows for ever, its lines marked."""
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], result)
     frequency, density = result.spectrum(dof)
     found = result.lines(dof, options["most"])
     scale = 2.0 * np.pi * omega.factor

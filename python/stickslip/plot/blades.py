@@ -76,7 +76,7 @@ def blade_curves(
     blades : sequence of int, optional
         The blades, counted from 0. Default: all that were observed.
     """
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], result)
     length = style.LENGTH[options["length_unit"]]
     observed = result.blades(dof)
     given = observed if blades is None else members(blades, "blades", "blades=[0, 1]")

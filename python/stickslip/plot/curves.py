@@ -56,11 +56,12 @@ def curves(
     """Draw response curves over frequency, between their two linear limits."""
     listed, measure = several(ForcedResponse, results), options["measure"]
     names = checked_labels(options["labels"], _names_of(listed))
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], listed)
     length = style.LENGTH[options["length_unit"]]
     for result in listed:
         result.amplitude(dof, measure)  # what is unknown is refused before anything is drawn
-    view = _View(ax, dof, measure, omega, length, per_force=options["normalise"] == "force")
+    per_force, auto = options["normalise"] == "force", options["length_unit"] == "auto"
+    view = _View(ax, dof, measure, omega, length, per_force, auto)
     _draw_limits(view, listed, stuck=options["stuck"], free=options["free"])
     single = len(listed) == 1
     for result, name, colour in zip(listed, names, style.colours(len(listed)), strict=True):
@@ -85,7 +86,7 @@ def slip(
     contact : int, str or (int or str, int), optional
         The contact, or one of its points. Default: all.
     """
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], result)
     contacts = range(len(result.model.contacts)) if contact is None else [contact]
     lines = [line for one in contacts for line in _shares(result, one)]
     if not lines:
@@ -113,6 +114,8 @@ class _View:
     length: Scale
     per_force: bool
     """Whether amplitudes are divided by the largest force amplitude."""
+    auto: bool
+    """Whether lengths get a prefix."""
 
     @property
     def unit(self) -> str:
@@ -214,7 +217,8 @@ class _View:
             return
         x, y = self.omega.factor * peak.omega, self._factor(result.model) * peak.amplitude
         unit = self.omega.label.rpartition("[")[2].rstrip("]")
-        label = f"peak {y:.4g} {self.unit} at {x:.5g} {unit}" if named else None
+        height = style.prefixed(y, self.unit, 4) if self.auto else f"{y:.4g} {self.unit}"
+        label = f"peak {height} at {x:.5g} {unit}" if named else None
         self.ax.plot(x, y, **style.mark("o", 5, colour), mew=1.3, label=label)
 
     def _factor(self, model: Model) -> float:

@@ -38,7 +38,7 @@ def limit_cycles(
     """
     branches = several(LimitCycles, results, lambda one: one.settings.followed)
     names = checked_labels(options["labels"], [f"mode {one.settings.mode}" for one in branches])
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], branches)
     length = style.LENGTH[options["length_unit"]]
     made, ax, below = options["ax"] is None, options["ax"], None
     if made and options["frequency"]:
@@ -59,7 +59,7 @@ def limit_cycles(
     ax.set(yscale="log", ylabel=f"amplitude of {dof} [{length.label}]")
     if below is not None:
         below.set_ylabel(omega.label)
-    style.finish(ax, made=made)
+    style.finish(ax, made=made, lengths=options["length_unit"] == "auto")
     return ax
 
 

@@ -32,7 +32,7 @@ def damper(
     """
     curves = several(DamperCurve, results, lambda one: one.parameter)
     names = checked_labels(options["labels"], [one.settings.dof for one in curves])
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], curves)
     length = style.LENGTH[options["length_unit"]]
     views = [_view(curve, length, per_force=options["normalise"] == "force") for curve in curves]
     beside = ax.twinx() if options["frequency"] else None
@@ -46,7 +46,9 @@ def damper(
             beside.plot(x, shown, color=colour, lw=1.0, ls="--", alpha=0.8)
         if options["optimum"]:
             x, y = x[view.best], y[view.best]
-            label = f"lowest: {y:.4g} {view.unit} at {x:.4g}"
+            auto = options["length_unit"] == "auto"
+            least = style.prefixed(y, view.unit, 4) if auto else f"{y:.4g} {view.unit}"
+            label = f"lowest: {least} at {x:.4g}"
             ax.plot(x, y, **style.mark("o", 5, colour), mew=1.3, label=label)
         rigid = np.flatnonzero(np.isinf(one.values) & one.arrays.solved)
         if rigid.size and one.parameter == "stiffness":

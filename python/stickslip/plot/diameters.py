@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stickslip.checks import brief, members, real_number, whole_number
+from stickslip.checks import brief, members, whole_number
 from stickslip.disk import BladedDisk, NodalDiameters
 from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
@@ -18,6 +19,11 @@ from stickslip.plot.figure import figure
 from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
 from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float
+from stickslip.units import physical_number
+
+_MARGIN = 1.05
+_NEAR = 1.25
+"""Share above the highest marked excitation up to which modes are near it."""
 
 
 @figure
@@ -44,18 +50,18 @@ def safe(
     speed : float
         Angular speed of the rotor [rad/s].
     """
-    rate = real_number(speed, "speed")
+    rate = physical_number(speed, "rad/s", "speed")
     if rate <= 0.0:
         raise ModelError(f"speed: {rate:g} is not above zero; give the speed of the rotor in rad/s")
     table, omega = _table_of(table), style.OMEGA[options["omega_unit"]]
-    _draw_diameters(ax, table, omega, slipping=options["slipping"])
     n, factor = table.disk.sectors, omega.factor
-    top = 1.05 * max(table.stuck.max(), table.slipping.max() if options["slipping"] else 0.0)
     marked = _orders(options["orders"], table.disk)
+    top = _top(table, rate * max(*marked, 1), options["modes"])
+    _draw_diameters(ax, table, omega, slipping=options["slipping"], top=top)
     reach = max(int(np.ceil(top / rate)), *marked, 1)
     # The corners of the line lie at whole orders only where n is even.
     line = np.unique(np.append(np.arange(reach + 1.0), np.arange(0.0, reach, n / 2)))
-    label = f"excitation at {rate:.5g} rad/s"
+    label = f"excitation at {rate * style.OMEGA['rpm'].factor:.5g} rpm"
     ax.plot(_folded(line, n), factor * rate * line, color="crimson", lw=0.9, label=label)
     chosen = np.array(marked, dtype=np.float64)
     x, y = _folded(chosen, n), factor * rate * chosen
@@ -105,8 +111,23 @@ def _table_of(table: object) -> NodalDiameters:
     return table
 
 
-def _draw_diameters(ax: Axes, table: NodalDiameters, omega: Scale, *, slipping: bool) -> None:
+def _top(table: NodalDiameters, excited: float, modes: int | None) -> float:
+    """Return the highest frequency to draw: of some modes, or of those near the excitation."""
+    if modes is not None:
+        count = whole_number(modes, "modes", smallest=1, largest=table.stuck.shape[1])
+        return _MARGIN * max(float(table.stuck[:, :count].max()), excited)
+    # The first family that lies wholly above shows how far away the next resonance is.
+    above = table.stuck.min(axis=0) > _NEAR * excited
+    first = int(np.argmax(above)) if above.any() else table.stuck.shape[1] - 1
+    return _MARGIN * max(float(table.stuck[:, : max(first, 1)].max()), excited)
+
+
+def _draw_diameters(
+    ax: Axes, table: NodalDiameters, omega: Scale, *, slipping: bool, top: float = np.inf
+) -> None:
     x = table.diameters
+    seen = table.stuck.min(axis=0) <= top
+    table = replace(table, stuck=table.stuck[:, seen], slipping=table.slipping[:, seen])
     looks: Looks = {"lw": 0.9, "marker": "o", "ms": 3.5}
     label = "stuck" if table.disk.contacts else "natural frequencies"
     ax.plot(x, omega.factor * table.stuck, color=style.BLUE, ls=style.STUCK, **looks)[0].set_label(

@@ -56,7 +56,7 @@ def figure(draw: Callable[Concatenate[Axes, P], None]) -> Callable[P, Axes]:
             if ax is None:
                 pyplot.close()
             raise
-        finish(drawn, made=ax is None)
+        finish(drawn, made=ax is None, lengths=arguments.get("length_unit", "auto") == "auto")
         return drawn
 
     return _derived(framed, draw)

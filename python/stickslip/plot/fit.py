@@ -27,7 +27,7 @@ def fit(ax: Axes, /, result: Fit, **options: Unpack[FitOptions]) -> None:
         number for number, kind in enumerate(result.arrays.test_kind) if (kind == _LOOP) == loops
     ]
     scale = style.LENGTH[options["length_unit"]]
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], result)
     for number, colour in zip(shown, style.colours(len(shown)), strict=True):
         own = result.of_test(number)
         x, seen = result.arrays.abscissa[own], result.arrays.observed[own]

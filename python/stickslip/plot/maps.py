@@ -17,6 +17,8 @@ from stickslip.results.design_map import DesignMap
 def design_map(ax: Axes, /, result: DesignMap, **options: Unpack[Frame]) -> None:
     """Draw the peak over both parameters, the least one marked."""
     scale = style.LENGTH[options["length_unit"]]
+    if options["length_unit"] == "auto":
+        scale = style.prefix_of(float(np.nanmax(result.amplitude, initial=0.0)), "m")
     first, second = result.values
     shade = ax.pcolormesh(
         first, second, scale.factor * result.amplitude.T, shading="nearest", cmap="viridis"

@@ -37,7 +37,7 @@ def backbone(
     """
     branches = several(NonlinearModes, results)
     names = checked_labels(options["labels"], [f"mode {one.settings.mode}" for one in branches])
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], branches)
     made, ax, below = options["ax"] is None, options["ax"], None
     if made and options["damping"]:
         tall = pyplot.figure(figsize=(6.4, 6.4), layout="constrained")

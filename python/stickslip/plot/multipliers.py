@@ -30,7 +30,7 @@ def multipliers(ax: Axes, /, result: ExactResponse, **options: Unpack[Multiplier
     matplotlib.axes.Axes
         The axes. Neutral multipliers, of contacts that never slip, are hollow.
     """
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], result)
     index: Sequence[int] | int | None = options["index"]
     if index is None:
         index = np.flatnonzero(result.arrays.solved).tolist()

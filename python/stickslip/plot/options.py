@@ -24,7 +24,9 @@ class Drawing(TypedDict, total=False):
 class Frame(Drawing, total=False):
     """Keywords of figures of displacements."""
 
-    length_unit: Annotated[LengthUnit, "m", "Unit of displacements."]
+    length_unit: Annotated[
+        LengthUnit, "auto", "Unit of displacements. Default: m with a prefix that suits the data."
+    ]
 
 
 class Swept(Drawing, total=False):
@@ -181,6 +183,10 @@ class DiameterOptions(Spectral, total=False):
     slipping: Annotated[bool, True, "Draw the frequencies with slipping contacts too."]
 
 
+class CampbellOptions(DiameterOptions, total=False):
+    """Keywords of `campbell`."""
+
+
 class SafeOptions(DiameterOptions, total=False):
     """Keywords of `safe`."""
 
@@ -188,7 +194,12 @@ class SafeOptions(DiameterOptions, total=False):
         int | Sequence[int] | None,
         None,
         "Engine orders to mark, or up to which. Default: the engine order of the disk and the "
-        "harmonics of it that its forces have; the line reaches up to the highest frequency drawn.",
+        "harmonics of it that its forces have.",
+    ]
+    modes: Annotated[
+        int | None,
+        None,
+        "How many modes to draw, from the lowest. Default: those near the marked orders.",
     ]
 
 

@@ -12,15 +12,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter
+from matplotlib.ticker import (
+    Formatter,
+    FuncFormatter,
+    LogFormatterMathtext,
+    LogLocator,
+    NullFormatter,
+)
 
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
 from stickslip.results.stability import STATES, States
 
-OmegaUnit: TypeAlias = Literal["rad/s", "Hz"]
-LengthUnit: TypeAlias = Literal["m", "mm", "um", "µm"]
+OmegaUnit: TypeAlias = Literal["rad/s", "Hz", "rpm"]
+LengthUnit: TypeAlias = Literal["auto", "m", "mm", "um", "µm"]
 Colour: TypeAlias = tuple[float, float, float, float] | str
 Looks: TypeAlias = dict[str, Any]
 """Keywords of Matplotlib."""
@@ -38,7 +44,11 @@ LINES = {"stable": "-", "unstable": "--", "not decided": ":"}
 _SIZE = (6.4, 4.2)
 _WIDE = (8.2, 4.2)
 _FEW = 6
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+_FEW_DECADES = 2.5
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+_LENGTHS = ("m", "m/N", "m/s")
+_PREFIXED = (*_LENGTHS, "N", "N/m", "J", "W")
+"""Units of axes that get a prefix."""
 
 
 class Scale(NamedTuple):
@@ -51,8 +61,25 @@ class Scale(NamedTuple):
 OMEGA: dict[str, Scale] = {
     "rad/s": Scale(1.0, "angular frequency ω [rad/s]"),
     "Hz": Scale(0.5 / np.pi, "frequency [Hz]"),
+    "rpm": Scale(30.0 / np.pi, "frequency [rpm]"),
 }
+
+
+def omega_scale(unit: OmegaUnit, results: Any) -> Scale:
+    """Return the unit of the frequencies of one or several results.
+
+    Of a disk rpm are those of the rotor: the frequency over the engine order.
+    """
+    models = [one.model for one in (results if isinstance(results, Iterable) else [results])]
+    orders = {getattr(getattr(model, "disk", model), "engine_order", None) for model in models}
+    order = orders.pop() if len(orders) == 1 else None
+    if unit != "rpm" or not order:
+        return OMEGA[unit]
+    return Scale(OMEGA["rpm"].factor / order, f"rotor speed at engine order {order} [rpm]")
+
+
 LENGTH: dict[str, Scale] = {
+    "auto": Scale(1.0, "m"),
     "m": Scale(1.0, "m"),
     "mm": Scale(1e3, "mm"),
     "um": Scale(1e6, "µm"),
@@ -131,13 +158,16 @@ def bare(ax: Axes) -> None:
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def finish(ax: Axes, *, made: bool) -> None:
-    """Put grid, frame and, where there is something to tell apart, a legend on the axes.
+def finish(ax: Axes, *, made: bool, lengths: bool = True) -> None:
+    """Put prefixes, grid, frame and, where there is something to tell apart, a legend on the axes.
+
+    Lengths get a prefix unless their unit was named.
 
     On a figure of ours (`made`) the legend stands outside and hides no curve. On axes of others it
     does so if it is long and their layout makes room for it.
     """
     bare(ax)
+    prefix_axes(ax, lengths=lengths)
     handles, _ = ax.get_legend_handles_labels()
     if len(handles) < 2:
         return
@@ -174,12 +204,67 @@ def fit(ax: Axes, *, log: bool) -> None:
         ax.set_ylim(0.0, 1.15 * values.max())
 
 
-def prefixed(value: float, unit: str) -> str:
+def prefixed(value: float, unit: str, digits: int = 3) -> str:
     """Return a number with three digits and the SI prefix that suits it."""
     if value == 0.0 or not np.isfinite(value):
         return f"{value:g} {unit}"
-    exponent = int(np.clip(3 * np.floor(np.log10(abs(value)) / 3), -9, 6))
-    return f"{value / 10.0**exponent:.3g} {_PREFIXES[exponent]}{unit}"
+    exponent = _exponent(value)
+    return f"{value / 10.0**exponent:.{digits}g} {_PREFIXES[exponent]}{unit}"
+
+
+def _exponent(value: float) -> int:
+    return int(np.clip(3 * np.floor(np.log10(abs(value)) / 3), -9, 9))
+
+
+def prefix_of(value: float, unit: str) -> Scale:
+    """Return the factor and the unit with the SI prefix that suit a largest value."""
+    exponent = _exponent(value) if value and np.isfinite(value) else 0
+    return Scale(10.0**-exponent, f"{_PREFIXES[exponent]}{unit}")
+
+
+class Prefixed(Formatter):
+    """Writes the numbers of an axis in its unit with a prefix; what is drawn stays in SI."""
+
+    def __init__(self, factor: float, *, powers: bool = False) -> None:
+        self.factor = factor
+        self._powers = LogFormatterMathtext() if powers else None
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        """Return a number as it is written."""
+        value = self.factor * x
+        return f"{value:.6g}" if self._powers is None else self._powers(value, pos)
+
+    def set_axis(self, axis: Any) -> None:
+        """Take the axis."""
+        super().set_axis(axis)
+        if self._powers is not None:
+            self._powers.create_dummy_axis()
+
+
+def prefix_axes(ax: Axes, *, lengths: bool) -> None:
+    """Write forces, stiffnesses and, if asked, lengths with the prefix that suits the data."""
+    axes = ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim()))
+    words = [axis.get_label_text().rpartition(" [") for axis, _ in axes]
+    units = [unit.rstrip("]") if between else "" for _, between, unit in words]
+    for (axis, ends), (head, _, _), unit in zip(axes, words, units, strict=True):
+        if unit not in _PREFIXED or (unit in _LENGTHS and not lengths):
+            continue
+        # Both axes of one plane have one unit.
+        reach = [
+            end for (_, both), one in zip(axes, units, strict=True) if one == unit for end in both
+        ]
+        scale = prefix_of((1.0 - 1e-9) * max(map(abs, reach)), unit)
+        if scale.factor == 1.0:
+            continue
+        low, high = sorted(scale.factor * end for end in ends)
+        powers = axis.get_scale() == "log" and not (low > 1e-4 and high < 1e5)
+        axis.set_label_text(f"{head} [{scale.label}]")
+        axis.set_major_formatter(Prefixed(scale.factor, powers=powers))
+        if axis.get_scale() == "log":
+            few = not powers and np.log10(high / low) < _FEW_DECADES
+            axis.set_minor_formatter(Prefixed(scale.factor) if few else NullFormatter())
+            if few:
+                axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
 
 
 def _number_decades(ax: Axes) -> None:
@@ -187,7 +272,7 @@ def _number_decades(ax: Axes) -> None:
     low, high = ax.get_ylim()
     plain = low > 1e-4 and high < 1e5
     written = FuncFormatter(lambda value, _: f"{value:g}") if plain else LogFormatterMathtext()
-    between = plain and np.log10(high / low) < 2.5
+    between = plain and np.log10(high / low) < _FEW_DECADES
     ax.yaxis.set_major_formatter(written)
     ax.yaxis.set_minor_formatter(written if between else NullFormatter())
     if between:

@@ -100,7 +100,7 @@ def spectrum(ax: Axes, /, result: Transient, dof: str, **options: Unpack[Spectru
     matplotlib.axes.Axes
         The axes; thin lines stand at the multiples of the excitation frequency if they are few.
     """
-    omega = style.OMEGA[options["omega_unit"]]
+    omega = style.omega_scale(options["omega_unit"], result)
     found = result.spectrum(
         dof, last=options["last"], segment=options["segment"], window=options["window"]
     )

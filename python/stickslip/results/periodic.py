@@ -10,7 +10,7 @@ from typing import Any, ClassVar, get_args
 
 import numpy as np
 
-from stickslip.checks import choice, real_number, text, whole_number
+from stickslip.checks import choice, text, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
 from stickslip.results.arrays import (
@@ -29,6 +29,7 @@ from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
 from stickslip.settings.orbits import ExactSettings
+from stickslip.units import physical_number
 
 
 class PeriodicMotions(ColumnResult):
@@ -162,7 +163,7 @@ class Sweep(PeriodicMotions):
         omega : float
             Angular frequency [rad/s].
         """
-        return int(np.abs(self.omega - real_number(omega, "omega")).argmin())
+        return int(np.abs(self.omega - physical_number(omega, "rad/s", "omega")).argmin())
 
     @cached_property
     def _amplitudes(self) -> dict[tuple[str, Measure], Float]:

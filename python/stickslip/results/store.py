@@ -35,6 +35,8 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "static_response": ("stickslip.results.static_response", "StaticResponse"),
     "fit": ("stickslip.results.fit", "Fit"),
     "uncertainty": ("stickslip.results.uncertainty", "Uncertainty"),
+    "campbell": ("stickslip.results.campbell", "Campbell"),
+    "sweep": ("stickslip.results.sweep", "Sweep"),
     "stability_map": ("stickslip.results.limit_cycles", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""

@@ -71,7 +71,8 @@ def _read_bladed(dataset: Dataset, prefix: str = "") -> BladedDisk:
     settings = _read_texts(dataset, "disk")[0]
     interface = None
     if "interface_stiffness" in dataset:
-        interface = Interface(**{name: _real(dataset, f"interface_{name}") for name in _MATRICES})
+        blocks = ("stiffness", "mass", "damping")
+        interface = Interface(*(_real(dataset, f"interface_{name}") for name in blocks))
     return BladedDisk(
         _structure(dataset),
         settings["sectors"],

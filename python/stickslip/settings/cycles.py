@@ -11,7 +11,13 @@ from pydantic import AfterValidator, Field, Strict, model_validator
 from stickslip.checks import whole_number
 from stickslip.errors import ModelError
 from stickslip.settings.entries import ONE_OF, Factor, Flag, Harmonics, Index, Tolerance, Whole
-from stickslip.settings.ranges import BranchSlipForces, BranchStiffnesses, PositiveList, Ratios
+from stickslip.settings.ranges import (
+    BranchSlipForces,
+    BranchStiffnesses,
+    Ratios,
+    SlipForceList,
+    StiffnessList,
+)
 from stickslip.settings.settings import Settings
 from stickslip.settings.variation import ContactKeys, Variation
 
@@ -155,10 +161,10 @@ class LimitSettings(_ModeSettings):
 class MapKeys(LimitSettings, ContactKeys):
     """Over which parameter of contacts limits are computed, and how; give one of the two."""
 
-    stiffness: PositiveList | None = Field(
+    stiffness: StiffnessList | None = Field(
         default=None, description="Stiffnesses of the contacts, above 0 [N/m]."
     )
-    slip_force: PositiveList | None = Field(
+    slip_force: SlipForceList | None = Field(
         default=None,
         description="Instead: slip forces, above 0 [N]. Limit ratios depend on them only through "
         "their proportions, as all displacements grow with them.",

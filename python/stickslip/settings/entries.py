@@ -30,23 +30,23 @@ from pydantic_core.core_schema import (
 
 from stickslip.checks import MAX_COUNT, brief, choice, real_number, unknown, whole_number
 from stickslip.errors import EntryError
-from stickslip.units import quantity
+from stickslip.units import physical_number, quantity
 
 CALL = "call"
-"""Context of the validation of a function's arguments; texts with units stand in study files."""
+"""Context of the validation of a function's arguments."""
 
 # ----------------------------------------------------------------------------------------- numbers
 
 
 def _number(value: Any, info: ValidationInfo, unit: str, *, finite: bool = True) -> float:
-    """Return a number in SI units; of study files also a text with a unit."""
+    """Return a number in SI units, or what a text with a unit says in them."""
     if info.context == CALL:
-        return real_number(value, "", finite=finite)
+        return physical_number(value, unit, "", finite=finite)
     return quantity(value, unit, "", finite=finite)
 
 
 def quantity_of(unit: str, bound: str = "", *, finite: bool = True) -> BeforeValidator:
-    """Read a number in SI units; of study files also a text with a unit."""
+    """Read a number in SI units, or a text with a unit."""
 
     def read(value: object, info: ValidationInfo) -> float:
         number = _number(value, info, unit, finite=finite)
@@ -137,6 +137,11 @@ Tolerance = Annotated[float, Within(1e-8, 0.5), percent]
 Factor = Annotated[float, quantity_of("", "be positive"), WithJsonSchema({"type": "number"})]
 Rate = Annotated[float, quantity_of("1/s"), _quantity_schema("7.49 1/s")]
 Time = Annotated[float, quantity_of("s"), _quantity_schema("2.6e-5 s")]
+Mass = Annotated[float, quantity_of("kg", "not be negative"), _quantity_schema("12 g", "0.3 kg")]
+Inertia = Annotated[float, quantity_of("kg*m^2", "not be negative"), _quantity_schema("3 kg mm^2")]
+Dashpot = Annotated[
+    float, quantity_of("kg/s", "not be negative"), _quantity_schema("7.5 N s/m", "7.5 kg/s")
+]
 Number = Annotated[
     float, BeforeValidator(lambda value: real_number(value, "")), WithJsonSchema({"type": "number"})
 ]
@@ -186,7 +191,7 @@ def _count_or_auto(value: object) -> int | str:
 
 
 def _residual(value: object, info: ValidationInfo) -> float | str:
-    written = info.context != CALL and isinstance(value, str) and value[:1] in "+-.0123456789"
+    written = isinstance(value, str) and value[:1] in "+-.0123456789"
     if not isinstance(value, str) or written:
         return _number(value, info, "N")
     if value not in RESIDUALS:
@@ -201,7 +206,7 @@ def span_of(span: object) -> tuple[float, float]:
     if len(span) != 2:
         raise EntryError("", f": a range has two ends, not {len(span)}; write (start, end)")
     try:
-        start, end = (real_number(value, "") for value in span)
+        start, end = (physical_number(value, "rad/s", "") for value in span)
     except EntryError as error:
         raise EntryError("", f": end of the range{error.said}") from None
     if not (start > 0.0 and end > 0.0 and start != end):

@@ -7,11 +7,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from stickslip.checks import brief, real_number, text
+from stickslip.checks import brief, text
 from stickslip.errors import EntryError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import ONE_OF, Count, Tolerance, Within, percent
 from stickslip.settings.ranges import Or
+from stickslip.settings.variation import unit_of
+from stickslip.units import physical_number
 
 
 def _bounds(given: object) -> dict[str, tuple[float, float]]:
@@ -22,7 +24,10 @@ def _bounds(given: object) -> dict[str, tuple[float, float]]:
         text(name, "parameters: name")
         if not isinstance(ends, tuple | list) or len(ends) != 2:
             raise EntryError("", f"[{name!r}]: {brief(ends)}; give two bounds, (lowest, highest)")
-        low, high = (real_number(end, f"parameters[{name!r}]") for end in ends)
+        try:
+            low, high = (physical_number(end, unit_of(name), "") for end in ends)
+        except EntryError as error:
+            raise EntryError("", f"[{name!r}]{error.said}") from None
         if not low < high:
             raise EntryError("", f"[{name!r}]: ({low:g}, {high:g}); give lowest < highest")
         found[str(name)] = (low, high)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from os import PathLike
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, PlainValidator, Strict, model_validator
+from pydantic import BeforeValidator, Field, PlainValidator, Strict, ValidationInfo, WithJsonSchema
 
-from stickslip.checks import brief, real_number, whole_number
-from stickslip.errors import EntryError, ModelError
+from stickslip.checks import brief, whole_number
+from stickslip.errors import EntryError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import (
     ONE_OF,
@@ -29,18 +29,13 @@ from stickslip.settings.entries import (
 from stickslip.settings.ranges import (
     Dofs,
     Float,
-    Frictions,
-    Gaps,
-    Levels,
     Or,
     PeakSpan,
-    Preloads,
-    SlipForces,
-    Springs,
-    Stiffnesses,
     numbers,
 )
-from stickslip.settings.variation import ContactKeys, Parameter, Variation, one_of
+from stickslip.settings.sweep import ParameterKeys
+from stickslip.settings.variation import ContactKeys, Parameter, Variation, unit_of
+from stickslip.units import physical_number
 
 
 def _ascending(span: object) -> tuple[float, float]:
@@ -52,13 +47,20 @@ _PeakRange = Annotated[tuple[float, float], BeforeValidator(_ascending)]
 _Distribution = Annotated[Literal["normal", "uniform"], ONE_OF]
 
 
-def _bounds(bounds: object) -> tuple[float, float]:
+def _bounds(bounds: object, info: ValidationInfo) -> tuple[float, float]:
     if not isinstance(bounds, tuple | list) or len(bounds) != 2:
         raise EntryError("", ": give two values, (lowest, highest)")
-    low, high = (real_number(value, "") for value in bounds)
+    factor = info.data.get("common") == "factor"
+    unit = "" if factor else unit_of(info.data.get("parameter", "level"))
+    low, high = (physical_number(value, unit, "") for value in bounds)
     if not 0.0 < low < high:
         raise EntryError("", f": ({low:g}, {high:g}); give 0 < lowest < highest")
     return low, high
+
+
+_PAIR = WithJsonSchema(
+    {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2}
+)
 
 
 def _portion(part: object) -> tuple[int, int]:
@@ -70,12 +72,12 @@ def _portion(part: object) -> tuple[int, int]:
     return number, of
 
 
-def _unsigned(remedy: str) -> Callable[[Any], Float]:
+def _unsigned(remedy: str, unit: str) -> Callable[[Any], Float]:
     """Return what reads one or several finite numbers, none of them negative, each once."""
 
     def read(values: Any) -> Float:
         found = numbers(
-            values, f"give {remedy}, not negative", lambda x: np.isfinite(x) & (x >= 0.0)
+            values, f"give {remedy}, not negative", lambda x: np.isfinite(x) & (x >= 0.0), unit
         )
         if np.unique(found).size < found.size:
             raise EntryError("", f": {brief(values)} holds a value twice; give each once")
@@ -86,8 +88,10 @@ def _unsigned(remedy: str) -> Callable[[Any], Float]:
 
 Portion = Annotated[tuple[int, int], Or(Some[Index], "tuple[int, int]", "(int, int)", _portion)]
 _SEVERAL = "ArrayLike", "float or array_like"
-_Deviations = Annotated[Float, Or(ListOr[Ratio, Ratio], *_SEVERAL, _unsigned("0.05 for 5 %"))]
-_Couplings = Annotated[Float, Or(Some[StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m"))]
+_Deviations = Annotated[Float, Or(ListOr[Ratio, Ratio], *_SEVERAL, _unsigned("0.05 for 5 %", ""))]
+_Couplings = Annotated[
+    Float, Or(Some[StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m", "N/m"))
+]
 _Patterns = Annotated[
     int | Float,
     Or(
@@ -126,48 +130,8 @@ class PeakKeys(_FollowedPeak, ContactKeys):
     )
 
 
-class DamperKeys(PeakKeys):
+class DamperKeys(ParameterKeys, PeakKeys):
     """Along which parameter a peak is followed, and how; give exactly one of the parameters."""
-
-    slip_force: SlipForces | None = Field(
-        default=None,
-        description="Slip forces F_d [N], in the order to follow; an infinite one never slips.",
-        examples=[{"from": "1 N", "to": "10 kN", "points": 60}],
-    )
-    stiffness: Stiffnesses | None = Field(
-        default=None,
-        description="Instead: stiffnesses k_d of the contacts [N/m]. An infinite one is the limit "
-        "of a rigid contact, and common values above 500 times the stiffness of the structure lie "
-        "on the line in 1/k_d towards it.",
-    )
-    level: Levels | None = Field(default=None, description="Instead: factors on all forces.")
-    friction: Frictions | None = Field(
-        default=None, description="Instead: coefficients of friction of Coulomb contacts."
-    )
-    preload: Preloads | None = Field(
-        default=None, description="Instead: normal forces without motion [N]."
-    )
-    gap: Gaps | None = Field(
-        default=None, description="Instead: gaps [m], negative for an interference."
-    )
-    tangential_stiffness: Springs | None = Field(
-        default=None, description="Instead: tangential stiffnesses k_t of a node [N/m]."
-    )
-    normal_stiffness: Springs | None = Field(
-        default=None, description="Instead: normal stiffnesses k_n of a node [N/m]."
-    )
-
-    @property
-    def varied(self) -> Parameter:
-        """Which parameter is given."""
-        return one_of(self, *get_args(Parameter))
-
-    @model_validator(mode="after")
-    def _require_one(self) -> Self:
-        name = self.varied
-        if isinstance(getattr(self, name), tuple):
-            raise ModelError(f"{name}: a range needs 'points' here; values are not chosen")
-        return self
 
 
 class OptimumKeys(PeakKeys):
@@ -178,7 +142,7 @@ class OptimumKeys(PeakKeys):
         description='What is varied. With "level", a factor on all forces, the amplitude per unit '
         "of level is made least, as friction depends on the ratio of force and slip force.",
     )
-    bounds: Annotated[tuple[float, float], PlainValidator(_bounds)] | None = Field(
+    bounds: Annotated[tuple[float, float], PlainValidator(_bounds), _PAIR] | None = Field(
         default=None,
         description="Values to look between. Default, for slip forces: from 1/1000 to all of the "
         "largest force that the stuck contacts bear in the range of frequencies, beyond which "

@@ -21,7 +21,7 @@ from pydantic import (
 )
 from pydantic_core import core_schema
 
-from stickslip.checks import brief, real_number
+from stickslip.checks import brief
 from stickslip.errors import EntryError
 from stickslip.settings.entries import (
     CALL,
@@ -42,6 +42,7 @@ from stickslip.settings.entries import (
     quantity_of,
     span_of,
 )
+from stickslip.units import physical_number, without_units
 
 Float: TypeAlias = NDArray[np.float64]
 _T = TypeVar("_T")
@@ -89,8 +90,11 @@ def positive(values: Float) -> Any:
     return np.isfinite(values) & (values > 0.0)
 
 
-def numbers(values: object, remedy: str, allowed: Callable[[Float], Any] = np.isfinite) -> Float:
-    """Return one real number or a list of them, each allowed, as a list."""
+def numbers(
+    values: object, remedy: str, allowed: Callable[[Float], Any] = np.isfinite, unit: str = ""
+) -> Float:
+    """Return one real number or a list of them, each allowed, as a list; texts have a unit."""
+    values = without_units(values, unit, "")
     try:
         given = np.atleast_1d(np.asarray(values))
     except ValueError:
@@ -111,19 +115,26 @@ def numbers(values: object, remedy: str, allowed: Callable[[Float], Any] = np.is
 def _grid(omega: object) -> Float | Span:
     if isinstance(omega, tuple) and len(omega) == 2:
         return span_of(omega)
-    if isinstance(omega, Real):
-        raise EntryError("", f": shape () instead of (n,); write [{omega:g}]")
-    return numbers(omega, "give finite frequencies above 0 rad/s", positive)
+    if isinstance(omega, Real | str):
+        one = physical_number(omega, "rad/s", "")
+        raise EntryError("", f": shape () instead of (n,); write [{one:g}]")
+    return numbers(omega, "give finite frequencies above 0 rad/s", positive, "rad/s")
 
 
-def _branch(values: object) -> Float | Span:
-    if isinstance(values, tuple) and len(values) == 2:
-        return _span(values)
-    return np.unique(numbers(values, "give finite values above 0, or (from, to)", positive))
+def _branch(unit: str) -> Callable[[object], Float | Span]:
+    """Return what reads a range, or values, of a unit."""
+
+    def read(values: object) -> Float | Span:
+        if isinstance(values, tuple) and len(values) == 2:
+            return _span(values, unit)
+        remedy = "give finite values above 0, or (from, to)"
+        return np.unique(numbers(values, remedy, positive, unit))
+
+    return read
 
 
-def _span(ends: Iterable[object]) -> Span:
-    low, high = sorted(real_number(end, "", finite=False) for end in ends)
+def _span(ends: Iterable[object], unit: str = "") -> Span:
+    low, high = sorted(physical_number(end, unit, "", finite=False) for end in ends)
     if not 0.0 < low < high:
         raise EntryError("", f": the range ({low:g}, {high:g}) must have two ends above 0")
     return low, high
@@ -253,20 +264,23 @@ _LIST = "ArrayLike", "array_like, shape (n,)"
 _BOTH = "ArrayLike | tuple[float, float]", "array_like, shape (n,), or (float, float)"
 
 
-def _from_zero(values: object) -> Float:
-    return numbers(values, "give values from 0 on", lambda x: x >= 0.0)
+def _listed(
+    unit: str, remedy: str, allowed: Callable[[Float], Any] = np.isfinite
+) -> Callable[[object], Float]:
+    """Return what reads one number or a list of them, of a unit."""
+    return lambda values: numbers(values, f"give {remedy}", allowed, unit)
 
 
-def _not_negative(values: object) -> Float:
-    return numbers(values, "give finite values from 0 on", lambda x: np.isfinite(x) & (x >= 0.0))
+def _from_zero(unit: str) -> Callable[[object], Float]:
+    return _listed(unit, "values from 0 on", lambda x: x >= 0.0)
 
 
-def _finite(values: object) -> Float:
-    return numbers(values, "give finite values")
+def _not_negative(unit: str) -> Callable[[object], Float]:
+    return _listed(unit, "finite values from 0 on", lambda x: np.isfinite(x) & (x >= 0.0))
 
 
-def _above_zero(values: object) -> Float:
-    return numbers(values, "give finite values above 0", positive)
+def _above_zero(unit: str) -> Callable[[object], Float]:
+    return _listed(unit, "finite values above 0", positive)
 
 
 _Omegas = Annotated[
@@ -283,16 +297,23 @@ _SlipForces = ListOr[SlipForce, SlipForceRange]
 
 Frequencies = Annotated[Float | Span, Or(_Omegas, *_BOTH, _grid)]
 PeakSpan = Annotated[Span, Or(PeakRange, "tuple[float, float]", "(float, float)", span_of)]
-SlipForces = Annotated[Float | Span, Or(_SlipForces, *_LIST, _from_zero)]
-Stiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_LIST, _from_zero)]
-Frictions = Annotated[Float | Span, Or(ListOr[Friction, FrictionRange], *_LIST, _not_negative)]
-Preloads = Annotated[Float | Span, Or(ListOr[NormalLoad, LoadRange], *_LIST, _not_negative)]
-Springs = Annotated[Float | Span, Or(ListOr[StiffnessValue, SpringRange], *_LIST, _not_negative)]
-Gaps = Annotated[Float, Or(Some[Length], *_LIST, _finite)]
-Levels = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_LIST, _above_zero)]
-Amplitudes = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_BOTH, _branch)]
-Ratios = Annotated[Float | Span, Or(_Ratios, *_BOTH, _branch)]
-BranchStiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_BOTH, _branch)]
-BranchSlipForces = Annotated[Float | Span, Or(_SlipForces, *_BOTH, _branch)]
-PositiveList = Annotated[Float, Or(Some[Factor], *_LIST, _above_zero)]
+SlipForces = Annotated[Float | Span, Or(_SlipForces, *_LIST, _from_zero("N"))]
+Stiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_LIST, _from_zero("N/m"))]
+Frictions = Annotated[Float | Span, Or(ListOr[Friction, FrictionRange], *_LIST, _not_negative(""))]
+Preloads = Annotated[Float | Span, Or(ListOr[NormalLoad, LoadRange], *_LIST, _not_negative("N"))]
+Springs = Annotated[
+    Float | Span, Or(ListOr[StiffnessValue, SpringRange], *_LIST, _not_negative("N/m"))
+]
+Gaps = Annotated[Float, Or(Some[Length], *_LIST, _listed("m", "finite values"))]
+Levels = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_LIST, _above_zero(""))]
+Amplitudes = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_BOTH, _branch(""))]
+Ratios = Annotated[Float | Span, Or(_Ratios, *_BOTH, _branch(""))]
+BranchStiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_BOTH, _branch("N/m"))]
+BranchSlipForces = Annotated[Float | Span, Or(_SlipForces, *_BOTH, _branch("N"))]
+Speeds = Annotated[
+    Float | Span,
+    Or(_Omegas, *_LIST, _listed("rad/s", "finite speeds above 0 rad/s", positive)),
+]
+SlipForceList = Annotated[Float, Or(Some[SlipForce], *_LIST, _above_zero("N"))]
+StiffnessList = Annotated[Float, Or(Some[StiffnessValue], *_LIST, _above_zero("N/m"))]
 Dofs = Annotated[tuple[str, ...], Or(Some[Dof], "Iterable[str] | str", "iterable of str", _names)]

@@ -38,6 +38,19 @@ UNITS: Mapping[Parameter, str] = {
     "tangential_stiffness": "N/m",
     "normal_stiffness": "N/m",
 }
+
+
+def unit_of(parameter: str) -> str:
+    """Return the unit in which a parameter is given, "" of a ratio, by the last part of its name.
+
+    Of the damping law they are "damping.mass" and "damping.stiffness".
+    """
+    owner, _, name = parameter.rpartition(".")
+    units = {"mass": "1/s", "stiffness": "s"} if owner == "damping" else UNITS
+    unit = units.get(name, "1")  # type: ignore[call-overload]
+    return "" if unit == "1" else str(unit)
+
+
 Common = Annotated[Literal["value", "factor"], ONE_OF]
 
 Contacts: TypeAlias = Iterable[PointRef] | PointRef

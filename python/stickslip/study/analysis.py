@@ -12,6 +12,7 @@ from pydantic import Field, GetCoreSchemaHandler, Tag, model_validator
 from pydantic_core import CoreSchema
 
 from stickslip.analyses.basin_map import basin_map
+from stickslip.analyses.campbell import campbell
 from stickslip.analyses.certify import certify
 from stickslip.analyses.damper_curve import damper_curve
 from stickslip.analyses.exact_response import exact_response
@@ -20,6 +21,7 @@ from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.analyses.mistuning_study import mistuning_study
 from stickslip.analyses.nonlinear_modes import nonlinear_modes
+from stickslip.analyses.optimal_damper import optimal_damper
 from stickslip.analyses.run import Progress, share
 from stickslip.analyses.single_harmonic import single_harmonic
 from stickslip.analyses.static_response import static_response
@@ -30,13 +32,14 @@ from stickslip.model import Model
 from stickslip.model.measurement import Measured
 from stickslip.results.result import Result
 from stickslip.settings.balance import BalanceKeys
+from stickslip.settings.campbell import CampbellKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import Factor, Some, Table, chosen_by
 from stickslip.settings.fit import FitSettings
 from stickslip.settings.modes import ModeKeys
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
-from stickslip.settings.peaks import DamperKeys, MistuningKeys
+from stickslip.settings.peaks import DamperKeys, MistuningKeys, OptimumKeys
 from stickslip.settings.uncertainty import UncertaintyKeys
 from stickslip.study.matrices import (
     DampingSource,
@@ -63,6 +66,8 @@ class AnalysisTable(Table):
     """What takes the table as its settings."""
     dof_keys: ClassVar[tuple[str, ...]] = ("observe",)
     """Keys that name DOFs; the first names those that the result has."""
+    of_speed: ClassVar[bool] = False
+    """Whether it computes models of several speeds of rotation itself."""
 
     kind: str
 
@@ -171,6 +176,46 @@ class DamperCurveTable(DamperKeys, AnalysisTable):
     dof_keys = ("dof",)
 
 
+class OptimalDamperTable(OptimumKeys, AnalysisTable):
+    """The value of a parameter of the contacts at which a peak is least."""
+
+    kind: Literal["optimal-damper"] = Field(description="The analysis.")
+    analysis: ClassVar = optimal_damper
+    dof_keys = ("dof",)
+
+
+class CampbellTable(CampbellKeys, AnalysisTable):
+    """Natural frequencies over the speed of rotation, and where engine orders meet them."""
+
+    kind: Literal["campbell"] = Field(description="The analysis.")
+    diagram: Literal["campbell"] = Field(default="campbell", description="What is drawn.")
+    analysis: ClassVar = campbell
+    of_speed: ClassVar = True
+    dof_keys = ()
+
+
+class SafeTable(CampbellKeys, AnalysisTable):
+    """Natural frequencies over the nodal diameter, and what engine orders excite at a speed."""
+
+    kind: Literal["safe"] = Field(description="The analysis.")
+    diagram: Literal["safe"] = Field(default="safe", description="What is drawn.")
+    analysis: ClassVar = campbell
+    of_speed: ClassVar = True
+    dof_keys = ()
+
+
+class NodalDiametersTable(CampbellKeys, AnalysisTable):
+    """Natural frequencies over the nodal diameter."""
+
+    kind: Literal["nodal-diameters"] = Field(description="The analysis.")
+    diagram: Literal["nodal-diameters"] = Field(
+        default="nodal-diameters", description="What is drawn."
+    )
+    analysis: ClassVar = campbell
+    of_speed: ClassVar = True
+    dof_keys = ()
+
+
 class BasinMapTable(BasinKeys, AnalysisTable):
     """What becomes of free motions from many starts."""
 
@@ -268,6 +313,10 @@ KINDS: Mapping[str, type[AnalysisTable]] = {
         CertifyTable,
         SingleHarmonicTable,
         DamperCurveTable,
+        OptimalDamperTable,
+        CampbellTable,
+        SafeTable,
+        NodalDiametersTable,
         BasinMapTable,
         MistuningStudyTable,
         LimitCyclesTable,

@@ -17,9 +17,9 @@ from stickslip.errors import EntryError
 from stickslip.settings.entries import (
     ONE_OF,
     Count,
+    Dashpot,
     Dof,
     Index,
-    Number,
     Ratio,
     Some,
     StiffnessValue,
@@ -47,9 +47,7 @@ class CouplingTable(Table):
         description="DOF at the other end; of a disk, of the next sector, left out: the same.",
     )
     stiffness: StiffnessValue = Field(description="Stiffness.")
-    damping: Annotated[Number, Field(ge=0.0)] = Field(
-        default=0.0, description="Viscous damping [kg/s]."
-    )
+    damping: Dashpot = Field(default=0.0, description="Viscous damping [kg/s].")
 
     def build(self) -> Coupling:
         """Return the coupling."""

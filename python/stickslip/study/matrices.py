@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from stickslip.checks import MatrixLike, brief, file_path, is_file, unknown
 from stickslip.errors import EntryError, ModelError
@@ -19,6 +19,7 @@ from stickslip.settings.entries import (
     ListOr,
     Many,
     Number,
+    Omega,
     Rate,
     Ratio,
     Table,
@@ -126,11 +127,33 @@ class StructureTable(Table):
         description="Damping matrix, Rayleigh or modal damping; left out: none.",
         examples=[{"rayleigh": {"mass": 7.49, "stiffness": 2.6e-5}}, {"modal": 0.001}],
     )
+    stiffening: MatrixSource | None = Field(
+        default=None,
+        description="K2 of K + W^2 (K2 - S) at the speed W: what centrifugal stress adds.",
+        examples=["K2.mtx"],
+    )
+    softening: MatrixSource | None = Field(
+        default=None, description="S, what the turning of the load takes away; left out: none."
+    )
+    speed: Omega | None = Field(
+        default=None, description="Speed of rotation; left out: at rest.", examples=["3000 rpm"]
+    )
+    units: Text | None = Field(
+        default=None,
+        description="Mass, length and time of all matrices; left out: SI.",
+        examples=["t-mm-s"],
+    )
     dofs: Many[Dof] | None = Field(
         default=None,
         description="Names of the DOFs, row by row; left out: '0', '1', ...",
         examples=[["damper", "tip", "mode"]],
     )
+
+    @model_validator(mode="after")
+    def _require_stiffening(self) -> Self:
+        if self.stiffening is None and self.softening is not None:
+            raise ValueError("'softening' without 'stiffening'; give both")
+        return self
 
 
 @contextmanager

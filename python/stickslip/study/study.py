@@ -8,24 +8,28 @@ import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
 from stickslip.analyses.arguments import loaded_dofs, physical_dofs
-from stickslip.analyses.run import share
-from stickslip.checks import brief, file_path, is_file, is_reserved, unknown, vanished
+from stickslip.analyses.design_map import spinning
+from stickslip.analyses.run import Progress, share
+from stickslip.analyses.sweep import swept
+from stickslip.checks import brief, file_path, is_file, is_reserved, real_matrix, unknown, vanished
 from stickslip.damper.damper import Built, widened
 from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.sector import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.model.matrix_units import MatrixUnits
 from stickslip.model.structure import ModalDamping, Structure, coupled
 from stickslip.results.result import Result
 from stickslip.settings.refusal import refusal
 from stickslip.study.analysis import level_name
 from stickslip.study.disk_table import DiskTable, InterfaceTable
 from stickslip.study.matrices import StructureTable, damping_of, matrix_of, named, neighbour
-from stickslip.study.tables import ContactTable, ForceTable, StudyTables
+from stickslip.study.tables import ContactTable, ForceTable, LoadTable, StudyTables
 
 _SHOWN_DOFS = 4
 # tomllib takes hours for a key of 100 000 parts.
@@ -68,12 +72,15 @@ class Study:
         The model with the forces as written.
     source : str
         Where it was read from; error messages begin with it.
+    folder : Path
+        What the files named in it are relative to.
     """
 
     name: str
     tables: StudyTables
     model: Model
     source: str
+    folder: Path = Path()
 
     @classmethod
     def load(cls, path: str | Path) -> Study:
@@ -137,7 +144,7 @@ class Study:
             model = _model(tables, Path(folder))
             _check_dofs(tables, model)
             _check_name(tables.name or name)
-        return cls(tables.name or name, tables, model, source)
+        return cls(tables.name or name, tables, model, source, Path(folder))
 
     @property
     def cases(self) -> tuple[Case, ...]:
@@ -188,8 +195,22 @@ class Study:
         for number, case in enumerate(cases):
             part = share(progress, number / len(cases), (number + 1) / len(cases))
             with named(self.source):
-                result = self.tables.analysis.run(case.model, part, shown)
+                result = self._result(case, part, shown)
             yield result
+
+    def _result(self, case: Case, progress: Progress, shown: Sequence[str]) -> Result:
+        """Compute a case: one result, or the sweep that the study asks for."""
+        analysis, keys = self.tables.analysis, self.tables.sweep
+
+        def at_speed(speed: float) -> Model:
+            model = _model(at_speed_of(self.tables, speed), self.folder)
+            return model if case.level is None else model.scaled(force=case.level)
+
+        if keys is None:
+            turns = analysis.of_speed and _turns(self.tables)
+            return analysis.run(at_speed if turns else case.model, progress, shown)  # type: ignore[arg-type]
+        models = at_speed if keys.speed is not None else case.model
+        return swept(models, keys, lambda model, part: analysis.run(model, part, shown), progress)
 
 
 def notable_dofs(model: Model, observed: Sequence[str]) -> tuple[str, ...]:
@@ -270,7 +291,7 @@ def _model(tables: StudyTables, folder: Path) -> Model:
     return Model(
         structure,
         contacts=[*contacts, *(contact.build() for contact in tables.contact)],
-        forces=[*forces, *(force.build() for force in tables.force)],
+        forces=[*forces, *(one for force in tables.force for one in force.build(structure.dofs))],
     )
 
 
@@ -301,7 +322,10 @@ def _check_parts(tables: StudyTables, structure: Structure) -> None:
     for entry, part in parts:
         with named(entry):
             _check_touched(part, structure.dofs, between_sectors=tables.disk is not None)
-            part.build()
+            if isinstance(part, ForceTable):
+                part.build(structure.dofs)
+            else:
+                part.build()
 
 
 def _check_touched(
@@ -339,7 +363,7 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
             structure, interface = cyclic_sector(structure, table.boundary)
     if table.interface is not None:
         with named("disk: interface"):
-            interface = _interface(table.interface, folder)
+            interface = _interface(table.interface, folder, tables.structure.units, structure.dofs)
     structure, contacts, forces = _with_dampers(tables, structure)
     _check_parts(tables, structure)
     with named("disk"):
@@ -348,7 +372,7 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
             table.sectors,
             [coupling.build() for coupling in tables.coupling],
             [*contacts, *(contact.build() for contact in tables.contact)],
-            [*forces, *(force.build() for force in tables.force)],
+            [*forces, *(one for force in tables.force for one in force.build(structure.dofs))],
             engine_order=table.engine_order,
             engine_orders=table.engine_orders,
             interface=widened(interface, len(structure)),
@@ -358,7 +382,9 @@ def _disk(tables: StudyTables, table: DiskTable, structure: Structure, folder: P
         return disk.mistuned(table.mistuning.values(table.sectors))
 
 
-def _interface(table: InterfaceTable, folder: Path) -> Interface:
+def _interface(
+    table: InterfaceTable, folder: Path, units: str | None, dofs: Sequence[str]
+) -> Interface:
     stiffness = matrix_of(table.stiffness, folder, "stiffness")
     mass = None if table.mass is None else matrix_of(table.mass, folder, "mass")
     damping = damping_of(table.damping, folder)
@@ -366,13 +392,48 @@ def _interface(table: InterfaceTable, folder: Path) -> Interface:
         raise ModelError(
             "damping: modes belong to the whole disk; give a matrix or {rayleigh = ...}"
         )
-    return Interface(stiffness, mass, damping)
+    return Interface(stiffness, mass, damping, units=units, dofs=dofs)
+
+
+def _turns(tables: StudyTables) -> bool:
+    """Return whether the model depends on the speed of rotation."""
+    loads = (one.load for one in tables.damper)
+    return tables.structure.stiffening is not None or any(
+        isinstance(load, LoadTable) for load in loads
+    )
+
+
+def at_speed_of(tables: StudyTables, speed: float) -> StudyTables:
+    """Return the tables at another speed of rotation, of the structure and of damper loads."""
+    structure = tables.structure.model_copy(update={"speed": speed})
+    dampers = [
+        one.model_copy(update={"load": one.load.model_copy(update={"speed": speed})})
+        if isinstance(one.load, LoadTable)
+        else one
+        for one in tables.damper
+    ]
+    return tables.model_copy(update={"structure": structure, "damper": tuple(dampers)})
 
 
 def _structure(table: StructureTable, folder: Path) -> Structure:
     mass = matrix_of(table.mass, folder, "mass")
     stiffness = matrix_of(table.stiffness, folder, "stiffness")
-    return Structure(mass, stiffness, damping_of(table.damping, folder), table.dofs)
+    damping = damping_of(table.damping, folder)
+    structure = Structure(mass, stiffness, damping, table.dofs, units=table.units)
+    if table.stiffening is None:
+        return structure
+    added: dict[str, Any] = {
+        key: matrix_of(source, folder, key)
+        for key, source in (("stiffening", table.stiffening), ("softening", table.softening))
+        if source is not None
+    }
+    if table.units is not None:
+        units = MatrixUnits.of(table.units)
+        added = {
+            key: units.in_si(real_matrix(one, key), "mass", structure.dofs)
+            for key, one in added.items()
+        }
+    return spinning(structure, **added)(table.speed or 0.0)
 
 
 def _check_name(name: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -38,6 +38,7 @@ from stickslip.model import (
     StructuralDamper,
 )
 from stickslip.model.contact import Contact
+from stickslip.model.force import engine_order_forces
 from stickslip.settings.entries import (
     ONE_OF,
     Angle,
@@ -45,9 +46,11 @@ from stickslip.settings.entries import (
     Dof,
     Friction,
     Index,
+    Inertia,
     Length,
     ListOr,
     Many,
+    Mass,
     Newtons,
     NormalLoad,
     Number,
@@ -59,6 +62,7 @@ from stickslip.settings.entries import (
     Text,
     chosen_by,
 )
+from stickslip.settings.sweep import SweepKeys
 from stickslip.study.analysis import AnalysisTable, ByKind
 from stickslip.study.disk_table import CouplingTable, DiskTable
 from stickslip.study.matrices import Rows, StructureTable
@@ -146,7 +150,19 @@ class JenkinsTable(EndsTable):
     makes = Jenkins
     law: Literal["jenkins"] = Field(description="Friction law.")
     stiffness: StiffnessValue = Field(description="Contact stiffness k_d.")
-    slip_force: SlipForce = Field(description="Slip limit F_d; inf: it never slips.")
+    slip_force: SlipForce | None = Field(
+        default=None, description="Slip limit F_d; inf: it never slips."
+    )
+    friction: Friction | None = Field(
+        default=None, description="Instead: coefficient of friction of the slip force mu N."
+    )
+    normal_load: NormalLoad | None = Field(default=None, description="Normal load N beside it.")
+
+    @model_validator(mode="after")
+    def _require_slip_force(self) -> Self:
+        if self.slip_force is None and self.friction is None and self.normal_load is None:
+            raise ValueError("'slip_force' is missing; give it, or 'friction' and 'normal_load'")
+        return self
 
 
 class ParallelJenkinsTable(EndsTable):
@@ -333,19 +349,40 @@ class StructuralTable(LawTable):
 class ForceTable(Table):
     """A harmonic force, amplitude cos(harmonic omega t + phase)."""
 
-    dof: Dof = Field(description="The DOF it acts on.")
+    dof: Dof = Field(
+        description='The DOF it acts on; "*.tip" are those of all sectors of a structure, with an '
+        "engine order."
+    )
     amplitude: Newtons = Field(description="Amplitude.", examples=["20.3 N", 20.3])
     phase: Angle = Field(default=0.0, description="Phase.", examples=["90 deg"])
     harmonic: Index = Field(default=1, description="Multiple of omega; 0: a static load.")
+    engine_order: Index | None = Field(
+        default=None,
+        description='Of dof = "*.tip": each sector is ahead of the one before by 2 pi E / n.',
+    )
+
+    @model_validator(mode="after")
+    def _require_order(self) -> Self:
+        if (self.engine_order is None) == ("*" in self.dof):
+            raise ValueError(
+                "'dof' with a star, \"*.tip\", and 'engine_order' belong together; give both, or "
+                "neither"
+            )
+        return self
 
     @property
     def touched(self) -> tuple[str, ...]:
         """The DOFs it acts on."""
-        return (self.dof,)
+        return () if self.engine_order is not None else (self.dof,)
 
-    def build(self) -> Force:
-        """Return the force."""
-        return Force(**dict(self))
+    def build(self, dofs: Sequence[str] = ()) -> list[Force]:
+        """Return the force, or those on all sectors among some DOFs."""
+        values = dict(self)
+        order = values.pop("engine_order")
+        if order is None:
+            return [Force(**values)]
+        dof = values.pop("dof")
+        return engine_order_forces(dof, dofs=dofs, engine_order=order, **values)
 
 
 ContactTable = Annotated[
@@ -404,7 +441,7 @@ class DamperTable(Table):
         default="sector",
         description="Of a disk: whether each sector has axes of its own, or all are parallel.",
     )
-    mass: Annotated[Number, Field(ge=0.0)] = Field(description="Mass [kg].")
+    mass: Mass = Field(description="Mass.")
     friction: ListOr[Friction, Friction] = Field(
         description="Coefficient of friction, of both faces or (left, right)."
     )
@@ -461,8 +498,8 @@ class CylinderTable(AngledTable):
     makes = CylinderDamper
     kind: Literal["cylinder"] = Field(description="Kind of damper.")
     cylinder_radius: Length = Field(description="Radius of the cylinder.")
-    inertia: Annotated[Number, Field(ge=0.0)] | None = Field(
-        default=None, description="Moment of inertia [kg m2]; left out: of a full cylinder."
+    inertia: Inertia | None = Field(
+        default=None, description="Moment of inertia; left out: of a full cylinder."
     )
 
 
@@ -500,12 +537,20 @@ class OutputTable(Table):
         description="DOFs tabulated and drawn; left out: those that carry a force or a contact.",
         examples=[["tip", "damper"]],
     )
-    omega_unit: Annotated[Literal["rad/s", "Hz"], ONE_OF] = Field(
-        default="rad/s", description="Unit of the frequency axis."
+    omega_unit: Annotated[Literal["rad/s", "Hz", "rpm"], ONE_OF] = Field(
+        default="rad/s",
+        description="Unit of the frequency axis; rpm of a disk are those of the rotor.",
     )
-    length_unit: Annotated[Literal["m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)] = Field(
-        default="m", description="Unit of the amplitudes."
+    length_unit: Annotated[
+        Literal["auto", "m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)
+    ] = Field(
+        default="auto",
+        description="Unit of the amplitudes; auto: that which suits the numbers.",
     )
+
+
+class SweepTable(SweepKeys):
+    """A parameter and its values: one result that knows them."""
 
 
 # Something other than dots and blanks, so that it is no folder.
@@ -535,6 +580,10 @@ class StudyTables(Table):
         description="Springs between two DOFs; of a disk, between neighbouring sectors.",
     )
     analysis: Annotated[AnalysisTable, ByKind()] = Field(description="What to compute.")
+    sweep: SweepTable | None = Field(
+        default=None,
+        description="Computes the analysis along a parameter; left out: of the model as written.",
+    )
     output: OutputTable = Field(default=OutputTable(), description="What to tabulate and draw.")
 
     @model_validator(mode="after")

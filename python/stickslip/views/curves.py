@@ -56,6 +56,7 @@ class CurveView(View[ForcedResponse]):
     ) -> list[Table]:
         """Tabulate peaks, with notes on their marks, and true errors."""
         shown = list(dofs)
+        length_unit = self.length_unit(results, shown, length_unit)
         (table,) = super().tables(results, label, shown, length_unit)
         curves = [result for _, result in results]
         peaks = [row for one in curves for row in one.summary(set(shown) & set(one.dofs))]

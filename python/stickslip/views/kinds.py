@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
+from math import inf
 from typing import Any, Generic, TypeAlias, TypeVar
 
 from stickslip.errors import ModelError
@@ -28,11 +30,17 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "fit": ("stickslip.views.fits", "FitView"),
     "uncertainty": ("stickslip.views.uncertainty", "UncertaintyView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
+    "campbell": ("stickslip.views.campbell", "CampbellView"),
+    "sweep": ("stickslip.views.sweeps", "SweepView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
     "nonlinear_modes": ("stickslip.views.modes", "ModeView"),
 }
 """Module and class of the view of every kind; results of one view are drawn together."""
 
+
+_ANY = "?"
+_LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
+_NUMBER = re.compile(r"[+-]?[0-9.]+(e[+-]?[0-9]+)?")
 
 Kind = TypeVar("Kind", bound=Result)
 Dofs: TypeAlias = Sequence[str]
@@ -77,15 +85,37 @@ class View(ABC, Generic[Kind]):
         dofs : iterable of str
             The DOFs to tabulate, as far as a result has them.
         length_unit : str
-            Unit of the amplitudes.
+            Unit of the amplitudes; "auto" is that which suits them.
         """
-        shown, length = list(dofs), quantity(f"1 {length_unit}", "m", "unit of length")
+        shown = list(dofs)
+        length_unit = self.length_unit(results, shown, length_unit)
+        length = quantity(f"1 {length_unit}", "m", "unit of length")
         rows = [
             (name, row)
             for name, result in results
             for row in self.rows(result, [dof for dof in shown if dof in result.dofs], length)
         ]
         return [tabulated(label, self.texts, self.headings(shown, length_unit), self.last, rows)]
+
+    def length_unit(self, results: Sequence[tuple[str, Kind]], dofs: Dofs, length_unit: str) -> str:
+        """Return a unit of length, or for "auto" that which suits the amplitudes of a table."""
+        if length_unit != "auto":
+            return length_unit
+        first = len(self.texts)
+        headings = enumerate(self.headings(dofs, _ANY))
+        columns = [first + place for place, heading in headings if _ANY in heading]
+        cells = [
+            row[column]
+            for _, result in results
+            for row in map(
+                list, self.rows(result, [one for one in dofs if one in result.dofs], 1.0)
+            )
+            for column in columns
+            if column < len(row)
+        ]
+        sizes = [abs(float(cell)) for cell in cells if _NUMBER.fullmatch(cell)]
+        largest = max((size for size in sizes if 0.0 < size < inf), default=1.0)
+        return next((unit for unit, size in _LENGTHS.items() if largest >= size), "nm")
 
     def facts(self, result: Kind) -> list[Row]:
         """Say what a result is of, how it was computed and, as "assumed", what it assumes."""

@@ -1,0 +1,122 @@
+"""One analysis along a parameter of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+
+from stickslip.analyses.run import Progress, share
+from stickslip.analyses.variation import variation_of
+from stickslip.checks import brief
+from stickslip.errors import Interrupted, ModelError
+from stickslip.model import Model
+from stickslip.results.result import Result
+from stickslip.results.sweep import Sweep
+from stickslip.settings.settings import configured
+from stickslip.settings.sweep import SweepKeys, SweepSettings
+
+Compute: TypeAlias = Callable[[Model, Progress], Result]
+"""What is computed of a model."""
+
+
+@configured(SweepKeys)
+def sweep(
+    models: Model | Callable[[float], Model],
+    analysis: Callable[[Model], Result],
+    *,
+    settings: SweepKeys,
+    progress: Progress = None,
+) -> Sweep:
+    """Compute one analysis along a parameter: slip force, preload, level, stiffness or speed.
+
+    Parameters
+    ----------
+    models : Model or callable
+        The model whose parameter is varied; for a `speed` what makes the model of one [rad/s].
+    analysis : callable
+        Makes the result of a model: ``lambda model: ss.forced_response(model, omega)``.
+
+    Returns
+    -------
+    Sweep
+        The results, with the parameter as a dimension of their dataset.
+
+    Raises
+    ------
+    ModelError
+        If a value makes no model, or the analysis returns no result.
+    """
+    if not callable(analysis):
+        raise ModelError(
+            f"analysis: {brief(analysis)} cannot be called; give a function of a model"
+        )
+
+    def compute(model: Model, _: Progress) -> Result:
+        result = analysis(model)
+        if not isinstance(result, Result):
+            raise ModelError(f"analysis: it returned {brief(result)}, no result; return one")
+        return result
+
+    return swept(models, settings, compute, progress)
+
+
+def swept(
+    models: Model | Callable[[float], Model],
+    keys: SweepKeys,
+    compute: Compute,
+    progress: Progress,
+) -> Sweep:
+    """Return the results along the parameter of some keys."""
+    kept, at = _family(models, keys)
+    results: list[Result] = []
+    count = len(kept.values)
+    for number, value in enumerate(kept.values):
+        part = share(progress, number / count, (number + 1) / count)
+        try:
+            results.append(compute(at(value), part))
+        except ModelError as error:
+            where = f"{kept.parameter} = {value:.6g}"
+            raise ModelError(f"{where}: {error}", study=f"{where}: {error.study}") from None
+        except Interrupted as stop:
+            if not results:
+                raise
+            done = Sweep.of(kept, tuple(results), results[0].model, interrupted=True)
+            message = f"sweep interrupted: {len(results)} of {count} values are complete"
+            raise Interrupted(message, done) from stop
+        if progress is not None:
+            progress((number + 1) / count)
+    base = models if isinstance(models, Model) else results[0].model
+    return Sweep.of(kept, tuple(results), base)
+
+
+def _family(
+    models: Model | Callable[[float], Model], keys: SweepKeys
+) -> tuple[SweepSettings, Callable[[float], Model]]:
+    """Return what is varied, and what makes the model of a value."""
+    parameter = keys.varied
+    values = tuple(np.asarray(getattr(keys, parameter)).tolist())
+    if (str(parameter) == "speed") == isinstance(models, Model):
+        needed = "a function of the speed" if isinstance(models, Model) else "a Model"
+        raise ModelError(f"models: {brief(models)} along {parameter}; give {needed}")
+    if isinstance(models, Model):
+        variation = variation_of(models, parameter, keys)
+        base = models
+        settings = SweepSettings.of(
+            parameter=parameter, unit=variation.unit, values=values, variation=variation
+        )
+        return settings, lambda value: variation.apply(base, value)
+    if not callable(models):
+        raise ModelError(f"models: {brief(models)} is neither a Model nor a function of the speed")
+    if keys.contacts is not None:
+        raise ModelError("contacts: a speed is no parameter of contacts; leave them out")
+    build = models
+
+    def at(speed: float) -> Model:
+        model = build(speed)
+        if not isinstance(model, Model):
+            raise ModelError(f"models: it returned {brief(model)}, no Model; return one")
+        return model
+
+    return SweepSettings.of(parameter="speed", unit="rad/s", values=values), at

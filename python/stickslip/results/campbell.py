@@ -1,0 +1,102 @@
+"""Natural frequencies over speed and nodal diameter: Campbell and SAFE diagrams."""
+
+from __future__ import annotations
+
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from stickslip.disk import BladedDisk, NodalDiameters
+from stickslip.drawn import Drawn
+from stickslip.results.fields import Columns, Float, Int, Shown, column
+from stickslip.results.result import ColumnResult
+from stickslip.settings.campbell import CampbellSettings
+
+
+class Crossing(NamedTuple):
+    """A resonance: an engine order meets a natural frequency."""
+
+    order: int
+    """Engine order."""
+    diameter: int
+    """Nodal diameter that it excites; 0 of a structure that is no disk."""
+    mode: int
+    """Number of the mode at that diameter, counted from 0."""
+    speed: float
+    """Speed of rotation [rad/s]."""
+    omega: float
+    """Natural frequency there [rad/s]."""
+
+
+class CampbellArrays(Columns):
+    """Natural frequencies, ascending at each speed and nodal diameter."""
+
+    speed: Float = column("speed", "rad/s", "speed of rotation", least=0.0)
+    diameter: Int = column("diameter", "1", "nodal diameter; 0 of no disk", least=0)
+    stuck: Float = column(
+        "speed diameter mode", "rad/s", "natural frequency, all contacts stuck", least=0.0
+    )
+    slipping: Float = column(
+        "speed diameter mode", "rad/s", "natural frequency, all contacts slipping", least=0.0
+    )
+
+
+class Campbell(ColumnResult):
+    """Natural frequencies over speed and nodal diameter, stuck and slipping."""
+
+    kind: ClassVar[str] = "campbell"
+    title = "Natural frequencies over the speed of rotation"
+
+    settings: CampbellSettings
+    arrays: CampbellArrays
+
+    def __repr__(self) -> str:
+        speeds, diameters, modes = self.stuck.shape
+        return f"Campbell({speeds} speeds, {diameters} nodal diameters, {modes} modes)"
+
+    speed = Shown[Float]()
+    diameter = Shown[Int]()
+    stuck = Shown[Float]()
+    slipping = Shown[Float]()
+
+    plot = Drawn("campbell")
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Engine orders: those chosen, or those of the forces."""
+        if self.settings.orders is not None:
+            return self.settings.orders
+        harmonics = sorted({force.harmonic for force in self.model.forces if force.harmonic} or {1})
+        if isinstance(self.model, BladedDisk):
+            return tuple(self.model.order_of(harmonic) for harmonic in harmonics)
+        return tuple(harmonics)
+
+    def place(self, order: int) -> int:
+        """Return the position among the diameters of that which an engine order excites."""
+        if not isinstance(self.model, BladedDisk):
+            return 0
+        rest = order % self.model.sectors
+        return min(rest, self.model.sectors - rest)
+
+    def crossings(self, *, slipping: bool = False) -> list[Crossing]:
+        """Return the resonances within the speeds, in their order, between the computed speeds.
+
+        With all contacts stuck, or `slipping`.
+        """
+        found = []
+        for order in self.orders:
+            place = self.place(order)
+            frequencies = (self.slipping if slipping else self.stuck)[:, place]
+            for mode, omega in enumerate(frequencies.T):
+                apart = omega - order * self.speed
+                for at in np.flatnonzero(apart[:-1] * apart[1:] <= 0.0):
+                    share = apart[at] / (apart[at] - apart[at + 1]) if apart[at] else 0.0
+                    speed = self.speed[at] + share * (self.speed[at + 1] - self.speed[at])
+                    where = order, int(self.diameter[place]), mode
+                    found.append(Crossing(*where, float(speed), order * float(speed)))
+        return sorted(set(found), key=lambda one: one.speed)
+
+    def at(self, index: int) -> NodalDiameters:
+        """Return the natural frequencies of a disk over its nodal diameters at a speed."""
+        disk: BladedDisk = self.model  # type: ignore[assignment]
+        return NodalDiameters(disk, self.diameter, self.stuck[index], self.slipping[index])

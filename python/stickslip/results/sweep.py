@@ -1,0 +1,251 @@
+"""Results along a parameter of the model, as one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Hashable, Mapping
+from functools import cached_property
+from importlib import import_module
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from stickslip.drawn import Axes, Drawn, plots
+from stickslip.errors import ModelError
+from stickslip.model import Model
+from stickslip.results.dataset import Dataset
+from stickslip.results.diagnostic import Diagnostic
+from stickslip.results.fields import Float
+from stickslip.results.result import Result
+from stickslip.results.stored_model import model_of, model_variables
+from stickslip.settings.sweep import SweepSettings
+
+_SEVERAL = ("curves", "damper", "limit_cycles", "backbone")
+"""Figures of several results."""
+
+
+class Sweep(Result):
+    """The results of one analysis along a parameter of the model: slip force, preload, speed.
+
+    Attributes
+    ----------
+    results : tuple of Result
+        One per value, each with its own model.
+    settings : SweepSettings
+        The parameter, its unit and its values.
+    """
+
+    kind: ClassVar[str] = "sweep"
+
+    settings: SweepSettings
+    results: tuple[Result, ...]
+
+    def __repr__(self) -> str:
+        values, of = self.values, type(self.results[0]).__name__
+        return (
+            f"Sweep({values.size} values of {self.parameter} from {values.min():g} to "
+            f"{values.max():g} {self.unit}, a {of} each)"
+        )
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter."""
+        return self.settings.parameter
+
+    @property
+    def unit(self) -> str:
+        """Unit of the parameter."""
+        return self.settings.unit
+
+    @cached_property
+    def values(self) -> Float:
+        """Values of the parameter, shape (n,)."""
+        found: Float = np.array(self.settings.values[: len(self.results)])
+        found.flags.writeable = False
+        return found
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What tells the results from one another, "preload = 120 N"."""
+        return tuple(f"{self.parameter.replace('_', ' ')} = {text}" for text in self.written)
+
+    @property
+    def written(self) -> tuple[str, ...]:
+        """The values with their unit; of a speed in rpm."""
+        if self.parameter == "speed":
+            return tuple(f"{value * 30.0 / np.pi:.6g} rpm" for value in self.values)
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return tuple(f"{value:.6g}{unit}" for value in self.values)
+
+    def at(self, value: float) -> Result:
+        """Return the result at the value nearest to one."""
+        return self.results[int(np.abs(self.values - value).argmin())]
+
+    def plot(self, *args: Any, **options: Any) -> Axes:
+        """Draw the family of curves; the arguments are those of the results' own `plot`."""
+        name = _figure_of(self.results[0])
+        if name not in _SEVERAL:
+            raise ModelError(
+                f"plot: results of kind {self.results[0].kind.replace('_', ' ')} are drawn one at "
+                "a time; write sweep.results[0].plot(...)"
+            )
+        options.setdefault("labels", self.labels)
+        drawn: Axes = getattr(plots, name)(list(self.results), *args, **options)
+        return drawn
+
+    def to_dataset(self, *, derived: bool = True) -> Dataset:
+        """Return the numbers along the parameter, a dimension with its values and its unit.
+
+        Results with frequencies of their own are put side by side: the dimension is then
+        "position", and "omega" a variable; what is missing is not-a-number.
+        """
+        return self._family() if derived else self._packed()
+
+    def _family(self) -> Dataset:
+        import xarray as xr
+
+        members = [one.to_dataset() for one in self.results]
+        coordinate = xr.Variable(
+            self.parameter,
+            self.values,
+            {"units": self.unit, "long_name": self.parameter.replace("_", " ")},
+        )
+        if not all(_same_axes(members[0], one) for one in members):
+            members = [_padded(one) for one in members]
+        family = xr.concat(
+            members,
+            dim=self.parameter,
+            data_vars="all",
+            coords="minimal",
+            compat="override",
+            join="outer",
+            combine_attrs="drop_conflicts",
+        )
+        return family.assign_coords({self.parameter: coordinate})
+
+    def _packed(self) -> Dataset:
+        """Return all members with their models, each under names of its own."""
+        import xarray as xr
+
+        whole = xr.Dataset(
+            attrs={
+                "settings": json.dumps(self.settings.model_dump()),
+                "interrupted": int(self.interrupted),
+                "member_kind": self.results[0].kind,
+            }
+        )
+        for number, member in enumerate(self.results):
+            own = member.to_dataset(derived=False).assign(model_variables(member.model))
+            told = json.dumps({str(key): _plain(value) for key, value in own.attrs.items()})
+            own = own.drop_attrs(deep=False).assign(attributes=((), told))
+            names = {str(name) for name in (*own.variables, *own.dims)}
+            whole = whole.merge(
+                own.reset_coords().rename({name: _prefix(number) + name for name in names}),
+                join="exact",
+            )
+        return whole
+
+    @classmethod
+    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
+        """Return the sweep that a dataset holds."""
+        from stickslip.results.store import KINDS
+
+        module, name = KINDS[dataset.attrs["member_kind"]]
+        kind = getattr(import_module(module), name)
+        settings = SweepSettings.stored(json.loads(dataset.attrs["settings"]))
+        results: list[Result] = []
+        while f"{_prefix(len(results))}attributes" in dataset:
+            own = _unpacked(dataset, _prefix(len(results)))
+            results.append(kind.from_dataset(own, model_of(own)))
+        interrupted = bool(dataset.attrs["interrupted"])
+        return cls.of(settings, tuple(results), model, interrupted=interrupted)
+
+    @classmethod
+    def of(
+        cls,
+        settings: SweepSettings,
+        results: tuple[Result, ...],
+        model: Model,
+        *,
+        interrupted: bool = False,
+    ) -> Self:
+        """Return the sweep of some results."""
+        if not results:
+            raise ValueError("no result")
+        return cls(
+            model=model,
+            dofs=results[0].dofs,
+            interrupted=interrupted,
+            timings=_summed([one.timings for one in results]),
+            counters={
+                name: int(count)
+                for name, count in _summed([one.counters for one in results]).items()
+            },
+            diagnostics=_told(results),
+            settings=settings,
+            results=results,
+        )
+
+
+def _figure_of(result: Result) -> str:
+    """Return the name of the figure of a result."""
+    for owner in type(result).__mro__:
+        if isinstance(drawn := vars(owner).get("plot"), Drawn):
+            return drawn.name
+    return ""
+
+
+def _told(results: tuple[Result, ...]) -> tuple[Diagnostic, ...]:
+    """Return what is said of the results, once."""
+    found: dict[str, Diagnostic] = {}
+    for one in results:
+        for diagnostic in one.diagnostics:
+            found.setdefault(diagnostic.text, diagnostic)
+    return tuple(found.values())
+
+
+def _summed(parts: list[Mapping[str, Any]]) -> dict[str, float]:
+    names = dict.fromkeys(name for part in parts for name in part)
+    return {name: sum(part.get(name, 0) for part in parts) for name in names}
+
+
+def _prefix(number: int) -> str:
+    return f"member{number}_"
+
+
+def _plain(value: object) -> object:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _unpacked(dataset: Dataset, prefix: str) -> Dataset:
+    """Return one member."""
+    names = [name for name in dataset.variables if str(name).startswith(prefix)]
+    own = dataset[names]
+    renamed = {
+        name: str(name).removeprefix(prefix)
+        for name in {*own.variables, *own.dims}
+        if str(name).startswith(prefix)
+    }
+    own = own.rename(renamed)
+    told: dict[Hashable, Any] = json.loads(str(own["attributes"].values))
+    return own.drop_vars("attributes").drop_attrs(deep=False).assign_attrs(told)
+
+
+def _same_axes(one: Dataset, other: Dataset) -> bool:
+    return dict(one.sizes) == dict(other.sizes) and all(
+        np.array_equal(index.values, other.indexes[name].values)
+        for name, index in one.indexes.items()
+        if name in other.indexes
+    )
+
+
+def _padded(one: Dataset) -> Dataset:
+    """Return a member whose frequencies are a variable along positions."""
+    kept = [name for name, data in one.data_vars.items() if data.dtype.kind in "fc"]
+    own = one[kept]
+    if "omega" in own.dims:
+        omega = own["omega"]
+        own = own.drop_vars("omega").rename_dims(omega="position")
+        own = own.assign(omega=("position", omega.values, omega.attrs))
+        own = own.assign_coords(position=np.arange(omega.size))
+    return own

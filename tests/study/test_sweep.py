@@ -1,0 +1,210 @@
+"""Sweeps along a parameter: one result that knows it, in Python and in study files."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.reference import snecma_beam
+from stickslip.study import Study
+from stickslip.views.kinds import view_of
+
+GRID = np.linspace(150.0, 250.0, 12)
+
+STUDY = """
+[structure]
+mass = [[2.0, 0.0], [0.0, 1.0]]
+stiffness = [[3.0e6, -1.0e6], [-1.0e6, 1.0e6]]
+damping = { modal = "0.2 %" }
+dofs = ["root", "tip"]
+
+[[contact]]
+law = "jenkins"
+dof = "tip"
+stiffness = "500 N/mm"
+slip_force = "3 N"
+
+[[force]]
+dof = "tip"
+amplitude = "1 N"
+
+[analysis]
+omega = [700, 800, 900]
+harmonics = 5
+"""
+
+
+def curve(model):
+    return ss.forced_response(model, GRID, 5)
+
+
+@pytest.fixture(scope="module")
+def swept():
+    return ss.sweep(snecma_beam(), curve, slip_force=["50 N", "0.2 kN", 400.0])
+
+
+def test_every_member_is_the_analysis_of_its_model(swept):
+    np.testing.assert_array_equal(swept.values, [50.0, 200.0, 400.0])
+    assert (swept.parameter, swept.unit) == ("slip_force", "N")
+    for value, one in zip(swept.values, swept.results, strict=True):
+        beam = snecma_beam()
+        (contact,) = beam.contacts
+        own = beam.replaced(contacts=[contact.adjusted("slip_force", [value])])
+        np.testing.assert_array_equal(one.amplitude("tip"), curve(own).amplitude("tip"))
+    assert swept.at(210.0) is swept.results[1]
+
+
+def test_the_parameter_is_a_dimension(swept):
+    data = swept.to_dataset()
+    assert data["amplitude"].dims == ("slip_force", "omega", "dof")
+    assert data["slip_force"].attrs["units"] == "N"
+    found = data["amplitude"].sel(slip_force=200.0, dof="tip")
+    np.testing.assert_array_equal(found, swept.results[1].amplitude("tip"))
+
+
+def test_frequencies_of_their_own_stand_side_by_side():
+    both = ss.sweep(snecma_beam(), lambda one: ss.forced_response(one, (180, 195)), level=[0.3, 1])
+    data = both.to_dataset()
+    assert data["amplitude"].dims == ("level", "position", "dof")
+    for place, one in enumerate(both.results):
+        known = np.isfinite(data["omega"][place])
+        np.testing.assert_array_equal(data["omega"][place][known], one.omega)
+        np.testing.assert_array_equal(
+            data["amplitude"][place][known].sel(dof="tip"), one.amplitude("tip")
+        )
+
+
+@pytest.mark.parametrize(
+    "analysis",
+    [
+        curve,
+        lambda one: ss.exact_response(one, GRID[:3]),
+        lambda one: ss.damper_curve(one, dof="tip", level=[0.5, 1.0], harmonics=3),
+        lambda one: ss.nonlinear_modes(one, mode=0, amplitude=[1e-4, 1e-3], harmonics=3),
+        lambda one: ss.static_response(one),
+    ],
+)
+def test_round_trip(analysis, tmp_path):
+    made = ss.sweep(snecma_beam(), analysis, slip_force=[100.0, 300.0])
+    made.save(tmp_path / "it.nc")
+    again = ss.load(tmp_path / "it.nc")
+    assert isinstance(again, ss.Sweep)
+    assert again.settings == made.settings
+    assert again.diagnostics == made.diagnostics
+    for one, other in zip(made.results, again.results, strict=True):
+        assert type(one) is type(other)
+        assert one.to_dataset().identical(other.to_dataset())
+        assert one.model.contacts == other.model.contacts
+
+
+def test_it_draws_a_family(swept):
+    axes = swept.plot("tip")
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert names[-3:] == ["slip force = 50 N", "slip force = 200 N", "slip force = 400 N"]
+
+
+def test_speed_makes_the_model():
+    def blade(speed):
+        structure = ss.Structure([[1.0]], [[1e4 + 0.5 * speed**2]], ss.ModalDamping(0.01), ["tip"])
+        return ss.Model(structure, forces=[ss.Force("tip", 1.0)])
+
+    found = ss.sweep(
+        blade, lambda one: ss.forced_response(one, (50, 400)), speed=["600 rpm", "3000 rpm"]
+    )
+    tops = [one.peak("tip").omega for one in found.results]
+    stiffness = 1e4 + 0.5 * np.array([20 * np.pi, 100 * np.pi]) ** 2
+    np.testing.assert_allclose(tops, np.sqrt(stiffness), rtol=1e-3)
+    assert found.labels == ("speed = 600 rpm", "speed = 3000 rpm")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: ss.sweep(snecma_beam(), curve), "none is given; give exactly one"),
+        (lambda: ss.sweep(snecma_beam(), curve, slip_force=[1], level=[1]), "are given; give"),
+        (lambda: ss.sweep(snecma_beam(), curve, slip_force=["1 m"]), "'1 m' is not a force"),
+        (lambda: ss.sweep(snecma_beam(), curve, preload=[1]), "none of the model has a preload"),
+        (lambda: ss.sweep(snecma_beam(), 3, level=[1]), "analysis: 3 cannot be called"),
+        (lambda: ss.sweep(snecma_beam(), str, level=[1]), "analysis: it returned"),
+        (lambda: ss.sweep(snecma_beam(), curve, speed=[1]), "give a function of the speed"),
+        (lambda: ss.sweep(lambda w: 1, curve, speed=[1]), "models: it returned 1, no Model"),
+        (lambda: ss.sweep(lambda w: 1, curve, level=[1]), "give a Model"),
+    ],
+)  # fmt: skip
+def test_refusals(call, message):
+    with pytest.raises(ss.ModelError, match=message):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("table", "parameter", "values"),
+    [
+        ('slip_force = ["1 N", 3]', "slip_force", [1.0, 3.0]),
+        ("level = [0.5, 2]", "level", [0.5, 2.0]),
+        ('stiffness = { from = "100 N/mm", to = "1 kN/mm", points = 2 }', "stiffness", [1e5, 1e6]),
+        ('slip_force = [0.5, 2]\ncommon = "factor"', "slip_force", [0.5, 2.0]),
+        ('speed = ["600 rpm", "1200 rpm"]', "speed", [20 * np.pi, 40 * np.pi]),
+    ],
+)
+def test_a_study_computes_one_result(table, parameter, values):
+    names = 'dofs = ["root", "tip"]\n'
+    spinning = STUDY.replace(names, f"{names}stiffening = [[1, 0], [0, 1]]\n")
+    study = Study.parse(f"{spinning}[sweep]\n{table}")
+    (result,) = study.run()
+    assert isinstance(result, ss.Sweep)
+    assert result.parameter == parameter
+    np.testing.assert_allclose(result.values, values)
+    stiffness = [one.model.structure.stiffness[0, 0] for one in result.results]
+    added = np.square(values) if parameter == "speed" else [0.0, 0.0]
+    np.testing.assert_allclose(np.array(stiffness) - 3e6, added, atol=1e-6)
+    (tabled,) = view_of([result]).tables([("", result)], "", ["tip"], "auto")
+    assert tabled.row_count == 2
+
+
+def test_levels_times_sweep():
+    study = Study.parse(
+        STUDY.replace("harmonics = 5", "harmonics = 5\nlevels = [1, 2]")
+        + "[sweep]\nslip_force = [1, 3]"
+    )
+    low, high = study.run()
+    assert high.results[1].model.forces[0].amplitude == 2.0
+    assert low.results[1].model.contacts[0].slip_force == 3.0
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ("slip_force = ['1 kg']", r"sweep: slip_force\[1\] = '1 kg' is not a force"),
+        ("slipforce = [1]", "sweep: unknown key 'slipforce'; did you mean 'slip_force'"),
+        ("", "sweep: .*none is given; give exactly one of them"),
+        ("slip_force = {from = 1, to = 3}", "slip_force: a range needs 'points'"),
+        ("preload = [3]", "none of the model has a preload"),
+    ],
+)
+def test_nonsense_in_a_study_is_named(table, message):
+    with pytest.raises(ss.ModelError, match=message):
+        list(Study.parse(STUDY + f"[sweep]\n{table}").run())
+
+
+def test_run_saves_one_file(tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    from stickslip.cli import application
+
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(f'name = "s"\n{STUDY}[sweep]\nslip_force = [1, 3]')
+    done = CliRunner().invoke(application.app, ["run", "study.toml"])
+    assert done.exit_code == 0, done.output
+    assert sorted(one.name for one in Path("results").iterdir()) == ["s.nc", "s.png"]
+    assert "1 N" in done.output
+
+
+@pytest.mark.slow
+def test_reports_draw_the_family(swept, tmp_path):
+    from report_page import Page
+
+    ss.report(swept, tmp_path / "a.html", dofs="tip")
+    (figure, *_) = Page(tmp_path / "a.html").figures
+    names = {trace.get("name") for trace in figure["data"]}
+    assert {"slip force = 50 N", "slip force = 200 N", "slip force = 400 N"} <= names
