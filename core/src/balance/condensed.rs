@@ -128,7 +128,9 @@ impl<'a> Condensed<'a> {
         let (mut u, mut q) = (Vec::new(), Vec::new());
         let mut observed = vec![c64::new(0.0, 0.0); observe.len()];
         let compliance = self.model.compliance();
-        let motion = self.linear.coordinates(compliance, harmonics, quantity, slip_load);
+        let motion = (!observe.is_empty())
+            .then(|| self.linear.coordinates(compliance, harmonics, quantity, slip_load))
+            .flatten();
         for (index, harmonic) in harmonics.orders().enumerate() {
             gather(harmonics, harmonic, x, &mut u);
             gather(harmonics, harmonic, slip_load, &mut q);
@@ -136,7 +138,9 @@ impl<'a> Condensed<'a> {
             let request = Request { harmonic, omega, quantity, contact, slip_load, observe };
             let place = (index, harmonics.slot(harmonic));
             let motion = motion.as_ref();
-            self.linear.displacement(compliance, place, motion, &request, &mut observed)?;
+            if !observe.is_empty() {
+                self.linear.displacement(compliance, place, motion, &request, &mut observed)?;
+            }
             store(harmonic, &observed, &u, &q);
         }
         Ok(())

@@ -70,12 +70,13 @@ impl Jenkins {
     }
 
     /// The mean over the elements, weighted by stiffness.
-    fn weighted(&self, of: impl Fn(&Slider) -> f64) -> f64 {
+    fn weighted(&self, of: impl Fn(usize) -> f64) -> f64 {
         let total = self.total_stiffness();
         if self.sliders.len() == 1 || total == 0.0 {
-            return of(&self.sliders[0]);
+            return of(0);
         }
-        self.sliders.iter().map(|slider| slider.stiffness / total * of(slider)).sum()
+        let sliders = self.sliders.iter().enumerate();
+        sliders.map(|(index, slider)| slider.stiffness / total * of(index)).sum()
     }
 
     fn cycles(&self, path: &Path<'_>) -> Vec<StickSlipIntervals> {
@@ -246,7 +247,7 @@ impl ContactLaw for Jenkins {
         Some(Describing {
             stiffness: sum(|one| one.stiffness),
             slope: sum(|one| one.slope),
-            slip_fraction: self.weighted(|slider| of(slider).slip_fraction),
+            slip_fraction: self.weighted(|index| of(&self.sliders[index]).slip_fraction),
         })
     }
 }
@@ -275,13 +276,13 @@ impl HarmonicForce for Jenkins {
 
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
         let (path, span) = (Path::new(motion), motion.table.harmonics().span());
-        let of = |slider: &Slider| {
-            slider
-                .summary(&StickSlipIntervals::new(&path, slider.stiffness, slider.slip_force), span)
-        };
+        let cycles = self.cycles(&path);
+        let each =
+            self.sliders.iter().zip(&cycles).map(|(slider, cycle)| slider.summary(cycle, span));
+        let each: Vec<PointSummary> = each.collect();
         out[0] = PointSummary {
-            slip_fraction: self.weighted(|slider| of(slider).slip_fraction),
-            dissipation: self.sliders.iter().map(|slider| of(slider).dissipation).sum(),
+            slip_fraction: self.weighted(|index| each[index].slip_fraction),
+            dissipation: each.iter().map(|one| one.dissipation).sum(),
         };
     }
 

@@ -1,6 +1,7 @@
 //! Where a search for the highest point looks first.
 
 use super::samples::Sample;
+use super::search::SEEN;
 use crate::fourier::Measure;
 use crate::model::{Model, Resonance};
 use crate::Error;
@@ -10,6 +11,8 @@ use crate::Error;
 const INTERVALS: [usize; 2] = [8, 24];
 /// Length of an even interval that no resonance slips through, in bandwidths of the narrowest.
 const BANDWIDTHS: f64 = 3.0;
+/// Points closer than this share of an even interval stand for each other.
+const BESIDE: f64 = 0.02;
 /// Maxima from this share of the highest are looked at again in the next response.
 const RIVAL: f64 = 0.7;
 
@@ -78,7 +81,10 @@ impl FirstLook {
         seeds: &[Sample],
     ) -> Result<Self, Error> {
         let (low, high) = aim.span;
-        let resonances = model.resonances(aim.span, harmonics)?;
+        let resonances = match sees_all(model, aim.span) {
+            true => Vec::new(),
+            false => model.resonances(aim.span, harmonics)?,
+        };
         let reach = |one: &Resonance, group: &[usize]| {
             let highest = |reach: &Vec<f64>| group.iter().map(|&i| reach[i]).fold(0.0, f64::max);
             one.reach.as_ref().map_or(f64::INFINITY, highest)
@@ -94,16 +100,17 @@ impl FirstLook {
         let needed = ((high - low) / (BANDWIDTHS * narrowest)).ceil();
         let [least, most] = INTERVALS;
         let resolved = needed <= most as f64;
-        let intervals = match (resolved, model.knows_its_states()) {
-            (true, _) => least.max(needed as usize),
-            (false, true) => least,
+        // Where the states are known each of their resonances is looked at.
+        let intervals = match (model.knows_its_states(), resolved) {
+            (true, _) => least,
+            (false, true) => least.max(needed as usize),
             (false, false) => most,
         };
         let spacing = (high - low) / intervals as f64;
         let mut omega: Vec<f64> = (1..intervals).map(|i| low + i as f64 * spacing).collect();
         omega.extend(rivals(seeds));
         // The ends stand for what lies too close to them.
-        let distance = 0.02 * spacing;
+        let distance = BESIDE * spacing;
         omega.retain(|w| (low + distance..=high - distance).contains(w));
         omega.sort_by(f64::total_cmp);
         omega.dedup_by(|a, b| (*a - *b).abs() < distance);
@@ -119,6 +126,17 @@ impl FirstLook {
             .collect();
         Ok(Self { omega, candidates, unbounded })
     }
+}
+
+/// Whether the even look alone sees all resonances whose height is not known: their frequencies, which
+/// take a decomposition of a whole ring, need not be.
+fn sees_all(model: &Model, (low, high): (f64, f64)) -> bool {
+    let compliance = model.compliance();
+    let order = compliance.forced_harmonics().into_iter().max().unwrap_or(1).max(1);
+    let bandwidth = compliance.narrowest_bandwidth() / order as f64;
+    // A point that stands for others lies up to `BESIDE` of an interval from them.
+    let farthest = (0.5 + BESIDE) * (high - low) / INTERVALS[0] as f64;
+    !model.knows_its_states() && farthest <= SEEN[1] * bandwidth
 }
 
 /// Frequencies at which a curve of a similar response has a maximum near its highest.

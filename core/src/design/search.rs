@@ -25,7 +25,7 @@ const ASIDE: f64 = 1e-8;
 const FLANK: f64 = 0.5;
 /// Resonances closer than this share of a bandwidth to a point are seen from there; of those whose
 /// height is not known, which are many and lie close, the second.
-const SEEN: [f64; 2] = [0.5, 1.0];
+pub(super) const SEEN: [f64; 2] = [0.5, 1.0];
 /// What others overlay is seen if there are points on both sides within this share.
 const AROUND: f64 = 0.75;
 /// What a resonance may exceed the height by that its load and friction can give it.

@@ -37,12 +37,18 @@ impl RingOrder {
         let rows: Vec<BlockRow> = (0..count)
             .map(|i| {
                 let contact = &receptances[i].contact;
-                let own = Mat::from_fn(size, size, |a, b| contact[(first + b) * ports + first + a]);
+                // What a force of a neighbour moves, A_yy Z.
+                let moved = |link: MatRef<'_, c64>| {
+                    real([size, size], |a, b| {
+                        let own = |c: usize| contact[(first + c) * ports + first + a];
+                        (0..size).map(|c| own(c) * link[(c, b)]).sum()
+                    })
+                };
                 let before = &links[(i + count - 1) % count % links.len()][0];
                 BlockRow {
-                    lower: real((&own * before.transpose()).as_ref()),
+                    lower: moved(before.transpose()),
                     own: Block::identity(2 * size),
-                    upper: real((&own * &links[i % links.len()][0]).as_ref()),
+                    upper: moved(links[i % links.len()][0].as_ref()),
                 }
             })
             .collect();
@@ -201,11 +207,11 @@ impl RingOrder {
 }
 
 /// A complex matrix as a real one of pairs (real part, imaginary part).
-fn real(matrix: MatRef<'_, c64>) -> Block {
-    let mut real = Block::zeros(2 * matrix.nrows(), 2 * matrix.ncols());
-    for j in 0..matrix.ncols() {
-        for i in 0..matrix.nrows() {
-            let z = matrix[(i, j)];
+fn real([rows, columns]: [usize; 2], entry: impl Fn(usize, usize) -> c64) -> Block {
+    let mut real = Block::zeros(2 * rows, 2 * columns);
+    for i in 0..rows {
+        for j in 0..columns {
+            let z = entry(i, j);
             real[(2 * i, 2 * j)] = z.re;
             real[(2 * i + 1, 2 * j + 1)] = z.re;
             real[(2 * i, 2 * j + 1)] = -z.im;
