@@ -120,11 +120,12 @@ impl<'a> SliderBalance<'a> {
         self.equations.residual = residual;
         let held = self.held(&u);
         self.equations.residual = Residual::FromRest;
-        let sliders: Vec<f64> =
-            held.iter().map(|held| held.map_or(0.0, |held| held.position)).collect();
-        let pushed = held.iter().flatten().any(|held| held.pushed);
-        let start = self.solve(&sliders, &u, true)?;
-        Some(HeldMotion { pushed, amplitude: point.half_ranges(), ..start })
+        let zero = vec![0.0; self.count()];
+        let mut motion = HeldMotion::new(&zero, &held, u);
+        self.begin_at(&motion.sliders);
+        self.measure(&mut motion, true)?;
+        motion.amplitude = point.half_ranges();
+        Some(motion)
     }
 
     fn held(&self, x: &[f64]) -> Vec<Option<Held>> {
@@ -132,36 +133,34 @@ impl<'a> SliderBalance<'a> {
         laws.flat_map(|(index, law)| law.held(self.equations.motion(index, x))).collect()
     }
 
-    /// The motion with its sliders begun at `sliders`, from the displacements `start`; `None` if it is
-    /// not found.
+    /// The motion with its sliders begun at `sliders`, from the displacements `start`, or else from those
+    /// without slip; `None` if it is not found.
     pub(crate) fn solve(
         &mut self,
         sliders: &[f64],
-        start: &[f64],
+        start: Option<&[f64]>,
         slopes: bool,
     ) -> Option<HeldMotion> {
-        let slots = self.slots();
         self.begin_at(sliders);
-        let mut x = start.to_vec();
-        x.iter_mut().step_by(slots).zip(sliders).for_each(|(u, w)| *u -= w);
+        let mut x = match start {
+            Some(u) => self.seen(u, sliders),
+            None => self.equations.stuck.clone(),
+        };
         if newton(&mut self.equations, &mut x, self.settings).outcome != Outcome::Converged {
             return None;
         }
         let held = self.held(&x);
-        let mut u = x.clone();
-        u.iter_mut().step_by(slots).zip(sliders).for_each(|(u, w)| *u += w);
-        let moved = |(w, held): (&f64, &Option<Held>)| w + held.map_or(0.0, |held| held.position);
-        let range = |(w, held): (&f64, &Option<Held>)| held.map(|held| held.range.map(|r| w + r));
-        let mut motion = HeldMotion {
-            sliders: sliders.iter().zip(&held).map(moved).collect(),
-            range: sliders.iter().zip(&held).map(range).collect(),
-            pushed: held.iter().flatten().any(|held| held.pushed),
-            u,
-            amplitude: Vec::new(),
-            slopes: Vec::new(),
-        };
-        self.measure(&x, &mut motion, slopes)?;
+        let back: Vec<f64> = sliders.iter().map(|w| -w).collect();
+        let mut motion = HeldMotion::new(sliders, &held, self.seen(&x, &back));
+        self.measure(&mut motion, slopes)?;
         Some(motion)
+    }
+
+    /// Displacements as they are seen from sliders.
+    fn seen(&self, u: &[f64], sliders: &[f64]) -> Vec<f64> {
+        let mut seen = u.to_vec();
+        seen.iter_mut().step_by(self.slots()).zip(sliders).for_each(|(u, w)| *u -= w);
+        seen
     }
 
     /// [`Self::solve`] from another motion, in shorter steps where one does not lead there.
@@ -174,7 +173,7 @@ impl<'a> SliderBalance<'a> {
                 let share = f64::from(step) / f64::from(steps);
                 let ends = from.sliders.iter().zip(sliders);
                 let at: Vec<f64> = ends.map(|(a, b)| a + share * (b - a)).collect();
-                found = Some(self.solve(&at, &u, step == steps)?);
+                found = Some(self.solve(&at, Some(&u), step == steps)?);
                 u.clone_from(&found.as_ref()?.u);
             }
             found
@@ -188,9 +187,10 @@ impl<'a> SliderBalance<'a> {
         }
     }
 
-    /// Amplitudes and, if wanted, their derivatives at the shifted displacements `x`.
-    fn measure(&mut self, x: &[f64], motion: &mut HeldMotion, slopes: bool) -> Option<()> {
+    /// Amplitudes and, if wanted, their derivatives.
+    fn measure(&mut self, motion: &mut HeldMotion, slopes: bool) -> Option<()> {
         let slots = self.slots();
+        let mut x = self.seen(&motion.u, &motion.sliders);
         let inside = |(w, range): (&f64, &Option<[f64; 2]>)| match range {
             Some([low, high]) => w + INSIDE * (0.5 * (low + high) - w),
             None => *w,
@@ -198,12 +198,11 @@ impl<'a> SliderBalance<'a> {
         let mut ignored = vec![0.0; x.len()];
         if slopes {
             let free: Vec<f64> = motion.sliders.iter().zip(&motion.range).map(inside).collect();
-            let mut x = motion.u.clone();
-            x.iter_mut().step_by(slots).zip(&free).for_each(|(u, w)| *u -= w);
+            x = self.seen(&motion.u, &free);
             self.equations.residual(&x, &mut ignored);
         }
         // Harmonics from the first on depend on differences from the sliders alone.
-        let series = self.series(Quantity::Whole, x, &self.equations.slip_load()).ok()?;
+        let series = self.series(Quantity::Whole, &x, &self.equations.slip_load()).ok()?;
         let table = self.equations.table;
         let of_dof = series.chunks_exact(slots);
         motion.amplitude =
@@ -249,6 +248,21 @@ impl<'a> SliderBalance<'a> {
 }
 
 impl HeldMotion {
+    /// A motion whose sliders have begun at `sliders` and are held as they say.
+    fn new(sliders: &[f64], held: &[Option<Held>], u: Vec<f64>) -> Self {
+        let both = || sliders.iter().zip(held);
+        let moved = |(w, held): (&f64, &Option<Held>)| w + held.map_or(0.0, |held| held.position);
+        let range = |(w, held): (&f64, &Option<Held>)| held.map(|held| held.range.map(|r| w + r));
+        Self {
+            u,
+            sliders: both().map(moved).collect(),
+            range: both().map(range).collect(),
+            pushed: held.iter().flatten().any(|held| held.pushed),
+            amplitude: Vec::new(),
+            slopes: Vec::new(),
+        }
+    }
+
     /// The sliders that are held, by component, with their ranges.
     pub(crate) fn held(&self) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
         let own = self.range.iter().enumerate();

@@ -15,8 +15,8 @@ use super::slider_integrals::add_slipping;
 use super::slip_element::{Element, SlipElement as _};
 use super::stick_slip::{Path, StickSlipIntervals};
 use super::{
-    ContactLaw, Describing, Held, Motion, Parameter, Parameters, Phase, PointSummary, Residual, Slider,
-    SlipLoad,
+    ContactLaw, Describing, Held, Motion, Parameter, Parameters, Phase, PointSummary, Residual,
+    Slider, SlipLoad,
 };
 use crate::Error;
 use faer::Mat;

@@ -6,7 +6,8 @@ use super::periodic_march::{PeriodicMarch, Stretch};
 use super::slip_element::{Element, SlipElement as _};
 use super::slip_series;
 use super::{
-    ContactLaw, Held, Motion, Parameter, Phase, PointState, PointSummary, SlipLoad, StructuralDamper,
+    ContactLaw, Held, Motion, Parameter, Phase, PointState, PointSummary, SlipLoad,
+    StructuralDamper,
 };
 use crate::Error;
 use faer::Mat;

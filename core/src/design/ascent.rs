@@ -100,7 +100,8 @@ impl Ascent {
                 return Some(tried);
             }
             let along = |slopes: &[f64]| slopes.iter().zip(&way).map(|(s, w)| s * w).sum::<f64>();
-            let share = summit([place.height, along(&place.slopes)], [other.height, along(&inwards)]);
+            let share =
+                summit([place.height, along(&place.slopes)], [other.height, along(&inwards)]);
             for (slider, _) in origin.held() {
                 target[slider] = origin.sliders[slider] + share * way[slider] * widths(slider);
             }
@@ -150,9 +151,8 @@ impl Ascent {
             self.curvature = vec![0.0; count * count];
             (0..count).for_each(|i| self.curvature[i * count + i] = bend / size);
         }
-        let turned: Vec<f64> = (0..count)
-            .map(|i| dot(&self.curvature[i * count..(i + 1) * count], &change))
-            .collect();
+        let turned: Vec<f64> =
+            (0..count).map(|i| dot(&self.curvature[i * count..(i + 1) * count], &change)).collect();
         let own = (bend + dot(&change, &turned)) / (bend * bend);
         for i in 0..count {
             for j in 0..count {
@@ -194,7 +194,8 @@ mod tests {
     fn the_curvature_of_a_parabola_leads_to_its_top() {
         // −(x − a)ᵀ A (x − a)/2, learnt along the two axes of A.
         let mut ascent = Ascent::new(0, 1.0);
-        let slope = |x: [f64; 2]| [-4.0 * (x[0] - 0.3) - (x[1] - 0.6), -(x[0] - 0.3) - 2.0 * (x[1] - 0.6)];
+        let slope =
+            |x: [f64; 2]| [-4.0 * (x[0] - 0.3) - (x[1] - 0.6), -(x[0] - 0.3) - 2.0 * (x[1] - 0.6)];
         let points = [[0.0, 0.0], [0.5, 0.1], [0.2, 0.9], [0.7, 0.3]];
         for pair in points.windows(2) {
             let way = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];

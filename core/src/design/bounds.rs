@@ -49,6 +49,8 @@ struct Search<'a> {
     /// What the points of the curve resolve.
     tables: &'a BTreeMap<usize, SampleTable>,
     marched: BTreeMap<usize, Arc<Model>>,
+    /// The ranges of all sliders that have been held, as of late.
+    ranges: BTreeMap<usize, [f64; 2]>,
     profile: Profile,
 }
 
@@ -88,8 +90,8 @@ pub fn bound(
             marched.insert(samples, Arc::new(model.marched(samples)?));
         }
     }
-    let (tables, profile) = (&tables, Profile::default());
-    let mut search = Search { model, settings, observe, tables, marched, profile };
+    let (tables, ranges, profile) = (&tables, BTreeMap::new(), Profile::default());
+    let mut search = Search { model, settings, observe, tables, marched, ranges, profile };
     search.along(solution, progress)?;
     solution.profile.add(&search.profile);
     solution.profile.total += start.elapsed();
@@ -139,13 +141,24 @@ impl<'a> Search<'a> {
         if let Some(before) = before {
             here.continue_from(before, |_| true);
         }
-        if survey {
-            here.try_corners();
+        self.learn(&here.pool);
+        let known: Vec<(usize, [f64; 2])> = self.ranges.iter().map(|(n, r)| (*n, *r)).collect();
+        let held = |found: &Found| found.nominal.as_ref().map(|motion| motion.held().count());
+        let lost = here.pool[0].held().count() < known.len();
+        let changed = before.and_then(held) != Some(here.pool[0].held().count());
+        if survey || changed {
+            here.try_corners(&known, lost);
+            self.learn(&here.pool);
         }
         here.climb(before.map_or(&[], |before| &before.ascents));
         let found = here.end();
         self.profile.add(here.balance.profile());
         Ok(found)
+    }
+
+    /// Takes up where sliders may be.
+    fn learn(&mut self, motions: &[HeldMotion]) {
+        motions.iter().for_each(|motion| self.ranges.extend(motion.held()));
     }
 
     /// Tries at a point what is extreme at the next one and not here.
@@ -192,8 +205,7 @@ impl Here<'_> {
     /// Follows the extremes of a neighbour to here.
     fn continue_from(&mut self, other: &Found, wanted: impl Fn(&HeldMotion) -> bool) {
         let Some(from) = &other.nominal else { return };
-        let others = other.extremes.iter().filter(|motion| motion.amplitude != from.amplitude);
-        for motion in others.filter(|motion| wanted(motion)) {
+        for motion in other.extremes.iter().filter(|motion| wanted(motion)) {
             let u = &self.pool[0].u;
             let mut start = motion.clone();
             if start.u.len() == u.len() && from.u.len() == u.len() {
@@ -203,23 +215,32 @@ impl Here<'_> {
                 start.u.clone_from(u);
             }
             let target = beyond(motion, &motion.sliders);
-            let found = self.balance.solve(&target, &start.u, true);
-            let found = found.or_else(|| self.balance.follow(&self.pool[0], &target));
+            let found = self.balance.solve(&target, Some(&start.u), true);
+            let stays = |found: &HeldMotion| found.held().count() >= motion.held().count();
+            let lost = !found.as_ref().is_some_and(stays);
             self.pool.extend(found);
+            if lost && motion.u.len() == start.u.len() {
+                // The curve itself may have come to another state.
+                self.pool.extend(self.balance.solve(&target, Some(&motion.u), true));
+            }
         }
     }
 
-    /// Tries all corners of what the curve's motion admits.
-    fn try_corners(&mut self) {
+    /// Tries all corners of what is known of the sliders; with some that the curve's motion does not
+    /// hold, motions that begin without slip as well.
+    fn try_corners(&mut self, ranges: &[(usize, [f64; 2])], lost: bool) {
         let nominal = self.pool[0].clone();
-        let ranges: Vec<(usize, [f64; 2])> = nominal.held().collect();
         let most = if ranges.is_empty() { 0 } else { CORNERS };
         for corner in 0..most.min(1 << ranges.len().min(CORNERS)) {
             let mut target = nominal.sliders.clone();
             for (bit, (slider, [low, high])) in ranges.iter().enumerate() {
-                target[*slider] = if is_low(corner, bit) { *low } else { *high };
+                let past = high - low;
+                target[*slider] = if is_low(corner, bit) { low - past } else { high + past };
             }
             self.reach(0, &target);
+            if lost {
+                self.pool.extend(self.balance.solve(&target, None, true));
+            }
         }
     }
 
@@ -267,13 +288,14 @@ impl Here<'_> {
     }
 
     fn end(&mut self) -> Found {
-        let dofs = self.pool[0].amplitude.len();
+        let nominal = self.pool[0].amplitude.clone();
         let mut extremes: Vec<HeldMotion> = Vec::new();
-        for dof in 0..dofs {
+        for (dof, amplitude) in nominal.into_iter().enumerate() {
             for sign in [1.0, -1.0] {
                 let best = &self.pool[self.best(dof, sign)];
+                let beyond = (best.amplitude[dof] - amplitude).abs() > NO_WIDTH * amplitude;
                 let known = |own: &HeldMotion| own.amplitude == best.amplitude;
-                if !extremes.iter().any(known) {
+                if beyond && !extremes.iter().any(known) {
                     extremes.push(best.clone());
                 }
             }

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stickslip.errors import ModelError
 from stickslip.results.arrays import UNIQUE, Bool, Float, constant
 from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.peaks import Peak, highest_of
 
 
 class Bounded(ContactMotion):
@@ -36,6 +37,21 @@ class Bounded(ContactMotion):
         See `lower`.
         """
         return self._bound(self.arrays.upper, dof)
+
+    def peak_bounds(self, dof: str) -> tuple[Peak, Peak]:
+        """Return between which amplitudes the peak lies, and where they are reached.
+
+        The highest point of `lower` and of `upper`, each by the parabola through its three highest
+        points, as `peak` of a branch: a residual traction that stays the same over the sweep has a
+        peak not below the first. Where the vibration is the same for all of them, twice the peak.
+
+        Raises ModelError if the bounds were not asked for.
+        """
+        lower, upper = self.lower(dof), self.upper(dof)
+        if np.array_equal(lower, upper, equal_nan=True):
+            peak = self.peak(dof)
+            return peak, peak
+        return highest_of(self, dof, lower), highest_of(self, dof, upper)
 
     @cached_property
     def unique(self) -> NDArray[np.str_]:

@@ -239,9 +239,7 @@ Residual = Annotated[
 ResidualOrBounds = Annotated[
     Literal["centred", "from_rest", "bounds"] | float,
     BeforeValidator(_residual_or_bounds),
-    WithJsonSchema(
-        {"anyOf": [{"enum": [*RESIDUALS, "bounds"]}, {"type": ["number", "string"]}]}
-    ),
+    WithJsonSchema({"anyOf": [{"enum": [*RESIDUALS, "bounds"]}, {"type": ["number", "string"]}]}),
 ]
 Measure = Annotated[Literal["half_range", "max", "fundamental"], ONE_OF]
 Span = Annotated[tuple[float, float], BeforeValidator(span_of)]
