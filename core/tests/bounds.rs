@@ -63,7 +63,7 @@ fn settings(residual: Residual) -> Settings {
 }
 
 fn grid() -> Vec<f64> {
-    (0..16).map(|i| 8.0 + 0.9 * f64::from(i)).collect()
+    (0..8).map(|i| 8.0 + 1.8 * f64::from(i)).collect()
 }
 
 fn curve(model: &Model, residual: Residual, observe: &[usize]) -> Solution {
@@ -107,14 +107,14 @@ fn reach(system: &Planar) -> Vec<f64> {
 fn random_residuals_lie_inside() {
     let mut random = Random(7);
     let (mut wide, mut points) = (0, 0);
-    for system in 0..8 {
-        let system_ = rubbing(&mut random);
-        let model = system_.model();
+    for number in 0..4 {
+        let system = rubbing(&mut random);
+        let model = system.model();
         let found = bounded(&model, &[0]);
-        let reach = reach(&system_);
-        for _ in 0..25 {
+        let reach = reach(&system);
+        for _ in 0..50 {
             let sliders: Vec<f64> = reach.iter().map(|r| r * random.between(-1.0, 1.0)).collect();
-            let other = curve(&begun_at(&system_, &sliders), Residual::FromRest, &[0]);
+            let other = curve(&begun_at(&system, &sliders), Residual::FromRest, &[0]);
             for (n, point) in found.points.iter().enumerate() {
                 if !(point.is_solved() && other.points[n].is_solved()) {
                     continue;
@@ -124,7 +124,7 @@ fn random_residuals_lie_inside() {
                 let own = half_range(&other, n);
                 assert!(
                     own <= high * (1.0 + SEARCH) && own >= low * (1.0 - SEARCH),
-                    "{system} {n} {sliders:?}: {own} outside {low} to {high}"
+                    "{number} {n} {sliders:?}: {own} outside {low} to {high}"
                 );
             }
         }
@@ -144,7 +144,7 @@ fn random_residuals_lie_inside() {
 fn the_interval_is_that_of_a_grid_of_sliders() {
     let mut random = Random(11);
     let mut compared = 0;
-    for _ in 0..4 {
+    for _ in 0..2 {
         let system = rubbing(&mut random);
         let found = bounded(&system.model(), &[0]);
         let reach = reach(&system);
@@ -169,7 +169,7 @@ fn the_interval_is_that_of_a_grid_of_sliders() {
             compared += usize::from(high > low * 1.01);
         }
     }
-    assert!(compared > 4, "{compared}");
+    assert!(compared > 1, "{compared}");
 }
 
 #[test]
