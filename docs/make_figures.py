@@ -365,7 +365,7 @@ def bounds(folder: Path = ASSETS) -> Path:
         load=240.0,
     )
     left, right = (
-        ss.Structure(10.0 * np.eye(2), stiffness, 20.0 * np.eye(2), ["x", "y"])
+        ss.Structure(10.0 * np.eye(2), stiffness, 100.0 * np.eye(2), ["x", "y"])
         for stiffness in ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]])
     )
     model = damper.between(
@@ -375,11 +375,12 @@ def bounds(folder: Path = ASSETS) -> Path:
         right_dofs=["x", "y"],
         forces=[ss.Force("left.x", 200.0), ss.Force("right.x", 200.0, phase=np.pi)],
     )
-    omega = np.linspace(270.0, 310.0, 41)
-    frf = ss.forced_response(model, omega, 5, residual="bounds", observe=["left.x"])
+    omega = np.linspace(285.0, 312.0, 28)
+    frf = ss.forced_response(model, omega, 15, residual="bounds", observe=["left.x"])
     figure = Figure(figsize=(6.4, 4.2), layout="constrained")
     ax = figure.subplots()
-    plot.curves(frf, "left.x", length_unit="mm", stuck=False, free=False, peaks=False, ax=ax)
+    left_out = {"stuck": False, "free": False, "peaks": False, "error_band": False}
+    plot.curves(frf, "left.x", length_unit="mm", ax=ax, **left_out)
     return _save(figure, folder / "bounds.png")
 
 
