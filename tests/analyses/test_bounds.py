@@ -87,18 +87,16 @@ def test_transients_from_random_starts_lie_inside():
     outside, moved = [], []
     for position, omega in enumerate(frf.omega):
         for _ in range(9):
-            displacement = rng.normal(0.0, 2e-2, 4)
-
-            start = ss.State(model, displacement, rng.normal(0.0, 0.3, 4))
+            start = ss.State(model, rng.normal(0.0, 2e-2, 4), rng.normal(0.0, 0.3, 4))
             run = ss.transient(
-                model, omega=omega, periods=300, scheme="exact", start=start, tolerance=1e-9, keep=1
+                model, omega=omega, periods=2000, start=start, tolerance=1e-8, keep=1
             )
+            assert run.status == "settled"
             own = run.amplitude("a.x")
-            own = float(np.asarray(own).reshape(-1)[-1])
             low, high = frf.lower("a.x")[position], frf.upper("a.x")[position]
             outside.append(max(own / high, low / own) - 1.0)
             moved.append(abs(own / frf.amplitude("a.x")[position] - 1.0))
-    assert max(outside) < 1e-3  # of the harmonics left out
+    assert max(outside) < SEARCH
     assert max(moved) > 1e-2
 
 
