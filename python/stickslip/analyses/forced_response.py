@@ -85,7 +85,7 @@ def forced_response(
         orders = settings.fixed_harmonics or highest_harmonic(model)
         require_memory(asked, orders, len(dofs), points_of(model))
     require_forced(model, settings)
-    require_held(model, settings.residual)
+    require_held(model, kept.residual)
     with Run("forced response", progress, model) as run:
         with refusals(model):
             solution = _core.forced_response(
