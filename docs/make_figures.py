@@ -354,6 +354,36 @@ def wedge_dampers(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "wedge-dampers.png")
 
 
+def bounds(folder: Path = ASSETS) -> Path:
+    """Draw what residual tractions make of the response of two blades with a wedge."""
+    damper = ss.WedgeDamper(
+        angle=40.0,
+        mass=0.1,
+        friction=0.6,
+        tangential_stiffness=3e5,
+        normal_stiffness=3e5,
+        load=240.0,
+    )
+    left, right = (
+        ss.Structure(10.0 * np.eye(2), stiffness, 100.0 * np.eye(2), ["x", "y"])
+        for stiffness in ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]])
+    )
+    model = damper.between(
+        left,
+        right,
+        left_dofs=["x", "y"],
+        right_dofs=["x", "y"],
+        forces=[ss.Force("left.x", 200.0), ss.Force("right.x", 200.0, phase=np.pi)],
+    )
+    omega = np.linspace(285.0, 312.0, 28)
+    frf = ss.forced_response(model, omega, 15, residual="bounds", observe=["left.x"])
+    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    ax = figure.subplots()
+    left_out = {"stuck": False, "free": False, "peaks": False, "error_band": False}
+    plot.curves(frf, "left.x", length_unit="mm", ax=ax, **left_out)
+    return _save(figure, folder / "bounds.png")
+
+
 def _errors(
     model: ss.Model, exact: ss.ForcedResponse, harmonics: int | Literal["auto"]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -395,3 +425,4 @@ if __name__ == "__main__":
     print(mistuning())
     print(flutter())
     print(wedge_dampers())
+    print(bounds())

@@ -4,7 +4,7 @@ use numpy::ndarray::IntoDimension;
 use numpy::{Complex64, Element, PyArray1, PyArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict as _, PyDict};
-use stickslip_core::balance::Point;
+use stickslip_core::balance::{AmplitudeBounds, Point, Uniqueness};
 use stickslip_core::contact::PointState;
 use stickslip_core::motion::Event;
 use stickslip_core::timing::Profile;
@@ -159,12 +159,32 @@ impl<'py> Columns<'py> {
         self.amplitudes("displacement", observed, series(|p| &p.displacement))?;
         self.amplitudes("contact_displacement", contacts, series(|p| &p.contact_displacement))?;
         self.amplitudes("contact_force", contacts, series(|p| &p.contact_force))?;
+        self.bounds(points.clone(), observed)?;
         self.numbers("error_estimate", observed, all().map(|p| p.error_estimate.as_slice()))?;
         self.numbers("sampling_error", observed, all().map(|p| p.sampling_error.as_slice()))?;
         let share = all().map(|p| p.contacts.iter().map(|c| c.slip_fraction));
         self.rows("slip_fraction", contacts, f64::NAN, share)?;
         let work = all().map(|p| p.contacts.iter().map(|c| c.dissipation));
         self.rows("dissipation", contacts, f64::NAN, work)
+    }
+
+    /// Bounds over the residual tractions, not-a-number where they were not asked for.
+    fn bounds<'a>(
+        &self,
+        points: impl Iterator<Item = &'a Point> + Clone,
+        observed: usize,
+    ) -> PyResult<()> {
+        let all = || points.clone().map(|p| p.bounds.as_ref());
+        let values = |of: fn(&AmplitudeBounds) -> &[f64]| all().map(move |b| b.map_or(&[][..], of));
+        self.numbers("lower", observed, values(|bounds| &bounds.lower))?;
+        self.numbers("upper", observed, values(|bounds| &bounds.upper))?;
+        let code = |bounds: &AmplitudeBounds| match bounds.unique {
+            Uniqueness::Unique => 0_u8,
+            Uniqueness::Residual => 1,
+            Uniqueness::Shakedown => 2,
+        };
+        self.one("unique", all().map(|bounds| bounds.map_or(3, code)))?;
+        self.one("guaranteed", all().map(|bounds| bounds.is_some_and(|bounds| bounds.proved)))
     }
 
     /// Events between stick, slip and separation.

@@ -14,6 +14,7 @@ use stickslip_core::balance::{
     self, sweep, sweep_range, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus,
     Progress, Settings, HIGHEST_ORDER,
 };
+use stickslip_core::design::bound;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
 use stickslip_core::orbit::{decide_stability, OrbitInitialGuess};
 use stickslip_core::solve::NewtonSettings;
@@ -111,8 +112,10 @@ pub fn curve<'a, 'py>(
     columns.end()
 }
 
-/// Harmonic balance over a grid or a range of frequencies.
+/// Harmonic balance over a grid or a range of frequencies. `bounds` asks for those over the residual
+/// tractions, and tells whether one vibration alone is known to exist.
 #[pyfunction]
+#[pyo3(signature = (problem, omega, observe, driving, settings, progress, bounds=None))]
 pub fn forced_response<'py>(
     py: Python<'py>,
     problem: &Problem,
@@ -121,6 +124,7 @@ pub fn forced_response<'py>(
     driving: Vec<usize>,
     settings: &Bound<'_, PyAny>,
     progress: Option<Py<PyAny>>,
+    bounds: Option<bool>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let stability =
         settings.getattr_opt("stability")?.map_or(Ok(false), |given| given.extract())?;
@@ -138,6 +142,9 @@ pub fn forced_response<'py>(
         }?;
         if stability && !model.is_monotone() {
             decide_stability(model, settings.residual, &mut found, look)?;
+        }
+        if let Some(proved) = bounds {
+            bound(model, settings, &observe, proved, &mut found, look)?;
         }
         Ok(found)
     })

@@ -201,7 +201,7 @@ def forced_response(
     observe: Iterable[str] | str | None = None,
     stability: bool = True,
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float | None = None,
+    residual: Literal["centred", "from_rest", "bounds"] | float | None = None,
     tolerance: float = 0.001,
     max_harmonics: int = 255,
     method: Literal["newton", "broyden"] = "newton",

@@ -88,6 +88,7 @@ def forced_response(
     driving: NDArray[np.int64],
     settings: BalanceSettings,
     progress: Progress,
+    bounds: bool | None = None,
 ) -> Solution: ...
 def amplitude(coefficients: Complex, measure: str) -> Float: ...
 def contact_force(

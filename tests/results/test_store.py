@@ -95,6 +95,10 @@ def test_dataset(frf):
         "fold": "1",
         "jump": "1",
         "stability": "1",
+        "lower": "m",
+        "upper": "m",
+        "unique": "1",
+        "guaranteed": "1",
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs

@@ -32,6 +32,7 @@ mod sampling;
 mod scale;
 mod settings;
 mod single_harmonic;
+mod slider_start;
 mod slip_jacobian;
 mod solution;
 mod statics;
@@ -42,6 +43,7 @@ mod unknowns;
 
 pub use adaptive::sweep_range;
 pub use cycle_start::Onset;
+pub(crate) use evaluation::Evaluated;
 pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
 pub use limit_cycle::CycleBalance;
@@ -52,7 +54,8 @@ pub use settings::{
     Evaluation, HarmonicChoice, Method, Resolution, SampleChoice, Settings, HIGHEST_ORDER,
 };
 pub use single_harmonic::single_harmonic;
-pub use solution::{CurveEnd, Point, PointStatus, Solution};
+pub(crate) use slider_start::{HeldMotion, SliderBalance};
+pub use solution::{AmplitudeBounds, CurveEnd, Point, PointStatus, Solution, Uniqueness};
 pub(crate) use statics::with_history;
 pub use statics::{static_response, AtRest, RestStatus};
 pub use sweep::sweep;

@@ -3,6 +3,7 @@
 use super::settings::Resolution;
 use super::unknowns::Unknowns;
 use crate::contact::PointSummary;
+use crate::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use crate::timing::Profile;
 use faer::c64;
 use std::sync::Arc;
@@ -35,6 +36,37 @@ impl PointStatus {
     #[must_use]
     pub fn is_solved(self) -> bool {
         !matches!(self, Self::Stalled | Self::Singular | Self::NotComputed | Self::StepsLimit)
+    }
+}
+
+/// Whether a vibration depends on the tractions that the past has left in its contacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Uniqueness {
+    /// It does not.
+    Unique,
+    /// It does: contacts that stick could keep others.
+    Residual,
+    /// It does, and the motion itself has pushed a contact in one sense until it slips no more.
+    Shakedown,
+}
+
+/// Bounds of the half ranges of the observed DOFs over all residual tractions that Coulomb allows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AmplitudeBounds {
+    /// Least half range found, DOF after DOF \[m\].
+    pub lower: Vec<f64>,
+    /// Largest one \[m\].
+    pub upper: Vec<f64>,
+    /// What they depend on.
+    pub unique: Uniqueness,
+    /// Whether theory excludes others; else they are inner bounds.
+    pub proved: bool,
+}
+
+impl AmplitudeBounds {
+    /// Those of the only vibration.
+    pub(crate) fn unique(amplitude: Vec<f64>, proved: bool) -> Self {
+        Self { lower: amplitude.clone(), upper: amplitude, unique: Uniqueness::Unique, proved }
     }
 }
 
@@ -71,6 +103,8 @@ pub struct Point {
     pub jump: bool,
     /// Whether the motion is stable, if that is decided.
     pub stable: Option<bool>,
+    /// Bounds over the residual tractions, if they were asked for.
+    pub bounds: Option<AmplitudeBounds>,
     pub(super) unknowns: Option<Unknowns>,
 }
 
@@ -91,6 +125,19 @@ impl Point {
     #[must_use]
     pub fn resolution(&self) -> Resolution {
         Resolution { harmonics: self.harmonics, samples: self.samples }
+    }
+
+    /// Half ranges of the observed DOFs \[m\].
+    pub(crate) fn half_ranges(&self) -> Vec<f64> {
+        let table = SampleTable::new(Harmonics::new(self.harmonics, false));
+        let mut series = vec![0.0; table.harmonics().slots()];
+        let of_dof = self.displacement.chunks_exact(self.harmonics + 1);
+        of_dof
+            .map(|amplitudes| {
+                table.harmonics().write_series(amplitudes, &mut series);
+                amplitude(&table, &series, Measure::HalfRange)
+            })
+            .collect()
     }
 
     /// Makes room for harmonics up to `highest`.
@@ -123,6 +170,7 @@ impl Point {
             fold: false,
             jump: false,
             stable: None,
+            bounds: None,
             unknowns: None,
         }
     }

@@ -9,7 +9,7 @@
 use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::samples::Samples;
 use super::{
-    AssumedStart, ContactLaw, Describing, Element, Motion, Parameter, Phase, PointSummary,
+    AssumedStart, ContactLaw, Describing, Element, Held, Motion, Parameter, Phase, PointSummary,
     Residual, SlipLoad,
 };
 use crate::Error;
@@ -206,6 +206,7 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         onsets() -> Vec<f64>;
         beginning() -> (Vec<f64>, Vec<f64>);
         assumed(motion: Motion<'_>) -> Option<AssumedStart>;
+        held(motion: Motion<'_>) -> Vec<Option<Held>>;
         return_map(before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64],
             jacobian: Option<&mut ReturnMapJacobian>);
         stuck_load(residual: Residual, low: f64, high: f64) -> Option<[f64; 3]>;

@@ -21,7 +21,7 @@ use super::dual::{Dual, Real};
 use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::parameter::number;
 use super::slip_element::Element;
-use super::{AssumedStart, ContactLaw, Motion, Parameter, Parameters};
+use super::{AssumedStart, ContactLaw, Held, Motion, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
@@ -401,6 +401,10 @@ impl ContactLaw for Coulomb {
     fn beginning(&self) -> (Vec<f64>, Vec<f64>) {
         let (displacement, traction) = &self.beginning;
         (displacement[..self.displacements()].to_vec(), traction[..self.directions].to_vec())
+    }
+
+    fn held(&self, motion: Motion<'_>) -> Vec<Option<Held>> {
+        self.held_sliders(motion)
     }
 
     fn assumed(&self, motion: Motion<'_>) -> Option<AssumedStart> {

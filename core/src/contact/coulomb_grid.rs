@@ -45,6 +45,14 @@ impl Grid {
             [sign * self.value[i][index], sign * self.slope[i][index]]
         })
     }
+
+    /// Slider positions along one direction outside of which the limit is passed at some instant.
+    pub(super) fn room(&self, direction: usize) -> [f64; 2] {
+        let pairs = self.value[direction].iter().zip(&self.value[2]);
+        pairs.fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], (pull, limit)| {
+            [low.max(pull - limit), high.min(pull + limit)]
+        })
+    }
 }
 
 /// `|K − s|² − M²` and half its slope.

@@ -6,13 +6,13 @@
 
 use super::coulomb_circle::centre;
 use super::coulomb_constant::Constant;
-use super::coulomb_cycle::{Cycle, Response};
+use super::coulomb_cycle::{Cycle, Response, State, Stretch};
 use super::coulomb_drive::Drive;
 use super::coulomb_grid::Grid;
 use super::law::HarmonicForce;
 use super::slider_integrals::dot;
 use super::{coulomb_period, coulomb_play};
-use super::{AssumedStart, Closure, ContactLaw as _, Coulomb};
+use super::{AssumedStart, Closure, ContactLaw as _, Coulomb, Held};
 use super::{Motion, Phase, PointSummary, SlipLoad};
 use std::f64::consts::TAU;
 
@@ -68,6 +68,38 @@ impl Coulomb {
             displacement.push(harmonics.jet(&motion.displacement[normal..], 0.0)[0]);
         }
         Some(AssumedStart { displacement, state: vec![0.0; self.directions], rate })
+    }
+
+    /// See [`super::ContactLaw::held`].
+    pub(super) fn held_sliders(&self, motion: Motion<'_>) -> Vec<Option<Held>> {
+        let mut held = vec![None; self.displacements()];
+        let Some(assumed) = self.assumed_start(motion) else { return held };
+        let drive = Drive::new(self, motion, self.varies());
+        let cycle = self.cycle(&drive, motion, false);
+        let stuck = |stretch: &Stretch| matches!(stretch.state, State::Stuck { .. });
+        let Some(State::Stuck { slider, .. }) = cycle.stretches.first().map(|first| &first.state)
+        else {
+            return held;
+        };
+        if !cycle.stretches.iter().all(stuck) {
+            return held;
+        }
+        let (k, rest) = (self.tangential_stiffness, self.slider());
+        let reach = self.friction * drive.at_rest.abs().max(drive.at(0.0).1[0].abs()) / k;
+        for (i, held) in held.iter_mut().enumerate().take(self.directions) {
+            let [low, high] = match self.directions {
+                1 => coulomb_play::room(&drive),
+                _ => Grid::new(&drive).room(i),
+            };
+            let range = [low / k - rest[i], high / k - rest[i]];
+            let (position, assumed) = (slider[i] / k - rest[i], assumed.displacement[i] - rest[i]);
+            *held = Some(Held::new(position, assumed, range, reach));
+        }
+        if self.directions == 2 {
+            let pushed = held.iter().flatten().any(|one| one.pushed);
+            held.iter_mut().flatten().for_each(|one| one.pushed = pushed);
+        }
+        held
     }
 
     /// Writes the slip load of a cycle.

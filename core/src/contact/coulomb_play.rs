@@ -133,6 +133,13 @@ pub(super) fn cycle(drive: &Drive<'_>, residual: Residual, rest: f64, rates: boo
     play.cycle
 }
 
+/// The positions that the walls leave a slider which never moves: from the first to the second, none
+/// if the first is the larger.
+pub(super) fn room(drive: &Drive<'_>) -> [f64; 2] {
+    let slopes = drive.table.slopes(&drive.pull);
+    [1.0, -1.0].map(|sign| Wall::new(drive, &slopes, sign).farthest().value)
+}
+
 impl Play<'_> {
     fn push(&mut self, start: f64, end: f64, state: State) {
         self.cycle.stretches.push(Stretch { start, end, state });

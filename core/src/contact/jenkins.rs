@@ -15,8 +15,8 @@ use super::slider_integrals::add_slipping;
 use super::slip_element::{Element, SlipElement as _};
 use super::stick_slip::{Path, StickSlipIntervals};
 use super::{
-    ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointSummary, Residual, Slider,
-    SlipLoad,
+    ContactLaw, Describing, Held, Motion, Parameter, Parameters, Phase, PointSummary, Residual,
+    Slider, SlipLoad,
 };
 use crate::Error;
 use faer::Mat;
@@ -165,6 +165,24 @@ impl ContactLaw for Jenkins {
         } else {
             slips.map(|(slider, slips)| slider.stiffness / total * slips).sum()
         };
+    }
+
+    /// Sliders of one contact are moved together: of several that stick the stiffest tells how far.
+    fn held(&self, motion: Motion<'_>) -> Vec<Option<Held>> {
+        let path = Path::new(motion);
+        let (middle, half_range) = (path.middle(), path.half_range());
+        let stuck = self.sliders.iter().zip(self.cycles(&path)).filter(|(slider, cycle)| {
+            matches!(cycle, StickSlipIntervals::Stuck) && slider.slip_force.is_finite()
+        });
+        let stiffest = stuck.max_by(|(a, _), (b, _)| a.stiffness.total_cmp(&b.stiffness));
+        vec![stiffest.map(|(slider, _)| {
+            let reach = slider.slip_force / slider.stiffness;
+            let position =
+                slider.held_load(motion.residual, middle, half_range).0 / slider.stiffness;
+            let [assumed] = motion.residual.slider([slider.stiffness * middle], [0.0]);
+            let range = [middle + half_range - reach, middle - half_range + reach];
+            Held::new(position, assumed / slider.stiffness, range, reach)
+        })]
     }
 
     fn stuck_load(&self, residual: Residual, low: f64, high: f64) -> Option<[f64; 3]> {

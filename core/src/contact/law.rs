@@ -6,7 +6,7 @@
 
 use super::point_state::Phase;
 use super::slip_element::Element;
-use super::{AssumedStart, Describing, Parameter, Residual};
+use super::{AssumedStart, Describing, Held, Parameter, Residual};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::Error;
 use faer::Mat;
@@ -177,6 +177,12 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// friction does not depend on it beyond its residual force.
     fn with_history(&self, _displacement: &[f64], _state: &[f64]) -> Option<Box<dyn ContactLaw>> {
         None
+    }
+
+    /// The sliders that a periodic motion leaves where they are, component by component: none of a
+    /// component that has no slider, that forgets its start, or whose start is not varied.
+    fn held(&self, _motion: Motion<'_>) -> Vec<Option<Held>> {
+        vec![None; self.displacements()]
     }
 
     /// Slip load of a contact of one displacement that stays between `low` and `high` without slip,

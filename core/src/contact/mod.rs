@@ -68,7 +68,7 @@ pub use masing::Masing;
 pub use parameter::{Parameter, Parameters};
 pub use point_state::{Phase, PointState};
 pub use registry::law;
-pub use residual::{AssumedStart, Residual};
+pub use residual::{AssumedStart, Held, Residual};
 pub use slider::Slider;
 pub use slip_element::{Bound, Element, SlipElement, SlipPlane};
 pub use stop::Stop;

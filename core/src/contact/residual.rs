@@ -65,6 +65,28 @@ impl Residual {
     }
 }
 
+/// A slider that never moves in a periodic motion. Positions are displacements \[m\] from where
+/// [`Residual::FromRest`] begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Held {
+    /// Where it is.
+    pub position: f64,
+    /// Lowest and highest position that Coulomb allows for the whole period in this motion; of
+    /// coupled directions each by itself, so that not all pairs are allowed.
+    pub range: [f64; 2],
+    /// Whether the motion has pushed it there, so that it touches its limit.
+    pub pushed: bool,
+}
+
+impl Held {
+    /// Distance from the assumed position, relative to the range of a slip force, that is none.
+    const SAME: f64 = 1e-9;
+
+    pub(super) fn new(position: f64, assumed: f64, range: [f64; 2], reach: f64) -> Self {
+        Self { position, range, pushed: (position - assumed).abs() > Self::SAME * reach }
+    }
+}
+
 /// Where a law is before it begins a periodic motion.
 #[derive(Debug, Clone)]
 pub struct AssumedStart {

@@ -6,7 +6,8 @@ use super::periodic_march::{PeriodicMarch, Stretch};
 use super::slip_element::{Element, SlipElement as _};
 use super::slip_series;
 use super::{
-    ContactLaw, Motion, Parameter, Phase, PointState, PointSummary, SlipLoad, StructuralDamper,
+    ContactLaw, Held, Motion, Parameter, Phase, PointState, PointSummary, SlipLoad,
+    StructuralDamper,
 };
 use crate::Error;
 use faer::Mat;
@@ -73,6 +74,25 @@ impl ContactLaw for StructuralDamper {
             jacobian.force_by_state[i * points + i] = 1.0;
             jacobian.slipping[i] = f64::from(u8::from(gain[i] != 1.0));
         }
+    }
+
+    /// The range of a point is that of its own limit, at the stiffness against the others.
+    fn held(&self, motion: Motion<'_>) -> Vec<Option<Held>> {
+        let march = PeriodicMarch::new(self, motion, Derivative::None);
+        let slots = motion.table.harmonics().slots();
+        let means = motion.displacement.chunks_exact(slots);
+        let means = means.map(|series| motion.table.harmonics().mean(series));
+        let point = |(i, mean): (usize, f64)| {
+            let sticks = |stretch: &Stretch| stretch.states[i] == PointState::Stuck;
+            let reach = self.limits[i] / self.stiffness[(i, i)];
+            let held = reach > 0.0 && reach.is_finite() && march.stretches.iter().all(sticks);
+            held.then_some(Held {
+                position: 0.0,
+                range: [mean - reach, mean + reach],
+                pushed: march.slipped,
+            })
+        };
+        means.enumerate().map(point).collect()
     }
 
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {

@@ -1,6 +1,8 @@
 //! Design: the peak of a response followed along a parameter of its contacts or its load, the
 //! parameter that makes it least, and the highest peaks of disks whose sectors deviate.
 
+mod ascent;
+mod bounds;
 mod curve;
 mod envelope;
 mod first_look;
@@ -17,6 +19,7 @@ mod patterns;
 mod samples;
 mod search;
 
+pub use bounds::bound;
 pub use curve::{peak_curve, Curve, Peak, Target};
 pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
 pub use mistuned::TunedDisk;

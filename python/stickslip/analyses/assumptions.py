@@ -12,7 +12,7 @@ from stickslip.analyses.texts import TEXTS, told
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
 from stickslip.model.state import State
-from stickslip.results.arrays import STABILITY, Arrays, Float, amplitude_of
+from stickslip.results.arrays import STABILITY, UNIQUE, Arrays, Float, amplitude_of
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
@@ -50,6 +50,7 @@ def balance_assumptions(
                 not single and _harmonics(settings, arrays, solution.half_wave),
                 _static_traction(model, settings, arrays),
                 _node_traction(model, settings, arrays),
+                settings.bounds and _bounds(arrays),
                 _start_of_march(model),
                 bool(model.contacts) and _samples(model, settings, arrays),
                 base in TEXTS and told(base, base=model.problem.modal_base),
@@ -181,6 +182,17 @@ def _static_traction(
         _held=held,
         _solved=stuck.size,
     )
+
+
+def _bounds(arrays: Arrays) -> Diagnostic | None:
+    """Say what bounds over the residual tractions are worth."""
+    known = arrays.unique != UNIQUE.index("not asked")
+    if not known.any():
+        return None
+    if arrays.guaranteed[known].all():
+        return told("bounds/unique")
+    wide = int((arrays.unique[known] != UNIQUE.index("yes")).sum())
+    return told("bounds", points=wide, _known=int(known.sum()))
 
 
 def _node_traction(

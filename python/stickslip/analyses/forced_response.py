@@ -16,7 +16,7 @@ from stickslip.analyses.arguments import (
     require_forced,
     require_held,
 )
-from stickslip.analyses.assumptions import arrays_of, balance_assumptions
+from stickslip.analyses.assumptions import arrays_of, balance_assumptions, uniqueness
 from stickslip.analyses.branch_assumptions import branch_assumptions
 from stickslip.analyses.free_flight import with_free_flight
 from stickslip.analyses.run import Progress, Run, refusals
@@ -45,6 +45,11 @@ def forced_response(
     are part of it, and the curve ends where it leaves the range. Over given frequencies the sweep
     stays on its branch as long as there is one, and a diagnostic names its jumps.
 
+    With ``residual="bounds"`` the tractions that the past may have left in contacts which stick are
+    varied over all that Coulomb allows, at every point: `lower` and `upper` are the least and the
+    largest amplitude found, `unique` says whether they differ and `guaranteed` whether theory
+    excludes others. It costs some times the curve, more the more degrees of freedom are observed.
+
     Parameters
     ----------
     outputs : iterable of str, optional
@@ -68,10 +73,11 @@ def forced_response(
     Cameron and Griffin (1989): alternating frequency and time. The receptance form in contact
     displacements, its closed-form tangent and the error estimate are this package's.
     """
-    grid = settings.omega
+    grid, bounded = settings.omega, settings.bounded
+    settings = settings.nominal(model)
     span = grid if isinstance(grid, tuple) else None
     own = settings.part(BalanceSettings) | settings.part(StabilityKey)
-    kept = ForcedSettings.of(**own, span=span)
+    kept = ForcedSettings.of(**own, span=span, bounds=bounded)
     dofs = observed_dofs(settings, model)
     driving = driving_dofs(model, dofs, outputs, named=settings.observe is not None)
     asked = grid.size if isinstance(grid, np.ndarray) else None
@@ -79,11 +85,17 @@ def forced_response(
         orders = settings.fixed_harmonics or highest_harmonic(model)
         require_memory(asked, orders, len(dofs), points_of(model))
     require_forced(model, settings)
-    require_held(model, settings.residual)
+    require_held(model, kept.residual)
     with Run("forced response", progress, model) as run:
         with refusals(model):
             solution = _core.forced_response(
-                model.problem, grid, columns_of(dofs, model), driving, kept, run
+                model.problem,
+                grid,
+                columns_of(dofs, model),
+                driving,
+                kept,
+                run,
+                (uniqueness(model) is None) if bounded else None,
             )
         arrays = arrays_of(solution, model)
         result = ForcedResponse.of(

@@ -128,6 +128,10 @@ TEXTS = {
     "to hold {_held} (residual={residual!r}, of effect at {points} of {_solved} points), as far as "
     "the motion leaves it: under a normal load that varies the vibration depends on it.",
     "static-traction/peaks": "A contact that never slips was taken to hold residual={residual!r}.",
+    "bounds": "The vibration depends on residual tractions at {points} of {_known} points. The "
+    "bounds are inner ones: every amplitude in them is attained, and others could lie outside.",
+    "bounds/unique": "All residual tractions go with one vibration: the laws are monotone and the "
+    "structure is damped, so that the bounds coincide.",
     "start-of-march": "The march through a damper of several points begins without slip, so that "
     "points which never slip hold what they built up from zero displacement, and no mean force "
     "where the motion is half-wave symmetric{_held}.",

@@ -66,6 +66,7 @@ def curves(
     single = len(listed) == 1
     for result, name, colour in zip(listed, names, style.colours(len(listed)), strict=True):
         view.draw(result, colour, name)
+        view.shade_bounds(result, colour)
         if options["error_band"] or (options["error_band"] is None and single):
             view.shade_error(result, colour)
         view.mark_certificate(result)
@@ -193,6 +194,22 @@ class _View:
             lw=0.0,
             label="estimated truncation error",
         )
+
+    def shade_bounds(self, result: ForcedResponse, colour: Colour) -> None:
+        """Shade what other residual tractions make of the curve, if that is known."""
+        if not result.bounded or self.measure != "half_range":
+            return
+        factor = self._factor(result.model)
+        lower, upper = factor * result.lower(self.dof), factor * result.upper(self.dof)
+        if not (upper > lower).any():
+            return
+        omega = self.omega.factor * result.omega
+        looks: Looks = {"color": colour, "lw": 0.7}
+        self.ax.fill_between(
+            omega, lower, upper, color=colour, alpha=0.15, lw=0.0, label="all residual tractions"
+        )
+        for bound in (lower, upper):
+            self.ax.plot(omega, bound, **looks, label="_")
 
     def mark_certificate(self, result: ForcedResponse) -> None:
         """Mark the amplitudes of exact orbits, each with a bar to the curve: the true error."""

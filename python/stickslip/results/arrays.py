@@ -17,6 +17,7 @@ from stickslip.results.status import Status
 __all__ = [
     "SHARE",
     "STABILITY",
+    "UNIQUE",
     "Arrays",
     "Bool",
     "Code",
@@ -40,6 +41,9 @@ Measure: TypeAlias = Literal["half_range", "max", "fundamental"]
 STABILITY = ("unstable", "stable", "not decided")
 """What is known of the stability of a motion."""
 
+UNIQUE = ("yes", "no", "shakedown", "not asked")
+"""Whether a vibration depends on the tractions that the past has left in contacts."""
+
 SHARE = 1.0 + 1e-6
 """Largest share of a period: sums of times are rounded."""
 
@@ -59,6 +63,14 @@ def _unknown(dataset: Dataset) -> Float:
 
 def _nowhere(dataset: Dataset) -> Bool:
     return np.zeros(dataset.sizes["omega"], np.bool_)
+
+
+def _unbounded(dataset: Dataset) -> Float:
+    return np.full(tuple(dataset.sizes[name] for name in ("omega", "dof")), np.nan)
+
+
+def _not_asked(dataset: Dataset) -> Code:
+    return np.full(dataset.sizes["omega"], UNIQUE.index("not asked"), np.uint8)
 
 
 def _undecided(dataset: Dataset) -> Code:
@@ -157,6 +169,33 @@ class Arrays(PeriodicArrays):
     )
     stability: Code = column(
         "*", "1", "whether the motion is stable", codes=STABILITY, absent=_undecided
+    )
+    lower: Float = column(
+        "* dof",
+        "m",
+        "least half range over the residual tractions",
+        least=0.0,
+        absent=_unbounded,
+    )
+    upper: Float = column(
+        "* dof",
+        "m",
+        "largest half range over the residual tractions",
+        least=0.0,
+        absent=_unbounded,
+    )
+    unique: Code = column(
+        "*",
+        "1",
+        "whether the vibration is the same for all residual tractions",
+        codes=UNIQUE,
+        absent=_not_asked,
+    )
+    guaranteed: Bool = column(
+        "*",
+        "1",
+        "whether theory excludes half ranges outside of the bounds",
+        absent=_nowhere,
     )
     sampling_error: Float = column(
         "* dof",

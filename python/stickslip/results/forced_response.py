@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from stickslip.drawn import Drawn
 from stickslip.results.arrays import STABILITY, Int, constant
 from stickslip.results.blades import BladeMotion
+from stickslip.results.bounded import Bounded
 from stickslip.results.certificate import Certificate
 from stickslip.results.dataset import Dataset
 from stickslip.results.energy import Energy, energy_of
@@ -19,7 +20,7 @@ from stickslip.results.sensitivities import Sensitivities
 from stickslip.results.stability import States, truths
 
 
-class ForcedResponse(BladeMotion, Sensitivities):
+class ForcedResponse(BladeMotion, Sensitivities, Bounded):
     """Steady response to periodic forces over the excitation frequency.
 
     Amplitudes and all that derives from them are not-a-number at points that were not solved;

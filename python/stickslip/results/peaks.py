@@ -142,11 +142,16 @@ def highest(result: Peaks, dof: str, measure: Measure, refine: Refine) -> Peak:
 
 
 def along(result: Peaks, dof: str, measure: Measure) -> Peak:
-    """Return the highest point of a branch, by the parabola along it through its highest points.
+    """Return the highest point of a branch, by the parabola along it through its highest points."""
+    return highest_of(result, dof, result.amplitude(dof, measure))
+
+
+def highest_of(result: Peaks, dof: str, amplitude: Float) -> Peak:
+    """Return the highest point of a line along a branch, by a parabola through its highest points.
 
     Along the branch and not over frequency, in which it may turn back.
     """
-    omega, amplitude = result.omega, result.amplitude(dof, measure)
+    omega = result.omega
     if not np.isfinite(amplitude).any():
         raise ModelError(f"peak of {dof!r}: none of the {omega.size} points is solved; see status")
     best, last = int(np.nanargmax(amplitude)), omega.size - 1

@@ -14,6 +14,7 @@ from stickslip.settings.entries import (
     Flag,
     Harmonics,
     Residual,
+    ResidualOrBounds,
     Span,
     Tolerance,
     Whole,
@@ -188,6 +189,9 @@ class StabilityKey(Settings):
 class ForcedSettings(BalanceSettings, StabilityKey):
     """How a forced response was computed."""
 
+    bounds: Flag = Field(
+        default=False, description="Whether the residual tractions were varied, for bounds."
+    )
     span: Span | None = Field(
         default=None,
         description="Ends of an adaptive sweep [rad/s]; none: omega was given point by point.",
@@ -196,3 +200,22 @@ class ForcedSettings(BalanceSettings, StabilityKey):
 
 class BalanceKeys(BalanceSettings, StabilityKey, CurveKeys):
     """What a forced response is computed of, and how."""
+
+    residual: ResidualOrBounds | None = Field(  # type: ignore[assignment]
+        default=None,
+        description="Force [N] that a contact holds at mid-range of its displacement if it never "
+        'slips; the steady state alone does not determine it. "centred" is none, "from_rest" what '
+        'is left of loads raised slowly from nothing, "bounds" everything that Coulomb allows: '
+        "`ForcedResponse.lower` and `upper`, beside the default's curve. Default: centred, and "
+        "from rest as soon as a static load acts. See `ForcedResponse.residual_bounds`.",
+        examples=["from_rest", "10 N", "bounds"],
+    )
+
+    @property
+    def bounded(self) -> bool:
+        """Whether bounds over the residual tractions are asked for."""
+        return self.residual == "bounds"
+
+    def nominal(self, model: Model) -> Self:
+        """Return the settings of the curve that bounds belong to."""
+        return self.model_copy(update={"residual": None}).suited(model) if self.bounded else self

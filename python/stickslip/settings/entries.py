@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
@@ -190,13 +190,18 @@ def _count_or_auto(value: object) -> int | str:
     return whole_number(value, "", smallest=1)
 
 
-def _residual(value: object, info: ValidationInfo) -> float | str:
+def _residual(value: object, info: ValidationInfo, names: Sequence[str] = ()) -> float | str:
+    known = [*RESIDUALS, *names]
     written = isinstance(value, str) and value[:1] in "+-.0123456789"
     if not isinstance(value, str) or written:
         return _number(value, info, "N")
-    if value not in RESIDUALS:
-        raise EntryError("", f": {unknown('choice', value, RESIDUALS)}, or a force in N")
+    if value not in known:
+        raise EntryError("", f": {unknown('choice', value, known)}, or a force in N")
     return value
+
+
+def _residual_or_bounds(value: object, info: ValidationInfo) -> float | str:
+    return _residual(value, info, ["bounds"])
 
 
 def span_of(span: object) -> tuple[float, float]:
@@ -230,6 +235,11 @@ Residual = Annotated[
     Literal["centred", "from_rest"] | float,
     BeforeValidator(_residual),
     WithJsonSchema({"anyOf": [{"enum": list(RESIDUALS)}, {"type": ["number", "string"]}]}),
+]
+ResidualOrBounds = Annotated[
+    Literal["centred", "from_rest", "bounds"] | float,
+    BeforeValidator(_residual_or_bounds),
+    WithJsonSchema({"anyOf": [{"enum": [*RESIDUALS, "bounds"]}, {"type": ["number", "string"]}]}),
 ]
 Measure = Annotated[Literal["half_range", "max", "fundamental"], ONE_OF]
 Span = Annotated[tuple[float, float], BeforeValidator(span_of)]

@@ -86,6 +86,7 @@ class CurveView(View[ForcedResponse]):
             march = result.settings.march
             samples = _kept(result, result.samples) if march == "auto" else f"{march}"
             rows.append(("samples", f"{samples} per period"))
+        rows += _bound_rows(result)
         rows += _state_rows(result)
         return rows + (_orbit_rows(result) if isinstance(result, ExactResponse) else [])
 
@@ -138,6 +139,15 @@ def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterato
             yield partial(plots.hysteresis, result, contact, at, length_unit=length)
     if isinstance(result, ExactResponse):
         yield partial(plots.multipliers, result, omega_unit=omega)
+
+
+def _bound_rows(result: ForcedResponse) -> list[Row]:
+    if not result.bounded:
+        return []
+    counts = {name: int((result.unique == name).sum()) for name in ("yes", "no", "shakedown")}
+    said = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
+    kind = "guaranteed" if result.guaranteed[result.unique != "not asked"].all() else "inner"
+    return [("unique", f"{said} ({kind} bounds over residual tractions)")]
 
 
 def _of_sectors(disk: MistunedDisk, dofs: Dofs) -> list[str]:

@@ -1,0 +1,271 @@
+//! The balance in the positions from which the sliders of its contacts begin.
+//!
+//! A slider that never moves keeps a traction which the vibration does not determine. It is varied by
+//! the position w, measured from where [`Residual::FromRest`] begins. Friction sees differences from
+//! its slider alone, `q(u, w) = D w + q(u − w, 0)`. So the contacts answer to the shifted
+//! displacements `U' = U − w` by laws that know nothing of w, and
+//!
+//! `U' = U^stuck + (G₀ D − 1) w + G Q(U')`:
+//!
+//! sliders act like a static load. Amplitudes follow from `J dU' = (G₀ D − 1) dw`. A slider that slips
+//! in both senses, or is pushed to its limit, has `dU' = −dw` there: its start changes nothing.
+
+use super::condensed::Condensed;
+use super::evaluation::Evaluated;
+use super::solution::Point;
+use super::unknowns::scatter;
+use crate::contact::{Held, Residual};
+use crate::fourier::{amplitude, amplitude_gradient, Measure, SampleTable};
+use crate::solve::{newton, NewtonSettings, Outcome, System as _};
+use crate::structure::Quantity;
+use crate::timing::Profile;
+use crate::Error;
+
+/// Halvings of the way to other sliders after which there is no motion with them.
+const HALVINGS: i32 = 3;
+/// Distance from its limit, relative to its range, at which a slider is free to move: derivatives are
+/// those inwards.
+const INSIDE: f64 = 1e-7;
+
+/// A motion with its sliders.
+#[derive(Debug, Clone)]
+pub(crate) struct HeldMotion {
+    /// Harmonics of the contact displacements.
+    pub(crate) u: Vec<f64>,
+    /// Positions of the sliders that are held, as the motion has left them; of others from where they
+    /// have begun.
+    pub(crate) sliders: Vec<f64>,
+    /// Range of the sliders that are held, component by component.
+    pub(crate) range: Vec<Option<[f64; 2]>>,
+    /// Whether the motion has pushed one of them.
+    pub(crate) pushed: bool,
+    /// Half ranges of the observed DOFs.
+    pub(crate) amplitude: Vec<f64>,
+    /// Derivative of each in the sliders, inwards where one touches its limit; empty if it was not
+    /// asked for.
+    pub(crate) slopes: Vec<Vec<f64>>,
+}
+
+/// The balance at one frequency in the positions of its sliders.
+pub(crate) struct SliderBalance<'a> {
+    equations: Condensed<'a>,
+    observe: &'a [usize],
+    settings: NewtonSettings,
+    /// The stuck response where no slider is moved.
+    stuck: Vec<f64>,
+    /// What every slider adds to it per displacement; empty of components without one.
+    shifts: Vec<Vec<f64>>,
+}
+
+impl<'a> SliderBalance<'a> {
+    /// The balance of a model, with the history of its friction, at a frequency. Its harmonics
+    /// have a mean.
+    ///
+    /// # Errors
+    /// As for a solution: a singular static stiffness or an undamped resonance.
+    pub(crate) fn new(
+        model: Evaluated<'a>,
+        table: &'a SampleTable,
+        omega: f64,
+        settings: NewtonSettings,
+        observe: &'a [usize],
+    ) -> Result<Self, Error> {
+        let mut equations = Condensed::new(model, table, Residual::FromRest, true);
+        equations.set_omega(omega).map_err(|(_, error)| error)?;
+        let stuck = equations.stuck_response().to_vec();
+        let mut balance = Self { equations, observe, settings, stuck, shifts: Vec::new() };
+        balance.shifts = (0..balance.count()).map(|slider| balance.shift(slider)).collect();
+        Ok(balance)
+    }
+
+    /// Work done so far.
+    pub(crate) fn profile(&self) -> &Profile {
+        &self.equations.profile
+    }
+
+    /// Number of components, each of which may have a slider.
+    fn count(&self) -> usize {
+        self.equations.model.compliance().contacts()
+    }
+
+    fn slots(&self) -> usize {
+        self.equations.harmonics().slots()
+    }
+
+    /// `(G₀ D − 1) e` of a component.
+    fn shift(&self, slider: usize) -> Vec<f64> {
+        let slots = self.slots();
+        let load = self.spring_load(slider);
+        let mut shift = vec![0.0; self.stuck.len()];
+        self.equations.add_response(&load, &mut shift);
+        shift[slider * slots] -= 1.0;
+        shift
+    }
+
+    /// `D e`: the constant force of a slider that is displaced by one.
+    fn spring_load(&self, slider: usize) -> Vec<f64> {
+        let slots = self.slots();
+        let mut load = vec![0.0; self.stuck.len()];
+        let stiffness = self.equations.model.contact_stiffness();
+        let own = self.equations.model.points().iter().find(|points| points.contains(&slider));
+        for i in own.cloned().unwrap_or_default() {
+            load[i * slots] = stiffness[(i, slider)];
+        }
+        load
+    }
+
+    /// The motion of a point under an assumed residual, by its sliders.
+    pub(crate) fn of_point(&mut self, point: &Point, residual: Residual) -> Option<HeldMotion> {
+        let u = point.unknowns()?.recast(self.equations.harmonics());
+        self.equations.residual = residual;
+        let held = self.held(&u);
+        self.equations.residual = Residual::FromRest;
+        let zero = vec![0.0; self.count()];
+        let mut motion = HeldMotion::new(&zero, &held, u);
+        self.begin_at(&motion.sliders);
+        self.measure(&mut motion, true)?;
+        motion.amplitude = point.half_ranges();
+        Some(motion)
+    }
+
+    fn held(&self, x: &[f64]) -> Vec<Option<Held>> {
+        let laws = self.equations.model.laws().iter().enumerate();
+        laws.flat_map(|(index, law)| law.held(self.equations.motion(index, x))).collect()
+    }
+
+    /// The motion with its sliders begun at `sliders`, from the displacements `start`, or else from those
+    /// without slip; `None` if it is not found.
+    pub(crate) fn solve(
+        &mut self,
+        sliders: &[f64],
+        start: Option<&[f64]>,
+        slopes: bool,
+    ) -> Option<HeldMotion> {
+        self.begin_at(sliders);
+        let mut x = match start {
+            Some(u) => self.seen(u, sliders),
+            None => self.equations.stuck.clone(),
+        };
+        if newton(&mut self.equations, &mut x, self.settings).outcome != Outcome::Converged {
+            return None;
+        }
+        let held = self.held(&x);
+        let back: Vec<f64> = sliders.iter().map(|w| -w).collect();
+        let mut motion = HeldMotion::new(sliders, &held, self.seen(&x, &back));
+        self.measure(&mut motion, slopes)?;
+        Some(motion)
+    }
+
+    /// Displacements as they are seen from sliders.
+    fn seen(&self, u: &[f64], sliders: &[f64]) -> Vec<f64> {
+        let mut seen = u.to_vec();
+        seen.iter_mut().step_by(self.slots()).zip(sliders).for_each(|(u, w)| *u -= w);
+        seen
+    }
+
+    /// [`Self::solve`] from another motion, in shorter steps where one does not lead there.
+    pub(crate) fn follow(&mut self, from: &HeldMotion, sliders: &[f64]) -> Option<HeldMotion> {
+        (0..HALVINGS).find_map(|halvings| {
+            let steps = 1 << halvings;
+            let mut u = from.u.clone();
+            let mut found = None;
+            for step in 1..=steps {
+                let share = f64::from(step) / f64::from(steps);
+                let ends = from.sliders.iter().zip(sliders);
+                let at: Vec<f64> = ends.map(|(a, b)| a + share * (b - a)).collect();
+                found = Some(self.solve(&at, Some(&u), step == steps)?);
+                u.clone_from(&found.as_ref()?.u);
+            }
+            found
+        })
+    }
+
+    fn begin_at(&mut self, sliders: &[f64]) {
+        self.equations.stuck.clone_from(&self.stuck);
+        for (w, shift) in sliders.iter().zip(&self.shifts).filter(|(w, _)| **w != 0.0) {
+            self.equations.stuck.iter_mut().zip(shift).for_each(|(stuck, by)| *stuck += w * by);
+        }
+    }
+
+    /// Amplitudes and, if wanted, their derivatives.
+    fn measure(&mut self, motion: &mut HeldMotion, slopes: bool) -> Option<()> {
+        let slots = self.slots();
+        let mut x = self.seen(&motion.u, &motion.sliders);
+        let inside = |(w, range): (&f64, &Option<[f64; 2]>)| match range {
+            Some([low, high]) => w + INSIDE * (0.5 * (low + high) - w),
+            None => *w,
+        };
+        let mut ignored = vec![0.0; x.len()];
+        if slopes {
+            let free: Vec<f64> = motion.sliders.iter().zip(&motion.range).map(inside).collect();
+            x = self.seen(&motion.u, &free);
+            self.equations.residual(&x, &mut ignored);
+        }
+        // Harmonics from the first on depend on differences from the sliders alone.
+        let series = self.series(Quantity::Whole, &x, &self.equations.slip_load()).ok()?;
+        let table = self.equations.table;
+        let of_dof = series.chunks_exact(slots);
+        motion.amplitude =
+            of_dof.clone().map(|series| amplitude(table, series, Measure::HalfRange)).collect();
+        if !slopes {
+            return Some(());
+        }
+        let gradients: Vec<Vec<f64>> =
+            of_dof.map(|series| amplitude_gradient(table, series, Measure::HalfRange)).collect();
+        motion.slopes = vec![vec![0.0; self.count()]; self.observe.len()];
+        for slider in (0..self.count()).filter(|slider| motion.range[*slider].is_some()) {
+            let mut rate = vec![0.0; x.len()];
+            if !self.equations.solve(&self.shifts[slider].clone(), &mut rate) {
+                return None;
+            }
+            let mut slip_rate = vec![0.0; x.len()];
+            self.equations.add_tangent_product(&rate, &mut slip_rate);
+            let rates = self.series(Quantity::OfSlip, &rate, &slip_rate).ok()?;
+            for (dof, gradient) in gradients.iter().enumerate() {
+                let rate = &rates[dof * slots..(dof + 1) * slots];
+                // The mean, which the sliders move as well, is no part of a half range.
+                motion.slopes[dof][slider] =
+                    gradient[1..].iter().zip(&rate[1..]).map(|(g, r)| g * r).sum();
+            }
+        }
+        Some(())
+    }
+
+    /// Series of the observed DOFs.
+    fn series(&self, quantity: Quantity, x: &[f64], slip_load: &[f64]) -> Result<Vec<f64>, Error> {
+        let harmonics = self.equations.harmonics();
+        let mut series = vec![0.0; self.observe.len() * harmonics.slots()];
+        self.equations.displacements(
+            quantity,
+            [x, slip_load],
+            self.observe,
+            |order, values, _, _| {
+                scatter(harmonics, order, values, &mut series);
+            },
+        )?;
+        Ok(series)
+    }
+}
+
+impl HeldMotion {
+    /// A motion whose sliders have begun at `sliders` and are held as they say.
+    fn new(sliders: &[f64], held: &[Option<Held>], u: Vec<f64>) -> Self {
+        let both = || sliders.iter().zip(held);
+        let moved = |(w, held): (&f64, &Option<Held>)| w + held.map_or(0.0, |held| held.position);
+        let range = |(w, held): (&f64, &Option<Held>)| held.map(|held| held.range.map(|r| w + r));
+        Self {
+            u,
+            sliders: both().map(moved).collect(),
+            range: both().map(range).collect(),
+            pushed: held.iter().flatten().any(|held| held.pushed),
+            amplitude: Vec::new(),
+            slopes: Vec::new(),
+        }
+    }
+
+    /// The sliders that are held, by component, with their ranges.
+    pub(crate) fn held(&self) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
+        let own = self.range.iter().enumerate();
+        own.filter_map(|(slider, range)| Some((slider, (*range)?)))
+    }
+}

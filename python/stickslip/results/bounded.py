@@ -1,0 +1,79 @@
+"""Bounds of a response over the tractions that the past may have left in its contacts."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.errors import ModelError
+from stickslip.results.arrays import UNIQUE, Bool, Float, constant
+from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.peaks import Peak, highest_of
+
+
+class Bounded(ContactMotion):
+    """The part of a result that `residual="bounds"` adds."""
+
+    @property
+    def bounded(self) -> bool:
+        """Whether bounds over the residual tractions are known at some point."""
+        return bool((self.arrays.unique != UNIQUE.index("not asked")).any())
+
+    def lower(self, dof: str) -> Float:
+        """Return the least amplitude over all residual tractions, shape (n,) [m].
+
+        Half the range over a period, as of ``amplitude(dof)``. It is attained: see `guaranteed`.
+        Not-a-number where nothing was solved.
+
+        Raises ModelError if the bounds were not asked for.
+        """
+        return self._bound(self.arrays.lower, dof)
+
+    def upper(self, dof: str) -> Float:
+        """Return the largest amplitude over all residual tractions, shape (n,) [m].
+
+        See `lower`.
+        """
+        return self._bound(self.arrays.upper, dof)
+
+    def peak_bounds(self, dof: str) -> tuple[Peak, Peak]:
+        """Return between which amplitudes the peak lies, and where they are reached.
+
+        The highest point of `lower` and of `upper`, each by the parabola through its three highest
+        points, as `peak` of a branch: a residual traction that stays the same over the sweep has a
+        peak not below the first. Where the vibration is the same for all of them, twice the peak.
+
+        Raises ModelError if the bounds were not asked for.
+        """
+        lower, upper = self.lower(dof), self.upper(dof)
+        if np.array_equal(lower, upper, equal_nan=True):
+            peak = self.peak(dof)
+            return peak, peak
+        return highest_of(self, dof, lower), highest_of(self, dof, upper)
+
+    @cached_property
+    def unique(self) -> NDArray[np.str_]:
+        """Whether each vibration is the same for all residual tractions, of the observed dofs.
+
+        "yes", "no" (it depends on them), "shakedown" (it does, and the motion itself has pushed a
+        contact in one sense until it slips no more) or "not asked".
+        """
+        return constant(np.array(UNIQUE)[self.arrays.unique])
+
+    @property
+    def guaranteed(self) -> Bool:
+        """Whether theory excludes amplitudes outside of the bounds, point by point.
+
+        It does where there is one vibration alone: monotone laws on a damped structure. Elsewhere
+        the bounds are inner ones: the amplitudes between were found, others could lie outside.
+        """
+        return self.arrays.guaranteed
+
+    def _bound(self, values: Float, dof: str) -> Float:
+        if not self.bounded:
+            raise ModelError(
+                'residual: its bounds were not computed; give residual="bounds" to forced_response'
+            )
+        return constant(values[:, self._column(dof)].copy())

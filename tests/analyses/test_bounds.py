@@ -1,0 +1,204 @@
+"""Bounds over residual tractions: what is unique, what is inside, what is drawn, saved and said."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.reference import snecma_beam
+from stickslip.study import Study
+
+SEARCH = 1e-5  # what the search leaves, relative to the amplitude
+
+
+def pads(*, damping=0.25, force=3.0):
+    """Two bodies, each on a plane that its own normal motion presses."""
+    stiffness = np.diag([260.0, 310.0, 240.0, 350.0])
+    for i, j, k in ((0, 1, 60.0), (1, 2, 50.0), (2, 3, 80.0), (0, 3, 40.0)):
+        stiffness[[i, j], [j, i]] -= k
+        stiffness[[i, j], [i, j]] += k
+    mass = np.diag([1.0, 1.2, 1.4, 1.6])
+    names = ["a.x", "a.z", "b.x", "b.z"]
+    structure = ss.Structure(mass, stiffness, damping * mass, names)
+    contacts = [
+        ss.Coulomb(
+            [f"{body}.x", f"{body}.z"],
+            normal=[0.3, np.sqrt(0.91)],
+            friction=friction,
+            tangential_stiffness=k,
+            normal_stiffness=250.0,
+            preload=preload,
+            name=body,
+        )
+        for body, friction, k, preload in (("a", 0.5, 150.0, 2.0), ("b", 0.8, 220.0, 3.0))
+    ]
+    forces = [ss.Force("a.x", force), ss.Force("b.x", 0.6 * force, phase=2.0)]
+    return ss.Model(structure, contacts, forces)
+
+
+GRID = np.linspace(9.0, 24.0, 16)
+
+
+@pytest.fixture(scope="module")
+def bounded():
+    return ss.forced_response(pads(), GRID, 7, residual="bounds", observe=["a.x"])
+
+
+def test_monotone_contacts_have_one_vibration():
+    """Even where the residual decides whether the contact slips."""
+    model = snecma_beam(force=20.0)
+    frf = ss.forced_response(model, np.linspace(60.0, 300.0, 9), 5, residual="bounds")
+    plain = ss.forced_response(model, frf.omega, 5)
+    assert set(frf.unique) == {"yes"}
+    assert frf.guaranteed.all()
+    np.testing.assert_array_equal(frf.amplitude("tip"), plain.amplitude("tip"))
+    np.testing.assert_allclose(frf.lower("tip"), plain.amplitude("tip"), rtol=1e-12)
+    np.testing.assert_array_equal(frf.lower("tip"), frf.upper("tip"))
+    held = frf.residual_bounds(0).max()
+    assert held > 0.0
+    pushed = ss.forced_response(model, frf.omega, 5, residual=1.5 * held)
+    np.testing.assert_allclose(pushed.amplitude("tip"), frf.upper("tip"), rtol=1e-9)
+    assert any(one.code == "bounds" for one in frf.diagnostics)
+
+
+def test_a_normal_load_that_varies_opens_an_interval(bounded):
+    amplitude, lower, upper = bounded.amplitude("a.x"), bounded.lower("a.x"), bounded.upper("a.x")
+    assert (lower <= amplitude).all()
+    assert (amplitude <= upper).all()
+    wide = upper - lower > 1e-9 * upper
+    np.testing.assert_array_equal(wide, bounded.unique != "yes")
+    assert (upper > 1.02 * lower).sum() > 2
+    assert not bounded.guaranteed.any()
+    code = {one.code: one for one in bounded.diagnostics}["bounds"]
+    assert code.data["points"] == wide.sum()
+
+
+def test_other_assumptions_lie_inside(bounded):
+    for residual in ("from_rest", -1.5, -0.4, 0.3, 0.9, 2.0):
+        other = ss.forced_response(pads(), GRID, 7, residual=residual, observe=["a.x"])
+        assert (other.amplitude("a.x") <= bounded.upper("a.x") * (1.0 + SEARCH)).all()
+        assert (other.amplitude("a.x") >= bounded.lower("a.x") * (1.0 - SEARCH)).all()
+
+
+@pytest.mark.slow
+def test_transients_from_random_starts_lie_inside():
+    """What time integration comes to has its own residual tractions, whatever they are."""
+    model, rng = pads(), np.random.default_rng(5)
+    frf = ss.forced_response(model, GRID[::3], 31, residual="bounds", observe=["a.x"])
+    outside, moved = [], []
+    for position, omega in enumerate(frf.omega):
+        for _ in range(9):
+            start = ss.State(model, rng.normal(0.0, 2e-2, 4), rng.normal(0.0, 0.3, 4))
+            run = ss.transient(
+                model, omega=omega, periods=2000, start=start, tolerance=1e-8, keep=1
+            )
+            assert run.status == "settled"
+            own = run.amplitude("a.x")
+            low, high = frf.lower("a.x")[position], frf.upper("a.x")[position]
+            outside.append(max(own / high, low / own) - 1.0)
+            moved.append(abs(own / frf.amplitude("a.x")[position] - 1.0))
+    assert max(outside) < SEARCH
+    assert max(moved) > 1e-2
+
+
+def test_cost_in_evaluations(bounded):
+    plain = ss.forced_response(pads(), GRID, 7, observe=["a.x"])
+    assert bounded.counters["evaluations"] <= 6 * plain.counters["evaluations"]
+
+
+def test_a_range():
+    frf = ss.forced_response(pads(), (10.0, 14.0), 3, residual="bounds", observe=["a.x"])
+    assert np.isfinite(frf.lower("a.x")).all()
+    assert (frf.upper("a.x") >= frf.lower("a.x")).all()
+    assert (frf.upper("a.x") > 1.005 * frf.lower("a.x")).any()
+
+
+def test_bounds_are_saved_and_drawn(bounded, tmp_path):
+    bounded.save(tmp_path / "bounds.nc")
+    loaded = ss.load(tmp_path / "bounds.nc")
+    np.testing.assert_array_equal(loaded.lower("a.x"), bounded.lower("a.x"))
+    np.testing.assert_array_equal(loaded.upper("a.x"), bounded.upper("a.x"))
+    np.testing.assert_array_equal(loaded.unique, bounded.unique)
+    assert loaded.settings.bounds
+    ax = loaded.plot("a.x")
+    assert "all residual tractions" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_plain_curves_have_none():
+    frf = ss.forced_response(pads(), GRID[:2], 3)
+    assert set(frf.unique) == {"not asked"}
+    with pytest.raises(ss.ModelError, match=r"^residual: its bounds were not computed; give resid"):
+        frf.lower("a.x")
+    with pytest.raises(ss.ModelError, match=r"^residual: unknown choice 'bounds'"):
+        ss.damper_curve(pads(), friction=[0.3], dof="a.x", residual="bounds")
+
+
+def test_a_contact_in_space():
+    """Two tangential directions: sliders move in a plane."""
+    structure = ss.Structure(
+        np.diag([1.0, 1.0, 1.0, 1.3, 1.3, 1.3]),
+        np.diag([300.0, 340.0, 320.0, 280.0, 360.0, 330.0]) + 40.0 * np.ones((6, 6)),
+        0.3 * np.eye(6),
+        [f"{body}.{axis}" for body in "ab" for axis in "xyz"],
+    )
+    contacts = [
+        ss.Coulomb(
+            [f"{body}.{axis}" for axis in "xyz"],
+            normal=[0.3, 0.1, np.sqrt(0.9)],
+            friction=0.5,
+            tangential_stiffness=150.0,
+            normal_stiffness=250.0,
+            preload=preload,
+        )
+        for body, preload in (("a", 1.5), ("b", 3.0))
+    ]
+    forces = [ss.Force("a.x", 1.2), ss.Force("a.y", 0.8, phase=1.0), ss.Force("b.y", 0.5)]
+    space = ss.Model(structure, contacts, forces)
+    grid = np.array([15.0, 17.0, 19.0])
+    frf = ss.forced_response(space, grid, 3, residual="bounds", observe=["a.x"])
+    assert (frf.upper("a.x") >= frf.amplitude("a.x")).all()
+    for residual in (-0.8, 0.5):
+        other = ss.forced_response(space, grid, 3, residual=residual, observe=["a.x"])
+        assert (other.amplitude("a.x") <= frf.upper("a.x") * (1.0 + 1e-4)).all()
+        assert (other.amplitude("a.x") >= frf.lower("a.x") * (1.0 - 1e-4)).all()
+
+
+def test_peaks_between_bounds(bounded):
+    least, highest = bounded.peak_bounds("a.x")
+    assert least.amplitude <= bounded.peak("a.x").amplitude * (1.0 + 1e-12)
+    assert bounded.peak("a.x").amplitude <= highest.amplitude * (1.0 + 1e-12)
+    unique = ss.forced_response(snecma_beam(force=20.0), (180.0, 260.0), 5, residual="bounds")
+    least, highest = unique.peak_bounds("tip")
+    assert highest.amplitude - least.amplitude < 1e-9 * highest.amplitude
+    assert highest == unique.peak("tip")
+
+
+def test_a_study_file():
+    study = Study.parse(
+        """
+        [structure]
+        mass = [[1.0, 0.0], [0.0, 1.2]]
+        damping = [[0.2, 0.0], [0.0, 0.3]]
+        stiffness = [[260.0, -60.0], [-60.0, 310.0]]
+        dofs = ["x", "z"]
+        [[contact]]
+        law = "coulomb"
+        dofs = ["x", "z"]
+        normal = [0, 1]
+        friction = 0.5
+        tangential_stiffness = "150 N/m"
+        normal_stiffness = "250 N/m"
+        preload = "2 N"
+        [[force]]
+        dof = "x"
+        amplitude = "3 N"
+        [analysis]
+        omega = ["11 rad/s", "12 rad/s"]
+        harmonics = 3
+        residual = "bounds"
+        observe = ["x"]
+        """
+    )
+    (found,) = study.run()
+    assert found.bounded
+    assert found.settings.bounds
+    assert found.settings.residual == "centred"
