@@ -53,7 +53,7 @@ pub use settings::{
 };
 pub use single_harmonic::single_harmonic;
 pub use solution::{CurveEnd, Point, PointStatus, Solution};
-pub(crate) use statics::with_history;
+pub(crate) use statics::{slip_load, with_history, Level, Loading};
 pub use statics::{static_response, AtRest, RestStatus};
 pub use sweep::sweep;
 pub(crate) use sweep::{check_bracket, check_frequency, over_frequencies};

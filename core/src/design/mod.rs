@@ -8,12 +8,18 @@ mod global_peak;
 mod interpolant;
 mod member;
 mod mistuned;
+mod mode_branch;
+mod mode_condensed;
 mod mode_equations;
+mod mode_feed;
+mod mode_harmonics;
 mod mode_point;
 mod mode_start;
+mod mode_tangent;
 mod nonlinear_mode;
 mod optimum;
 mod patterns;
+mod quasi_static;
 mod samples;
 mod search;
 
@@ -21,6 +27,8 @@ pub use curve::{peak_curve, Curve, Peak, Target};
 pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
 pub use mistuned::TunedDisk;
 pub use mode_point::{Interaction, ModePoint};
-pub use nonlinear_mode::{nonlinear_mode, Amplitudes, ModeEnd, ModeSettings, NonlinearMode};
+pub use nonlinear_mode::{
+    nonlinear_mode, Amplitudes, ModeEnd, ModeMethod, ModeSettings, NonlinearMode,
+};
 pub use optimum::{optimum, Optimum};
 pub use patterns::{study, Pattern};
