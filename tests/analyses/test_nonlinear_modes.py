@@ -412,7 +412,7 @@ def test_true_maxima_are_beside_quadrature_where_damping_is_strong():
         amplitudes = 3.0 * slip / stiffness * np.array([1.0, 2.0])
         keys = {"amplitude": amplitudes, "tolerance": 1e-5}
         mode = ss.nonlinear_modes(model, method="phase-resonance", **keys)
-        omega, height = mode.direct_peaks("x")
+        _, height = mode.direct_peaks("x")
         quadrature = mode.displacement_amplitude("x")
         assert (height > quadrature * (1.0 - 1e-5)).all()
         beside = height / quadrature - 1.0
@@ -425,8 +425,8 @@ def test_true_maxima_are_beside_quadrature_where_damping_is_strong():
 def test_methods_say_what_they_do_not_take():
     with pytest.raises(ss.ModelError, match="give forces of harmonic 1"):
         ss.nonlinear_modes(chain(), amplitude=[1e-3], method="phase-resonance")
+    force = ss.Force("x", 1.0, harmonic=3)
     with pytest.raises(ss.ModelError, match="give forces of harmonic 1"):
-        force = ss.Force("x", 1.0, harmonic=3)
         ss.nonlinear_modes(chain(force), amplitude=[1e-3], method="phase-resonance")
     with pytest.raises(ss.ModelError, match="method"):
         ss.nonlinear_modes(chain(), amplitude=[1e-3], method="static")

@@ -27,7 +27,6 @@ from stickslip.results.synthesis import SynthesizedResponse, force_vector, synth
 from stickslip.settings.modes import ModeSettings
 from stickslip.settings.ranges import numbers, positive
 
-
 _BANDWIDTHS = 4.0
 """Damping ratios on either side of phase resonance among which the maximum is looked for, ..."""
 _LEAST_WIDTH = 0.01
