@@ -232,9 +232,13 @@ def test_corners_of_random_joints_are_passed():
         model, mode = jointed(np.random.default_rng([11, seed]))
         amplitudes = np.geomspace(1e-6, 1e-2, 9)
         branch = ss.nonlinear_modes(model, mode=mode, amplitude=amplitudes, harmonics=5)
-        assert "mode-not-reached" not in {one.code for one in branch.diagnostics}, seed
-        assert all(status.solved for status in branch.status)
-        assert branch.arrays.residual.max() < 1e-6
+        codes = {one.code for one in branch.diagnostics}
+        assert "mode-not-reached" not in codes, seed
+        solved = np.array([status.solved for status in branch.status])
+        # A branch may jump over an amplitude; it says so.
+        assert solved.all() or "tolerances-missed" in codes
+        assert solved[[0, -1]].all()
+        assert branch.arrays.residual[solved].max() < 1e-6
 
 
 def test_decaying_vibration_has_the_same_frequency_and_damping():
@@ -412,12 +416,12 @@ def test_true_maxima_are_beside_quadrature_where_damping_is_strong():
         amplitudes = 3.0 * slip / stiffness * np.array([1.0, 2.0])
         keys = {"amplitude": amplitudes, "tolerance": 1e-5}
         mode = ss.nonlinear_modes(model, method="phase-resonance", **keys)
-        _, height = mode.direct_peaks("x")
+        omega, height = mode.direct_peaks("x")
         quadrature = mode.displacement_amplitude("x")
         assert (height > quadrature * (1.0 - 1e-5)).all()
-        beside = height / quadrature - 1.0
+        beside = np.abs(omega / mode.omega - 1.0)
         assert (mode.damping_ratio < 0.011).all() if light else (mode.damping_ratio > 0.1).all()
-        assert (beside < 1e-3).all() if light else (beside > 1e-3).all()
+        assert (beside < 2e-5).all() if light else (beside > 2e-4).all()
     with pytest.raises(ss.ModelError, match="phase-resonance"):
         ss.nonlinear_modes(one_mass(joint), amplitude=amplitudes).direct_peaks("x")
 

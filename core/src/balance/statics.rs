@@ -63,7 +63,7 @@ pub struct AtRest {
 #[derive(Clone)]
 pub(crate) struct Level {
     /// Share of the load.
-    pub(crate) share: f64,
+    share: f64,
     /// Relative displacements at the contacts \[m\].
     pub(crate) u: Vec<f64>,
     /// What each law remembers.
@@ -140,8 +140,6 @@ pub(crate) struct Loading<'a> {
     /// … and their change by the whole load.
     stuck: Vec<f64>,
     pub(crate) level: Level,
-    /// Levels of the last loading, each with the one in the middle of the way to it.
-    pub(crate) path: Vec<[Level; 2]>,
     /// Displacements that count beside those of a level that passes zero.
     least: f64,
     steps: usize,
@@ -159,7 +157,6 @@ impl<'a> Loading<'a> {
             base: vec![0.0; size],
             stuck: receptance.stuck.iter().map(|u| u.re).collect(),
             level: Level { share: 0.0, u: vec![0.0; size], states, force: vec![0.0; size] },
-            path: Vec::new(),
             least: 0.0,
             steps: 0,
         })
@@ -170,7 +167,6 @@ impl<'a> Loading<'a> {
         self.level = Level { share: 0.0, ..level.clone() };
         (self.base, self.stuck, self.steps) = (base, stuck, 0);
         self.least = norm(&self.base) + norm(&self.stuck);
-        self.path.clear();
     }
 
     /// Displacements of the stuck contacts under all that has been loaded.
@@ -194,9 +190,8 @@ impl<'a> Loading<'a> {
             step = step.min(1.0 - self.level.share);
             let to = if step >= 1.0 - self.level.share { 1.0 } else { self.level.share + step };
             match self.halves(to) {
-                Some(([middle, level], error)) if error <= ACCURACY || step <= SHORTEST => {
-                    self.level = level.clone();
-                    self.path.push([middle, level]);
+                Some((level, error)) if error <= ACCURACY || step <= SHORTEST => {
+                    self.level = level;
                     self.steps += 1;
                     step *= if error <= 0.1 * ACCURACY { 4.0 } else { 1.2 };
                 }
@@ -211,9 +206,8 @@ impl<'a> Loading<'a> {
         norm(u).max(self.least)
     }
 
-    /// The level at a share of the load by two steps, after that in the middle, and how far it is from
-    /// that by one.
-    fn halves(&self, to: f64) -> Option<([Level; 2], f64)> {
+    /// The level at a share of the load by two steps, and how far it is from that by one.
+    fn halves(&self, to: f64) -> Option<(Level, f64)> {
         let whole = self.solve(&self.level, to)?;
         let middle = self.solve(&self.level, 0.5 * (self.level.share + to))?;
         let level = self.solve(&middle, to)?;
@@ -225,7 +219,7 @@ impl<'a> Loading<'a> {
             two.iter().zip(&level.force).map(|(q, f)| q.abs() + f.abs()).collect();
         let least = self.least * self.model.contact_stiffness().norm_max();
         let of_forces = norm(&apart) / norm(&elastic).max(least).max(f64::MIN_POSITIVE);
-        Some(([middle, level], error.max(of_forces)))
+        Some((level, error.max(of_forces)))
     }
 
     /// The equilibrium at a share of the load, by one step from another: Newton's method from where

@@ -18,8 +18,8 @@ use std::time::Instant;
 
 /// Amplitudes per decade of a range.
 const PER_DECADE: f64 = 20.0;
-/// Parts of the way from one end of a loop to the other.
-const PARTS: usize = 16;
+/// Times that the way from one end of a loop to the other is halved at most.
+const DEEPEST: usize = 30;
 /// Accuracy of the amplitude, and of a loop that closes.
 const ACCURACY: f64 = 1e-10;
 /// Loadings until the amplitude is met.
@@ -210,13 +210,12 @@ impl<'a> ModalLoading<'a> {
             let mut level = from.clone();
             let ends = [load, -load, load];
             for pair in ends.windows(2) {
-                for part in 0..PARTS {
-                    let at =
-                        |part: usize| pair[0] + (pair[1] - pair[0]) * part as f64 / PARTS as f64;
-                    let next = self.go((at(part), &level), at(part + 1))?;
-                    loop_.add(self, (at(part), &level), at(part + 1));
-                    level = next;
-                }
+                let middle = 0.5 * (pair[0] + pair[1]);
+                let half = self.go((pair[0], &level), middle)?;
+                let end = self.go((middle, &half), pair[1])?;
+                let levels = [(pair[0], &level), (middle, &half), (pair[1], &end)];
+                self.way(levels, ACCURACY * load * amplitude, DEEPEST, &mut loop_)?;
+                level = end;
             }
             let (before, after) = (self.along(load, &from), self.along(load, &level));
             from = level;
@@ -235,6 +234,31 @@ impl<'a> ModalLoading<'a> {
             viscous,
             ..ModePoint::missing(0, 0, amplitude)
         })
+    }
+
+    /// Adds the work on a way to a loop, by Simpson's rule in halves until they agree with the whole.
+    fn way(
+        &mut self,
+        [from, middle, to]: [(f64, &Level); 3],
+        least: f64,
+        deepest: usize,
+        loop_: &mut Loop,
+    ) -> Option<()> {
+        let between = |a: f64, b: f64| 0.5 * (a + b);
+        let (first, second) = (between(from.0, middle.0), between(middle.0, to.0));
+        let left = self.go(from, first)?;
+        let right = self.go(middle, second)?;
+        let halves = [[from, (first, &left), middle], [middle, (second, &right), to]];
+        let whole = Loop::of(self, [from, middle, to]);
+        let both = halves.map(|half| Loop::of(self, half));
+        if deepest == 0 || whole.apart(&both) <= least {
+            both.iter().for_each(|part| loop_.add(part));
+            return Some(());
+        }
+        for half in halves {
+            self.way(half, least, deepest - 1, loop_)?;
+        }
+        Some(())
     }
 
     /// The state at rest as mean, and the first loading as fundamental.
@@ -277,22 +301,27 @@ impl Loop {
         Self { lost: 0.0, work: vec![0.0; contacts] }
     }
 
-    /// Adds the work on the way of the last loading, by Simpson's rule from level to level.
-    fn add(&mut self, mode: &ModalLoading<'_>, (load, from): (f64, &Level), to: f64) {
-        let mut before = (load, from);
-        for [middle, after] in &mode.loading.path {
-            let at = |level: &Level| load + (to - load) * level.share;
-            let levels = [before, (at(middle), middle), (at(after), after)];
-            let q = levels.map(|(load, level)| mode.along(load, level));
-            self.lost += simpson(levels.map(|(load, _)| load), q);
-            for (i, work) in self.work.iter_mut().enumerate() {
-                *work += simpson(
-                    levels.map(|(_, level)| level.force[i]),
-                    levels.map(|(_, level)| level.u[i]),
-                );
-            }
-            before = levels[2];
-        }
+    /// The work on the way through three levels.
+    fn of(mode: &ModalLoading<'_>, levels: [(f64, &Level); 3]) -> Self {
+        let q = levels.map(|(load, level)| mode.along(load, level));
+        let lost = simpson(levels.map(|(load, _)| load), q);
+        let at = |i: usize| {
+            simpson(levels.map(|(_, level)| level.force[i]), levels.map(|(_, level)| level.u[i]))
+        };
+        Self { lost, work: (0..levels[0].1.u.len()).map(at).collect() }
+    }
+
+    fn add(&mut self, part: &Self) {
+        self.lost += part.lost;
+        self.work.iter_mut().zip(&part.work).for_each(|(work, part)| *work += part);
+    }
+
+    /// Largest difference from the sum of two parts.
+    fn apart(&self, parts: &[Self; 2]) -> f64 {
+        let works =
+            (0..self.work.len()).map(|i| self.work[i] - parts[0].work[i] - parts[1].work[i]);
+        let all = std::iter::once(self.lost - parts[0].lost - parts[1].lost).chain(works);
+        all.fold(0.0, |most, by| most.max(by.abs()))
     }
 }
 
