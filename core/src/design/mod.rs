@@ -14,6 +14,8 @@ mod mode_equations;
 mod mode_feed;
 mod mode_harmonics;
 mod mode_point;
+mod mode_preconditioner;
+mod mode_settings;
 mod mode_start;
 mod mode_tangent;
 mod nonlinear_mode;
@@ -27,8 +29,7 @@ pub use curve::{peak_curve, Curve, Peak, Target};
 pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
 pub use mistuned::TunedDisk;
 pub use mode_point::{Interaction, ModePoint};
-pub use nonlinear_mode::{
-    nonlinear_mode, Amplitudes, ModeEnd, ModeMethod, ModeSettings, NonlinearMode,
-};
+pub use mode_settings::{Amplitudes, ModeEnd, ModeMethod, ModeSettings, NonlinearMode};
+pub use nonlinear_mode::nonlinear_mode;
 pub use optimum::{optimum, Optimum};
 pub use patterns::{study, Pattern};

@@ -10,6 +10,7 @@
 //! solved for by GMRES, with the solution of each harmonic by itself as preconditioner.
 
 use super::mode_equations::{ModeEquations, FLOOR};
+use super::mode_preconditioner::Preconditioner;
 use crate::solve::{factorised, gmres, KrylovSettings};
 use faer::linalg::solvers::{PartialPivLu, Solve as _};
 use faer::{c64, Mat};
@@ -212,7 +213,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
     ) -> Option<(Vec<f64>, usize)> {
         let known = preconditioner.take().filter(|own| own.active == self.active);
         let fresh = known.is_none();
-        let blocks = known.unwrap_or_else(|| Preconditioner::new(self));
+        let blocks = known.unwrap_or_else(|| self.preconditioner());
         let (unknowns, residual, mut products) = self.preconditioned(rhs, &blocks)?;
         if products < STALE {
             *preconditioner = Some(blocks);
@@ -223,7 +224,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
         if fresh {
             return None;
         }
-        let blocks = Preconditioner::new(self);
+        let blocks = self.preconditioner();
         let (unknowns, residual, more) = self.preconditioned(rhs, &blocks)?;
         products += more;
         *preconditioner = Some(blocks);
@@ -279,26 +280,17 @@ impl<'e, 'a> Condensed<'e, 'a> {
         );
         report.residual.is_finite().then(|| (apply(&x), report.residual, report.products))
     }
-}
 
-/// The tangents of slip loads within each harmonic, `I − T_kk G_k`, factorised.
-pub(super) struct Preconditioner {
-    /// Slip loads that it is of.
-    active: Vec<usize>,
-    /// Where the slip loads of an order stand among the active ones, and the factors.
-    blocks: Vec<(Vec<usize>, PartialPivLu<f64>)>,
-}
-
-impl Preconditioner {
-    fn new(condensed: &Condensed<'_, '_>) -> Self {
-        let equations = condensed.equations;
+    /// The tangents within each harmonic, factorised.
+    fn preconditioner(&self) -> Preconditioner {
+        let equations = self.equations;
         let slots = equations.harmonics().slots();
         let laws = || equations.loads.iter().zip(equations.model.points());
         let points: Vec<usize> =
             laws().filter(|(load, _)| load.active).flat_map(|(_, p)| p.clone()).collect();
         let count = points.len();
         let mut blocks = Vec::new();
-        for (order, inverse) in &condensed.inverses {
+        for (order, inverse) in &self.inverses {
             let Some(slot) = equations.harmonics().slot(*order) else { continue };
             let shapes = equations.basis(*order).contacts.matrix();
             let own = Mat::from_fn(count, shapes.ncols(), |i, j| shapes[(points[i], j)]);
@@ -336,14 +328,6 @@ impl Preconditioner {
             let places = (0..width).flat_map(|a| (0..count).map(move |i| i * slots + slot + a));
             blocks.push((places.collect(), matrix.partial_piv_lu()));
         }
-        Self { active: condensed.active.clone(), blocks }
-    }
-
-    fn apply(&self, loads: &mut [f64]) {
-        for (places, factors) in &self.blocks {
-            let mut own = Mat::from_fn(places.len(), 1, |i, _| loads[places[i]]);
-            factors.solve_in_place(&mut own);
-            places.iter().enumerate().for_each(|(i, at)| loads[*at] = own[(i, 0)]);
-        }
+        Preconditioner { active: self.active.clone(), blocks }
     }
 }

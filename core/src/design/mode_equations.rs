@@ -7,8 +7,8 @@
 //! itself, as the receptance is. Unknowns are the amplitudes over a, `Y = Φ⁻¹(X − X_rest)/a`, so that one
 //! decade of amplitudes is like the next; and ω, ξ and ln a.
 
-use super::mode_condensed::Preconditioner;
 use super::mode_feed::Feed;
+use super::mode_preconditioner::Preconditioner;
 use crate::balance::Progress;
 use crate::contact::{Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};

@@ -2,7 +2,7 @@
 
 use super::mode_equations::ModeEquations;
 use super::mode_point::ModePoint;
-use super::nonlinear_mode::ModeSettings;
+use super::mode_settings::ModeSettings;
 use crate::balance::HarmonicChoice;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::solve::{at_parameter, norm, Curve as _};

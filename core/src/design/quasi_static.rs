@@ -7,7 +7,7 @@
 
 use super::mode_branch::Walk;
 use super::mode_point::ModePoint;
-use super::nonlinear_mode::{Amplitudes, ModeEnd, ModeSettings, NonlinearMode};
+use super::mode_settings::{Amplitudes, ModeEnd, ModeSettings, NonlinearMode};
 use crate::balance::{slip_load, Level, Loading, Point, PointStatus, Progress, RestStatus};
 use crate::contact::PointSummary;
 use crate::model::{ModalBasis, Model};
@@ -22,6 +22,8 @@ const PER_DECADE: f64 = 20.0;
 const DEEPEST: usize = 30;
 /// Accuracy of the amplitude, and of a loop that closes.
 const ACCURACY: f64 = 1e-10;
+/// Accuracy of the work on a part of a loop, relative to load times displacement.
+const WORK: f64 = 1e-12;
 /// Loadings until the amplitude is met.
 const TRIALS: usize = 60;
 /// Laps until the loop closes.
@@ -214,7 +216,7 @@ impl<'a> ModalLoading<'a> {
                 let half = self.go((pair[0], &level), middle)?;
                 let end = self.go((middle, &half), pair[1])?;
                 let levels = [(pair[0], &level), (middle, &half), (pair[1], &end)];
-                self.way(levels, ACCURACY * load * amplitude, DEEPEST, &mut loop_)?;
+                self.way(levels, WORK * load * amplitude, DEEPEST, &mut loop_)?;
                 level = end;
             }
             let (before, after) = (self.along(load, &from), self.along(load, &level));
