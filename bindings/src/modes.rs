@@ -6,7 +6,7 @@ use crate::settings::{self, get, harmonics};
 use crate::watch::computed;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::design::{self, Amplitudes, ModeEnd, ModeSettings, NonlinearMode};
+use stickslip_core::design::{self, Amplitudes, ModeEnd, ModeMethod, ModeSettings, NonlinearMode};
 use stickslip_core::Model;
 
 /// A nonlinear mode as columns.
@@ -22,6 +22,7 @@ fn branch<'py>(
     columns.one("amplitude", points().map(|p| p.amplitude))?;
     columns.one("damping_ratio", points().map(|p| p.damping_ratio))?;
     columns.one("viscous_ratio", points().map(|p| p.viscous))?;
+    columns.one("force_level", points().map(|p| p.force_level))?;
     columns.rows("relative_error", 2, f64::NAN, points().map(|p| p.errors))?;
     let met = |of: fn(&design::Interaction) -> f64| {
         points().map(move |p| p.interaction.as_ref().map_or(f64::NAN, of)).collect::<Vec<_>>()
@@ -60,6 +61,11 @@ pub fn nonlinear_mode<'py>(
         _ => Amplitudes::List(amplitudes),
     };
     let settings = ModeSettings {
+        method: match get::<String>(settings, "method")?.as_str() {
+            "phase-resonance" => ModeMethod::PhaseResonance,
+            "quasi-static" => ModeMethod::QuasiStatic,
+            _ => ModeMethod::Periodic,
+        },
         mode: get(settings, "mode")?,
         amplitudes,
         harmonics: harmonics(get(settings, "fixed_harmonics")?),

@@ -262,6 +262,7 @@ def nonlinear_modes(
     tolerance: float = 0.001,
     max_harmonics: int = 63,
     mode: int = 0,
+    method: Literal["periodic", "phase-resonance", "quasi-static"] = "periodic",
     max_points: int = 2000,
     nodal_diameter: int | None = None,
     progress: Progress = None,

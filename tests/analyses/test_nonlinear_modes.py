@@ -188,6 +188,59 @@ def test_random_joints_are_solved_or_say_why_not():
         assert (mode.arrays.residual[solved] < 1e-6).all()
 
 
+def jointed(rng):
+    """Return a random chain with contacts of all kinds, and a mode of it."""
+    size = int(rng.integers(2, 7))
+    springs = 10.0 ** rng.uniform(3.5, 4.5, size + 1)
+    stiffness = np.diag(springs[:-1] + springs[1:])
+    stiffness -= np.diag(springs[1:-1], 1) + np.diag(springs[1:-1], -1)
+    dofs = [f"d{i}" for i in range(size)]
+    structure = ss.Structure(
+        mass=np.diag(rng.uniform(0.2, 2.0, size)),
+        stiffness=stiffness,
+        damping=ss.ModalDamping(rng.choice([0.0005, 0.003, 0.01])),
+        dofs=dofs,
+    )
+    contacts = []
+    for place in range(int(rng.integers(1, 5))):
+        first = int(rng.integers(size))
+        ends = [dofs[first], dofs[(first + 1 + int(rng.integers(size - 1))) % size]]
+        spring, force = 10.0 ** rng.uniform(3.0, 4.5), 10.0 ** rng.uniform(-1.0, 1.0)
+        at = ends[: int(rng.integers(1, 3))]
+        angle = rng.uniform(0.0, np.pi)
+        pad = {
+            "normal": [-np.sin(angle), np.cos(angle)],
+            "friction": rng.uniform(0.1, 0.8),
+            "tangential_stiffness": spring,
+            "normal_stiffness": 10.0 ** rng.uniform(3.0, 4.5),
+            "name": f"c{place}",
+        }
+        kinds = [
+            ss.Jenkins(*at, stiffness=spring, slip_force=force, name=f"c{place}"),
+            ss.Stop(*at, stiffness=spring, gap=force / spring, name=f"c{place}"),
+            ss.Coulomb(ends, preload=force, **pad),
+            ss.Coulomb(ends, gap=force / spring * rng.uniform(-1.0, 1.0), **pad),
+        ]
+        contacts.append(kinds[rng.integers(4)])
+    loaded = [ss.Force(dofs[0], float(10.0 ** rng.uniform(-1.0, 1.0)), harmonic=0)]
+    model = ss.Model(structure, contacts=contacts, forces=loaded if rng.random() < 0.4 else [])
+    return model, int(rng.integers(size))
+
+
+def test_corners_of_random_joints_are_passed():
+    for seed in range(20):
+        model, mode = jointed(np.random.default_rng([11, seed]))
+        amplitudes = np.geomspace(1e-6, 1e-2, 9)
+        branch = ss.nonlinear_modes(model, mode=mode, amplitude=amplitudes, harmonics=5)
+        codes = {one.code for one in branch.diagnostics}
+        assert "mode-not-reached" not in codes, seed
+        solved = np.array([status.solved for status in branch.status])
+        # A branch may jump over an amplitude; it says so.
+        assert solved.all() or "tolerances-missed" in codes
+        assert solved[[0, -1]].all()
+        assert branch.arrays.residual[solved].max() < 1e-6
+
+
 def test_decaying_vibration_has_the_same_frequency_and_damping():
     model = one_mass(ss.Jenkins("x", stiffness=300.0, slip_force=0.1), damping=0.2)
     free = ss.transient(model, omega=100.0, periods=60, scheme="exact", start={"x": 3e-3})
@@ -288,3 +341,96 @@ def test_what_does_not_exist_is_refused():
     mode = ss.nonlinear_modes(chain(), mode=0, amplitude=[1e-3, 1e-2])
     with pytest.raises(ss.ModelError, match="forces"):
         mode.forced_response([ss.Force("x", 1.0, harmonic=3)], [100.0])
+
+
+def test_the_quasi_static_mode_of_one_jenkins_element_has_its_closed_form():
+    amplitudes = np.array([1e-5, 2.6e-4, 1e-3, 1e-2])
+    mode = ss.nonlinear_modes(one_mass(JENKINS), amplitude=amplitudes, method="quasi-static")
+    squared = 1e4 + np.minimum(4e3, 1.0 / amplitudes)
+    lost = 4.0 * np.maximum(amplitudes - 2.5e-4, 0.0)
+    assert mode.omega == pytest.approx(np.sqrt(squared), rel=1e-9)
+    assert mode.dissipation((0, 0)) == pytest.approx(lost, rel=1e-9, abs=1e-15)
+    friction = lost / (2.0 * np.pi * squared * amplitudes**2)
+    assert mode.friction_ratio == pytest.approx(friction, rel=1e-8, abs=1e-12)
+    assert mode.viscous_ratio == pytest.approx(1.0 / mode.omega, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        ss.Jenkins("x", stiffness=100.0, slip_force=0.1),
+        ss.Iwan("x", stiffness=100.0, slip_force=0.1, chi=-0.5),
+    ],
+)
+def test_a_quasi_static_mode_with_light_friction_is_the_periodic_one(law):
+    # Frequencies of a secant and of a fundamental differ by less than the whole softening.
+    amplitudes = np.geomspace(2e-4, 2e-2, 7)
+    static, periodic = (
+        ss.nonlinear_modes(one_mass(law), amplitude=amplitudes, method=method)
+        for method in ("quasi-static", "periodic")
+    )
+    assert static.omega == pytest.approx(periodic.omega, rel=1e-3)
+    assert static.damping_ratio == pytest.approx(periodic.damping_ratio, rel=5e-3)
+
+
+def test_a_quasi_static_mode_of_several_contacts_loses_what_they_do():
+    mode = ss.nonlinear_modes(chain(), amplitude=(1e-5, 1e-2), method="quasi-static")
+    work = mode.dissipation((0, 0)) + mode.dissipation((1, 0))
+    friction = work / (2.0 * np.pi * mode.omega**2 * mode.amplitude**2)
+    # Springs give back what the load has put into them.
+    assert friction == pytest.approx(mode.friction_ratio, rel=1e-7, abs=1e-12)
+    stuck = ss.natural_frequencies(mode.model)[0]
+    assert mode.omega[0] == pytest.approx(stuck, rel=1e-9)
+
+
+def test_phase_resonance_is_at_quadrature_of_the_direct_response():
+    model = chain(ss.Force("x", 0.3))
+    amplitudes = np.geomspace(1e-4, 1e-2, 5)
+    mode = ss.nonlinear_modes(model, amplitude=amplitudes, harmonics=9, method="phase-resonance")
+    for index, level in enumerate(mode.force_level):
+        force = ss.Force("x", 0.3 * float(level))
+        direct = ss.forced_response(chain(force), [mode.omega[index]], harmonics=9)
+        series = direct.coefficients("x")[0]
+        assert np.angle(series[1]) == pytest.approx(-0.5 * np.pi, abs=1e-5)
+        assert np.abs(series) == pytest.approx(np.abs(mode.coefficients("x")[index]), rel=1e-5)
+
+
+def test_phase_resonance_of_one_mass_is_its_mode():
+    # Its shape cannot change, and no harmonic tells force and damping apart.
+    amplitudes = np.geomspace(1e-4, 1e-2, 5)
+    keys = {"amplitude": amplitudes, "harmonics": 1}
+    mode = ss.nonlinear_modes(one_mass(JENKINS), **keys)
+    model = one_mass(JENKINS, force=ss.Force("x", 2.0))
+    driven = ss.nonlinear_modes(model, method="phase-resonance", **keys)
+    assert driven.omega == pytest.approx(mode.omega, rel=1e-9)
+    assert driven.damping_ratio == pytest.approx(mode.damping_ratio, rel=1e-8)
+    force = 2.0 * mode.damping_ratio * mode.omega**2 * amplitudes
+    assert 2.0 * driven.force_level == pytest.approx(force, rel=1e-8)
+    assert np.isnan(mode.force_level).all()
+
+
+def test_true_maxima_are_beside_quadrature_where_damping_is_strong():
+    for stiffness, slip, light in ((300.0, 0.1, True), (2e4, 5.0, False)):
+        joint = ss.Jenkins("x", stiffness=stiffness, slip_force=slip)
+        model = one_mass(joint, force=ss.Force("x", 1.0), damping=0.2)
+        amplitudes = 3.0 * slip / stiffness * np.array([1.0, 2.0])
+        keys = {"amplitude": amplitudes, "tolerance": 1e-5}
+        mode = ss.nonlinear_modes(model, method="phase-resonance", **keys)
+        omega, height = mode.direct_peaks("x")
+        quadrature = mode.displacement_amplitude("x")
+        assert (height > quadrature * (1.0 - 1e-5)).all()
+        beside = np.abs(omega / mode.omega - 1.0)
+        assert (mode.damping_ratio < 0.011).all() if light else (mode.damping_ratio > 0.1).all()
+        assert (beside < 2e-5).all() if light else (beside > 2e-4).all()
+    with pytest.raises(ss.ModelError, match="phase-resonance"):
+        ss.nonlinear_modes(one_mass(joint), amplitude=amplitudes).direct_peaks("x")
+
+
+def test_methods_say_what_they_do_not_take():
+    with pytest.raises(ss.ModelError, match="give forces of harmonic 1"):
+        ss.nonlinear_modes(chain(), amplitude=[1e-3], method="phase-resonance")
+    force = ss.Force("x", 1.0, harmonic=3)
+    with pytest.raises(ss.ModelError, match="give forces of harmonic 1"):
+        ss.nonlinear_modes(chain(force), amplitude=[1e-3], method="phase-resonance")
+    with pytest.raises(ss.ModelError, match="method"):
+        ss.nonlinear_modes(chain(), amplitude=[1e-3], method="static")

@@ -61,11 +61,15 @@ pub struct AtRest {
 
 /// A state on the loading path.
 #[derive(Clone)]
-struct Level {
+pub(crate) struct Level {
+    /// Share of the load.
     share: f64,
-    u: Vec<f64>,
+    /// Relative displacements at the contacts \[m\].
+    pub(crate) u: Vec<f64>,
+    /// What each law remembers.
     states: Vec<Vec<f64>>,
-    force: Vec<f64>,
+    /// Contact forces \[N\].
+    pub(crate) force: Vec<f64>,
 }
 
 /// Raises the static loads of a model; displacements are recovered at the DOFs `observe`.
@@ -127,17 +131,22 @@ pub(crate) fn with_history(model: &Model) -> Result<Option<Model>, Error> {
     model.with_laws(laws.collect()).map(Some)
 }
 
-/// The loading of a model from rest.
-struct Loading<'a> {
+/// The loading of a model, from rest or from where another one has ended.
+pub(crate) struct Loading<'a> {
     model: &'a Model,
     receptance: Mat<f64>,
+    /// Displacements of the stuck contacts at the beginning, …
+    base: Vec<f64>,
+    /// … and their change by the whole load.
     stuck: Vec<f64>,
-    level: Level,
+    pub(crate) level: Level,
+    /// Displacements that count beside those of a level that passes zero.
+    least: f64,
     steps: usize,
 }
 
 impl<'a> Loading<'a> {
-    fn new(model: &'a Model) -> Result<Self, Error> {
+    pub(crate) fn new(model: &'a Model) -> Result<Self, Error> {
         let mut receptance = Receptance::default();
         model.compliance().receptance(0, 0.0, &mut receptance)?;
         let size = model.compliance().contacts();
@@ -145,14 +154,28 @@ impl<'a> Loading<'a> {
         Ok(Self {
             model,
             receptance: Mat::from_fn(size, size, |i, j| receptance.contact[j * size + i].re),
+            base: vec![0.0; size],
             stuck: receptance.stuck.iter().map(|u| u.re).collect(),
             level: Level { share: 0.0, u: vec![0.0; size], states, force: vec![0.0; size] },
+            least: 0.0,
             steps: 0,
         })
     }
 
+    /// Adds another load, given by its displacements of the stuck contacts, from a level on.
+    pub(crate) fn add(&mut self, level: &Level, base: Vec<f64>, stuck: Vec<f64>) {
+        self.level = Level { share: 0.0, ..level.clone() };
+        (self.base, self.stuck, self.steps) = (base, stuck, 0);
+        self.least = norm(&self.base) + norm(&self.stuck);
+    }
+
+    /// Displacements of the stuck contacts under all that has been loaded.
+    pub(crate) fn stuck(&self) -> Vec<f64> {
+        self.base.iter().zip(&self.stuck).map(|(base, by)| base + by).collect()
+    }
+
     /// Goes from no load to the whole one.
-    fn raise(&mut self, go_on: &dyn Fn(f64) -> bool) -> RestStatus {
+    pub(crate) fn raise(&mut self, go_on: &dyn Fn(f64) -> bool) -> RestStatus {
         // What presses without load, as an interference does, comes first.
         let Some(unloaded) = self.solve(&self.level, 0.0) else { return self.failure() };
         self.level = unloaded;
@@ -179,18 +202,23 @@ impl<'a> Loading<'a> {
         RestStatus::Converged
     }
 
+    fn size(&self, u: &[f64]) -> f64 {
+        norm(u).max(self.least)
+    }
+
     /// The level at a share of the load by two steps, and how far it is from that by one.
     fn halves(&self, to: f64) -> Option<(Level, f64)> {
         let whole = self.solve(&self.level, to)?;
         let middle = self.solve(&self.level, 0.5 * (self.level.share + to))?;
         let level = self.solve(&middle, to)?;
         let apart: Vec<f64> = whole.u.iter().zip(&level.u).map(|(a, b)| a - b).collect();
-        let error = norm(&apart) / norm(&level.u).max(f64::MIN_POSITIVE);
+        let error = norm(&apart) / self.size(&level.u).max(f64::MIN_POSITIVE);
         let (one, two) = (slip_load(self.model, &whole), slip_load(self.model, &level));
         let apart: Vec<f64> = one.iter().zip(&two).map(|(a, b)| a - b).collect();
         let elastic: Vec<f64> =
             two.iter().zip(&level.force).map(|(q, f)| q.abs() + f.abs()).collect();
-        let of_forces = norm(&apart) / norm(&elastic).max(f64::MIN_POSITIVE);
+        let least = self.least * self.model.contact_stiffness().norm_max();
+        let of_forces = norm(&apart) / norm(&elastic).max(least).max(f64::MIN_POSITIVE);
         Some((level, error.max(of_forces)))
     }
 
@@ -221,18 +249,18 @@ impl<'a> Loading<'a> {
                 }
                 self.evaluate(from, &mut level, &mut residual, Some(&mut matrix));
                 let after = norm(&residual);
-                let solved = damping == 1.0 && length <= SOLVED * norm(&level.u);
+                let solved = damping == 1.0 && length <= SOLVED * self.size(&level.u);
                 if solved || size == 0 {
                     return Some(level);
                 }
-                if after < before || after <= SOLVED * norm(&level.u) || damping < 1e-3 {
+                if after < before || after <= SOLVED * self.size(&level.u) || damping < 1e-3 {
                     before = after;
                     break;
                 }
                 damping *= 0.5;
             }
         }
-        (before <= 1e3 * SOLVED * norm(&level.u)).then_some(level)
+        (before <= 1e3 * SOLVED * self.size(&level.u)).then_some(level)
     }
 
     /// `R(U) = U − s U^stuck − G Q(U)` of one step from a level, its Jacobian, and the states there.
@@ -271,7 +299,7 @@ impl<'a> Loading<'a> {
         let q = slip_load(self.model, level);
         for (i, residual) in residual.iter_mut().enumerate() {
             let response: f64 = (0..size).map(|j| self.receptance[(i, j)] * q[j]).sum();
-            *residual = level.u[i] - level.share * self.stuck[i] - response;
+            *residual = level.u[i] - self.base[i] - level.share * self.stuck[i] - response;
         }
         if let Some(matrix) = matrix {
             *matrix = Mat::<f64>::identity(size, size) - &self.receptance * slopes;
@@ -300,7 +328,7 @@ impl<'a> Loading<'a> {
 }
 
 /// `q = D u − f` at a level.
-fn slip_load(model: &Model, level: &Level) -> Vec<f64> {
+pub(crate) fn slip_load(model: &Model, level: &Level) -> Vec<f64> {
     let (stiffness, size) = (model.contact_stiffness(), level.u.len());
     let stuck = |i: usize| (0..size).map(|j| stiffness[(i, j)] * level.u[j]).sum::<f64>();
     (0..size).map(|i| stuck(i) - level.force[i]).collect()

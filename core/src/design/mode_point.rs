@@ -1,6 +1,7 @@
 //! What is read off a point of a nonlinear mode.
 
 use super::mode_equations::ModeEquations;
+use super::mode_feed::Feed;
 use super::mode_start::Linear;
 use crate::balance::{Point, PointStatus};
 use crate::contact::PointSummary;
@@ -50,8 +51,10 @@ pub struct ModePoint {
     pub response: Point,
     /// `a = (X_1ᴴ M X_1)^½` [m √kg].
     pub amplitude: f64,
-    /// `ζ = ξ/(2ω)`.
+    /// `ζ = ξ/(2ω)`; that of the work of the forces where those feed the motion.
     pub damping_ratio: f64,
+    /// Multiple of the forces of the model that feed the motion; not a number without them.
+    pub force_level: f64,
     /// Part of it that is due to viscous damping; the rest is friction.
     pub viscous: f64,
     /// What truncation could still change in frequency and damping, relative to them.
@@ -99,6 +102,18 @@ impl ModePoint {
                 }
             }
         }
+        let (damping_ratio, force_level) = match &equations.feed {
+            Feed::Damping => (0.5 * excess / omega, f64::NAN),
+            Feed::Force(shape, size) => {
+                let force = z[z.len() - 2] * equations.unit.powi(2);
+                let own = equations.part(z, 1);
+                let along: c64 = (0..own.nrows())
+                    .map(|j| shape[j].conj() * c64::new(own[(j, 0)], -own[(j, 1)]))
+                    .sum();
+                let excess = -force * along.im / (omega * kinetic);
+                (0.5 * excess / omega, force * amplitude / size)
+            }
+        };
         let slots = harmonics.slots();
         let (u, q) = (&equations.contact, equations.slip_load());
         let stiffness = model.contact_stiffness();
@@ -124,7 +139,8 @@ impl ModePoint {
         Self {
             response,
             amplitude,
-            damping_ratio: 0.5 * excess / omega,
+            damping_ratio,
+            force_level,
             viscous: 0.5 * viscous / (kinetic * omega),
             errors: [f64::NAN; 2],
             interaction: Interaction::largest(equations, z),
@@ -137,6 +153,7 @@ impl ModePoint {
             response: Point::empty(f64::NAN, PointStatus::NotComputed, dofs, contacts),
             amplitude,
             damping_ratio: f64::NAN,
+            force_level: f64::NAN,
             viscous: f64::NAN,
             errors: [f64::NAN; 2],
             interaction: None,

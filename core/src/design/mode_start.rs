@@ -21,15 +21,16 @@ pub(super) struct Linear {
 impl Linear {
     /// The unknowns of the linear motion at an amplitude.
     pub(super) fn point(&self, equations: &ModeEquations<'_>, log: f64) -> Vec<f64> {
-        let mut z = vec![0.0; equations.unknowns()];
+        let mut z = vec![0.0; equations.size()];
         let (range, modes) = (equations.range(1), self.shape.len());
+        let turn = equations.feed.turn(&self.shape);
         for (i, value) in z[range].iter_mut().enumerate() {
-            let own = self.shape[i % modes];
+            let own = turn * self.shape[i % modes];
             *value = if i < modes { own.re } else { -own.im };
         }
         let size = z.len();
         z[size - 3] = self.omega / equations.unit;
-        z[size - 2] = self.damping / equations.unit;
+        z[size - 2] = equations.feed.share(self.damping / equations.unit, &self.shape);
         z[size - 1] = log;
         z
     }
@@ -111,11 +112,11 @@ pub(super) fn linear_mode(equations: &mut ModeEquations<'_>, mode: usize) -> Res
 /// Modal stiffness that contacts lack at rest against the stuck ones; nothing if all stick.
 fn softening(equations: &mut ModeEquations<'_>) -> Option<Mat<c64>> {
     let count = equations.modes();
-    let mut z = vec![0.0; equations.unknowns()];
+    let mut z = vec![0.0; equations.size()];
     let size = z.len();
     (z[size - 3], z[size - 1]) = (1.0, f64::MIN_POSITIVE.sqrt().ln());
-    equations.accept(&z);
-    equations.evaluate(&z, true);
+    equations.hold(&z);
+    equations.evaluate(&z);
     if !equations.loads.iter().any(|load| load.active) {
         return None;
     }

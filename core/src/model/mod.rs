@@ -22,7 +22,7 @@ use crate::Error;
 use body::Body;
 use contact_assembly::ContactAssembly;
 use contact_states::{slip_kinds, States};
-use faer::Mat;
+use faer::{c64, Mat};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -259,6 +259,12 @@ impl Model {
     #[must_use]
     pub fn modal_base(&self) -> &'static str {
         self.modal_base
+    }
+
+    /// Load of the fundamental on all DOFs \[N\], if there is one.
+    pub(crate) fn fundamental_load(&self) -> Option<&[c64]> {
+        let load = self.ports.loads.iter().find(|load| load.harmonic == 1);
+        load.map(|load| load.amplitude.as_slice())
     }
 
     /// Contact stiffness D of all points [N/m].

@@ -30,6 +30,14 @@ impl Parts {
         Self { real: part(|z| z.re), imaginary: (imaginary.norm_max() > 0.0).then_some(imaginary) }
     }
 
+    /// The matrix as one.
+    pub(crate) fn matrix(&self) -> Mat<c64> {
+        let imaginary = |i, j| self.imaginary.as_ref().map_or(0.0, |part| part[(i, j)]);
+        Mat::from_fn(self.real.nrows(), self.real.ncols(), |i, j| {
+            c64::new(self.real[(i, j)], imaginary(i, j))
+        })
+    }
+
     /// The product with the amplitudes `a − i b`; a mean has no b.
     pub(crate) fn times(&self, series: MatRef<'_, f64>) -> Mat<f64> {
         let mut out = &self.real * series;

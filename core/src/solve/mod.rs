@@ -28,7 +28,7 @@ pub use homotopy::{homotopy, Parametrised};
 pub use krylov::{gmres, KrylovReport, KrylovSettings};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
 pub use qr::Qr;
-pub(crate) use scaled_lu::parity;
+pub(crate) use scaled_lu::{parity, solve as factorised};
 pub use small_dense::{Block, BlockFactors};
 
 use faer::Mat;

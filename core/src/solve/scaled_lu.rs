@@ -5,7 +5,7 @@ use faer::Mat;
 
 /// Solves with the columns scaled by the weights, and says the sign of the determinant; nothing if
 /// the matrix is singular.
-pub(super) fn solve(
+pub(crate) fn solve(
     matrix: &mut Mat<f64>,
     right: &[f64],
     weights: &[f64],

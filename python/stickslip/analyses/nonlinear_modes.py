@@ -42,8 +42,9 @@ def nonlinear_modes(
     Parameters
     ----------
     model : Model
-        Structure, contacts and static loads; other forces are left out. A tuned `BladedDisk` moves
-        in a travelling wave of one nodal diameter, with amplitudes of one sector.
+        Structure, contacts and static loads; other forces are left out but in phase resonance. A
+        tuned `BladedDisk` moves in a travelling wave of one nodal diameter, with amplitudes of one
+        sector.
 
     Returns
     -------
@@ -59,9 +60,11 @@ def nonlinear_modes(
 
     References
     ----------
-    Krack (2015), Comput. Struct. 154, 59: the extended periodic motion concept.
+    Krack (2015), Comput. Struct. 154, 59: the extended periodic motion concept. Lacayo and Allen
+    (2019), Mech. Syst. Signal Process. 118, 133: quasi-static modes.
     """
     model = _of_diameter(model, settings.nodal_diameter)
+    _check_method(model, settings.method)
     amplitude = settings.amplitude
     kept = ModeSettings.of(
         **{
@@ -97,6 +100,21 @@ def _of_diameter(model: Model, diameter: int | None) -> Model:
     return model._like(engine_order=diameter, forces=tuple(static))
 
 
+def _check_method(model: Model, method: str) -> None:
+    """Refuse what a method does not take."""
+    if method == "quasi-static" and model.travels:
+        raise ModelError(
+            'method = "quasi-static": a sector of a travelling wave has no static shape; compute '
+            'it with method = "periodic"'
+        )
+    orders = {force.harmonic for force in model.forces if force.amplitude}
+    if method == "phase-resonance" and (1 not in orders or orders - {0, 1}):
+        raise ModelError(
+            f'method = "phase-resonance": forces of harmonics {sorted(orders)}; give forces of '
+            "harmonic 1, and static loads besides, alone"
+        )
+
+
 def _assumptions(
     settings: ModeSettings, arrays: ModeArrays, solution: _core.NonlinearMode
 ) -> tuple[Diagnostic, ...]:
@@ -106,11 +124,15 @@ def _assumptions(
     met = np.flatnonzero(arrays.resonance_order > 0)
     worst = met[np.argmax(arrays.resonance_share[met])] if met.size else 0
     most = int(arrays.harmonics.max(initial=0))
+    kind = "" if settings.method == "periodic" else f"/{settings.method}"
     chosen = "" if settings.fixed_harmonics else f", chosen to {settings.tolerance:g}"
     return present(
         (
-            told("mode-at-rest", mode=settings.mode, omega=omega, ratio=ratio),
-            told("harmonics/odd" if solution.half_wave else "harmonics", most=most, _chosen=chosen),
+            told(f"mode-at-rest{kind}", mode=settings.mode, omega=omega, ratio=ratio),
+            settings.method != "quasi-static"
+            and told(
+                "harmonics/odd" if solution.half_wave else "harmonics", most=most, _chosen=chosen
+            ),
             met.size > 0
             and told(
                 "internal-resonance",

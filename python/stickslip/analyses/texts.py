@@ -8,6 +8,12 @@ TEXTS = {
     # nonlinear modes
     "mode-at-rest": "Mode {mode} has {omega:.8g} rad/s and a damping ratio of {ratio:.6g} with "
     "its contacts as they are at rest; periodic forces are left out, static loads kept.",
+    "mode-at-rest/phase-resonance": "Mode {mode} has {omega:.8g} rad/s and a damping ratio of "
+    "{ratio:.6g} with its contacts as they are at rest; the forces of harmonic 1 keep it up, in "
+    "quadrature with the displacement along them.",
+    "mode-at-rest/quasi-static": "Mode {mode} has {omega:.8g} rad/s and a damping ratio of "
+    "{ratio:.6g} with its contacts as they are at rest; a load of its shape is raised without "
+    "inertia, so that the shape keeps to it and higher harmonics are left out.",
     "internal-resonance": "At {points} of the amplitudes, from {_first:.4g} on, harmonic {order} "
     "meets the stuck natural frequency of {frequency:.6g} rad/s with {share:.0%} of the amplitude: "
     "the mode is an internal resonance there, and other branches lie close by.",

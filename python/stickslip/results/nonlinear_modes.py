@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, ClassVar, get_args
 
 import numpy as np
@@ -26,6 +27,13 @@ from stickslip.results.synthesis import SynthesizedResponse, force_vector, synth
 from stickslip.settings.modes import ModeSettings
 from stickslip.settings.ranges import numbers, positive
 
+_BANDWIDTHS = 4.0
+"""Damping ratios on either side of phase resonance among which the maximum is looked for, ..."""
+_LEAST_WIDTH = 0.01
+"""... so much more, relative to the frequency, ..."""
+_MOST_WIDTH = 0.6
+"""... and no more than this."""
+
 
 class ModeArrays(PeriodicArrays):
     """The numbers of a nonlinear mode, in the order of its branch.
@@ -46,6 +54,12 @@ class ModeArrays(PeriodicArrays):
     )
     damping_ratio: Float = column("*", "1", "modal damping ratio, viscous damping included")
     viscous_ratio: Float = column("*", "1", "part of it that is due to viscous damping")
+    force_level: Float = column(
+        "*",
+        "1",
+        "multiple of the forces of harmonic 1 that keep the motion up in quadrature",
+        absent=lambda file: np.full(file["omega"].shape, np.nan),
+    )
     relative_error: Float = column(
         "* mode_entry",
         "1",
@@ -94,6 +108,7 @@ class NonlinearModes(PeriodicMotions):
     viscous_ratio = Shown[Float]()
     harmonics = Shown[Int]()
     turns = Shown[Float]()
+    force_level = Shown[Float]()
     relative_error = Shown[Float]()
 
     plot = Drawn("backbone")
@@ -158,6 +173,51 @@ class NonlinearModes(PeriodicMotions):
         driven = force_vector(self, forces)
         given = numbers(omega, "give finite frequencies above 0 rad/s", positive)
         return synthesized(self, driven, given)
+
+    def direct_peaks(self, dof: str, measure: Measure = "half_range") -> tuple[Float, Float]:
+        """Return frequency and amplitude of the true maxima at the force levels of phase resonance.
+
+        The forces of the model, as many times as the mode says, drive responses that are computed
+        directly about every frequency of the branch. Where damping is light the maximum lies at
+        quadrature; where it is strong, beside it.
+
+        Returns
+        -------
+        omega : ndarray of float64, shape (n,)
+            Frequencies of the maxima [rad/s].
+        amplitude : ndarray of float64, shape (n,)
+            Their amplitudes [m]. Both are not-a-number where no maximum lies about the frequency.
+
+        Raises
+        ------
+        ModelError
+            If the mode was not computed by phase resonance.
+        """
+        from stickslip.analyses.forced_response import forced_response
+
+        if self.settings.method != "phase-resonance":
+            raise ModelError(
+                f"direct_peaks: the mode was computed with method = {self.settings.method!r}; "
+                'compute it with method="phase-resonance"'
+            )
+        found = np.full((2, self.omega.size), np.nan)
+        for index in np.flatnonzero(np.isfinite(self.omega)):
+            level, near = float(self.force_level[index]), float(self.omega[index])
+            scaled = [
+                replace(force, amplitude=level * force.amplitude) if force.harmonic else force
+                for force in self.model.forces
+            ]
+            width = min(_BANDWIDTHS * float(self.damping_ratio[index]) + _LEAST_WIDTH, _MOST_WIDTH)
+            response = forced_response(
+                self.model._like(forces=tuple(scaled)),
+                ((1.0 - width) * near, (1.0 + width) * near),
+                observe=[dof],
+                tolerance=self.settings.tolerance,
+            )
+            peak = response.peak(dof, measure)
+            if not peak.at_edge:
+                found[:, index] = peak.omega, peak.amplitude
+        return constant(found[0]), constant(found[1])
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
         if not derived:

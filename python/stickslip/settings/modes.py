@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
 from stickslip.settings.balance import HarmonicSettings
-from stickslip.settings.entries import Count, Flag, Index, Whole
+from stickslip.settings.entries import ONE_OF, Count, Flag, Index, Whole
 from stickslip.settings.ranges import Amplitudes
 
 
@@ -18,6 +18,12 @@ class BackboneSettings(HarmonicSettings):
         default=0,
         description="Mode of the structure with its contacts as they are at rest, counted from 0 "
         "by rising frequency.",
+    )
+    method: Annotated[Literal["periodic", "phase-resonance", "quasi-static"], ONE_OF] = Field(
+        default="periodic",
+        description="What the mode is taken to be. periodic: a motion that a fictitious damping "
+        "keeps up. phase-resonance: one that the forces of harmonic 1 keep up, in quadrature. "
+        "quasi-static: the loop of a load of the shape of the linear mode, without inertia.",
     )
     max_harmonics: Count = Field(default=63, description="Highest harmonic that may be kept.")
     max_points: Annotated[int, Whole(2)] = Field(

@@ -1,0 +1,149 @@
+//! The harmonics of a nonlinear mode: as many as its tolerance asks for, and what the rest could change.
+
+use super::mode_equations::ModeEquations;
+use super::mode_point::ModePoint;
+use super::mode_settings::ModeSettings;
+use crate::balance::HarmonicChoice;
+use crate::fourier::{Harmonics, SampleTable};
+use crate::solve::{at_parameter, norm, Curve as _};
+use crate::timing::Profile;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Newton iterations in more harmonics.
+const ITERATIONS: usize = 20;
+
+/// The equations in the harmonics kept, and in more than twice as many.
+pub(super) struct Truncation<'a> {
+    pub(super) equations: ModeEquations<'a>,
+    finer: Option<ModeEquations<'a>>,
+    /// Work in harmonics that have been left.
+    profile: Profile,
+    products: usize,
+    estimate: Duration,
+}
+
+/// A Newton step in more harmonics, at the same amplitude, from a point there.
+pub(super) struct Step {
+    z: Vec<f64>,
+    step: Vec<f64>,
+}
+
+impl Step {
+    /// Relative changes of frequency and damping.
+    pub(super) fn relative(&self) -> [f64; 2] {
+        let (z, step, size) = (&self.z, &self.step, self.z.len());
+        let omega = (step[size - 3] / z[size - 3]).abs();
+        // ζ = ξ/(2ω), which may vanish; below a millionth it counts as none.
+        let damping = step[size - 2].abs() / z[size - 2].abs().max(1e-6);
+        [omega, damping + omega]
+    }
+
+    /// Largest relative change of frequency, damping and shape.
+    pub(super) fn error(&self) -> f64 {
+        let [omega, damping] = self.relative();
+        norm(&self.step[..self.z.len() - 3]).max(omega).max(damping)
+    }
+}
+
+impl<'a> Truncation<'a> {
+    pub(super) fn new(equations: ModeEquations<'a>) -> Self {
+        let (profile, products) = (Profile::default(), 0);
+        Self { equations, finer: None, profile, products, estimate: Duration::ZERO }
+    }
+
+    /// A point in as many harmonics as the tolerance asks for.
+    pub(super) fn refined(&mut self, mut z: Vec<f64>, settings: &ModeSettings) -> Vec<f64> {
+        while settings.harmonics == HarmonicChoice::Auto {
+            let kept = self.equations.harmonics().highest();
+            let enough = |step: Step| step.error() <= settings.tolerance;
+            if kept >= settings.max_harmonics || self.step(&z).is_some_and(enough) {
+                break;
+            }
+            let more = (kept + 2 + kept / 2).min(settings.max_harmonics);
+            let mut equations = self.in_harmonics(more);
+            let recast = equations.recast(&z, equations.size());
+            equations.hold(&recast);
+            let log = recast[recast.len() - 1];
+            let found = at_parameter(&mut equations, &recast, log, ITERATIONS);
+            let Some((finer, _)) = found else {
+                // It stays in the harmonics that it has, and says so.
+                self.leave(&equations);
+                break;
+            };
+            z = finer;
+            let left = std::mem::replace(&mut self.equations, equations);
+            self.leave(&left);
+        }
+        z
+    }
+
+    /// The Newton step that a balance in more harmonics would take.
+    pub(super) fn step(&mut self, z: &[f64]) -> Option<Step> {
+        let start = Instant::now();
+        let highest = 2 * self.equations.harmonics().highest() + 3;
+        let known = self.finer.take().filter(|own| own.harmonics().highest() == highest);
+        let mut equations = known.unwrap_or_else(|| self.in_harmonics(highest));
+        equations.rest.clone_from(&self.equations.rest);
+        let z = equations.recast(z, equations.size());
+        equations.hold(&z);
+        let mut right: Vec<f64> = equations.evaluate(&z).iter().map(|row| -row).collect();
+        right.push(0.0);
+        let mut border = vec![0.0; z.len()];
+        border[z.len() - 1] = 1.0;
+        let weights = equations.weights(&z);
+        let found = equations.solve_bordered(&z, &border, &right, &weights);
+        self.finer = Some(equations);
+        self.estimate += start.elapsed();
+        found.map(|(step, _)| Step { z, step })
+    }
+
+    /// Sum over all harmonics of the change of every DOF of a point by a step \[m\].
+    pub(super) fn changes(&self, point: &ModePoint, step: &Step) -> Vec<f64> {
+        let unknown = || vec![f64::NAN; point.response.error_estimate.len()];
+        let of = |finer: &ModeEquations<'_>| point.changes(finer, &step.z, &step.step);
+        self.finer.as_ref().map_or_else(unknown, of)
+    }
+
+    /// The equations in other harmonics.
+    fn in_harmonics(&self, highest: usize) -> ModeEquations<'a> {
+        let harmonics = Harmonics::new(highest, self.equations.harmonics().half_wave());
+        self.equations.with_table(Arc::new(SampleTable::new(harmonics)))
+    }
+
+    fn leave(&mut self, equations: &ModeEquations<'_>) {
+        self.profile.add(&equations.profile);
+        self.products += equations.products;
+    }
+
+    /// Work in all harmonics, and products with tangents.
+    pub(super) fn effort(mut self) -> (Profile, usize) {
+        if let Some(finer) = self.finer.take() {
+            self.profile.evaluations += finer.profile.evaluations;
+            self.products += finer.products;
+        }
+        self.profile.add(&self.equations.profile);
+        self.profile.estimate += self.estimate;
+        (self.profile, self.products + self.equations.products)
+    }
+}
+
+impl ModeEquations<'_> {
+    /// A point or a direction in these harmonics, of so many unknowns: common ones are kept, new ones
+    /// are zero.
+    pub(super) fn recast(&self, z: &[f64], size: usize) -> Vec<f64> {
+        let slots = (z.len() - 3) / self.modes();
+        let half_wave = self.harmonics().half_wave();
+        let highest = if half_wave { slots - 1 } else { (slots - 1) / 2 };
+        let from = Harmonics::new(highest, half_wave);
+        let mut out = vec![0.0; size];
+        for order in self.harmonics().orders() {
+            let (Some(slot), range) = (from.slot(order), self.range(order)) else { continue };
+            let start = self.modes() * slot;
+            let length = range.len();
+            out[range].copy_from_slice(&z[start..start + length]);
+        }
+        out[size - 3..].copy_from_slice(&z[z.len() - 3..]);
+        out
+    }
+}
