@@ -34,6 +34,8 @@ const LINEAR: [f64; 2] = [0.02, 0.02];
 const HALVINGS: usize = 20;
 /// Amplitudes below the least one by this factor at which a branch that has turned back ends.
 const BACK: f64 = 10.0;
+/// Most evaluations of the equations: so many per step, and so many more for a few hard places.
+const EVALUATIONS: [usize; 2] = [40, 1500];
 /// First harmonics that automatic ones try.
 const FEWEST: usize = 5;
 
@@ -156,7 +158,9 @@ impl<'a> Walk<'a> {
             if from < low - BACK.ln() && !rises {
                 return ModeEnd::Returned;
             }
-            if taken >= self.settings.most || self.points.len() >= self.settings.most {
+            let evaluations = self.equations().profile.evaluations;
+            let spent = evaluations > EVALUATIONS[0] * taken + EVALUATIONS[1];
+            if spent || taken.max(self.points.len()) >= self.settings.most {
                 return ModeEnd::Points;
             }
             let share = ((from - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
