@@ -69,11 +69,39 @@ def test_intervals_hold_the_truth_in_most_seeds():
     assert 34 <= held <= 40
 
 
-def decay(level: float, periods: int):
-    """Return amplitude, frequency and damping of a free decay, exact from event to event."""
-    own = model(*TRUE.values())
-    motion = ss.transient(own, 0.06 * periods, start={"tip": level})
-    return motion
+def test_a_decay_in_time_gives_the_friction_back():
+    """Free vibration, exact from event to event, evaluated from extreme to extreme."""
+    from scipy.interpolate import CubicSpline
+
+    run = ss.transient(model(400.0, 0.1), 100.0, 200, start={"tip": 5e-3}, samples=256, keep=200)
+    course = CubicSpline(run.time, run.displacement("tip"))
+    instants = course.derivative().roots(extrapolate=False)
+    height = np.abs(course(instants))
+    omega = 2.0 * np.pi / (instants[2:] - instants[:-2])
+    ratio = np.log(height[:-2] / height[2:]) / (2.0 * np.pi)
+    # Of every second period; above where the contact sticks, below the first period.
+    own = (height[1:-1] > 3e-4) & (height[1:-1] < 4e-3) & (np.arange(omega.size) % 4 == 0)
+    count = int(own.sum())
+    assert count > 30
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        test = ss.MeasuredBackbone(
+            height[1:-1][own],
+            omega[own] * (1.0 + 0.002 * rng.standard_normal(count)),
+            ratio[own] * (1.0 + 0.02 * rng.standard_normal(count)),
+            dof="tip",
+            **NOISE,
+        )
+        found = ss.fit(
+            model(300.0, 0.2),
+            test,
+            parameters={"pad.stiffness": (1e2, 1e4), "slip_force": (0.01, 1.0)},
+            harmonics=7,
+            intervals="covariance",
+        )
+        assert found.values["slip_force"] == pytest.approx(0.1, rel=0.02)
+        assert found.values["pad.stiffness"] == pytest.approx(400.0, rel=0.03)
+        assert found.scatter < 1.2
 
 
 def test_any_order_and_repeated_amplitudes_are_taken():
@@ -94,7 +122,9 @@ def test_amplitudes_of_a_degree_of_freedom_are_met():
         contact = ss.Jenkins("damper", stiffness=stiffness, slip_force=slip_force)
         return ss.Model(beam.structure, [contact])
 
-    modes = ss.nonlinear_modes(pad(2.1e7, 200.0), amplitude=np.geomspace(1e-4, 1e-2, 8), harmonics=3)
+    modes = ss.nonlinear_modes(
+        pad(2.1e7, 200.0), amplitude=np.geomspace(1e-4, 1e-2, 8), harmonics=3
+    )
     for measure in ("half_range", "fundamental"):
         test = ss.MeasuredBackbone(
             modes.displacement_amplitude("tip", measure),
@@ -119,9 +149,7 @@ def test_amplitudes_of_a_degree_of_freedom_are_met():
 def test_noise_of_one_quantity_may_be_unknown():
     test = noisy(2)
     alone = ss.MeasuredBackbone(AMPLITUDE, damping_ratio=test.damping_ratio)
-    found = ss.fit(
-        model(4000.0), alone, parameters={"slip_force": (0.1, 10.0)}, harmonics=1
-    )
+    found = ss.fit(model(4000.0), alone, parameters={"slip_force": (0.1, 10.0)}, harmonics=1)
     assert not found.noise_known
     assert found.scatter == pytest.approx(0.02, rel=0.35)
     assert found.values["slip_force"] == pytest.approx(1.0, rel=0.02)

@@ -47,7 +47,7 @@ def _quantities(dataset: Dataset) -> Code:
 
 
 def _against(dataset: Dataset) -> Code:
-    return (_kinds(dataset) == KINDS.index("measured loop")).astype(np.uint8)
+    return np.asarray(_kinds(dataset) == KINDS.index("measured loop"), np.uint8)
 
 
 class FitArrays(Columns):

@@ -202,7 +202,7 @@ def _told(results: tuple[Result, ...]) -> tuple[Diagnostic, ...]:
     for number, one in enumerate(results):
         for said in one.diagnostics:
             # What has no data is told by its words.
-            key = said.code, *(sorted(said.data.items()) or [said.text])
+            key = (said.code, *sorted(said.data.items())) if said.data else (said.code, said.text)
             found.setdefault(key, {}).setdefault(number, said)
     return tuple(_of_members(list(same.values()), len(results)) for same in found.values())
 
