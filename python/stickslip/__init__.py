@@ -44,7 +44,7 @@ _NAMES = {
     "slip_configurations",
     "model.destabilised": "destabilised modal_damping",
     "model.force": "engine_order_forces",
-    "model.measurement": "MeasuredLoop MeasuredPeak Measurement",
+    "model.measurement": "MeasuredBackbone MeasuredLoop MeasuredPeak Measurement",
     "model.state": "State",
     "results": "ForcedResponse Status",
     "results.basin_map": "BasinMap",

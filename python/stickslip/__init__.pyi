@@ -72,6 +72,7 @@ from stickslip.model.destabilised import destabilised as destabilised
 from stickslip.model.destabilised import modal_damping as modal_damping
 from stickslip.model.force import engine_order_forces as engine_order_forces
 from stickslip.model.measurement import Measured
+from stickslip.model.measurement import MeasuredBackbone as MeasuredBackbone
 from stickslip.model.measurement import MeasuredLoop as MeasuredLoop
 from stickslip.model.measurement import MeasuredPeak as MeasuredPeak
 from stickslip.model.measurement import Measurement as Measurement

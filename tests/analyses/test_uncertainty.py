@@ -81,16 +81,28 @@ def test_shares_of_the_variance_are_those_of_the_closed_form(rubbing):
         (weights @ (values @ weights) ** 2 - mean**2) / variance,
         ((weights @ values) ** 2 @ weights - mean**2) / variance,
     ]
-    found = rubbing.expansion("amplitude", degree=6).sobol()
+    found = rubbing.expansion("amplitude").sobol()
     assert found.error < 1e-4
     assert [one.value for one in found.first.values()] == pytest.approx(first, abs=1e-4)
     total = [1.0 - first[1], 1.0 - first[0]]
     assert [one.value for one in found.total.values()] == pytest.approx(total, abs=1e-4)
     for shares_of in (found.first, found.total):
         assert all(one.low <= one.value <= one.high for one in shares_of.values())
-    expansion = rubbing.expansion("amplitude", degree=6)
+    expansion = rubbing.expansion("amplitude")
     assert expansion.mean == pytest.approx(mean, rel=1e-4)
     assert expansion.deviation**2 == pytest.approx(variance, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_the_degree_is_that_of_the_least_error(rubbing):
+    chosen = rubbing.expansion("amplitude")
+    errors = {n: rubbing.expansion("amplitude", degree=n).cross_validation for n in range(1, 16)}
+    assert errors[chosen.degree] == chosen.cross_validation == min(errors.values())
+    # As many degrees as the samples allow would fit their noise.
+    assert chosen.degree < 10
+    assert errors[15] > 100.0 * chosen.cross_validation
+    assert f"degree {chosen.degree}" in repr(chosen)
+    assert rubbing.expansion("amplitude", degree=3).degree == 3
 
 
 @pytest.mark.slow
@@ -99,7 +111,7 @@ def test_percentiles_are_those_of_the_closed_form(rubbing):
     values = closed_peak(SLIP.ppf(shares[:, 0]), SPRING.ppf(shares[:, 1]))[0]
     for q in (5.0, 50.0, 95.0):
         true = np.quantile(values, q / 100.0)
-        surrogate = rubbing.expansion("amplitude", degree=6).percentile(q)
+        surrogate = rubbing.expansion("amplitude").percentile(q)
         assert surrogate.value == pytest.approx(true, rel=2e-3)
         own = rubbing.percentile("amplitude", q)
         assert own.low < true < own.high

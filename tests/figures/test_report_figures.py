@@ -122,6 +122,33 @@ def test_long_histories_keep_their_extremes():
     assert numbers(line["x"])[[0, -1]].tolist() == [0.0, 1.0]
 
 
+def test_bars_beside_a_value_have_its_name():
+    def draw(ax: Axes) -> None:
+        ax.plot([0, 3], [0, 3], label="line")
+        ax.errorbar([1.0, 2.0], [1.0, 2.0], xerr=[0.5, 0.2], fmt="D", capsize=3, label="interval")
+        ax.errorbar([1.0], [0.5], yerr=[0.1], ls="", color="red", label="bars alone")
+        ax.legend()
+
+    data = figure_of(draw)["data"]
+    assert {one["name"] for one in data if one["showlegend"]} == {"line", "interval", "bars alone"}
+    (marks,) = [one for one in data if one.get("name") == "interval" and one["showlegend"]]
+    assert marks["mode"] == "markers"
+    assert numbers(marks["x"]).tolist() == [1.0, 2.0]
+    # The bars come and go with their values.
+    assert sum(one.get("legendgroup") == marks["legendgroup"] for one in data) == 4
+
+
+@pytest.mark.parametrize("names", [["pad"], ["pad", "root", "tip"]])
+def test_names_along_an_axis_stay_names(names):
+    def draw(ax: Axes) -> None:
+        ax.broken_barh([(0.0, 1.0)], (-0.35, 0.7))
+        ax.set_yticks(range(len(names)), names)
+
+    axis = figure_of(draw)["layout"]["yaxis"]
+    assert axis["ticktext"] == names
+    assert axis["tickvals"] == list(range(len(names)))
+
+
 @pytest.mark.slow
 def test_what_plotly_cannot_draw_is_a_still_picture():
     def draw(ax: Axes) -> None:

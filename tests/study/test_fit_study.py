@@ -91,6 +91,46 @@ def test_the_command_tabulates_draws_and_reports(folder, monkeypatch):
     assert next((folder / "out").glob("*.png")).stat().st_size > 0
 
 
+def test_a_backbone_is_a_file_of_three_columns(folder):
+    structure = ss.Structure([[1.0]], [[1e4]], ss.ModalDamping(0.005), ["tip"])
+    pad = ss.Jenkins("tip", stiffness=4000.0, slip_force=1.0)
+    modes = ss.nonlinear_modes(ss.Model(structure, [pad]), amplitude=np.geomspace(1e-4, 4e-3, 12))
+    columns = modes.displacement_amplitude("tip"), modes.omega / (2 * np.pi), modes.damping_ratio
+    rows = [f"{1e3 * a:.9g}; {f:.9g}; {z:.9g}" for a, f, z in zip(*columns, strict=True)]
+    (folder / "decay.csv").write_text("amplitude; f; zeta\n" + "\n".join(rows), encoding="utf-8")
+    table = """
+[[analysis.measurement]]
+file = "decay.csv"
+dof = "tip"
+mode = 0
+frequency_unit = "Hz"
+length_unit = "mm"
+frequency_noise = "0.1 %"
+damping_noise = "2 %"
+"""
+    text = STUDY[: STUDY.index("[[analysis.measurement]]")] + table
+    text = text.replace(', "damping.ratio" = [1e-3, 1e-1]', "").replace(
+        'intervals = "covariance"', 'intervals = "covariance"\nharmonics = 5'
+    )
+    (folder / "study.toml").write_text(text, encoding="utf-8")
+    (result,) = Study.load(folder / "study.toml").run()
+    assert result.values["pad.stiffness"] == pytest.approx(4000.0, rel=5e-3)
+    assert result.values["slip_force"] == pytest.approx(1.0, rel=5e-3)
+    assert result.names == ("decay",)
+    result.save(folder / "fit.nc")
+    out = str(folder / "report.html")
+    shown = CliRunner().invoke(app, ["report", str(folder / "fit.nc"), "--out", out])
+    assert shown.exit_code == 0, shown.output
+    for given, said in (
+        ('damping_noise = "2 %"\nnoise = 1', "'noise' is for amplitudes and forces"),
+        ('damping_noise = "2 %"\ncontact = "pad"', "'mode' is for a backbone"),
+    ):
+        bad = text.replace('damping_noise = "2 %"', given)
+        (folder / "study.toml").write_text(bad, encoding="utf-8")
+        with pytest.raises(ss.ModelError, match=said):
+            Study.load(folder / "study.toml")
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

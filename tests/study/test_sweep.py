@@ -98,6 +98,24 @@ def test_round_trip(analysis, tmp_path):
         assert one.model.contacts == other.model.contacts
 
 
+def test_what_is_said_of_several_results_is_said_once():
+    def analysis(model):
+        # Stuck contacts need one harmonic, and no more.
+        return ss.nonlinear_modes(model, amplitude=[1e-6], harmonics=3)
+
+    made = ss.sweep(snecma_beam(), analysis, slip_force=[100.0, 200.0, 300.0])
+    own = [[(one.code, dict(one.data)) for one in member.diagnostics] for member in made.results]
+    assert own[0] == own[1] == own[2]
+    assert len(made.diagnostics) == len(own[0])
+    for one in made.diagnostics:
+        assert one.data["results"] == 3
+        assert one.text.endswith("(all 3 results)")
+    springs = ss.sweep(snecma_beam(), analysis, stiffness=[1e7, 2e7])
+    at_rest = [one for one in springs.diagnostics if one.code == "mode-at-rest"]
+    assert [one.data["results"] for one in at_rest] == [1, 1]
+    assert at_rest[0].text.endswith("(1 of 2 results)")
+
+
 def test_it_draws_a_family(swept):
     axes = swept.plot("tip")
     names = [text.get_text() for text in axes.get_legend().get_texts()]

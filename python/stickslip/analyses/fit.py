@@ -20,9 +20,15 @@ from stickslip.analyses.run import Progress, Run, share
 from stickslip.checks import brief, members
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.model.measurement import Measured, MeasuredLoop, MeasuredPeak, Measurement
+from stickslip.model.measurement import (
+    Measured,
+    MeasuredBackbone,
+    MeasuredLoop,
+    MeasuredPeak,
+    Measurement,
+)
 from stickslip.results.arrays import Float
-from stickslip.results.fit import KINDS, Fit, FitArrays
+from stickslip.results.fit import AGAINST, KINDS, QUANTITIES, Fit, FitArrays
 from stickslip.settings.fit import FitSettings
 from stickslip.settings.settings import configured
 
@@ -48,7 +54,7 @@ def fit(
     settings: FitSettings,
     progress: Progress = None,
 ) -> Fit:
-    """Fit parameters to measured response curves, peaks and hysteresis loops.
+    """Fit parameters to measured response curves, peaks, hysteresis loops and backbones.
 
     The sum of the squared differences between prediction and measurement, each over its standard
     deviation, is made least, at several levels and tests at once. Its derivatives are those of the
@@ -59,7 +65,7 @@ def fit(
     ----------
     model : Model
         What the parameters belong to, and of which measurements without a model of their own are.
-    measured : iterable of Measurement, MeasuredPeak or MeasuredLoop
+    measured : iterable of Measurement, MeasuredPeak, MeasuredLoop or MeasuredBackbone
         The tests. A parameter is applied to the model of each of them.
 
     Returns
@@ -238,6 +244,10 @@ def _result(
         predicted=np.concatenate(predicted),
         solved=np.concatenate([one.solved for one in here.predictions]),
         test_kind=np.array([KINDS.index(one.kind) for one in misfit.measured], np.uint8),
+        quantity=np.array(
+            [QUANTITIES.index(what) for one in misfit.measured for what in one.quantities], np.uint8
+        ),
+        against=np.array([AGAINST.index(one.against) for one in misfit.measured], np.uint8),
         test=np.repeat(np.arange(len(predicted)), [one.size for one in predicted]),
         minimum=np.array([least for least, _ in search.minima]),
         minimum_value=np.stack([misfit.values(place) for _, place in search.minima])
@@ -247,7 +257,9 @@ def _result(
     return Fit(
         model=applied(misfit.model, misfit.parameters, values),
         dofs=tuple(
-            dict.fromkeys(one.of for one in misfit.measured if not isinstance(one, MeasuredLoop))
+            dict.fromkeys(
+                one.of for one in misfit.measured if one.against in ("frequency", "amplitude")
+            )
         ),
         settings=settings,
         arrays=arrays,
@@ -283,7 +295,7 @@ def _tests(measured: Iterable[Measured]) -> tuple[Measured, ...]:
         if not isinstance(one, Measured):
             raise ModelError(
                 f"measured: entry {number}: {brief(one)} is no measurement; give ss.Measurement, "
-                "ss.MeasuredPeak or ss.MeasuredLoop"
+                "ss.MeasuredPeak, ss.MeasuredLoop or ss.MeasuredBackbone"
             )
     if len({one.noise_known for one in tests}) > 1:
         unknown = next(n for n, one in enumerate(tests, 1) if not one.noise_known)
@@ -303,6 +315,10 @@ def _require(
     if isinstance(test, Measurement | MeasuredPeak):
         known_dofs([test.dof], f"{test.kind}: dof", "dof", model)
         require_forced(model, settings)
+        require_held(model, settings.residual)
+    elif isinstance(test, MeasuredBackbone):
+        if test.dof is not None:
+            known_dofs([test.dof], f"{test.kind}: dof", "dof", model)
         require_held(model, settings.residual)
     elif isinstance(test, MeasuredLoop):
         contact = model.contacts[model.contact_index(test.contact)]

@@ -12,13 +12,28 @@ from stickslip import _core
 from stickslip.analyses.damper_curve import damper_curve
 from stickslip.analyses.fit_parameters import LEVEL, LOAD, FitParameter, applied
 from stickslip.analyses.forced_response import forced_response
+from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.model import Model
-from stickslip.model.measurement import Measured, MeasuredLoop, MeasuredPeak, Measurement
+from stickslip.model.measurement import (
+    Measured,
+    MeasuredBackbone,
+    MeasuredLoop,
+    MeasuredPeak,
+    Measurement,
+)
 from stickslip.results.arrays import Bool, Float
+from stickslip.results.nonlinear_modes import NonlinearModes
+from stickslip.results.status import Status
 from stickslip.settings.balance import HarmonicSettings
 
 _STEP = 1e-4
 """Step of differences, between the bounds of a parameter."""
+_SMALL = 1e-3
+"""Share of the least displacement at which a mode is as it is at rest."""
+_CLOSE = 1e-9
+"""Relative distance to a displacement at which its modal amplitude is found."""
+_STEPS = 20
+"""Most evaluations until then."""
 
 
 class Prediction:
@@ -26,7 +41,7 @@ class Prediction:
 
     The model is that of the measurement, or else `base`, at values of the parameters. Derivatives
     of curves in parameters of contacts and in the level of the forces are exact; those in the
-    damping of the structure and in static loads, of peaks and of loops are differences.
+    damping of the structure and in static loads, of peaks, loops and backbones are differences.
     """
 
     def __init__(
@@ -114,7 +129,7 @@ def _peak(
         measure=measured.measure,
         **settings.part(HarmonicSettings),
     )
-    found = np.array([curve.amplitude[0], curve.omega[0]])[: measured.values.size]
+    found = np.array([curve.amplitude[0], curve.omega[0]])[: measured.observed.size]
     return _Found(found, max(int(curve.harmonics.max()), 1))
 
 
@@ -132,9 +147,56 @@ def _loop(
     return _Found(np.ravel(force), measured.harmonics)
 
 
+def _backbone(
+    measured: MeasuredBackbone,
+    model: Model,
+    settings: HarmonicSettings,
+) -> _Found:
+    wanted, place = np.unique(measured.amplitude, return_inverse=True)
+    modes = _modes_at(measured, model, settings, wanted)
+    solved = modes.arrays.status == Status.CONVERGED.code
+    columns = {"omega": modes.omega, "damping_ratio": modes.damping_ratio}
+    found = [np.where(solved, columns[one], np.nan)[place] for one in measured.columns]
+    return _Found(np.concatenate(found), max(int(modes.harmonics.max(initial=1)), 1))
+
+
+def _modes_at(
+    measured: MeasuredBackbone, model: Model, settings: HarmonicSettings, wanted: Float
+) -> NonlinearModes:
+    """Return the mode at rising amplitudes of what was measured.
+
+    The modal amplitude of a displacement is found by the secant method, in logarithms: the two are
+    proportional but for the change of the shape.
+    """
+    keys = settings.part(HarmonicSettings)
+
+    def modes(amplitude: Float) -> NonlinearModes:
+        return nonlinear_modes(model, amplitude=amplitude, mode=measured.mode, **keys)
+
+    if measured.dof is None:
+        return modes(wanted)
+    small = modes(_SMALL * wanted[:1])
+    share = small.displacement_amplitude(measured.dof, measured.measure) / small.amplitude
+    at, rate = np.log(wanted / share), np.ones(wanted.size)
+    before, there = at, np.full(wanted.size, np.nan)
+    for _ in range(_STEPS):
+        found = modes(np.exp(at))
+        here = np.log(found.displacement_amplitude(measured.dof, measured.measure) / wanted)
+        off = np.abs(here) > _CLOSE
+        if not off.any():
+            break
+        with np.errstate(invalid="ignore", divide="ignore"):
+            secant = (here - there) / (at - before)
+        rate = np.where(np.isfinite(secant) & (secant > 0.1), secant, rate)
+        before, there = at, here
+        at = np.where(off, at - here / rate, at)
+    return found
+
+
 PREDICTIONS: Mapping[type[Measured], Callable[..., _Found]] = {
     Measurement: _curve,
     MeasuredPeak: _peak,
     MeasuredLoop: _loop,
+    MeasuredBackbone: _backbone,
 }
 """How each kind of measurement is predicted."""

@@ -58,6 +58,12 @@ def traces(ax: Axes, y: str) -> Iterator[Trace]:
     """
     rows = [one for one in ax.containers if isinstance(one, container.BarContainer)]
     bars = {id(bar): one for one in rows for bar in one.patches}
+    # Of values with bars to their sides the container has the name.
+    owners = {
+        id(_bearer(one)): one
+        for one in ax.containers
+        if isinstance(one, container.ErrorbarContainer)
+    }
     drawn = [*ax.lines, *ax.collections, *ax.patches, *ax.images]
     for artist in sorted(drawn, key=lambda one: one.get_zorder()):
         whole = bars.get(id(artist))
@@ -65,7 +71,16 @@ def traces(ax: Axes, y: str) -> Iterator[Trace]:
             continue
         trace = _bar(whole) if whole else _trace(artist)
         if trace:
-            yield {"xaxis": "x", "yaxis": y} | trace
+            named = _name(owners[id(artist)]) if id(artist) in owners else {}
+            yield {"xaxis": "x", "yaxis": y} | trace | named
+
+
+def _bearer(bars: container.ErrorbarContainer) -> Artist:
+    """Return what bears the name of bars: their values, or the first bars if none are drawn."""
+    line, _, sides = bars.lines
+    if line and not {line.get_linestyle(), str(line.get_marker())} <= set(_NOTHING):
+        return line
+    return sides[0]
 
 
 def proxy(handle: Artist, name: str) -> Trace:

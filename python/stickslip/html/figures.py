@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from matplotlib.ticker import FixedFormatter, FixedLocator
+from matplotlib.ticker import FixedFormatter, FixedLocator, FuncFormatter
 from matplotlib.transforms import Transform
 
 from stickslip.html.artists import Trace, UndrawableError, proxy, traces
@@ -200,9 +200,10 @@ def _axis(ax: Axes, letter: str) -> Trace:
     if scale == "linear":
         entry["minexponent"] = 3
     locator, formatter = axis.get_major_locator(), axis.get_major_formatter()
-    if isinstance(locator, FixedLocator) and isinstance(formatter, FixedFormatter):
-        entry["tickvals"] = [float(one) for one in locator()]
-        entry["ticktext"] = [label(str(one)) for one in formatter.seq]
+    if isinstance(locator, FixedLocator) and isinstance(formatter, FixedFormatter | FuncFormatter):
+        places = [float(one) for one in locator()]
+        entry["tickvals"] = places
+        entry["ticktext"] = [label(one) for one in formatter.format_ticks(places)]
     return entry
 
 

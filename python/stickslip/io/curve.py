@@ -1,4 +1,4 @@
-"""Curves that tests have written: text files of two columns."""
+"""Curves that tests have written: text files of two columns, or three."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from stickslip.errors import ModelError
 from stickslip.io.numbers import real_field
 from stickslip.io.source import readable
 
-_COLUMNS = 2
+_WORDS = {2: "two numbers", 3: "three numbers"}
 
 
-def read_curve(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Read the first two columns of a text file, as CSV files have them.
+def read_curve(path: str | PathLike[str], columns: int = 2) -> tuple[NDArray[np.float64], ...]:
+    """Read the first columns of a text file, two or three, as CSV files have them.
 
     Fields are separated by commas, semicolons, tabs or spaces. Lines before the first number, and
     lines that begin with # or %, are passed over.
@@ -26,6 +26,8 @@ def read_curve(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[
     ----------
     path : path-like
         The file.
+    columns : {2, 3}, optional
+        How many.
 
     Returns
     -------
@@ -35,7 +37,7 @@ def read_curve(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[
     Raises
     ------
     ModelError
-        If the file is missing, or a line behind the first number has no two numbers.
+        If the file is missing, or a line behind the first number has too few.
     """
     file = file_path(path, "curve")
     rows: list[list[float]] = []
@@ -46,15 +48,14 @@ def read_curve(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[
         if not fields[0] or fields[0][0] in "#%":
             continue
         try:
-            if len(fields) < _COLUMNS:
+            if len(fields) < columns:
                 raise ValueError(f"{len(fields)} number")
-            rows.append([real_field(field) for field in fields[:_COLUMNS]])
+            rows.append([real_field(field) for field in fields[:columns]])
         except ValueError as error:
             if rows:
                 raise ModelError(
-                    f"{file}: line {number}: {error}; give two numbers per line"
+                    f"{file}: line {number}: {error}; give {_WORDS[columns]} per line"
                 ) from None
     if not rows:
-        raise ModelError(f"{file}: no line with two numbers; give frequency and amplitude")
-    first, second = np.array(rows).T
-    return np.ascontiguousarray(first), np.ascontiguousarray(second)
+        raise ModelError(f"{file}: no line with {_WORDS[columns]}; give numbers in columns")
+    return tuple(np.ascontiguousarray(one) for one in np.array(rows).T)

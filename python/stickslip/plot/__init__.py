@@ -10,7 +10,7 @@ from stickslip.plot.curves import curves, slip
 from stickslip.plot.cycles import limit_cycles, stability_map
 from stickslip.plot.damper import damper
 from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
-from stickslip.plot.fit import fit, fit_intervals, fit_residuals
+from stickslip.plot.fit import fit, fit_backbone, fit_intervals, fit_residuals
 from stickslip.plot.maps import design_map
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.modes import backbone, mode_damping
@@ -38,6 +38,7 @@ __all__ = [
     "distribution",
     "events",
     "fit",
+    "fit_backbone",
     "fit_intervals",
     "fit_residuals",
     "history",

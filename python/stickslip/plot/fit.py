@@ -10,40 +10,40 @@ from matplotlib.axes import Axes
 from stickslip.errors import ModelError
 from stickslip.plot import style
 from stickslip.plot.figure import figure
-from stickslip.plot.options import Drawing, FitOptions
-from stickslip.results.fit import KINDS, Fit
+from stickslip.plot.options import Drawing, FitBackboneOptions, FitOptions
+from stickslip.results.fit import AGAINST, QUANTITIES, Fit
 
-_LOOP = KINDS.index("measured loop")
+_FREQUENCY, _DISPLACEMENT, _AMPLITUDE, _MODAL = range(len(AGAINST))
+_OMEGA = QUANTITIES.index("omega")
 
 
 @figure
 def fit(ax: Axes, /, result: Fit, **options: Unpack[FitOptions]) -> None:
     """Draw what was measured as points, and what the fitted model predicts as lines.
 
-    Response curves and peaks over frequency; of a fit to loops alone, forces over displacements.
+    Response curves and peaks over frequency; of a fit without them, forces of loops over
+    displacements. Backbones have a figure of their own.
     """
-    loops = bool((result.arrays.test_kind == _LOOP).all())
-    shown = [
-        number for number, kind in enumerate(result.arrays.test_kind) if (kind == _LOOP) == loops
-    ]
+    arrays = result.arrays
+    loops = not (arrays.against == _FREQUENCY).any()
+    shown = np.flatnonzero(arrays.against == (_DISPLACEMENT if loops else _FREQUENCY))
+    if not shown.size:
+        raise ModelError("fit: backbones alone were measured; draw them with plot_backbone()")
     scale = style.LENGTH[options["length_unit"]]
     omega = style.omega_scale(options["omega_unit"], result)
-    for number, colour in zip(shown, style.colours(len(shown)), strict=True):
-        own = result.of_test(number)
-        x, seen = result.arrays.abscissa[own], result.arrays.observed[own]
-        said = result.arrays.predicted[own]
+    for number, colour in zip(shown, style.colours(shown.size), strict=True):
+        # Peaks may have their frequency among the numbers.
+        own = result.of_test(int(number)) & (arrays.quantity != _OMEGA)
+        x, seen, said = arrays.abscissa[own], arrays.observed[own], arrays.predicted[own]
         if loops:
-            x = x * scale.factor
-        elif KINDS[result.arrays.test_kind[number]] == "measured peak":
-            # Behind the height of a peak stands its frequency.
-            x, seen, said = x[:1] * omega.factor, seen[:1] * scale.factor, said[:1] * scale.factor
+            x, behind = x * scale.factor, slice(0, 1)
         else:
             x, seen, said = x * omega.factor, seen * scale.factor, said * scale.factor
+            behind = slice(0, 0)
         ax.plot(x, seen, **style.mark("o", 3.5, colour, "none"), label=result.names[number])
         if x.size > 1:
-            if loops:
-                x, said = np.append(x, x[0]), np.append(said, said[0])
-            ax.plot(x, said, color=colour, lw=1.3)
+            line = [np.append(one, one[behind]) for one in (x, said)]
+            ax.plot(*line, color=colour, lw=1.3)
         else:
             ax.plot(x, said, **style.mark("_", 12, colour))
     if loops:
@@ -52,6 +52,41 @@ def fit(ax: Axes, /, result: Fit, **options: Unpack[FitOptions]) -> None:
     ax.set(xlabel=omega.label, ylabel=f"amplitude [{scale.label}]")
     if options["log"]:
         ax.set_yscale("log")
+
+
+@figure
+def fit_backbone(ax: Axes, /, result: Fit, **options: Unpack[FitBackboneOptions]) -> None:
+    """Draw measured frequencies, or damping ratios, over the amplitude, and what is predicted.
+
+    Over amplitudes of degrees of freedom; modal amplitudes are drawn where there are no others.
+    """
+    arrays = result.arrays
+    damping = options["damping"]
+    if damping is None:
+        damping = not result.of_backbones(damping=False).any()
+    wanted = np.array(result.of_backbones(damping=damping))
+    against = arrays.against[arrays.test]
+    modal = not (against[wanted] == _AMPLITUDE).any()
+    wanted &= against == (_MODAL if modal else _AMPLITUDE)
+    if not wanted.any():
+        raise ModelError(
+            f"fit_backbone: no {'damping ratios' if damping else 'frequencies'} of a backbone were "
+            "measured"
+        )
+    length = style.LENGTH[options["length_unit"]]
+    omega = style.omega_scale(options["omega_unit"], result)
+    factor = 1.0 if damping else omega.factor
+    shown = np.unique(arrays.test[wanted])
+    for number, colour in zip(shown, style.colours(shown.size), strict=True):
+        own = np.flatnonzero(wanted & (arrays.test == number))
+        own = own[np.argsort(arrays.abscissa[own], kind="stable")]
+        x = arrays.abscissa[own] * (1.0 if modal else length.factor)
+        seen, said = factor * arrays.observed[own], factor * arrays.predicted[own]
+        ax.plot(x, seen, **style.mark("o", 3.5, colour, "none"), label=result.names[number])
+        found = arrays.solved[own]
+        ax.plot(x[found], said[found], color=colour, lw=1.3)
+    below = "modal amplitude [m kg$^{1/2}$]" if modal else f"amplitude [{length.label}]"
+    ax.set(xscale="log", xlabel=below, ylabel="damping ratio" if damping else omega.label)
 
 
 @figure

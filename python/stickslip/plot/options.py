@@ -109,6 +109,16 @@ class FitOptions(Frame, Swept, total=False):
     log: Annotated[bool, True, "Logarithmic amplitude axis."]
 
 
+class FitBackboneOptions(Frame, Swept, total=False):
+    """Keywords of `fit_backbone`."""
+
+    damping: Annotated[
+        bool | None,
+        None,
+        "Draw damping ratios instead of frequencies. Default: if no frequencies were measured.",
+    ]
+
+
 class DamperOptions(Several, total=False):
     """Keywords of `damper`."""
 

@@ -10,7 +10,7 @@ the variance, hence Sobol indices (Sudret 2008).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -34,6 +34,8 @@ _HIGHEST = 20
 """Highest degree of a product."""
 _SPARSE = 0.75
 """Exponent of the hyperbolic truncation: products of many parameters have low degrees."""
+_RISES = 2
+"""Degrees in turn that do not lower the error, after which no higher one is tried."""
 _RESAMPLED = 200
 """Resampled sets of samples from which intervals are taken."""
 _POINTS = 2**14
@@ -104,9 +106,12 @@ class Expansion(Frozen):
         Degrees in the parameters of every product that is kept.
     coefficients : ndarray of float64, shape (t,)
         Their coefficients.
+    degree : int
+        Highest degree that was tried: given, or that of the least error by cross-validation.
     cross_validation : float
         Error by cross-validation: the mean square of what is left in samples that the fit has not
-        seen, over the variance. All choices are made anew in each of five parts.
+        seen, over the variance. The products are chosen anew in each of five parts, all of the same
+        degree.
     """
 
     names: tuple[str, ...]
@@ -115,12 +120,13 @@ class Expansion(Frozen):
     values: Float
     degrees: Int
     coefficients: Float
+    degree: int
     cross_validation: float
 
     def __repr__(self) -> str:
         return (
-            f"Expansion({self.coefficients.size} terms in {len(self.names)} parameter(s), degree "
-            f"{self.degrees.sum(axis=1).max()}, error {self.cross_validation:.2g} of the variance)"
+            f"Expansion({self.coefficients.size} terms in {len(self.names)} parameter(s), up to "
+            f"degree {self.degree}, error {self.cross_validation:.2g} of the variance)"
         )
 
     def __call__(self, parameters: Mapping[str, ArrayLike]) -> Float:
@@ -233,7 +239,8 @@ def fit_expansion(
     values : ndarray, shape (n,)
         The number at every sample.
     degree : int, optional
-        Highest degree that is tried. Default: as the samples allow.
+        Highest degree. Default: the one of the least error by cross-validation. Degrees rise from 1
+        until the error has risen twice running, as far as the samples allow.
 
     Raises
     ------
@@ -246,40 +253,66 @@ def fit_expansion(
         )
     germs = tuple(Germ.of(law) for law in laws)
     points = np.stack([germ.at(one) for germ, one in zip(germs, parameters.T, strict=True)], axis=1)
-    highest = None if degree is None else whole_number(degree, "degree", smallest=1)
-    degrees, coefficients = _selected(germs, points, values, highest)
+    made = partial(_of_degree, tuple(names), germs, points, values)
+    if degree is not None:
+        return made(whole_number(degree, "degree", smallest=1))
+    best, rises = made(1), 0
+    while rises < _RISES and best.degree + rises < _highest(len(germs), values.size):
+        other = made(best.degree + rises + 1)
+        # Of noise alone every degree explains nothing: the least one stays.
+        better = other.cross_validation < best.cross_validation
+        best, rises = (other, 0) if better else (best, rises + 1)
+    return best
+
+
+def _highest(parameters: int, samples: int) -> int:
+    """Return the highest degree with two samples for each product."""
+    degree, most = 1, min(_TERMS, samples // 2)
+    rule = _rule(parameters)
+    while degree < _HIGHEST and rule.getBasisSizeFromTotalDegree(degree + 1) <= most:
+        degree += 1
+    return degree
+
+
+def _rule(parameters: int) -> Any:
+    """Return the order in which products are tried."""
+    ot = optional_package("openturns", "polynomial expansions", "openturns", "uncertainty")
+    return ot.HyperbolicAnisotropicEnumerateFunction(parameters, _SPARSE)
+
+
+def _of_degree(
+    names: tuple[str, ...], germs: tuple[Germ, ...], points: Float, values: Float, degree: int
+) -> Expansion:
+    """Return the expansion in products up to a degree, with its error by cross-validation."""
+    degrees, coefficients = _selected(germs, points, values, degree)
     variance = float(values.var())
     missed = 0.0
     for fold in range(_FOLDS):
         unseen = np.arange(values.size) % _FOLDS == fold
-        kept, found = _selected(germs, points[~unseen], values[~unseen], highest)
+        kept, found = _selected(germs, points[~unseen], values[~unseen], degree)
         said = _products(germs, points[unseen], kept) @ found
         missed += float(((values[unseen] - said) ** 2).sum())
     return Expansion(
-        names=tuple(names),
+        names=names,
         germs=germs,
         points=constant(points),
         values=constant(values),
         degrees=constant(degrees),
         coefficients=constant(coefficients),
+        degree=degree,
         cross_validation=missed / values.size / variance if variance > 0.0 else 0.0,
     )
 
 
 def _selected(
-    germs: Sequence[Germ], points: Float, values: Float, highest: int | None
+    germs: Sequence[Germ], points: Float, values: Float, degree: int
 ) -> tuple[Int, Float]:
     """Return the products that matter, with their coefficients."""
     scale = float(np.abs(values - values.mean()).max())
     if scale <= 1e-14 * abs(float(values.mean())):
         return np.zeros((1, len(germs)), np.int64), np.array([values.mean()])
     ot = optional_package("openturns", "polynomial expansions", "openturns", "uncertainty")
-    rule = ot.HyperbolicAnisotropicEnumerateFunction(len(germs), _SPARSE)
-    most = min(_TERMS, values.size // 2)
-    degree = highest or 1
-    if highest is None:
-        while degree < _HIGHEST and rule.getBasisSizeFromTotalDegree(degree + 1) <= most:
-            degree += 1
+    rule = _rule(len(germs))
     size = rule.getBasisSizeFromTotalDegree(degree)
     families = [ot.LegendreFactory() if one.bounded else ot.HermiteFactory() for one in germs]
     margins = [ot.Uniform(-1.0, 1.0) if one.bounded else ot.Normal() for one in germs]

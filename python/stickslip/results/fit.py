@@ -19,11 +19,35 @@ from stickslip.results.fields import Columns, column
 from stickslip.results.result import Attributes, ColumnResult
 from stickslip.settings.fit import FitSettings
 
-KINDS = ("measurement", "measured peak", "measured loop")
+KINDS = ("measurement", "measured peak", "measured loop", "measured backbone")
 """Kinds of measurements."""
+
+QUANTITIES = ("amplitude", "force", "omega", "damping_ratio")
+"""What a measured number is."""
+
+AGAINST = ("frequency", "displacement", "amplitude", "modal amplitude")
+"""What numbers are measured against."""
 
 WIDE = 0.25
 """Width of an interval, relative to the value, from which the data do not determine it."""
+
+
+def _kinds(dataset: Dataset) -> Code:
+    return np.asarray(dataset["test_kind"].values, np.uint8)
+
+
+def _quantities(dataset: Dataset) -> Code:
+    """Return what the numbers of the first files are: behind the height of a peak its frequency."""
+    test = dataset["test"].values
+    kinds = _kinds(dataset)[test]
+    behind = np.append(False, test[1:] == test[:-1]) & (kinds == KINDS.index("measured peak"))
+    found = np.where(kinds == KINDS.index("measured loop"), "force", "amplitude")
+    found = np.where(behind, "omega", found)
+    return np.array([QUANTITIES.index(one) for one in found], np.uint8)
+
+
+def _against(dataset: Dataset) -> Code:
+    return np.asarray(_kinds(dataset) == KINDS.index("measured loop"), np.uint8)
 
 
 class FitArrays(Columns):
@@ -41,7 +65,7 @@ class FitArrays(Columns):
         least=-1.0,
         most=1.0,
     )
-    abscissa: Float = column("entry", "1", "frequency [rad/s], of loops displacement [m]")
+    abscissa: Float = column("entry", "1", "frequency [rad/s], displacement [m] or amplitude")
     observed: Float = column("entry", "1", "measured number, in SI units")
     deviation: Float = column(
         "entry", "1", "standard deviation; of noise that is not known up to a factor", least=0.0
@@ -49,6 +73,10 @@ class FitArrays(Columns):
     predicted: Float = column("entry", "1", "number that the fitted model predicts")
     solved: Bool = column("entry", "1", "whether it was found")
     test_kind: Code = column("test_name", "1", "what was measured", codes=KINDS)
+    quantity: Code = column(
+        "entry", "1", "what the number is", codes=QUANTITIES, absent=_quantities
+    )
+    against: Code = column("test_name", "1", "what the abscissa is", codes=AGAINST, absent=_against)
     test: Int = column("entry", "1", "position of the measurement", least=0)
     minimum: Float = column("minimum_number", "1", "misfit of each minimum that was found", least=0)
     minimum_value: Float = column("minimum_number parameter", "1", "values of the parameters there")
@@ -79,6 +107,7 @@ class Fit(ColumnResult):
     plot = Drawn("fit")
     plot_residuals = Drawn("fit_residuals")
     plot_intervals = Drawn("fit_intervals")
+    plot_backbone = Drawn("fit_backbone")
 
     def __repr__(self) -> str:
         found = ", ".join(f"{name} = {value:.5g}" for name, value in self.values.items())
@@ -169,6 +198,25 @@ class Fit(ColumnResult):
         if not isinstance(place, int) or not 0 <= place < len(self.names):
             raise ModelError(unknown("measurement", test, self.names))
         return constant(self.arrays.test == place)
+
+    @property
+    def of_curves(self) -> Bool:
+        """Which numbers are those of response curves and peaks, shape (n,)."""
+        return self._against("frequency")
+
+    @property
+    def of_loops(self) -> Bool:
+        """Which numbers are those of hysteresis loops, shape (n,)."""
+        return self._against("displacement")
+
+    def of_backbones(self, *, damping: bool) -> Bool:
+        """Return which numbers are damping ratios of backbones, or else frequencies, shape (n,)."""
+        place = QUANTITIES.index("damping_ratio" if damping else "omega")
+        own = self._against("amplitude") | self._against("modal amplitude")
+        return constant(own & (self.arrays.quantity == place))
+
+    def _against(self, what: str) -> Bool:
+        return constant((self.arrays.against == AGAINST.index(what))[self.arrays.test])
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
         return {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Hashable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from importlib import import_module
 from typing import Any, ClassVar, Self
@@ -196,12 +197,23 @@ def _figure_of(result: Result) -> str:
 
 
 def _told(results: tuple[Result, ...]) -> tuple[Diagnostic, ...]:
-    """Return what is said of the results, once."""
-    found: dict[str, Diagnostic] = {}
-    for one in results:
-        for diagnostic in one.diagnostics:
-            found.setdefault(diagnostic.text, diagnostic)
-    return tuple(found.values())
+    """Return what is said of the results: once what has the same code and data, and of how many."""
+    found: dict[tuple[Any, ...], dict[int, Diagnostic]] = {}
+    for number, one in enumerate(results):
+        for said in one.diagnostics:
+            # What has no data is told by its words.
+            key = (said.code, *sorted(said.data.items())) if said.data else (said.code, said.text)
+            found.setdefault(key, {}).setdefault(number, said)
+    return tuple(_of_members(list(same.values()), len(results)) for same in found.values())
+
+
+def _of_members(same: list[Diagnostic], total: int) -> Diagnostic:
+    """Return what is said of some of the results, with their number."""
+    if total == 1:
+        return same[0]
+    who = f"all {total}" if len(same) == total else f"{len(same)} of {total}"
+    text, data = f"{same[0].text} ({who} results)", {**same[0].data, "results": len(same)}
+    return replace(same[0], text=text, data=data)
 
 
 def _summed(parts: list[Mapping[str, Any]]) -> dict[str, float]:

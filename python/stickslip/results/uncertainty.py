@@ -198,7 +198,7 @@ class Uncertainty(ColumnResult):
         number : str
             One of `numbers`.
         degree : int, optional
-            Highest degree that is tried. Default: as the samples allow.
+            Highest degree. Default: the one of the least error by cross-validation.
         """
         key = self._number(number), degree
         if key not in self._expansions:

@@ -13,12 +13,13 @@ from stickslip.errors import ModelError
 from stickslip.io.curve import read_curve
 from stickslip.io.frf import read_frf
 from stickslip.model import Model
-from stickslip.model.measurement import Measured, MeasuredLoop, Measurement
+from stickslip.model.measurement import Measured, MeasuredBackbone, MeasuredLoop, Measurement
 from stickslip.settings.entries import (
     ONE_OF,
     Count,
     Dof,
     Factor,
+    Index,
     Measure,
     Newtons,
     Number,
@@ -29,18 +30,25 @@ from stickslip.settings.entries import (
 from stickslip.units import quantity
 
 _UFF = (".uff", ".unv", ".58")
+_OF_AMPLITUDES = ("relative_noise", "noise")
 
 
 class MeasurementTable(Table):
-    """One test: a response curve at a DOF, or a hysteresis loop of a contact."""
+    """One test: a response curve at a DOF, a hysteresis loop of a contact, or a backbone."""
 
     file: Text = Field(
         description="Text file of two columns, frequency and amplitude, of loops displacement and "
-        "force; or a UFF file with one frequency response function.",
+        "force; of backbones of three, amplitude, frequency and damping ratio; or a UFF file with "
+        "one frequency response function.",
         examples=["level-5.csv"],
     )
     dof: Dof | None = Field(default=None, description="The DOF that was measured.")
     contact: Text | None = Field(default=None, description="Instead: the contact of a loop.")
+    mode: Index | None = Field(
+        default=None,
+        description="Mode of a backbone, counted from 0; with `dof` its amplitudes are those of "
+        "that DOF, else modal ones [m kg^(1/2)].",
+    )
     name: Text | None = Field(default=None, description="Its name in tables and pictures.")
     level: Factor = Field(default=1.0, description="Factor on all forces in this test.")
     at: dict[str, Number] = Field(
@@ -66,16 +74,31 @@ class MeasurementTable(Table):
         default=None,
         description="Instead: standard deviation of all amplitudes [m], or forces [N].",
     )
+    frequency_noise: Ratio | None = Field(
+        default=None, description="Of backbones: standard deviation of frequencies over themselves."
+    )
+    damping_noise: Ratio | None = Field(
+        default=None, description="Of backbones: that of the damping ratios over themselves."
+    )
 
     @model_validator(mode="after")
     def _require_one(self) -> MeasurementTable:
-        if (self.dof is None) == (self.contact is None):
-            raise ValueError("give one of 'dof' and 'contact'")
+        if self.mode is not None and self.contact is not None:
+            raise ValueError("'mode' is for a backbone, 'contact' for a loop; give one of them")
+        if self.mode is None and (self.dof is None) == (self.contact is None):
+            raise ValueError("give one of 'dof' and 'contact', or 'mode' of a backbone")
+        backbone = self.mode is not None
+        for key in ("frequency_noise", "damping_noise") if not backbone else _OF_AMPLITUDES:
+            if getattr(self, key) is not None:
+                kind = "a backbone" if not backbone else "amplitudes and forces"
+                raise ValueError(f"{key!r} is for {kind}; leave it out")
         return self
 
     def read(self, folder: Path) -> Measured:
         """Return the measurement, without a model of its own."""
         file = folder / self.file
+        if self.mode is not None:
+            return self._backbone(file, self.mode)
         more: dict[str, Any] = {
             "relative_noise": self.relative_noise,
             "noise": self.noise,
@@ -87,13 +110,36 @@ class MeasurementTable(Table):
                 raise ModelError(f"{file}: holds {len(frfs)} functions; give a file of one")
             return Measurement.of_frf(frfs[0], self.dof, self.force, **more)
         first, second = read_curve(file)
-        length = quantity(f"1 {self.length_unit}", "m", "length_unit")
+        length = self._length
         if self.contact is not None:
             return MeasuredLoop(
                 self.contact, first * length, second, harmonics=self.harmonics, **more
             )
-        rate = quantity(f"1 {self.frequency_unit}", "rad/s", "frequency_unit")
-        return Measurement(first * rate, str(self.dof), second * length, self.measure, **more)
+        omega, amplitude = first * self._rate, second * length
+        return Measurement(omega, str(self.dof), amplitude, self.measure, **more)
+
+    def _backbone(self, file: Path, mode: int) -> Measured:
+        """Return the backbone of a file."""
+        amplitude, frequency, damping_ratio = read_curve(file, columns=3)
+        return MeasuredBackbone(
+            amplitude if self.dof is None else amplitude * self._length,
+            frequency * self._rate,
+            damping_ratio,
+            dof=self.dof,
+            measure=self.measure,
+            mode=mode,
+            frequency_noise=self.frequency_noise,
+            damping_noise=self.damping_noise,
+            name=self.name or file.stem,
+        )
+
+    @property
+    def _length(self) -> float:
+        return quantity(f"1 {self.length_unit}", "m", "length_unit")
+
+    @property
+    def _rate(self) -> float:
+        return quantity(f"1 {self.frequency_unit}", "rad/s", "frequency_unit")
 
     def model_of(self, model: Model) -> Model:
         """Return the model of the test."""

@@ -44,7 +44,14 @@ class FitView(View[Fit]):
         units = {"length_unit": output.length_unit, "omega_unit": output.omega_unit}
         drawn: Panels = []
         for one in results:
-            drawn += [partial(plots.fit, one, **units), partial(plots.fit_residuals, one)]
+            if one.of_curves.any() or one.of_loops.any():
+                drawn.append(partial(plots.fit, one, **units))
+            drawn += [
+                partial(plots.fit_backbone, one, damping=damping, **units)
+                for damping in (False, True)
+                if one.of_backbones(damping=damping).any()
+            ]
+            drawn.append(partial(plots.fit_residuals, one))
         return drawn
 
     def details(self, result: Fit, dofs: Dofs, output: OutputTable) -> Panels:
