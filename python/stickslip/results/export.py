@@ -171,7 +171,7 @@ def _matlab(result: Result, file: Path, _: str | None) -> bytearray | memoryview
             f"{file}: MATLAB's format cannot hold it ({error}); save the result as .nc, "
             "which MATLAB reads too"
         ) from None
-    return content.getbuffer()
+    return memoryview(content.getbuffer())
 
 
 def _plain(value: Any) -> Any:
