@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from dataclasses import fields, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -69,6 +70,16 @@ KINDS = {
 @pytest.fixture(scope="module")
 def results():
     return {name: make() for name, (make, _) in KINDS.items()}
+
+
+@pytest.fixture(scope="module")
+def sweeps():
+    """Over the same frequencies, and over frequencies of their own."""
+    forces = [50.0, 200.0, 800.0]
+    return [
+        ss.sweep(BEAM, partial(ss.forced_response, omega=omega, harmonics=3), slip_force=forces)
+        for omega in (GRID, (180.0, 200.0))
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -137,6 +148,30 @@ def test_a_curve_as_a_table(frf):
     third = harmonics[(harmonics["dof"] == "tip") & (harmonics["harmonic"] == 3)]
     same(third["displacement_imag"], frf.coefficients("tip")[:, 3].imag)
     assert table.attrs["units"]["amplitude"] == "m"
+
+
+@pytest.mark.slow
+def test_a_sweep_is_one_table_with_its_parameter(sweeps, tmp_path):
+    for sweep in sweeps:
+        table = sweep.to_pandas()
+        assert list(table.columns[:3]) == ["slip_force", "omega", "dof"]
+        assert table.attrs["units"]["slip_force"] == "N"
+        assert set(table.attrs["units"]) == set(table.attrs["meanings"]) == set(table.columns)
+        assert len(table) == sweep.tables().rows("omega-dof")
+        for value, one in zip(sweep.values, sweep.results, strict=True):
+            own = table[table["slip_force"] == value].drop(columns="slip_force")
+            mine = one.to_pandas()
+            pd.testing.assert_frame_equal(own.reset_index(drop=True), mine, check_exact=True)
+        sweep.export(tmp_path / "a.csv")
+        head = (tmp_path / "a.csv").read_text().splitlines()[0]
+        assert head.startswith("slip_force [N],omega [rad/s],dof,")
+        sweep.export(tmp_path / "a.mat")
+        amplitude = sweep.to_dataset()["amplitude"].values
+        np.testing.assert_array_equal(loadmat(tmp_path / "a.mat")["amplitude"], amplitude)
+        pytest.importorskip("openpyxl")
+        sweep.export(tmp_path / "a.xlsx")
+        read = pd.read_excel(tmp_path / "a.xlsx", sheet_name="omega-dof")
+        assert len(read) == len(table)
 
 
 def test_events_know_their_orbit(results):

@@ -7,7 +7,7 @@ curve, is repeated in every row to which it belongs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -54,6 +54,51 @@ class Tables(Mapping[str, Frame]):
     def rows(self, name: str) -> int:
         """Return the number of rows of a table."""
         return int(np.prod([self._dataset.sizes[one] for one in self._dims[name]], dtype=np.int64))
+
+
+class Family(Tables):
+    """The tables of results along a parameter, one below the other, with its value in front."""
+
+    def __init__(
+        self, members: Sequence[Tables], parameter: str, unit: str, values: Sequence[float]
+    ) -> None:
+        self._members, self._values = members, values
+        self._parameter, self._unit = parameter, unit
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(dict.fromkeys(name for member in self._members for name in member))
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
+
+    def __getitem__(self, name: str) -> Frame:
+        import pandas as pd
+
+        frames = []
+        for value, member in zip(self._values, self._members, strict=True):
+            if name in member:
+                frame = member[name]
+                taken = self._parameter in frame
+                parameter = f"swept_{self._parameter}" if taken else self._parameter
+                frame.insert(0, parameter, value)
+                frames.append(frame)
+        if not frames:
+            raise KeyError(name)
+        units, meanings = (frames[0].attrs[told] for told in ("units", "meanings"))
+        whole = pd.concat(frames, ignore_index=True)
+        whole.attrs = {
+            "units": {parameter: self._unit, **units},
+            "meanings": {parameter: self._parameter.replace("_", " "), **meanings},
+        }
+        return whole
+
+    def holding(self, variable: str) -> str:
+        """Return the name of the table of a variable; without such a variable the first table."""
+        return self._members[0].holding(variable)
+
+    def rows(self, name: str) -> int:
+        """Return the number of rows of a table."""
+        return sum(member.rows(name) for member in self._members if name in member)
 
 
 def _frame(dataset: Dataset, dims: tuple[str, ...]) -> Frame:
