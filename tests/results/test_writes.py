@@ -183,7 +183,7 @@ WRITERS = {
     "a.json": (schema, "cli/commands.py"),
     "a.uff": (universal_file, "io/frf.py"),
     **{f"a.{end}": (export, "results/export.py") for end in ("csv", "parquet", "xlsx", "mat")},
-    "a.vtu": (mesh, "fe/solid.py"),
+    "a.vtu": (mesh, "fe/mesh.py"),
     "b.png": (reproduced_picture, "stickslip_reproduce/folder.py"),
     "fig-2.3.json": (reproduced_record, "stickslip_reproduce/folder.py"),
     "index.html": (reproduced_index, "stickslip_reproduce/folder.py"),
