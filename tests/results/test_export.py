@@ -168,10 +168,9 @@ def test_a_sweep_is_one_table_with_its_parameter(sweeps, tmp_path):
         sweep.export(tmp_path / "a.mat")
         amplitude = sweep.to_dataset()["amplitude"].values
         np.testing.assert_array_equal(loadmat(tmp_path / "a.mat")["amplitude"], amplitude)
-        pytest.importorskip("openpyxl")
-        sweep.export(tmp_path / "a.xlsx")
-        read = pd.read_excel(tmp_path / "a.xlsx", sheet_name="omega-dof")
-        assert len(read) == len(table)
+    pytest.importorskip("openpyxl")
+    sweeps[0].export(tmp_path / "a.xlsx")
+    assert len(pd.read_excel(tmp_path / "a.xlsx", sheet_name="omega-dof")) == 3 * 36
 
 
 def test_events_know_their_orbit(results):

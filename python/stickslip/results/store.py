@@ -105,7 +105,8 @@ def load(path: str | os.PathLike[str]) -> Any:
     """
     source, dataset = _opened(path)
     kind = _required_kind(dataset, source)
-    return _made(source, "result", lambda: kind.from_dataset(_joined(dataset), model_of(dataset)))
+    fault = "not a complete stickslip result"
+    return _made(source, fault, lambda: kind.from_dataset(_joined(dataset), model_of(dataset)))
 
 
 def load_dataset(
@@ -117,7 +118,7 @@ def load_dataset(
     if stored != kind:
         raise ModelError(f"{source}: holds no {kind}, but {brief(stored)}; give another file")
     _require_version(dataset, source)
-    return _made(source, kind, lambda: make(_joined(dataset)))
+    return _made(source, f"not a complete stickslip {kind}", lambda: make(_joined(dataset)))
 
 
 def _opened(path: str | os.PathLike[str]) -> tuple[Path, Dataset]:
@@ -127,14 +128,14 @@ def _opened(path: str | os.PathLike[str]) -> tuple[Path, Dataset]:
     return source, _read(source)
 
 
-def _made(source: Path, noun: str, make: Callable[[], _Made]) -> _Made:
+def _made(source: Path, fault: str, make: Callable[[], _Made]) -> _Made:
     try:
         return make()
     except Exception as error:
         # What a file without a seal holds may lead the code below anywhere, RecursionError and
         # MemoryError among it.
         raise ModelError(
-            f"{source}: not a complete stickslip {noun} ({_line(error)}); compute and save it again"
+            f"{source}: {fault} ({_line(error)}); compute and save it again"
         ) from error
 
 
