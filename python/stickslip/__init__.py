@@ -36,7 +36,7 @@ _NAMES = {
     "disk": "BladedDisk Coupling InfluenceCoefficients Interface MistunedDisk "
     "aerodynamic_waves cyclic_sector mistuning_pattern",
     "errors": "Interrupted ModelError",
-    "fe": "Reduction Solid craig_bampton",
+    "fe": "Mesh Reduction Solid craig_bampton",
     "html.report": "report",
     "io": "Frf read_dofs read_frf read_matrix write_frf",
     "model": "BoucWen ContactLaw Coulomb Cubic Force Iwan Jenkins Masing ModalDamping Model "

@@ -39,6 +39,7 @@ from stickslip.disk import cyclic_sector as cyclic_sector
 from stickslip.disk import mistuning_pattern as mistuning_pattern
 from stickslip.errors import Interrupted as Interrupted
 from stickslip.errors import ModelError as ModelError
+from stickslip.fe import Mesh as Mesh
 from stickslip.fe import Reduction as Reduction
 from stickslip.fe import Solid as Solid
 from stickslip.fe import craig_bampton as craig_bampton

@@ -1,4 +1,4 @@
-"""The commands that take result files: ``show``, ``plot``, ``certify``, ``report``; ``schema``."""
+"""The commands that take result files: show, plot, certify, report and export; and schema."""
 
 from __future__ import annotations
 
@@ -186,3 +186,43 @@ def report(
         length_unit=cast("Literal['auto', 'm', 'mm', 'um']", length),
     )
     tell(f"report: {page}")
+
+
+@command(
+    "stickslip export results/snecma-beam-*.nc --to csv",
+    "stickslip export results/snecma-beam-20.313.nc --out beam.xlsx",
+    "stickslip export results/snecma-beam-20.313.nc --to parquet --table omega-harmonic-dof",
+    "stickslip export results/snecma-beam-20.313.nc --to csv --table all",
+    note="Needs for Excel and Parquet: pip install 'stickslip\\[export]'; for Universal Files "
+    "'stickslip\\[fe]'.",
+)
+def export(
+    results: Files,
+    to: Annotated[
+        str | None,
+        typer.Option(help="csv, parquet, xlsx (Excel), mat (MATLAB) or uff.", metavar="FORMAT"),
+    ] = None,
+    out: Annotated[Path | None, _file(help="File to write; its ending says the format.")] = None,
+    table: Annotated[
+        str | None, typer.Option(help="Table to write, or 'all'; default: that of the amplitudes.")
+    ] = None,
+) -> None:
+    """Write the numbers of results for other programs, beside the results."""
+    from stickslip import load
+    from stickslip.cli.console import tell
+    from stickslip.results.export import FORMATS, ending
+
+    if (to is None) == (out is None):
+        raise ModelError("export: give --to, as csv, or --out, as beam.csv")
+    if out is not None and (len(results) > 1 or table == "all"):
+        raise ModelError(f"--out = {str(out)!r} is one file; give --to for several")
+    suffix = ending(out.suffix if out else f".{to}", "--out" if out else "--to")
+    for file in results:
+        result = load(file)
+        several = table == "all" and FORMATS[suffix].tables == "one"
+        names = list(result.tables()) if several else [None if table == "all" else table]
+        for name in names:
+            part = "" if name is None else f"-{name}"
+            target = out or file.with_name(f"{file.stem}{part}{suffix}")
+            result.export(target, name)
+            tell(f"export: {target}")

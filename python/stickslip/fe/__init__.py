@@ -2,9 +2,18 @@
 
 from stickslip.calls import checked_names
 from stickslip.fe.component_modes import craig_bampton
+from stickslip.fe.mesh import Mesh
 from stickslip.fe.reduction import Reduction, ReductionReport
 from stickslip.fe.solid import Solid, von_mises, von_mises_range
 
-__all__ = ["Reduction", "ReductionReport", "Solid", "craig_bampton", "von_mises", "von_mises_range"]
+__all__ = [
+    "Mesh",
+    "Reduction",
+    "ReductionReport",
+    "Solid",
+    "craig_bampton",
+    "von_mises",
+    "von_mises_range",
+]
 
 checked_names(globals(), __all__)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +19,9 @@ from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
 from stickslip.model.structure import Structure
 from stickslip.units import physical_number
+
+if TYPE_CHECKING:
+    from stickslip.results.dataset import Dataset
 
 
 class Reduction:
@@ -54,7 +59,7 @@ class Reduction:
         self.row_names, self.asymmetry = row_names, asymmetry
         self.boundary, self.rows, self.size = boundary, rows, mass.shape[0]
         self.omega = np.sqrt(squares)
-        self.dofs = (*boundary, *(f"mode-{mode}" for mode in range(1, len(squares) + 1)))
+        self.dofs = _dofs(boundary, len(squares))
         self._basis = np.zeros((self.size, len(self.dofs)))
         inner = np.setdiff1d(np.arange(self.size), rows)
         kept = len(rows)
@@ -70,6 +75,9 @@ class Reduction:
         M[kept:, kept:] = np.eye(len(squares))
         self.mass: Matrix = 0.5 * (M + M.T)
         self.stiffness: Matrix = 0.5 * (K + K.T)
+        self._freeze()
+
+    def _freeze(self) -> None:
         for array in (self.mass, self.stiffness, self.rows, self.omega, self._basis):
             array.flags.writeable = False
 
@@ -78,6 +86,41 @@ class Reduction:
             f"Reduction({self.size} dofs to {len(self.boundary)} of the boundary and "
             f"{self.omega.size} modes)"
         )
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the reduction to a NetCDF file, whole or not at all.
+
+        Parameters
+        ----------
+        path : path-like
+            The file; an existing one is replaced. Read it with `load`.
+
+        Raises
+        ------
+        ModelError
+            If the file cannot be written.
+        """
+        from stickslip.results.store import save_dataset
+
+        save_dataset(path, KIND, dataset_of(self))
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Reduction:
+        """Read a reduction that `save` wrote; it is equal to that one, bit by bit.
+
+        Parameters
+        ----------
+        path : path-like
+            The file.
+
+        Raises
+        ------
+        ModelError
+            If there is no such file, or it is damaged or holds something else.
+        """
+        from stickslip.results.store import load_dataset
+
+        return load_dataset(path, KIND, reduction_of)
 
     def structure(self, damping: MatrixLike | DampingLaw | None = None) -> Structure:
         """Return the reduced structure, with the degrees of freedom `dofs`.
@@ -169,6 +212,94 @@ class Reduction:
                 held = float(np.abs(self.full_stiffness @ moved).sum())
                 grounding[way] = held / total if total else 0.0
         return masses, grounding
+
+
+KIND = "reduction"
+"""What files call it."""
+
+
+def dataset_of(reduction: Reduction) -> Dataset:
+    """Return a reduction as a dataset of everything that it has."""
+    import xarray as xr
+
+    variables: dict[str, Any] = {
+        "reduced_mass": (("dof", "other_dof"), reduction.mass, "kg", "reduced mass matrix"),
+        "reduced_stiffness": (
+            ("dof", "other_dof"),
+            reduction.stiffness,
+            "N/m",
+            "reduced stiffness matrix",
+        ),
+        "basis": (("row", "dof"), reduction._basis, "1", "T of x = T q"),
+        "rows": ("boundary", reduction.rows, "1", "rows of the boundary in the full matrices"),
+        "boundary": ("boundary", np.array(reduction.boundary, np.str_), "1", "names of boundary"),
+        "omega": ("mode", reduction.omega, "rad/s", "frequency of the fixed-interface modes"),
+    }
+    for name, unit, matrix in (
+        ("mass", "kg", reduction.full_mass),
+        ("stiffness", "N/m", reduction.full_stiffness),
+    ):
+        for part in _SPARSE:
+            meaning = f"{part} of the compressed columns of the full {name} matrix"
+            own = unit if part == "data" else "1"
+            along = f"{name}_column" if part == "indptr" else f"{name}_entry"
+            variables[f"{name}_{part}"] = (along, getattr(matrix, part), own, meaning)
+    if reduction.row_names is not None:
+        names = np.array(reduction.row_names, np.str_)
+        variables["row_names"] = ("row", names, "1", "names of the rows")
+    return xr.Dataset(
+        {
+            name: (dims, values, {"units": unit, "long_name": meaning})
+            for name, (dims, values, unit, meaning) in variables.items()
+        },
+        attrs={
+            "title": "Structure reduced to component modes",
+            "decoupling": reduction.decoupling,
+            "asymmetry": np.array(reduction.asymmetry),
+        },
+    )
+
+
+def reduction_of(dataset: Dataset) -> Reduction:
+    """Return the reduction that a dataset holds; a ValueError if its parts do not fit together."""
+    made = Reduction.__new__(Reduction)
+    basis = dataset["basis"].values
+    made.size, count = basis.shape
+    made._basis = basis
+    made.mass, made.stiffness = dataset["reduced_mass"].values, dataset["reduced_stiffness"].values
+    made.rows, made.omega = dataset["rows"].values, dataset["omega"].values
+    made.boundary = tuple(map(str, dataset["boundary"].values))
+    made.dofs = _dofs(made.boundary, made.omega.size)
+    made.full_mass = _sparse_of(dataset, "mass", made.size)
+    made.full_stiffness = _sparse_of(dataset, "stiffness", made.size)
+    named = "row_names" in dataset
+    made.row_names = tuple(map(str, dataset["row_names"].values)) if named else None
+    first, second = map(float, dataset.attrs["asymmetry"])
+    made.asymmetry, made.decoupling = (first, second), float(dataset.attrs["decoupling"])
+    shapes = made.mass.shape, made.stiffness.shape, made.rows.shape
+    if shapes != ((count, count), (count, count), (len(made.boundary),)):
+        raise ValueError(f"matrices of shape {shapes[0]} for {count} columns of the basis")
+    if len(made.dofs) != count or (named and len(made.row_names or ()) != made.size):
+        raise ValueError(f"{len(made.dofs)} names for {count} columns of the basis")
+    if ((made.rows < 0) | (made.rows >= made.size)).any():
+        raise ValueError("the boundary lies outside the full matrices")
+    made._freeze()
+    return made
+
+
+_SPARSE = ("data", "indices", "indptr")
+
+
+def _sparse_of(dataset: Dataset, name: str, size: int) -> csc_array:
+    data, indices, indptr = (dataset[f"{name}_{part}"].values for part in _SPARSE)
+    matrix = csc_array((data, indices, indptr), shape=(size, size))
+    # Wrong indices would lead outside the vectors that it is multiplied with.
+    matrix.check_format(full_check=True)
+    return matrix
+
+
+def _dofs(boundary: tuple[str, ...], modes: int) -> tuple[str, ...]:
+    return (*boundary, *(f"mode-{mode}" for mode in range(1, modes + 1)))
 
 
 _RIGID = 1e-3

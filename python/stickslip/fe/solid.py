@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import file_path, optional_package, real_number, whole_number
+from stickslip.checks import optional_package, real_number, whole_number
 from stickslip.errors import ModelError
-from stickslip.files import refusal, write
+from stickslip.fe.mesh import write_vtu
 from stickslip.units import physical_number
 
 if TYPE_CHECKING:
@@ -174,20 +172,7 @@ class Solid:
         `fields` are real values at the nodes by name, shape (n,) or (n, 3). The package meshio is
         needed.
         """
-        meshio = optional_package("meshio", f"{path}: .vtu files")
-        file = file_path(path, "path")
-        values = {name: np.asarray(value, dtype=np.float64) for name, value in fields.items()}
-        cells = [("hexahedron20", self._vtk_cells)]
-        mesh = meshio.Mesh(self.nodes, cells, point_data=values)
-        try:
-            # meshio writes to files by name only.
-            with tempfile.TemporaryDirectory() as folder:
-                made = Path(folder) / "mesh.vtu"
-                mesh.write(made)
-                content = made.read_bytes()
-        except OSError as error:
-            raise refusal(file, "cannot be written", error) from error
-        write(file, content)
+        write_vtu(path, self.nodes, [("hexahedron20", self._vtk_cells)], fields)
 
     def _assembled(self, whole: NDArray[np.float64]) -> csc_array:
         """Add up matrices of elements, shape (elements, 20, 3, 20, 3)."""

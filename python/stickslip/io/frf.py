@@ -163,14 +163,19 @@ def write_frf(path: str | os.PathLike[str], functions: Frf | Iterable[Frf]) -> N
     needed.
     """
     file = file_path(path, "path")
-    pyuff = optional_package("pyuff", f"{file}: Universal Files")
     given = (functions,) if isinstance(functions, Frf) else members(functions, "frf", "[frf, ...]")
-    sets = [_dataset(pyuff, one) for one in given]
+    write(file, universal_file(file, given))
+
+
+def universal_file(file: Path, functions: Iterable[Frf]) -> bytes:
+    """Return the content of a Universal File; see `write_frf`."""
+    pyuff = optional_package("pyuff", f"{file}: Universal Files")
+    sets = [_dataset(pyuff, one) for one in functions]
     content = io.StringIO()
     for one in sets:
         # `UFF.write_sets` writes to files by name only, and hides why a disk refuses them.
         pyuff.pyuff._write58(content, one)
-    write(file, content.getvalue().encode())
+    return content.getvalue().encode()
 
 
 def _frf(dataset: Mapping[str, object]) -> Frf:

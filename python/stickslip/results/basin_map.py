@@ -38,6 +38,7 @@ class BasinMap(ColumnResult):
 
     kind: ClassVar[str] = "basin_map"
     title = "What becomes of free motions with dry friction"
+    headline = "amplitude"
 
     settings: BasinSettings
     arrays: FateArrays

@@ -265,7 +265,12 @@ class ExactResponse(FloquetStability, ForcedResponse):
         return max(peaks.items(), key=lambda one: one[1].amplitude)
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
-        return super()._further_variables(derived=derived) | self._stable("omega")
+        made = super()._further_variables(derived=derived) | self._stable("omega")
+        if derived:
+            counts = np.diff(self.arrays.event_offset)
+            about = {"units": "rad/s", "long_name": "angular frequency of the orbit of the event"}
+            made["event_omega"] = ("event", np.repeat(self.omega, counts), about)
+        return made
 
     @classmethod
     def _states(cls, model: Model, *, half_wave: bool) -> list[str]:

@@ -89,6 +89,7 @@ class MistuningStudy(ColumnResult):
 
     kind: ClassVar[str] = "mistuning_study"
     title = "Amplification factors of mistuned disks"
+    headline = "amplitude"
 
     settings: MistuningSettings
     arrays: MistuningArrays

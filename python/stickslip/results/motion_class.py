@@ -54,6 +54,7 @@ class MotionClass(ColumnResult):
 
     kind: ClassVar[str] = "motion_class"
     title = "What becomes of a free motion with dry friction"
+    headline = "amplitude"
     attributes: ClassVar[Attributes] = {"interrupted": bool, "step": float}
 
     settings: ClassifySettings

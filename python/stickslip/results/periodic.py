@@ -35,6 +35,8 @@ from stickslip.units import physical_number
 class PeriodicMotions(ColumnResult):
     """Periodic motions, one after the other."""
 
+    headline = "amplitude"
+
     arrays: PeriodicArrays
 
     @cached_property

@@ -30,6 +30,7 @@ from stickslip.results.dataset import (
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.documented import Frozen
 from stickslip.results.fields import Columns, Float, Shown
+from stickslip.results.table import Frame, Tables
 from stickslip.settings.settings import Settings
 
 Kind = TypeVar("Kind", bound=np.generic)
@@ -72,6 +73,8 @@ class Result(Frozen, ABC):
 
     kind: ClassVar[str]
     """Name of this kind of result in files."""
+    headline: ClassVar[str] = ""
+    """Variable whose table is the main one; by default the first of the dataset."""
 
     model: Model
     dofs: tuple[str, ...]
@@ -140,6 +143,59 @@ class Result(Frozen, ABC):
         from stickslip.results.store import save
 
         save(path, self.kind, self.to_dataset(derived=False), self.model)
+
+    def tables(self) -> Tables:
+        """Return the numbers as tidy tables by name, each a pandas DataFrame.
+
+        Variables with the same dimensions make one table, of which these are the name: "omega-dof"
+        has one row per frequency and degree of freedom. Complex numbers are two columns, codes are
+        words. ``attrs["units"]`` and ``attrs["meanings"]`` of a table tell of its columns.
+        """
+        return Tables(self.to_dataset())
+
+    def to_pandas(self, table: str | None = None) -> Frame:
+        """Return one of the `tables` as a pandas DataFrame.
+
+        Parameters
+        ----------
+        table : str, optional
+            Its name. Default: that of the main numbers, as the amplitudes of a curve.
+
+        Raises
+        ------
+        ModelError
+            If there is no such table.
+        """
+        from stickslip.results.export import table_of
+
+        tables = self.tables()
+        return tables[table_of(self, tables, table)]
+
+    def export(self, path: str | PathLike[str], table: str | None = None) -> None:
+        """Write the numbers for another program, whole or not at all.
+
+        The ending says for which: `.csv` and `.parquet` hold one of the `tables`, `.xlsx` all of
+        them as sheets, with units in the headers; `.mat` (MATLAB) holds the variables of
+        `to_dataset` as arrays; `.uff` and `.unv` (Universal Files) the receptances of a forced
+        response. Files of `save` alone can be loaded again. Parquet needs the package pyarrow,
+        Excel openpyxl, Universal Files pyuff.
+
+        Parameters
+        ----------
+        path : path-like
+            The file; an existing one is replaced.
+        table : str, optional
+            The table. Default: as of `to_pandas`, of Excel all of them.
+
+        Raises
+        ------
+        ModelError
+            If the format or the table is unknown, cannot hold the result, or needs a package that
+            is missing, or the file cannot be written.
+        """
+        from stickslip.results.export import export
+
+        export(self, path, table)
 
     def locate(self, contact: PointRef) -> tuple[int, int | None]:
         """Return the position of a contact, and of its point; None for the whole contact."""

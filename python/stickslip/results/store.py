@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -41,6 +41,11 @@ KINDS: Mapping[str, tuple[str, str]] = {
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""
 
+OTHERS: Mapping[str, str] = {"reduction": "stickslip.Reduction.load"}
+"""What is saved beside results, with what reads it."""
+
+_Made = TypeVar("_Made")
+
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"
 """Marks what has a length and no numbers."""
 
@@ -49,7 +54,12 @@ FORMAT = 2
 
 
 def save(path: str | os.PathLike[str], kind: str, dataset: Dataset, model: Model) -> None:
-    """Write the dataset of a result, also a partial one, with its model; see `Result.save`.
+    """Write the dataset of a result, also a partial one, with its model; see `Result.save`."""
+    save_dataset(path, kind, dataset.assign(model_variables(model)))
+
+
+def save_dataset(path: str | os.PathLike[str], kind: str, dataset: Dataset) -> None:
+    """Write a dataset of some kind.
 
     Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
     reader opens the file; what follows from other variables is left out. Contacts and forces are
@@ -58,7 +68,7 @@ def save(path: str | os.PathLike[str], kind: str, dataset: Dataset, model: Model
     """
     target = file_path(path, "path")
     require_place(target)
-    dataset = _split(dataset.assign(model_variables(model))).assign(seal_variable())
+    dataset = _split(dataset).assign(seal_variable())
     dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": kind}
     write(target, sealed(_netcdf(dataset)))
 
@@ -93,18 +103,39 @@ def load(path: str | os.PathLike[str]) -> Any:
     ModelError
         If there is no such file, it is damaged, from elsewhere, or of a newer format.
     """
+    source, dataset = _opened(path)
+    kind = _required_kind(dataset, source)
+    fault = "not a complete stickslip result"
+    return _made(source, fault, lambda: kind.from_dataset(_joined(dataset), model_of(dataset)))
+
+
+def load_dataset(
+    path: str | os.PathLike[str], kind: str, make: Callable[[Dataset], _Made]
+) -> _Made:
+    """Return what is made of a dataset that `save_dataset` wrote, of the kind that is wanted."""
+    source, dataset = _opened(path)
+    stored = dataset.attrs.get("stickslip_kind")
+    if stored != kind:
+        raise ModelError(f"{source}: holds no {kind}, but {brief(stored)}; give another file")
+    _require_version(dataset, source)
+    return _made(source, f"not a complete stickslip {kind}", lambda: make(_joined(dataset)))
+
+
+def _opened(path: str | os.PathLike[str]) -> tuple[Path, Dataset]:
     source = file_path(path, "path")
     if not is_file(source):
         raise ModelError(f"{source}: no such file")
-    dataset = _read(source)
-    kind = _required_kind(dataset, source)
+    return source, _read(source)
+
+
+def _made(source: Path, fault: str, make: Callable[[], _Made]) -> _Made:
     try:
-        return kind.from_dataset(_joined(dataset), model_of(dataset))
+        return make()
     except Exception as error:
         # What a file without a seal holds may lead the code below anywhere, RecursionError and
         # MemoryError among it.
         raise ModelError(
-            f"{source}: not a complete stickslip result ({_line(error)}); compute and save it again"
+            f"{source}: {fault} ({_line(error)}); compute and save it again"
         ) from error
 
 
@@ -162,19 +193,27 @@ def _required_kind(dataset: Dataset, source: Path) -> Any:
     kind, version = (dataset.attrs.get(f"stickslip_{key}") for key in ("kind", "format"))
     if kind is None or version is None:
         raise ModelError(f"{source}: a NetCDF file, but not a stickslip result")
+    if isinstance(kind, str) and kind in OTHERS:
+        raise ModelError(f"{source}: holds a {kind}, no result; read it with {OTHERS[kind]}")
     if not isinstance(kind, str) or kind not in KINDS:
         raise ModelError(
             f"{source}: holds {brief(kind)}, this version reads {listed(list(KINDS))}; upgrade "
             "stickslip"
         )
+    _require_version(dataset, source)
+    module, name = KINDS[kind]
+    return getattr(import_module(module), name)
+
+
+def _require_version(dataset: Dataset, source: Path) -> None:
+    """Refuse a layout that this version does not know."""
+    version = dataset.attrs.get("stickslip_format")
     if not isinstance(version, int | np.integer) or not 1 <= version <= FORMAT:
         writer = dataset.attrs.get("stickslip_version", "another version")
         raise ModelError(
             f"{source}: written by stickslip {_line(writer)} in format {_line(version)}, this "
             f"version reads format 1 to {FORMAT}; upgrade stickslip"
         )
-    module, name = KINDS[kind]
-    return getattr(import_module(module), name)
 
 
 def _split(dataset: Dataset) -> Dataset:

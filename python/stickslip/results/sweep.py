@@ -19,6 +19,7 @@ from stickslip.results.diagnostic import Diagnostic
 from stickslip.results.fields import Float
 from stickslip.results.result import Result
 from stickslip.results.stored_model import model_of, model_variables
+from stickslip.results.table import Family, Tables
 from stickslip.settings.sweep import SweepSettings
 
 _SEVERAL = ("curves", "damper", "limit_cycles", "backbone")
@@ -101,6 +102,16 @@ class Sweep(Result):
         "position", and "omega" a variable; what is missing is not-a-number.
         """
         return self._family() if derived else self._packed()
+
+    def tables(self) -> Tables:
+        """Return the tables of all results, one below the other, the parameter in front."""
+        members = [one.tables() for one in self.results]
+        return Family(members, self.parameter, self.unit, self.values.tolist())
+
+    @property
+    def headline(self) -> str:  # type: ignore[override]
+        """Variable whose table is the main one: that of the results."""
+        return self.results[0].headline
 
     def _family(self) -> Dataset:
         import xarray as xr

@@ -1,0 +1,218 @@
+"""Results for other programs: tables as CSV, Parquet and Excel, arrays as MATLAB, UFF58."""
+
+from __future__ import annotations
+
+import io
+import math
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+
+from stickslip.checks import brief, file_path, optional_package, text, unknown
+from stickslip.errors import ModelError
+from stickslip.files import refusal, require_place, write
+from stickslip.results.table import Frame, Tables
+
+if TYPE_CHECKING:
+    from stickslip.results.result import Result
+
+_ROWS, _COLUMNS, _CHARACTERS = 2**20, 2**14, 2**15 - 1
+"""Of a sheet, and of one of its cells."""
+_TITLE = 31
+"""Characters of the name of a sheet."""
+_ABOUT = "about"
+"""The sheet that says what the columns are."""
+
+
+def export(result: Result, path: str | os.PathLike[str], table: str | None) -> None:
+    """Write a result to a file of another program; see `Result.export`."""
+    file = file_path(path, "path")
+    suffix = ending(file.suffix, str(file))
+    require_place(file)
+    if table is not None and FORMATS[suffix].tables == "none":
+        raise ModelError(f"table: {brief(table)}, but {suffix} files hold no tables; leave it out")
+    write(file, FORMATS[suffix].content(result, file, table))
+
+
+def ending(suffix: str, entry: str) -> str:
+    """Return the ending of a format, ".csv", or refuse one that is unknown."""
+    if suffix.lower() not in FORMATS:
+        raise ModelError(f"{entry}: {unknown('format', suffix, FORMATS)}")
+    return suffix.lower()
+
+
+def table_of(result: Result, tables: Tables, name: str | None) -> str:
+    """Return the name of a table of a result, by default of that of its main numbers."""
+    if name is None:
+        return tables.holding(result.headline)
+    if text(name, "table") not in tables:
+        known = ", ".join(tables)
+        raise ModelError(f"table: {brief(name)} is none of the result; it has {known}")
+    return name
+
+
+def headed(frame: Frame) -> Frame:
+    """Return a table with units in its headers: "omega [rad/s]"."""
+    units = frame.attrs["units"]
+    made = frame.set_axis(
+        [name if units[name] == "1" else f"{name} [{units[name]}]" for name in frame], axis=1
+    )
+    made.attrs = {}
+    return made
+
+
+def _csv(result: Result, file: Path, table: str | None) -> bytes:
+    # Shortest digits that lead back to the same number.
+    written = headed(result.to_pandas(table)).to_csv(index=False, lineterminator="\n")
+    return str(written).encode()
+
+
+def _parquet(result: Result, file: Path, table: str | None) -> bytes:
+    optional_package("pyarrow", f"{file}: Parquet files", extra="export")
+    content = io.BytesIO()
+    headed(result.to_pandas(table)).to_parquet(content, engine="pyarrow", index=False)
+    return content.getvalue()
+
+
+def _excel(result: Result, file: Path, table: str | None) -> bytes:
+    openpyxl = optional_package("openpyxl", f"{file}: Excel files", extra="export")
+    tables = result.tables()
+    names = list(tables) if table is None else [table_of(result, tables, table)]
+    for name in names:
+        if tables.rows(name) >= _ROWS:
+            raise ModelError(
+                f"{file}: the table {name} has {tables.rows(name)} rows, a sheet {_ROWS - 1}; "
+                "export it as .csv or .parquet, or give table= another one"
+            )
+    book = openpyxl.Workbook()
+    about = book.active
+    about.title = _ABOUT
+    about.append(["sheet", "table", "column", "unit", "meaning"])
+    for title, name in zip(_titles(names), names, strict=True):
+        frame, sheet = tables[name], book.create_sheet(title)
+        for column, unit in frame.attrs["units"].items():
+            meaning = frame.attrs["meanings"][column]
+            row = [title, name, column, unit, meaning]
+            about.append([_cell(openpyxl, about, file, one) for one in row])
+        sheet.append([_cell(openpyxl, sheet, file, name) for name in headed(frame)])
+        for row in frame.itertuples(index=False, name=None):
+            sheet.append([_cell(openpyxl, sheet, file, value) for value in row])
+    content = io.BytesIO()
+    try:
+        # The package makes its sheets in temporary files.
+        book.save(content)
+    except OSError as error:
+        raise refusal(file, "cannot be written", error) from error
+    return content.getvalue()
+
+
+def _cell(openpyxl: Any, sheet: Any, file: Path, value: Any) -> Any:
+    """Return what a cell holds: numbers, texts that are no formulas, nothing for not-a-number."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else str(value)
+    if not isinstance(value, str):
+        return value
+    if len(value) > _CHARACTERS or openpyxl.cell.cell.ILLEGAL_CHARACTERS_RE.search(value):
+        raise ModelError(
+            f"{file}: a cell cannot hold {brief(value)}; export it as .csv or .parquet"
+        )
+    if not value.startswith("="):
+        return value
+    cell = openpyxl.cell.WriteOnlyCell(sheet, value)
+    cell.data_type = "s"
+    return cell
+
+
+def _titles(names: list[str]) -> list[str]:
+    """Return names of sheets, which are short, different, and not that of the first one."""
+    titles: list[str] = []
+    for name in names:
+        title = name[:_TITLE]
+        if title in (*titles, _ABOUT):
+            mark = f"~{len(titles) + 1}"
+            title = title[: _TITLE - len(mark)] + mark
+        titles.append(title)
+    return titles
+
+
+def _matlab(result: Result, file: Path, _: str | None) -> bytearray | memoryview:
+    """Write every variable as an array with its dimensions; texts about them as structures."""
+    from scipy.io import savemat
+    from scipy.io.matlab import MatWriteError
+
+    dataset = result.to_dataset()
+    made: dict[str, Any] = {}
+    about: dict[str, dict[str, str]] = {"units": {}, "meanings": {}, "dimensions": {}}
+    for variable, data in dataset.variables.items():
+        name, values = str(variable), data.values
+        values = values.reshape(-1, 1) if values.ndim == 1 else values
+        made[name] = values.astype(object) if values.dtype.kind in "UO" else values
+        about["units"][name] = str(data.attrs.get("units", "1"))
+        about["meanings"][name] = str(data.attrs.get("long_name", ""))
+        about["dimensions"][name] = " ".join(map(str, data.dims))
+        if "flag_meanings" in data.attrs:
+            codes = zip(data.attrs["flag_values"], data.attrs["flag_meanings"].split(), strict=True)
+            told = ", ".join(f"{code} {word}" for code, word in codes)
+            about["meanings"][name] += f": {told}"
+    texts = {str(name): _plain(value) for name, value in dataset.attrs.items()}
+    content: Any = io.BytesIO()
+    try:
+        savemat(
+            content,
+            made | about | {"result": texts},
+            do_compression=True,
+            long_field_names=True,
+        )
+    except (MatWriteError, OverflowError) as error:
+        raise ModelError(
+            f"{file}: MATLAB's format cannot hold it ({error}); save the result as .nc, "
+            "which MATLAB reads too"
+        ) from None
+    return memoryview(content.getbuffer())
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, str | np.ndarray | np.generic) else np.asarray(value)
+
+
+def _universal(result: Result, file: Path, _: str | None) -> bytes:
+    from stickslip.io.frf import Frf, universal_file
+    from stickslip.results.forced_response import ForcedResponse
+
+    if not isinstance(result, ForcedResponse):
+        kind = result.kind.replace("_", " ")
+        raise ModelError(
+            f"{file}: a Universal File holds response functions, the result is a {kind}; export it "
+            "as .csv"
+        )
+    forces = list(dict.fromkeys(one.dof for one in result.model.forces if one.harmonic == 1))
+    if len(forces) != 1:
+        raise ModelError(
+            f"{file}: {len(forces)} degrees of freedom have a force of the first harmonic; say in "
+            "Python which one: ss.write_frf(file, ss.Frf.of(result, dof, reference))"
+        )
+    return universal_file(file, [Frf.of(result, dof, forces[0]) for dof in result.dofs])
+
+
+class _Format(NamedTuple):
+    """A kind of file."""
+
+    content: _Content
+    tables: Literal["none", "one", "all"]
+    """How many tables a file holds."""
+
+
+_Content: TypeAlias = Callable[["Result", Path, str | None], bytes | bytearray | memoryview]
+
+FORMATS: Mapping[str, _Format] = {
+    ".csv": _Format(_csv, tables="one"),
+    ".parquet": _Format(_parquet, tables="one"),
+    ".xlsx": _Format(_excel, tables="all"),
+    ".mat": _Format(_matlab, tables="none"),
+    ".uff": _Format(_universal, tables="none"),
+    ".unv": _Format(_universal, tables="none"),
+}
+"""What a result can be exported to, by the ending of the file."""
