@@ -148,6 +148,7 @@ mod tests {
     use crate::contact::{Closure, Coulomb, Jenkins, Residual};
     use crate::fourier::{Harmonics, SampleTable};
     use crate::model::Contact;
+    use crate::model::Model;
     use crate::solve::factorised;
     use crate::structure::{HarmonicLoad, Structure};
     use faer::{c64, mat};
