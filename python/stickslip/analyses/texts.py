@@ -13,6 +13,14 @@ TEXTS = {
     "the mode is an internal resonance there, and other branches lie close by.",
     "turns": "The branch turns back in amplitude at {_listed}.",
     "mode-not-reached": "The branch ended at the amplitude {amplitude:.6g} ({_why}): {_remedy}.",
+    # flutter maps
+    "wave-stability": "Limit cycles count as stable where the damping ratio rises with the "
+    "amplitude: against changes of the amplitude of their own wave. Other waves beside them are "
+    "not looked at.",
+    "waves-missing": "At {points} of {total} amplitudes of waves the nonlinear mode was not found; "
+    "limit cycles there are missing: give amplitudes closer to those around.",
+    "waves-unheld": "{waves} waves still grow at the largest amplitude, {largest:.6g} m kg^(1/2): "
+    "from there nothing holds them as far as was looked.",
     # the method
     "harmonics": "All harmonics from 0 to {most} were solved for{_chosen}.",
     "harmonics/odd": "Only the odd harmonics up to {most} were solved for{_chosen}: the forces and "
