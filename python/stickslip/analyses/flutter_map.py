@@ -2,8 +2,9 @@
 
 The flow's force ``p L p^H x`` acts as the damping ``-Im L / omega_d`` of the frequency omega_d at
 rest, as it does in `stickslip.limit_cycles`: in a motion of amplitude X and frequency omega it does
-the work ``pi (omega / omega_d) Im L |p^H X|^2`` per period, which disk and friction take. A limit cycle is where the damping ratio of the nonlinear
-mode at the amplitude a and that of the flow add up to nothing, ``zeta(a) + zeta_aero(d, a) = 0``.
+the work ``pi (omega / omega_d) Im L |p^H X|^2`` per period, which disk and friction take. A limit
+cycle is where the damping ratio of the nonlinear mode at the amplitude a and that of the flow add
+up to nothing, ``zeta(a) + zeta_aero(d, a) = 0``.
 """
 
 from __future__ import annotations

@@ -26,7 +26,6 @@ from stickslip.model.model import AnyMatrix, PointRef
 from stickslip.model.structural import condensed_stiffness
 from stickslip.model.structure import Structure
 
-
 _PHASES = 1e-12
 """Imaginary part, relative to the whole, that is rounding."""
 

@@ -118,7 +118,7 @@ class FlutterMap(ColumnResult):
     rest_ratio = Shown[Float]()
 
     plot = Drawn("flutter_map")
-    plot_damping = Drawn("flutter_damping")
+    plot_limits = Drawn("aerodynamic_limits")
 
     @property
     def diameters(self) -> Int:
