@@ -207,6 +207,7 @@ def flutter_map(
     tolerance: float = 0.001,
     max_harmonics: int = 63,
     mode: int = 0,
+    multipliers: bool = False,
     amplitude: ArrayLike | tuple[float, float] | None = None,
     points: int = 41,
     progress: Progress = None,

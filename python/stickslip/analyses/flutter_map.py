@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.analyses.run import Progress, Run, share
 from stickslip.analyses.texts import told
+from stickslip.analyses.wave_stability import wave_multiplier
 from stickslip.disk.aerodynamics import Aerodynamics
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.waves import AerodynamicWaves, aerodynamic_waves
 from stickslip.errors import ModelError
-from stickslip.results.diagnostic import Diagnostic, present
+from stickslip.results.diagnostic import present
 from stickslip.results.flutter_map import STATES, FlutterArrays, FlutterMap
 from stickslip.results.nonlinear_modes import NonlinearModes
 from stickslip.settings.flutter import FlutterKeys, FlutterModeSettings, FlutterSettings
@@ -32,6 +33,8 @@ _INSIDE = 8
 _ROUNDS = 2
 _BELOW, _BEYOND = 0.5, 100.0
 """Where amplitudes begin and end by default, in those at which contacts begin to slip."""
+_HARMONICS = 15
+"""Harmonics of the limit cycles whose multipliers are computed, if they are chosen."""
 _FLAT = 1e-9
 """Slope of the damping, relative to its size, that decides nothing."""
 
@@ -49,7 +52,7 @@ def flutter_map(
     Of each nodal diameter the nonlinear mode is computed once; its damping and that of the flow
     add up to zero on limit cycles. Where the sum rises with the amplitude the cycle is stable
     against changes of its own amplitude, where it falls unstable: a start beyond it grows. Whether
-    other waves leave it be is not decided.
+    other waves leave it be is decided by `multipliers` alone.
 
     Parameters
     ----------
@@ -87,7 +90,7 @@ def flutter_map(
     n = disk.sectors
     rows: list[_Wave] = []
     roots: list[tuple[int, _Wave, bool]] = []
-    notes: list[Diagnostic] = []
+    decided: list[tuple[float, bool | None]] = []
     interrupted = False
     with Run("flutter map", progress) as run:
         try:
@@ -97,24 +100,23 @@ def flutter_map(
                     wave = _Follower(waves, diameter, settings, part)
                     row = wave.at(amplitudes)
                     found = wave.roots(row)
+                    known = [_multiplier(waves, settings, diameter, one) for one, _ in found]
                     rows.append(row)
                     roots.extend((diameter, *one) for one in found)
+                    decided.extend(known)
         except KeyboardInterrupt:
             interrupted = True
-        arrays = _arrays(waves, amplitudes, rows, roots)
+        arrays = _arrays(waves, amplitudes, rows, roots, decided if settings.multipliers else None)
         lost = int((~np.isfinite(arrays.omega[: len(rows)])).sum())
         undamped = _unheld(arrays, len(rows))
-        notes = [
-            *present(
-                (
-                    told("wave-stability"),
-                    lost > 0
-                    and told("waves-missing", points=lost, total=len(rows) * amplitudes.size),
-                    undamped > 0
-                    and told("waves-unheld", waves=undamped, largest=float(amplitudes[-1])),
-                )
+        notes = present(
+            (
+                told("wave-stability/ring" if settings.multipliers else "wave-stability"),
+                lost > 0 and told("waves-missing", points=lost, total=len(rows) * amplitudes.size),
+                undamped > 0
+                and told("waves-unheld", waves=undamped, largest=float(amplitudes[-1])),
             )
-        ]
+        )
         result = FlutterMap(
             model=disk,
             dofs=disk.structure.dofs,
@@ -123,7 +125,7 @@ def flutter_map(
             interrupted=interrupted,
             timings={},
             counters={"evaluations": sum(row.evaluations for row in rows)},
-            diagnostics=tuple(notes),
+            diagnostics=notes,
         )
         return run.ended(result, f"{len(rows)} of {n} waves")
 
@@ -298,6 +300,7 @@ def _arrays(
     amplitudes: NDArray[np.float64],
     rows: list[_Wave],
     roots: list[tuple[int, _Wave, bool]],
+    decided: list[tuple[float, bool | None]] | None,
 ) -> FlutterArrays:
     n, size = waves.disk.sectors, len(waves.disk.structure)
 
@@ -308,12 +311,19 @@ def _arrays(
         return values
 
     rank = np.argsort(np.argsort(waves.ratio, kind="stable"))
-    roots = sorted(roots, key=lambda one: (rank[one[0]], float(one[1].amplitude)))
+    placed = sorted(
+        range(len(roots)), key=lambda i: (rank[roots[i][0]], float(roots[i][1].amplitude))
+    )
+    roots = [roots[i] for i in placed]
     slopes = np.array([float(one.flow_ratio) for _, one, _ in roots])
-    states = [
-        STATES.index("not decided" if abs(slope) <= _FLAT else "stable" if rising else "unstable")
-        for slope, (_, _, rising) in zip(slopes, roots, strict=True)
-    ]
+    if decided is None:
+        sizes = np.full(len(roots), np.nan)
+        truths = [None if abs(x) <= _FLAT else x > 0.0 for x in slopes.tolist()]
+    else:
+        sizes = np.array([decided[i][0] for i in placed], dtype=np.float64)
+        truths = [decided[i][1] for i in placed]
+    names = {None: "not decided", False: "unstable", True: "stable"}
+    states = [STATES.index(names[one]) for one in truths]
     at_rest = 1.0 / waves.omega**2
     moved = np.array(
         [abs(np.vdot(waves.forces.directions[d], waves.shapes[d])) ** 2 for d in range(n)]
@@ -336,8 +346,21 @@ def _arrays(
         cycle_amplitude=np.array([float(one.amplitude) for _, one, _ in roots]),
         cycle_omega=np.array([float(one.omega) for _, one, _ in roots]),
         cycle_slope=slopes,
+        cycle_multiplier=sizes,
         cycle_state=np.array(states, dtype=np.int64),
         cycle_displacement=np.array([one.displacement for _, one, _ in roots]).reshape(-1, size),
+    )
+
+
+def _multiplier(
+    waves: AerodynamicWaves, settings: FlutterKeys, diameter: int, cycle: _Wave
+) -> tuple[float, bool | None]:
+    if not settings.multipliers:
+        return np.nan, None
+    largest = int(np.argmax(cycle.displacement))
+    dof, size = waves.disk.structure.dofs[largest], float(cycle.displacement[largest])
+    return wave_multiplier(
+        waves, diameter, size, dof, settings.fixed_harmonics or _HARMONICS, settings.mode
     )
 
 

@@ -28,7 +28,7 @@ FATES: Mapping[Fate, str] = {
 """What becomes of a wave by itself, within the amplitudes that were computed."""
 
 STATES = ("not decided", "unstable", "stable")
-"""Stability of a limit cycle, by the slope of its damping."""
+"""Stability of a limit cycle."""
 
 
 class WaveCycle(NamedTuple):
@@ -43,7 +43,9 @@ class WaveCycle(NamedTuple):
     slope: float
     """d zeta / d ln a of the whole damping there."""
     stability: str
-    """"stable" or "unstable" against changes of its own amplitude, or "not decided"."""
+    """"stable", "unstable" or "not decided": by the multipliers, or without by the slope."""
+    multiplier: float
+    """Largest modulus of the Floquet multipliers but the trivial 1; not-a-number if unknown."""
 
 
 class FlutterArrays(Columns):
@@ -83,7 +85,10 @@ class FlutterArrays(Columns):
     cycle_amplitude: Float = column("cycle", "m kg^(1/2)", "modal amplitude", least=0.0)
     cycle_omega: Float = column("cycle", "rad/s", "angular frequency", least=0.0)
     cycle_slope: Float = column("cycle", "1", "slope of the damping ratio over ln a")
-    cycle_state: Int = column("cycle", "1", "stability by that slope", codes=STATES)
+    cycle_state: Int = column("cycle", "1", "stability, by multipliers or that slope", codes=STATES)
+    cycle_multiplier: Float = column(
+        "cycle", "1", "largest modulus of multipliers but the trivial 1", least=0.0
+    )
     cycle_displacement: Float = column(
         "cycle dof", "m", "half peak-to-peak amplitude of a displacement"
     )
@@ -162,32 +167,36 @@ class FlutterMap(ColumnResult):
                 float(arrays.cycle_omega[i]),
                 float(arrays.cycle_slope[i]),
                 STATES[int(arrays.cycle_state[i])],
+                float(arrays.cycle_multiplier[i]),
             )
             for i in chosen
         )
 
-    def amplitude(self, dof: str, which: Literal["stable", "unstable"] = "stable") -> Float:
+    def amplitude(self, dof: str, which: Literal["bounding", "leaving"] = "bounding") -> Float:
         """Return the amplitude of a displacement on a limit cycle of every wave, shape (n,) [m].
 
-        Of stable ones the first that a wave comes to as it grows from rest, of unstable ones the
-        least: beyond it a start leaves. Not-a-number where there is none.
+        "bounding" are the least at which the damping rises, to which a wave by itself comes,
+        "leaving" the least at which it falls: from beyond them it leaves. Not-a-number where there
+        is none.
         """
-        choice(which, "which", ("stable", "unstable"))
+        choice(which, "which", ("bounding", "leaving"))
         column, arrays = self._column(dof), self.arrays
         found = np.full(self.rest_ratio.size, np.nan)
-        for index in np.flatnonzero(arrays.cycle_state == STATES.index(which))[::-1].tolist():
+        for index in np.flatnonzero((arrays.cycle_slope > 0.0) == (which == "bounding"))[
+            ::-1
+        ].tolist():
             found[arrays.cycle_wave[index]] = arrays.cycle_displacement[index, column]
         return constant(found)
 
     def fate(self, diameter: int) -> Fate:
         """Return what becomes of a wave by itself; `FATES` says what the words mean."""
         place = self._place(diameter)
-        states = [one.stability for one in self.cycles(place)]
+        rises = [one.slope > 0.0 for one in self.cycles(place)]
         rest = self.rest_ratio[place] >= 0.0
-        if not states:
+        if not rises:
             return "decays" if rest else "grows"
-        if states[-1] == "unstable":
-            return "kick" if rest and "stable" not in states else "limit cycle, kick"
+        if not rises[-1]:
+            return "limit cycle, kick" if any(rises) else "kick"
         return "limit cycle"
 
     def limit_amplitude(self, dof: str, aerodynamic_ratio: ArrayLike) -> Float:

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, Strict
 
 from stickslip.settings.balance import HarmonicSettings
-from stickslip.settings.entries import Count, Index, Whole
+from stickslip.settings.entries import Count, Flag, Index, Whole
 from stickslip.settings.ranges import Amplitudes
 
 
@@ -18,6 +18,12 @@ class FlutterModeSettings(HarmonicSettings):
         default=0,
         description="Mode of a wave with its contacts as they are at rest, counted from 0 at every "
         "nodal diameter.",
+    )
+    multipliers: Flag = Field(
+        default=False,
+        description="Decide the stability of limit cycles by the Floquet multipliers of the ring "
+        "of all sectors, against all waves. Default: by the slope of the damping over the "
+        "amplitude, against the own wave alone.",
     )
     max_harmonics: Count = Field(default=63, description="Highest harmonic that may be kept.")
 
