@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 import stickslip as ss
 
@@ -96,26 +97,56 @@ def test_limit_cycles_of_the_dissertation():
 
 
 def test_a_kick_destabilises_a_disk_that_is_stable_at_rest():
-    # A second mode takes the motion over as the contact slips; the flow acts on what it moves.
-    damping = np.diag([0.3, 0.0])
-    stiffness = [[3e4, -1e4], [-1e4, 2e4]]
-    blade = ss.Structure(np.diag([1.0, 0.5]), stiffness, damping, ["a", "b"])
+    # As the contact slips b moves more, where the flow acts, and a less, where the damping is.
+    mass, stiffness = np.diag([1.0, 0.5]), np.array([[3e4, -1e4], [-1e4, 2e4]])
+    squares, shapes = eigh(stiffness + np.diag([0.0, 3e4]), mass)
+    second = mass @ shapes[:, 1]
+    held = 1.05 * 600.0 / np.sqrt(squares[0]) * shapes[1, 1] ** 2  # the second mode stays at rest
+    damping = np.diag([0.3, 0.0]) + held * np.outer(second, second)
+    blade = ss.Structure(mass, stiffness, damping, ["a", "b"])
     contact = ss.Jenkins("b", stiffness=3e4, slip_force=5.0)
-    light = ss.BladedDisk(blade, 3, [], [contact], engine_order=1)
-    flow = ss.InfluenceCoefficients({0: 300.0j}, dof="b")
-    waves = ss.aerodynamic_waves(light, flow)
+    disk = ss.BladedDisk(blade, 3, [], [contact], engine_order=1)
+    flow = ss.InfluenceCoefficients({0: 600.0j}, dof="b")
+    waves = ss.aerodynamic_waves(disk, flow)
     assert (waves.ratio > 0.0).all()
-    found = ss.flutter_map(light, flow, harmonics=9)
-    assert found.fate(0) == "kick"
+    found = ss.flutter_map(disk, flow, harmonics=9)
+    assert [found.fate(d) for d in (0, 1, -1)] == ["kick"] * 3
     (cycle,) = found.cycles(0)
     assert cycle.stability == "unstable"
     assert np.isnan(found.amplitude("b")).all()
-    fed = waves.negative_damping(0)[0]
-    whole = ss.Structure(blade.mass, blade.stiffness, damping + fed, blade.dofs)
-    model = ss.Model(whole, [contact])
+    fed = ss.Structure(mass, stiffness, damping + waves.negative_damping(0)[0], blade.dofs)
     a, b = (found.amplitude(dof, "leaving")[0] for dof in ("a", "b"))
-    fates = [ss.classify(model, {"a": x * a, "b": x * b}).motion for x in (0.8, 1.25)]
+    model = ss.Model(fed, [contact])
+    fates = [ss.classify(model, {"a": x * a, "b": x * b}).motion for x in (0.95, 1.05)]
     assert fates == ["decaying", "unbounded"]
+
+
+@pytest.mark.parametrize(("diameter", "state"), [(0, "unstable"), (2, "stable")])
+def test_multipliers_are_what_the_ring_does_in_time(diameter, state):
+    # the same damping forwards and backwards, so that the flow is a damping matrix of the ring
+    ratios = np.array([-0.003, -0.008, -0.004, -0.008])
+    disk, n = one_dof(4, GROUND), 4
+    flow = ss.AerodynamicDamping(ratio=ratios)
+    found = ss.flutter_map(disk, flow, harmonics=31, multipliers=True)
+    cycle = found.cycles(diameter)[0]
+    assert cycle.stability == state
+    modal = 2.0 * 0.1 * ratios * ss.aerodynamic_waves(disk, flow).omega
+    turns = np.exp(2j * np.pi * np.outer(np.arange(n), np.arange(n)) / n)
+    matrix = (turns @ np.diag(modal) @ turns.conj() / n).real
+    model = ss.destabilised(disk.mistuned(0.0), matrix, 1.0)
+    amplitude, rng = found.amplitude("tip")[diameter], np.random.default_rng(0)
+    start = {
+        f"{j}.tip": amplitude * turns[diameter, j].real * (1.0 + 1e-3 * rng.normal())
+        for j in range(n)
+    }
+    run = ss.transient(model, cycle.omega, 160, start=start, keep=160, samples=16)
+    motion = np.stack([run.displacement(dof) for dof in model.structure.dofs], axis=1)
+    waves = np.abs(np.fft.fft(motion[:2560].reshape(160, 16, n), axis=2)).max(axis=1)
+    others = np.delete(waves, diameter, axis=1).max(axis=1)
+    # once the fastest of the disturbances is left, and before it is as large as the wave
+    first, last = (20, 120) if state == "stable" else (50, 100)
+    growth = (others[last] / others[first]) ** (1.0 / (last - first))
+    assert growth == pytest.approx(cycle.multiplier, abs=4e-3)
 
 
 def test_waves_are_stable_in_the_ring_or_not():

@@ -55,9 +55,9 @@ class Aerodynamics(Protocol):
 class AerodynamicDamping:
     """Aerodynamic damping per nodal diameter, as flow codes print it.
 
-    Negative damping feeds the wave. Nodal diameters from 1 to n/2 run towards rising sector
-    numbers of phase, each sector ahead of the one before by 2 pi d / n: the sign of the
-    inter-blade phase angle. -d is n - d.
+    Negative damping feeds the wave. At nodal diameter d each sector is ahead of the one before by
+    the inter-blade phase angle 2 pi d / n, so that for d from 1 to n/2 crests run towards falling
+    sector numbers; -d is n - d, and runs the other way round.
 
     Parameters
     ----------
