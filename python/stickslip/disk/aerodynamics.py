@@ -97,7 +97,8 @@ class AerodynamicDamping:
     def forces(self, family: Family) -> AerodynamicForces:
         """Return forces that give every wave of a family its damping ratio."""
         ratio = self.at(family.omega.size)
-        return AerodynamicForces(-2j * ratio * family.omega**2, family.momentum)
+        coefficients = np.asarray(-2j * ratio * family.omega**2, dtype=np.complex128)
+        return AerodynamicForces(coefficients, family.momentum)
 
 
 @dataclass(frozen=True)

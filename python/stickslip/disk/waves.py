@@ -250,7 +250,7 @@ def _mode(disk: BladedDisk, slips: set[tuple[int, int]], diameter: int, mode: in
     mass, damping, stiffness = disk.matrices.wave(delta)
     stiffness = stiffness + _stuck(disk, slips, delta)
     _, shapes = eigh(stiffness, mass)
-    shape = shapes[:, mode]
+    shape = np.asarray(shapes[:, mode], dtype=np.complex128)
     square, own = ((shape.conj() @ one @ shape).real for one in (stiffness, damping))
     return _Mode(float(square), float(own), shape, mass @ shape)
 

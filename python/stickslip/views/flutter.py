@@ -13,7 +13,7 @@ from stickslip.results.flutter_map import FATES, FlutterMap
 from stickslip.results.stability import STATES
 from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
-from stickslip.views.picture import Panels
+from stickslip.views.picture import Panel, Panels
 from stickslip.views.tables import Row
 
 
@@ -58,7 +58,7 @@ class FlutterView(View[FlutterMap]):
     def panels(self, results: Sequence[FlutterMap], dofs: Dofs, output: OutputTable) -> Panels:
         """Return amplitudes over nodal diameter, and over aerodynamic damping where it is held."""
         length = output.length_unit
-        made = []
+        made: list[Panel] = []
         for one in results:
             held = one.held_ratio
             for dof in dofs:
