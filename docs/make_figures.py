@@ -331,6 +331,31 @@ def flutter(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "flutter.png")
 
 
+def flutter_waves(folder: Path = ASSETS) -> Path:
+    """Draw the sign of nodal diameters, the damping of a flow, and limit cycles in it."""
+    blade = ss.Structure([[0.1]], [[1.6e5]], ss.Rayleigh(mass=0.5), ["tip"])
+    coupling = ss.Coupling("tip", stiffness=4e3)
+    contact = ss.Jenkins("tip", "next.tip", stiffness=2e4, slip_force=5.0)
+    disk = ss.BladedDisk(blade, 24, [coupling], [contact], engine_order=1)
+    places = np.arange(24)
+    flow = ss.AerodynamicDamping(ratio=0.001 - 0.006 * np.sin(2.0 * np.pi * places / 24))
+    waves, found = ss.aerodynamic_waves(disk, flow), ss.flutter_map(disk, flow, harmonics=5)
+    figure = Figure(figsize=(13.0, 4.2), layout="constrained")
+    left, middle, right = figure.subplots(1, 3)
+    sectors = np.arange(disk.sectors)
+    for share, colour in ((0.0, "0.7"), (1.0 / 12.0, "#31688e")):
+        height = np.cos(2.0 * np.pi * (share + 2.0 * sectors / disk.sectors))
+        left.plot(sectors, height, "o-", color=colour, ms=3.5, label=f"t = {share:.2g} T")
+    left.annotate(
+        "", (7.0, 1.15), (11.0, 1.15), arrowprops={"arrowstyle": "->", "color": "crimson"}
+    )
+    left.set(xlabel="sector", ylabel="displacement", title="nodal diameter +2", ylim=(-1.1, 1.35))
+    left.legend(frameon=False, fontsize="small", loc="lower right")
+    waves.plot(ax=middle)
+    found.plot("tip", length_unit="um", ax=right)
+    return _save(figure, folder / "flutter-waves.png")
+
+
 def wedge_dampers(folder: Path = ASSETS) -> Path:
     """Draw ready dampers, and the normal forces that statics allow a wedge."""
     face = {"friction": 0.3, "tangential_stiffness": 3e5, "normal_stiffness": 3e5, "load": 240.0}
@@ -424,5 +449,6 @@ if __name__ == "__main__":
     print(amplification())
     print(mistuning())
     print(flutter())
+    print(flutter_waves())
     print(wedge_dampers())
     print(bounds())

@@ -31,7 +31,7 @@ mod _core {
         contacts::{contact_force, contact_phases},
         design::{damper_curve, optimal_damper, sensitivity},
         fates::fates,
-        limit_cycles::limit_cycles,
+        limit_cycles::{limit_cycles, period_multipliers},
         mistuning::{mistuning_study, summits, TunedDisk},
         modes::nonlinear_mode,
         orbits::{exact_peak, exact_response, orbit_history},

@@ -1,15 +1,17 @@
 //! Limit cycles: negative damping and settings in, cycles along a branch out.
 
-use crate::arrays::{matrices, matrix, Array2, Array3};
+use crate::arrays::{is_half_wave, matrices, matrix, refused, series, Array2, Array3};
 use crate::columns::Columns;
 use crate::problem::Problem;
 use crate::settings::{self, get, harmonics};
 use crate::watch::computed;
-use numpy::Complex64;
+use numpy::{Complex64, PyArray1};
 use pyo3::prelude::*;
 use std::sync::Arc;
+use stickslip_core::balance::Unknowns;
+use stickslip_core::fourier::Harmonics;
 use stickslip_core::model::{NegativeDamping, Variation};
-use stickslip_core::orbit::{self, CycleSettings};
+use stickslip_core::orbit::{self, CycleSettings, PeriodMap};
 use stickslip_core::solve::End;
 use stickslip_core::Model;
 
@@ -108,4 +110,34 @@ pub fn limit_cycles<'py>(
         orbit::limit_cycles(&model, &negative, &variation, ratio, &settings, look)
     })?;
     branch(py, &found, &problem.model)
+}
+
+/// Floquet multipliers over a period of a motion given by its contact displacements `(points, H+1)`,
+/// by falling modulus and with the error of the largest; nothing where contacts do not repeat what
+/// they do or touch their limit. The stiffness has a further part `circulatory`, of any symmetry.
+#[pyfunction]
+pub fn period_multipliers<'py>(
+    py: Python<'py>,
+    problem: &Problem,
+    circulatory: Array2<'py, f64>,
+    omega: f64,
+    displacement: Array2<'py, Complex64>,
+    tolerance: f64,
+) -> PyResult<Option<(Bound<'py, PyArray1<Complex64>>, f64)>> {
+    let view = displacement.as_array();
+    let (points, orders) = (view.nrows(), view.ncols());
+    let half_wave = (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
+    let harmonics = Harmonics::new(orders - 1, half_wave);
+    let values: Vec<f64> = (0..points).flat_map(|n| series(&harmonics, |k| view[[n, k]])).collect();
+    let motion = Unknowns::new(harmonics, values);
+    let (stiffness, model) = (matrix(&circulatory), Arc::clone(&problem.model));
+    let found = py.detach(move || {
+        let map = PeriodMap::new(&model)?.with_circulatory(stiffness.as_ref());
+        Ok(map.multipliers(omega, &motion, Some(tolerance)))
+    });
+    let found = found.map_err(refused)?;
+    Ok(found.map(|found| {
+        let values = found.values.iter().map(|one| Complex64::new(one.re, one.im)).collect();
+        (PyArray1::from_vec(py, values), found.error)
+    }))
 }

@@ -19,6 +19,7 @@ _NAMES = {
     "analyses.fit": "fit",
     "analyses.design_map": "design_map speed_response spinning",
     "analyses.exact_response": "exact_response",
+    "analyses.flutter_map": "flutter_map",
     "analyses.flutter_formulas": "rigid_limit_cycle single_harmonic_cycles",
     "analyses.forced_response": "forced_response",
     "analyses.limit_cycles": "limit_cycles",
@@ -33,7 +34,8 @@ _NAMES = {
     "analyses.uncertainty": "uncertainty",
     "damper": "BodyDamper Centrifugal ContactPoint CylinderDamper Face FlexibleBody RigidBody "
     "SplitDamper StripDamper WedgeDamper",
-    "disk": "BladedDisk Coupling InfluenceCoefficients Interface MistunedDisk "
+    "disk": "AerodynamicDamping BladedDisk Coupling InfluenceCoefficients Interface MistunedDisk "
+    "ModalForces "
     "aerodynamic_waves cyclic_sector mistuning_pattern",
     "errors": "Interrupted ModelError",
     "fe": "Mesh Reduction Solid craig_bampton",
@@ -53,6 +55,7 @@ _NAMES = {
     "results.diagnostic": "Diagnostic Severity",
     "results.exact_response": "ExactResponse",
     "results.fit": "Fit FitComparison compare_fits",
+    "results.flutter_map": "FlutterMap",
     "results.limit_cycles": "LimitCycles StabilityMap",
     "results.mistuning": "MistuningStudy",
     "results.motion_class": "MotionClass",

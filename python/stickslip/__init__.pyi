@@ -29,14 +29,17 @@ from stickslip.damper import RigidBody as RigidBody
 from stickslip.damper import SplitDamper as SplitDamper
 from stickslip.damper import StripDamper as StripDamper
 from stickslip.damper import WedgeDamper as WedgeDamper
+from stickslip.disk import AerodynamicDamping as AerodynamicDamping
 from stickslip.disk import BladedDisk as BladedDisk
 from stickslip.disk import Coupling as Coupling
 from stickslip.disk import InfluenceCoefficients as InfluenceCoefficients
 from stickslip.disk import Interface as Interface
 from stickslip.disk import MistunedDisk as MistunedDisk
+from stickslip.disk import ModalForces as ModalForces
 from stickslip.disk import aerodynamic_waves as aerodynamic_waves
 from stickslip.disk import cyclic_sector as cyclic_sector
 from stickslip.disk import mistuning_pattern as mistuning_pattern
+from stickslip.disk.aerodynamics import Aerodynamics
 from stickslip.errors import Interrupted as Interrupted
 from stickslip.errors import ModelError as ModelError
 from stickslip.fe import Mesh as Mesh
@@ -89,6 +92,7 @@ from stickslip.results.exact_response import ExactResponse as ExactResponse
 from stickslip.results.fit import Fit as Fit
 from stickslip.results.fit import FitComparison as FitComparison
 from stickslip.results.fit import compare_fits as compare_fits
+from stickslip.results.flutter_map import FlutterMap as FlutterMap
 from stickslip.results.limit_cycles import LimitCycles as LimitCycles
 from stickslip.results.limit_cycles import StabilityMap as StabilityMap
 from stickslip.results.mistuning import MistuningStudy as MistuningStudy
@@ -195,6 +199,21 @@ def fit(
     max_evaluations: int = 200,
     progress: Progress = None,
 ) -> Fit: ...
+def flutter_map(
+    disk: BladedDisk,
+    aerodynamics: Aerodynamics,
+    *,
+    max_iterations: int = 100,
+    residual: Literal["centred", "from_rest"] | float | None = None,
+    harmonics: int | Literal["auto"] = "auto",
+    tolerance: float = 0.001,
+    max_harmonics: int = 63,
+    mode: int = 0,
+    multipliers: bool = False,
+    amplitude: ArrayLike | tuple[float, float] | None = None,
+    points: int = 41,
+    progress: Progress = None,
+) -> FlutterMap: ...
 def forced_response(
     model: Model,
     omega: ArrayLike | tuple[float, float],

@@ -259,6 +259,13 @@ class NonlinearMode:
 def nonlinear_mode(
     problem: Problem, settings: ModeSettings, progress: Progress
 ) -> NonlinearMode: ...
+def period_multipliers(
+    problem: Problem,
+    circulatory: NDArray[np.float64],
+    omega: float,
+    displacement: NDArray[np.complex128],
+    tolerance: float,
+) -> tuple[NDArray[np.complex128], float] | None: ...
 
 class LimitCycles:
     columns: dict[str, NDArray[Any]]

@@ -67,6 +67,9 @@ def results():
             samples=20,
             harmonics=1,
         ),
+        "waves": ss.flutter_map(
+            ss.reference.beam_ring(sectors=4), ss.AerodynamicDamping(ratio=[-0.01] * 4), harmonics=1
+        ),
         "rest": ss.static_response(ss.Model(BEAM.structure, BEAM.contacts, [LOAD])),
     }
 

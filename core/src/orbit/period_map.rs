@@ -13,7 +13,7 @@ use crate::contact::{Residual, ReturnMapJacobian};
 use crate::model::Model;
 use crate::structure::modes;
 use crate::Error;
-use faer::{c64, Mat};
+use faer::{c64, Mat, MatRef};
 use std::f64::consts::TAU;
 
 /// Fewest steps per period, and most at the first level.
@@ -40,6 +40,9 @@ pub struct PeriodMap {
     parts: Vec<Part>,
     states: usize,
     residual: Residual,
+    /// Shapes of the modes, and the stiffness in them that no energy belongs to.
+    shapes: Mat<f64>,
+    circulatory: Option<Mat<f64>>,
 }
 
 /// Floquet multipliers with their error.
@@ -107,7 +110,17 @@ impl PeriodMap {
             parts,
             states,
             residual: Residual::Centred,
+            shapes: modes.shapes,
+            circulatory: None,
         })
+    }
+
+    /// The map of a structure whose stiffness has a further part F [N/m], also an unsymmetric one, as
+    /// forces of a flow on a ring of blades; shape of the DOFs.
+    #[must_use]
+    pub fn with_circulatory(mut self, stiffness: MatRef<'_, f64>) -> Self {
+        self.circulatory = Some(self.shapes.transpose() * stiffness * &self.shapes);
+        self
     }
 
     /// The map of motions whose contacts keep another residual traction.
@@ -351,6 +364,14 @@ impl<'a> Run<'a> {
     /// What the laws take off the stuck contacts' forces acts for a time.
     fn kick(&mut self, time: f64) {
         let modes = self.map.omega_squared.len();
+        if let Some(circulatory) = &self.map.circulatory {
+            let (displacements, rest) = self.rows.split_at_mut(modes);
+            for (i, velocity) in rest[..modes].iter_mut().enumerate() {
+                for (j, displacement) in displacements.iter().enumerate() {
+                    add(velocity, -time * circulatory[(i, j)], displacement);
+                }
+            }
+        }
         for (index, part) in self.map.parts.iter().enumerate() {
             if self.paths[index].linear {
                 continue;

@@ -19,6 +19,16 @@ TEXTS = {
     "the mode is an internal resonance there, and other branches lie close by.",
     "turns": "The branch turns back in amplitude at {_listed}.",
     "mode-not-reached": "The branch ended at the amplitude {amplitude:.6g} ({_why}): {_remedy}.",
+    # flutter maps
+    "wave-stability": "Limit cycles count as stable where the damping ratio rises with the "
+    "amplitude: against changes of the amplitude of their own wave. Other waves beside them are "
+    "not looked at.",
+    "wave-stability/ring": "The stability of limit cycles is that of the ring of all sectors, by "
+    "its Floquet multipliers; not decided where they are not found or too near the unit circle.",
+    "waves-missing": "At {points} of {total} amplitudes of waves the nonlinear mode was not found; "
+    "limit cycles there are missing: give amplitudes closer to those around.",
+    "waves-unheld": "{waves} waves still grow at the largest amplitude, {largest:.6g} m kg^(1/2): "
+    "from there nothing holds them as far as was looked.",
     # the method
     "harmonics": "All harmonics from 0 to {most} were solved for{_chosen}.",
     "harmonics/odd": "Only the odd harmonics up to {most} were solved for{_chosen}: the forces and "

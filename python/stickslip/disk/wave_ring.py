@@ -12,6 +12,7 @@ from math import gcd
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip import _core
 from stickslip.disk.bladed_disk import BladedDisk
@@ -63,14 +64,21 @@ def moving(model: Model, *, half_wave: bool) -> tuple[_core.Problem, Rotation | 
     return wave_ring(model, rotation), rotation
 
 
-def wave_ring(disk: BladedDisk, rotation: Rotation) -> _core.Problem:
-    """Return the sectors that a wave tells apart as the compiled core sees them."""
+def wave_ring(
+    disk: BladedDisk, rotation: Rotation, flow: NDArray[np.float64] | None = None
+) -> _core.Problem:
+    """Return the sectors that a wave tells apart as the compiled core sees them.
+
+    `flow` is a further damping of all their DOFs [kg/s], of any symmetry.
+    """
     _ = disk.problem  # refuses forces that make no single wave
     size, count = len(disk.structure), rotation.sectors
     matrices = (disk.matrices.mass, disk.matrices.damping, disk.matrices.stiffness)
     mass, damping, stiffness = (
         assembled(Blocks(np.array([one.own] * count), one.next), rotation.wrap) for one in matrices
     )
+    if flow is not None:
+        damping = damping + flow
     contacts = []
     loads = {k: np.zeros((count, size), np.complex128) for k, _ in disk._loads()}
     for sector in range(count):
@@ -83,7 +91,7 @@ def wave_ring(disk: BladedDisk, rotation: Rotation) -> _core.Problem:
         for force in disk.forces_on(sector):
             loads[force.harmonic][sector, disk.structure.index(force.dof)] += force.coefficient
     forces = [(harmonic, load.ravel()) for harmonic, load in loads.items()]
-    proportional = disk.matrices.proportional
+    proportional = disk.matrices.proportional and flow is None
     return from_core(_core.Problem, mass, damping, stiffness, contacts, forces, proportional)
 
 

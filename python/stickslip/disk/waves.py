@@ -6,17 +6,28 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from numbers import Complex
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import Matrix, brief, members, set_fields, text, whole_number
+from stickslip.checks import brief, members, set_fields, text, whole_number
+from stickslip.disk.aerodynamics import (
+    AerodynamicDamping,
+    AerodynamicForces,
+    Aerodynamics,
+    Family,
+    ModalForces,
+)
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model.model import AnyMatrix, PointRef
 from stickslip.model.structural import condensed_stiffness
 from stickslip.model.structure import Structure
+
+_PHASES = 1e-12
+"""Imaginary part, relative to the whole, that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,10 +44,10 @@ class Wave:
     """(N, N) Of the disk and of the flow [kg/s]; Hermitian but for gyroscopic terms of the disk."""
     stiffness: AnyMatrix
     """(N, N) Hermitian, without the contacts [N/m]."""
-    negative_damping: Matrix
-    """(N, N) What the flow adds to the damping [kg/s], real and symmetric."""
-    added_stiffness: Matrix
-    """(N, N) What the flow adds to the stiffness [N/m], real and symmetric."""
+    negative_damping: AnyMatrix
+    """(N, N) What the flow adds to the damping [kg/s], Hermitian; real at a dof."""
+    added_stiffness: AnyMatrix
+    """(N, N) What the flow adds to the stiffness [N/m], Hermitian; real at a dof."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +56,8 @@ class AerodynamicWaves:
 
     disk: BladedDisk
     """The disk."""
-    influence: InfluenceCoefficients
-    """What the flow does."""
+    influence: Aerodynamics
+    """What the flow does, as it was given."""
     diameters: NDArray[np.int64]
     """(n,) Nodal diameters 0 to n-1; those above n/2 run backwards."""
     omega: NDArray[np.float64]
@@ -55,6 +66,12 @@ class AerodynamicWaves:
     """(n,) Damping ratio of the flow alone; negative where it feeds energy in."""
     ratio: NDArray[np.float64]
     """(n,) Damping ratio of flow and disk together, without friction."""
+    eigenvalue: NDArray[np.complex128]
+    """(n,) Root s of s^2 + c s + omega_0^2 = L of the mode, exact in L [rad/s]."""
+    forces: AerodynamicForces
+    """What the flow does, per nodal diameter."""
+    shapes: NDArray[np.complex128]
+    """(n, N) The mode phi of unit modal mass, without flow."""
 
     @property
     def least_stable(self) -> int:
@@ -71,9 +88,7 @@ class AerodynamicWaves:
         if chosen >= n:
             raise ModelError(f"diameter: {chosen}; {n} sectors have 0 to {n - 1}")
         omega = float(self.omega[chosen])
-        direction = self.influence.direction(self.disk.structure)
-        plane = np.outer(direction, direction)
-        force = self.influence.at(chosen, n)
+        force, plane = self.forces.coefficients[chosen], self._plane(chosen)
         added, fed = -force.real * plane, -force.imag / omega * plane
         mass, damping, stiffness = self.disk.matrices.wave(self.disk.angle(chosen))
         return Wave(
@@ -86,7 +101,7 @@ class AerodynamicWaves:
             added_stiffness=added,
         )
 
-    def negative_damping(self, diameter: int | None = None) -> NDArray[np.float64]:
+    def negative_damping(self, diameter: int | None = None) -> AnyMatrix:
         """Return what the flow damps in a wave, in the form that `stickslip.limit_cycles` takes.
 
         Of shape (n, N, N) [kg/s]: -Im L(k d) / (k omega_d) by the nodal diameter k d modulo n that
@@ -94,16 +109,23 @@ class AerodynamicWaves:
         stable, and its stiffness is in `disk_of`.
         """
         wave, n = self.wave(diameter), self.disk.sectors
-        direction = self.influence.direction(self.disk.structure)
-        matrices = np.zeros((n, len(direction), len(direction)))
+        planes = [self._plane(place) for place in range(n)]
+        matrices = np.zeros((n, *planes[0].shape), dtype=np.result_type(*planes))
         met = set()
         for order in range(1, 2 * n, 2):
             place = order * wave.diameter % n
             if place not in met:
                 met.add(place)
-                fed = -self.influence.at(place, n).imag / (order * wave.omega)
-                matrices[place] = fed * np.outer(direction, direction)
+                fed = -self.forces.coefficients[place].imag / (order * wave.omega)
+                matrices[place] = fed * planes[place]
         return matrices
+
+    def _plane(self, diameter: int) -> AnyMatrix:
+        """Return p p^H, real where no phase lies in it."""
+        direction = self.forces.directions[diameter]
+        plane = np.outer(direction, direction.conj())
+        real = np.abs(plane.imag).max() <= _PHASES * np.abs(plane).max()
+        return np.ascontiguousarray(plane.real) if real else plane
 
     def disk_of(self, diameter: int | None = None, ratio: float = 1.0) -> BladedDisk:
         """Return the disk in which a wave has the aerodynamic stiffness, and damping.
@@ -113,10 +135,18 @@ class AerodynamicWaves:
         the aerodynamic damping: 0 for `stickslip.limit_cycles`, which adds it.
         """
         wave, own = self.wave(diameter), self.disk.structure
+        flow = wave.added_stiffness, ratio * wave.negative_damping
+        if any(np.iscomplexobj(one) and one.any() for one in flow):
+            raise ModelError(
+                "disk_of: this mode runs through a sector with phases, so that its aerodynamic "
+                "stiffness is no matrix of one sector; use ss.flutter_map, or "
+                "ss.InfluenceCoefficients at a dof"
+            )
+        added, fed = (np.real(one) for one in flow)
         structure = Structure(
             own.mass,
-            own.stiffness + wave.added_stiffness,
-            own.damping + ratio * wave.negative_damping,
+            own.stiffness + added,
+            own.damping + fed,
             own.dofs,
         )
         return self.disk._like(
@@ -128,18 +158,18 @@ class AerodynamicWaves:
 
 def aerodynamic_waves(
     disk: BladedDisk,
-    influence: InfluenceCoefficients,
+    influence: Aerodynamics,
     mode: int = 0,
     *,
     slipping: Iterable[PointRef] = (),
 ) -> AerodynamicWaves:
-    """Damping ratio of every travelling wave of a tuned disk under influence coefficients.
+    """Damping ratio of every travelling wave of a tuned disk in a flow.
 
     Parameters
     ----------
     disk : BladedDisk
         The disk; its forces play no part.
-    influence : InfluenceCoefficients
+    influence : InfluenceCoefficients, AerodynamicDamping or ModalForces
         What the flow does.
     mode : int, optional
         Mode of the sector whose waves these are, counted from 0 at every nodal diameter.
@@ -164,51 +194,65 @@ def aerodynamic_waves(
     """
     if not isinstance(disk, BladedDisk):
         raise ModelError(f"disk: {brief(disk)} is no tuned BladedDisk; give ss.BladedDisk(...)")
-    if not isinstance(influence, InfluenceCoefficients):
+    if not isinstance(influence, InfluenceCoefficients | AerodynamicDamping | ModalForces):
         raise ModelError(
-            f"influence: {brief(influence)} is none; give ss.InfluenceCoefficients(...)"
+            f"influence: {brief(influence)} is none; give ss.InfluenceCoefficients(...), "
+            "ss.AerodynamicDamping(...) or ss.ModalForces(...)"
         )
     family = whole_number(mode, "mode")
     if family >= len(disk.structure):
         raise ModelError(f"mode: {family}; a sector has {len(disk.structure)}, counted from 0")
     refs = members(slipping, "slipping", "slipping=[...]")
     slips = {disk.point(ref) for ref in refs}
-    direction = influence.direction(disk.structure)
     n = disk.sectors
-    rows = [_wave(disk, slips, direction, influence.at(d, n), d, family) for d in range(n)]
-    omega, flow, total = np.array(rows).T
-    waves = AerodynamicWaves(disk, influence, np.arange(n), omega, flow, total)
+    found = [_mode(disk, slips, d, family) for d in range(n)]
+    shapes = np.array([one.shape for one in found])
+    momenta = np.array([one.momentum for one in found])
+    squares, own = (np.array([getattr(one, name) for one in found]) for name in ("square", "own"))
+    natural = np.sqrt(np.maximum(squares, 0.0))
+    forces = influence.forces(Family(disk.structure, natural, momenta))
+    moved = np.abs(np.einsum("dn,dn->d", forces.directions.conj(), shapes)) ** 2
+    flow = forces.coefficients * moved
+    left = squares - flow.real
+    for diameter in np.flatnonzero(~(left > 0.0)).tolist():
+        raise ModelError(
+            f"mode {family} of nodal diameter {diameter}: omega^2 = {left[diameter]:.6g} with the "
+            "aerodynamic stiffness; give smaller coefficients, or ground the structure"
+        )
+    omega = np.sqrt(left)
+    ratio = -flow.imag / (2.0 * left)
+    root = -0.5 * own + 1j * np.sqrt(squares - flow - 0.25 * own**2)
+    total = ratio + own / (2.0 * omega)
+    waves = AerodynamicWaves(
+        disk, influence, np.arange(n), omega, ratio, total, np.asarray(root), forces, shapes
+    )
     set_fields(waves, **vars(waves))
     return waves
 
 
-def _wave(
-    disk: BladedDisk,
-    slips: set[tuple[int, int]],
-    direction: NDArray[np.float64],
-    force: complex,
-    diameter: int,
-    mode: int,
-) -> tuple[float, float, float]:
-    """Return frequency and both damping ratios of a wave."""
+class _Mode(NamedTuple):
+    """A wave without flow."""
+
+    square: float
+    """omega^2."""
+    own: float
+    """Damping of the disk, phi^H C phi [1/s]."""
+    shape: NDArray[np.complex128]
+    """phi, of unit modal mass."""
+    momentum: NDArray[np.complex128]
+    """M phi."""
+
+
+def _mode(disk: BladedDisk, slips: set[tuple[int, int]], diameter: int, mode: int) -> _Mode:
     from scipy.linalg import eigh
 
     delta = disk.angle(diameter)
     mass, damping, stiffness = disk.matrices.wave(delta)
     stiffness = stiffness + _stuck(disk, slips, delta)
     _, shapes = eigh(stiffness, mass)
-    shape = shapes[:, mode]
-    moved = abs(direction @ shape) ** 2
-    square = (shape.conj() @ stiffness @ shape).real - force.real * moved
-    if not square > 0.0:
-        raise ModelError(
-            f"mode {mode} of nodal diameter {diameter}: omega^2 = {square:.6g} with the "
-            "aerodynamic stiffness; give smaller coefficients, or ground the structure"
-        )
-    omega = float(np.sqrt(square))
-    own = (shape.conj() @ damping @ shape).real
-    flow = -force.imag * moved / (2.0 * square)
-    return omega, float(flow), float(flow + own / (2.0 * omega))
+    shape = np.asarray(shapes[:, mode], dtype=np.complex128)
+    square, own = ((shape.conj() @ one @ shape).real for one in (stiffness, damping))
+    return _Mode(float(square), float(own), shape, mass @ shape)
 
 
 def _stuck(disk: BladedDisk, slips: set[tuple[int, int]], delta: float) -> AnyMatrix:
@@ -284,6 +328,12 @@ class InfluenceCoefficients:
         else:
             whole_number(self.mode, "influence coefficients: mode")
         object.__setattr__(self, "coefficients", MappingProxyType(checked))
+
+    def forces(self, family: Family) -> AerodynamicForces:
+        """Return the forces on the waves of a family."""
+        n, direction = family.omega.size, self.direction(family.structure)
+        coefficients = np.array([self.at(d, n) for d in range(n)])
+        return AerodynamicForces(coefficients, np.tile(direction.astype(np.complex128), (n, 1)))
 
     def at(self, diameter: int, sectors: int) -> complex:
         """Return L(d), the coefficient of a travelling wave of nodal diameter d, from 0 to n-1.

@@ -9,7 +9,13 @@ from stickslip.plot.contacts import contact_forces, events, hysteresis, waveform
 from stickslip.plot.curves import curves, slip
 from stickslip.plot.cycles import limit_cycles, stability_map
 from stickslip.plot.damper import damper
-from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
+from stickslip.plot.diameters import (
+    aerodynamic,
+    aerodynamic_limits,
+    flutter_map,
+    nodal_diameters,
+    safe,
+)
 from stickslip.plot.fit import fit, fit_backbone, fit_intervals, fit_residuals
 from stickslip.plot.maps import design_map
 from stickslip.plot.mistuning import amplification, distribution
@@ -21,6 +27,7 @@ from stickslip.plot.uncertainty import backbone_band, sobol_indices, uncertainty
 
 __all__ = [
     "aerodynamic",
+    "aerodynamic_limits",
     "amplification",
     "backbone",
     "backbone_band",
@@ -41,6 +48,7 @@ __all__ = [
     "fit_backbone",
     "fit_intervals",
     "fit_residuals",
+    "flutter_map",
     "history",
     "hysteresis",
     "limit_cycles",

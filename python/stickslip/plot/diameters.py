@@ -8,6 +8,7 @@ from typing import Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.ticker import MaxNLocator
 
 from stickslip.checks import brief, members, whole_number
@@ -16,9 +17,11 @@ from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
 from stickslip.plot import style
 from stickslip.plot.figure import figure
-from stickslip.plot.options import DiameterOptions, Drawing, SafeOptions
+from stickslip.plot.options import DiameterOptions, Drawing, Frame, LimitOptions, SafeOptions
 from stickslip.plot.style import Looks, Scale
 from stickslip.results.arrays import Float
+from stickslip.results.flutter_map import FlutterMap
+from stickslip.results.stability import STATES
 from stickslip.units import physical_number
 
 _MARGIN = 1.05
@@ -99,6 +102,66 @@ def aerodynamic(ax: Axes, /, waves: AerodynamicWaves, **options: Unpack[Drawing]
     looks = style.mark("o", 8, "crimson", "none") | {"label": f"least stable: {signed[least]}"}
     ax.plot(signed[least], 100.0 * waves.ratio[least], **looks)
     _over_diameters(ax, "damping ratio [%]")
+
+
+@figure
+def flutter_map(ax: Axes, /, result: FlutterMap, dof: str, **options: Unpack[Frame]) -> None:
+    """Draw the amplitudes of limit cycles over the nodal diameter of their wave.
+
+    Stable ones, on a line, are full circles, unstable ones hollow, those whose stability is not
+    decided crosses. Triangles at the top are waves that grow from rest without bound.
+    """
+    length = style.LENGTH[options["length_unit"]]
+    arrays, column = result.arrays, result._column(dof)
+    x = result.diameters[arrays.cycle_wave]
+    y = length.factor * arrays.cycle_displacement[:, column]
+    states = np.array([one.stability for one in result.cycles()], dtype=np.str_)
+    order = np.argsort(result.diameters)
+    line = length.factor * result.amplitude(dof)[order]
+    ax.plot(result.diameters[order], line, color=style.BLUE, lw=1.0)
+    for state in STATES:
+        mask = states == state
+        if mask.any():
+            ax.plot(x[mask], y[mask], **style.marks(state, style.BLUE), label=state)
+    growing = [d for d in result.diameters.tolist() if result.fate(d) == "grows"]
+    if growing:
+        looks = style.mark("^", 6, style.ORANGE, style.ORANGE)
+        frame = ax.get_xaxis_transform()
+        ax.plot(growing, [0.97] * len(growing), transform=frame, **looks, label="grows")
+    if x.size:
+        ax.set_yscale("log")
+    _over_diameters(ax, f"amplitude of {dof} [{length.label}]")
+
+
+@figure
+def aerodynamic_limits(
+    ax: Axes, /, result: FlutterMap, dof: str, **options: Unpack[LimitOptions]
+) -> None:
+    """Draw amplitudes of stable limit cycles over nodal diameter and aerodynamic damping ratio.
+
+    The line is the largest negative damping that friction holds; what is grey below it has no
+    stable limit cycle. Circles are the waves in the flow as it was given.
+    """
+    length = style.LENGTH[options["length_unit"]]
+    order = np.argsort(result.diameters)
+    x, held = result.diameters[order], result.held_ratio[order]
+    if not (np.isfinite(held).any() and np.nanmin(held) < 0.0):
+        raise ModelError("result: friction holds no negative damping, so that nothing is drawn")
+    given = options["aerodynamic_ratio"]
+    lowest = 1.1 * float(np.nanmin(held))
+    ratios = np.linspace(lowest, 0.0, 120) if given is None else np.sort(np.atleast_1d(given))
+    size = length.factor * result.limit_amplitude(dof, ratios)[order, :, 0]
+    ax.set_facecolor("0.93")
+    colour = LogNorm() if np.isfinite(size).any() else None
+    shade = ax.pcolormesh(
+        x, 100.0 * ratios, size.T, shading="nearest", cmap="viridis", norm=colour, rasterized=True
+    )
+    ax.figure.colorbar(shade, ax=ax, label=f"amplitude of {dof} [{length.label}]")
+    ax.plot(x, 100.0 * held, color="crimson", lw=1.2, label="friction holds above")
+    flow = 100.0 * result.arrays.rest_aerodynamic_ratio[order]
+    shown = flow >= 100.0 * ratios[0]
+    ax.plot(x[shown], flow[shown], **style.mark("o", 4, "k"), label="flow")
+    _over_diameters(ax, "aerodynamic damping ratio [%]")
 
 
 def _table_of(table: object) -> NodalDiameters:

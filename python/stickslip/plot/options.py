@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Annotated, Literal, TypedDict
 
 from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from stickslip.plot.style import LengthUnit, OmegaUnit
 from stickslip.results import ForcedResponse
@@ -185,6 +186,14 @@ class BladeCurveOptions(Amplitude, Swept, total=False):
 
     tuned: Annotated[ForcedResponse | None, None, "That of the tuned disk, drawn beside them."]
     log: Annotated[bool, True, "Logarithmic amplitude axis."]
+
+
+class LimitOptions(Frame, total=False):
+    """Keywords of `aerodynamic_limits`."""
+
+    aerodynamic_ratio: Annotated[
+        ArrayLike | None, None, "Damping ratios of the flow. Default: as far as friction holds."
+    ]
 
 
 class DiameterOptions(Spectral, total=False):

@@ -33,7 +33,7 @@ _CODES = {
         start time-steps kept-periods criterion modes peak-range varied-together rigid-limit
         coarse-search patterns deviations onset forces-ignored stability-undecided multipliers
         unbounded-branch folds unstable intervals noise-estimated mode-at-rest turns
-        samples-drawn independent bounds text
+        samples-drawn independent bounds wave-stability waves-unheld text
     """,
     Severity.CAUTION: """
         truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps
@@ -43,7 +43,7 @@ _CODES = {
     """,
     Severity.FAILURE: """
         mode-not-reached branch-stalled branch-turned-back branch-end no-limit predictions-missing
-        samples-failed
+        samples-failed waves-missing
     """,
 }
 SEVERITIES: Mapping[str, Severity] = MappingProxyType(

@@ -37,6 +37,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "uncertainty": ("stickslip.results.uncertainty", "Uncertainty"),
     "campbell": ("stickslip.results.campbell", "Campbell"),
     "sweep": ("stickslip.results.sweep", "Sweep"),
+    "flutter_map": ("stickslip.results.flutter_map", "FlutterMap"),
     "stability_map": ("stickslip.results.limit_cycles", "StabilityMap"),
 }
 """Module and class of every kind of result; a class is loaded when a file of it is read."""

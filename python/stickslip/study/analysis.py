@@ -17,6 +17,7 @@ from stickslip.analyses.certify import certify
 from stickslip.analyses.damper_curve import damper_curve
 from stickslip.analyses.exact_response import exact_response
 from stickslip.analyses.fit import fit
+from stickslip.analyses.flutter_map import flutter_map
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.analyses.mistuning_study import mistuning_study
@@ -36,11 +37,13 @@ from stickslip.settings.campbell import CampbellKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import Factor, Some, Table, chosen_by
 from stickslip.settings.fit import FitSettings
+from stickslip.settings.flutter import FlutterKeys
 from stickslip.settings.modes import ModeKeys
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys, OptimumKeys
 from stickslip.settings.uncertainty import UncertaintyKeys
+from stickslip.study.flow_tables import FlowKeys
 from stickslip.study.matrices import (
     DampingSource,
     ModalDampingTable,
@@ -303,6 +306,17 @@ class NonlinearModesTable(ModeKeys, AnalysisTable):
     dof_keys = ()
 
 
+class FlutterMapTable(FlutterKeys, FlowKeys, AnalysisTable):
+    """Amplitude and stability of every travelling wave of a tuned disk in a flow."""
+
+    kind: Literal["flutter-map"] = Field(description="The analysis.")
+    dof_keys = ()
+
+    def run(self, model: Model, progress: Progress, shown: Sequence[str] = ()) -> Any:
+        """Compute all waves."""
+        return flutter_map(model, self.flow, settings=self, progress=progress)
+
+
 KINDS: Mapping[str, type[AnalysisTable]] = {
     get_args(table.model_fields["kind"].annotation)[0]: table
     for table in (
@@ -323,6 +337,7 @@ KINDS: Mapping[str, type[AnalysisTable]] = {
         FitTable,
         UncertaintyTable,
         NonlinearModesTable,
+        FlutterMapTable,
     )
 }
 """Each further analysis has a table of its own here."""

@@ -595,6 +595,11 @@ class StudyTables(Table):
                 "[disk], or name the 'other' DOF of the structure"
             )
         tuned = self.disk is not None and self.disk.mistuning is None
+        if self.analysis.kind == "flutter-map" and not tuned:
+            raise ModelError(
+                "analysis: a flutter-map is of a tuned disk; add the table [disk], without "
+                "'mistuning'"
+            )
         if self.analysis.kind == "mistuning-study" and not tuned:
             raise ModelError(
                 "analysis: a mistuning-study makes its disks of a tuned one; add the table [disk], "

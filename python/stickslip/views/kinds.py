@@ -33,6 +33,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "campbell": ("stickslip.views.campbell", "CampbellView"),
     "sweep": ("stickslip.views.sweeps", "SweepView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
+    "flutter_map": ("stickslip.views.flutter", "FlutterView"),
     "nonlinear_modes": ("stickslip.views.modes", "ModeView"),
 }
 """Module and class of the view of every kind; results of one view are drawn together."""

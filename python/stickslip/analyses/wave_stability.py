@@ -1,0 +1,95 @@
+"""Stability of a travelling wave against everything that the sectors of its disk can do.
+
+A ring of all sectors has motions in time of its own; its equations, linearised along the limit
+cycle of a wave and integrated over a period, give its Floquet multipliers.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip import _core
+from stickslip.analyses.limit_cycles import limit_cycles
+from stickslip.disk.wave_ring import Rotation, wave_ring
+from stickslip.disk.waves import AerodynamicWaves
+from stickslip.errors import ModelError
+
+_ACCURATE = 1e-4
+"""Accuracy of the largest multiplier."""
+_CLEAR = 3.0
+"""Distance of multipliers from the unit circle that decides, in that of the trivial one from 1."""
+
+
+def wave_multiplier(
+    waves: AerodynamicWaves, diameter: int, amplitude: float, dof: str, harmonics: int, mode: int
+) -> tuple[float, bool | None]:
+    """Return the largest multiplier but the trivial one, and whether the limit cycle is stable.
+
+    The cycle is that of `stickslip.limit_cycles` whose amplitude of a dof is next to the given one.
+    Not-a-number and None where it is not found, or its multipliers do not tell.
+    """
+    disk = waves.disk
+    try:
+        branch = limit_cycles(
+            waves.disk_of(diameter, ratio=0.0),
+            waves.negative_damping(diameter),
+            ratio=[1.0],
+            mode=mode,
+            harmonics=harmonics,
+            stability=False,
+        )
+    except ModelError:
+        return np.nan, None
+    if not branch.omega.size:
+        return np.nan, None
+    index = int(np.argmin(np.abs(np.log(branch.amplitude(dof) / amplitude))))
+    omega = float(branch.omega[index])
+    n = disk.sectors
+    turn = np.exp(2j * np.pi * diameter / n * np.arange(branch.arrays.displacement.shape[1]))
+    own = branch.arrays.contact_displacement[index].T
+    series = np.concatenate([own * turn**sector for sector in range(n)])
+    stiffness, damping = _ring_forces(waves, diameter, omega)
+    ring = wave_ring(disk.replaced(forces=()), Rotation(n, 1, 1.0, 1.0, n), damping)
+    found = _core.period_multipliers(
+        ring, stiffness, omega, np.ascontiguousarray(series), _ACCURATE
+    )
+    if found is None:
+        return np.nan, None
+    values, error = found
+    trivial = int(np.argmin(np.abs(values - 1.0)))
+    off = max(_CLEAR * abs(values[trivial] - 1.0), 3.0 * error)
+    rest = float(np.abs(np.delete(values, trivial)).max(initial=0.0))
+    return rest, None if abs(rest - 1.0) <= off else rest < 1.0
+
+
+def _ring_forces(
+    waves: AerodynamicWaves, diameter: int, omega: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return stiffness and damping of the flow on the ring, real and of no symmetry.
+
+    In a wave of nodal diameter d they are K + i omega C = -A(d), A being its complex force per
+    displacement, with Im A in proportion to omega as that of a damping.
+    """
+    n = waves.disk.sectors
+    faster = omega / waves.omega[diameter]
+    forces = np.array(
+        [
+            complex(one.real, faster * one.imag) * np.outer(p, p.conj())
+            for one, p in zip(waves.forces.coefficients, waves.forces.directions, strict=True)
+        ]
+    )
+    other = forces[-np.arange(n) % n].conj()
+    blocks = -0.5 * (forces + other), -0.5 * (forces - other) / (1j * omega)
+    return _circulant(blocks[0]), _circulant(blocks[1])
+
+
+def _circulant(waves: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Return the matrix of a ring from what every wave meets, x of sector j ahead by 2 pi d j/n."""
+    n, size, _ = waves.shape
+    by_place = np.fft.fft(waves, axis=0).real / n
+    whole = np.zeros((n, size, n, size))
+    for sector in range(n):
+        for place in range(n):
+            whole[sector, :, (sector + place) % n] = by_place[place]
+    return np.ascontiguousarray(whole.reshape(n * size, n * size))
