@@ -72,7 +72,7 @@ impl<'a> Walk<'a> {
         let rest = if half_wave { vec![0.0; bases.at(0).modes()] } else { at_rest(model, &bases)? };
         let feed = Feed::Damping;
         let mut equations =
-            ModeEquations::new(model, bases, table, residuals, rest, 1.0, feed, progress);
+            ModeEquations::new(model, bases, table, residuals, rest, feed, progress);
         let linear = linear_mode(&mut equations, settings.mode)?;
         equations.unit = linear.omega;
         if settings.method == ModeMethod::PhaseResonance {

@@ -66,7 +66,6 @@ impl<'a> ModeEquations<'a> {
         table: Arc<SampleTable>,
         residuals: Vec<Residual>,
         rest: Vec<f64>,
-        unit: f64,
         feed: Feed,
         progress: &'a Progress<'a>,
     ) -> Self {
@@ -77,7 +76,7 @@ impl<'a> ModeEquations<'a> {
             table,
             residuals,
             rest,
-            unit,
+            unit: 1.0,
             feed,
             phase: Vec::new(),
             scales: Vec::new(),
@@ -94,6 +93,7 @@ impl<'a> ModeEquations<'a> {
     /// The same in the harmonics of another table.
     pub(super) fn with_table(&self, table: Arc<SampleTable>) -> Self {
         Self {
+            unit: self.unit,
             profile: Profile::default(),
             products: 0,
             ..Self::new(
@@ -102,7 +102,6 @@ impl<'a> ModeEquations<'a> {
                 table,
                 self.residuals.clone(),
                 self.rest.clone(),
-                self.unit,
                 self.feed.clone(),
                 self.progress,
             )

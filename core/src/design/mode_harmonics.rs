@@ -54,11 +54,14 @@ impl<'a> Truncation<'a> {
 
     /// A point in as many harmonics as the tolerance asks for.
     pub(super) fn refined(&mut self, mut z: Vec<f64>, settings: &ModeSettings) -> Vec<f64> {
-        while settings.harmonics == HarmonicChoice::Auto {
+        if settings.harmonics != HarmonicChoice::Auto {
+            return z;
+        }
+        loop {
             let kept = self.equations.harmonics().highest();
             let enough = |step: Step| step.error() <= settings.tolerance;
             if kept >= settings.max_harmonics || self.step(&z).is_some_and(enough) {
-                break;
+                return z;
             }
             let more = (kept + 2 + kept / 2).min(settings.max_harmonics);
             let mut equations = self.in_harmonics(more);
@@ -69,13 +72,12 @@ impl<'a> Truncation<'a> {
             let Some((finer, _)) = found else {
                 // It stays in the harmonics that it has, and says so.
                 self.leave(&equations);
-                break;
+                return z;
             };
             z = finer;
             let left = std::mem::replace(&mut self.equations, equations);
             self.leave(&left);
         }
-        z
     }
 
     /// The Newton step that a balance in more harmonics would take.

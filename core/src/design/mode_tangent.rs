@@ -178,8 +178,9 @@ mod tests {
             let (bases, residuals) = (bases.clone(), residuals.clone());
             let rest = vec![1e-3, -2e-3];
             let table = Arc::clone(&table);
-            let equations =
-                ModeEquations::new(&model, bases, table, residuals, rest, 10.0, feed, &|_| true);
+            let mut equations =
+                ModeEquations::new(&model, bases, table, residuals, rest, feed, &|_| true);
+            equations.unit = 10.0;
             check(equations);
         }
     }

@@ -35,7 +35,7 @@ class FlutterKeys(FlutterModeSettings):
         default=None,
         description="Modal amplitudes of a sector, a = (X_1^H M X_1)^(1/2) [m kg^(1/2)]: a list, "
         "or a range, of functions a tuple, of which `points` are taken. Default: from half of that "
-        "at which the first contact slips to 100 times that at which the last one does.",
+        "at which the first contact slips to 100 times the median of those at which contacts do.",
         examples=[{"from": 1e-6, "to": 1e-2}],
     )
     points: Annotated[int, Whole(4, 1000)] = Field(
