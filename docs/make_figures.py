@@ -407,7 +407,17 @@ def several_solutions(folder: Path = ASSETS) -> Path:
     for ax, (law, force, omega) in zip(figure.subplots(1, 2), cases, strict=True):
         model = ss.Model(mass, contacts=[law], forces=[ss.Force("x", amplitude=force)])
         frf = ss.forced_response(model, omega)
-        plot.curves(frf, "x", length_unit="m", log=False, stuck=False, free=False, peaks=False, error_band=False, ax=ax)
+        plot.curves(
+            frf,
+            "x",
+            length_unit="m",
+            log=False,
+            stuck=False,
+            free=False,
+            peaks=False,
+            error_band=False,
+            ax=ax,
+        )
         ax.set_title(type(law).__name__, fontsize="medium")
     return _save(figure, folder / "several-solutions.png")
 
