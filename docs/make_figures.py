@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from scipy import stats
 
 import stickslip as ss
 from stickslip import plot
@@ -187,7 +188,7 @@ def transient(folder: Path = ASSETS) -> Path:
     figure = Figure(figsize=(13.0, 4.0), layout="constrained")
     history, phase, spectrum = figure.subplots(1, 3, width_ratios=(1.2, 1.0, 1.1))
     plot.history(run, "tip", length_unit="mm", ax=history)
-    plot.phase(run, "damper", length_unit="um", last=5, ax=phase)
+    plot.phase(run, "damper", last=5, ax=phase)
     plot.spectrum(run, "damper", last=10, ax=spectrum)
     return _save(figure, folder / "transient.png")
 
@@ -213,6 +214,7 @@ def certificate(folder: Path = ASSETS) -> Path:
     plot.curves(
         ss.certify(curve, range(0, 181, 8)), "tip", length_unit="mm", log=False, peaks=False, ax=ax
     )
+    ax.legend(loc="lower right", ncols=3, frameon=False, fontsize="small")
     return _save(figure, folder / "certificate.png")
 
 
@@ -409,6 +411,98 @@ def bounds(folder: Path = ASSETS) -> Path:
     return _save(figure, folder / "bounds.png")
 
 
+def campbell(folder: Path = ASSETS) -> Path:
+    """Draw natural frequencies of a blisk that stiffens as it turns, and a SAFE diagram of it."""
+    blisk = ss.reference.laxalde_blisk()
+    turning = ss.spinning(blisk.structure, 2.0 * blisk.structure.mass)
+
+    def spun(speed: float) -> ss.BladedDisk:
+        return ss.BladedDisk(
+            turning(speed), blisk.sectors, blisk.couplings, forces=blisk.forces, engine_order=4
+        )
+
+    diagram = ss.campbell(spun, speed=np.linspace(100.0, 420.0, 33), orders=[2, 4, 6])
+    figure = Figure(figsize=(7.5, 4.4), layout="constrained")
+    plot.campbell(diagram, omega_unit="Hz", ax=figure.subplots())
+    return _save(figure, folder / "campbell.png")
+
+
+def sweep(folder: Path = ASSETS) -> Path:
+    """Draw the response curves of the beam over the slip force."""
+    swept = ss.sweep(
+        ss.reference.snecma_beam(),
+        lambda model: ss.forced_response(model, (120.0, 280.0), observe="tip"),
+        slip_force=["30 N", "100 N", "246 N", "362 N", "1 kN", "3 kN"],
+    )
+    figure = Figure(figsize=(8.0, 4.4), layout="constrained")
+    swept.plot("tip", ax=figure.subplots())
+    return _save(figure, folder / "sweep.png")
+
+
+def nonlinear_modes(folder: Path = ASSETS) -> Path:
+    """Draw frequency, shapes and damping of a nonlinear mode."""
+    structure = ss.Structure(
+        np.diag([1.0, 0.5]), [[3e4, -1e4], [-1e4, 2.5e4]], ss.ModalDamping(0.003), ["x", "y"]
+    )
+    model = ss.Model(structure, contacts=[ss.Jenkins("x", stiffness=4e3, slip_force=1.0)])
+    modes = ss.nonlinear_modes(model, mode=0, amplitude=(3e-5, 1e-2))
+    figure = Figure(figsize=(11.0, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    plot.backbone(modes, damping=False, ax=left)
+    plot.mode_damping(modes, ax=right)
+    return _save(figure, folder / "nonlinear-modes.png")
+
+
+def several_solutions(folder: Path = ASSETS) -> Path:
+    """Draw curves that fold: with a spring that stiffens, and with a stop."""
+    mass = ss.Structure(mass=[[1.0]], stiffness=[[1.0]], damping=[[0.1]], dofs=["x"])
+    spring, stop = ss.Cubic("x", stiffness=1.0), ss.Stop("x", stiffness=20.0, gap=1.0)
+    figure = Figure(figsize=(11.0, 4.2), layout="constrained")
+    cases = ((spring, 1.0, (0.3, 4.0)), (stop, 0.3, (0.5, 2.5)))
+    for ax, (law, force, omega) in zip(figure.subplots(1, 2), cases, strict=True):
+        model = ss.Model(mass, contacts=[law], forces=[ss.Force("x", amplitude=force)])
+        frf = ss.forced_response(model, omega)
+        plot.curves(
+            frf,
+            "x",
+            length_unit="m",
+            log=False,
+            stuck=False,
+            free=False,
+            peaks=False,
+            error_band=False,
+            ax=ax,
+        )
+        ax.set_title(type(law).__name__, fontsize="medium")
+    return _save(figure, folder / "several-solutions.png")
+
+
+def uncertainty(folder: Path = ASSETS) -> Path:
+    """Draw the distribution of a peak over uncertain parameters, and their shares in it."""
+    left = ss.Structure(10 * np.eye(2), [[1e6, -9e5], [-9e5, 1e6]], 100 * np.eye(2), ["x", "y"])
+    right = ss.Structure(10 * np.eye(2), [[4e5, -3e5], [-3e5, 4e5]], 100 * np.eye(2), ["x", "y"])
+    face = {"friction": 0.2, "tangential_stiffness": 3e5, "normal_stiffness": 3e5, "load": 240.0}
+    wedge = ss.WedgeDamper(angle=60.0, mass=0.1, **face)
+    forces = [ss.Force("left.x", 150.0), ss.Force("right.x", 150.0, phase=np.pi)]
+    study = ss.uncertainty(
+        wedge.between(left, right, left_dofs=["x", "y"], right_dofs=["x", "y"], forces=forces),
+        {
+            "friction": stats.uniform(0.15, 0.25),
+            "tangential_stiffness": stats.norm(3e5, 2e4),
+            "normal_stiffness": stats.lognorm(0.1, scale=3e5),
+            "load": stats.uniform(0.8, 0.4),
+        },
+        ss.HighestPeak("left.x", omega=(80, 240)),
+        samples=128,
+        harmonics=3,
+    )
+    figure = Figure(figsize=(12.0, 4.2), layout="constrained")
+    first, second = figure.subplots(1, 2)
+    plot.uncertainty_distribution(study, "amplitude", ax=first)
+    plot.sobol_indices(study, "amplitude", ax=second)
+    return _save(figure, folder / "uncertainty.png")
+
+
 def _errors(
     model: ss.Model, exact: ss.ForcedResponse, harmonics: int | Literal["auto"]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -435,6 +529,11 @@ def _save(figure: Figure, file: Path) -> Path:
 
 
 if __name__ == "__main__":
+    print(campbell())
+    print(sweep())
+    print(nonlinear_modes())
+    print(several_solutions())
+    print(uncertainty())
     print(snecma_beam())
     print(structural_damper())
     print(structural_curve())

@@ -164,7 +164,7 @@ def _history(case: int) -> Numbers:
     facts.append(Fact("ω of the exact limit cycle", float(cycle.omega[place]), "rad/s"))
     for letter, motion in motions.items():
         size = run.amplitude({"x₂": "tip", "x₃": "mode"}.get(letter, "damper"))
-        label = f"{letter} / {size:.3g} m"
+        label = f"{letter} / {1e6 * size:.3g} µm"
         series.append(over_period(label, np.roll(motion, -first) / size))
         if letter != "x_d":
             facts.append(Fact(f"amplitude {letter}", size, "m"))

@@ -207,6 +207,20 @@ def test_public_names_are_documented() -> None:
     assert [name for name in ss.__all__ if not re.search(rf"\b{name}\b", text)] == []
 
 
+@pytest.mark.parametrize("page", PAGES, ids=_named)
+def test_names_of_the_package_exist(page: Path) -> None:
+    import stickslip as ss
+
+    text = page.read_text(encoding="utf-8")
+    named = re.findall(r"\bss\.([A-Za-z_][\w.]*\w)", text)
+    assert [name for name in named if not _exists(ss, name)] == []
+
+
+def _exists(owner: object, name: str) -> bool:
+    first, _, rest = name.partition(".")
+    return hasattr(owner, first) and (not rest or _exists(getattr(owner, first), rest))
+
+
 def test_source_files_of_the_theory_exist() -> None:
     text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
     files = re.findall(r"`((?:core|python|bindings)/[\w/.-]+\.(?:rs|py))`", text)

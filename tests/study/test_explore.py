@@ -225,7 +225,7 @@ def test_the_optimum_is_that_of_the_library(session):
     value = table["headings"].index("value")
     assert float(table["rows"][0][value]) == pytest.approx(best.value, rel=1e-5)
     names = [one.get("name") for one in json.loads(pane["figures"][0]["data"])["data"]]
-    assert "now: 246" in names
+    assert "now: 246 N" in names
 
 
 @pytest.mark.slow

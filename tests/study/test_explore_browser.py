@@ -112,7 +112,7 @@ def test_a_key_moves_a_slider_and_the_curve_is_that_of_the_solver(page):
     assert shown["x"] == pytest.approx(curve.omega)
     assert shown["y"] == pytest.approx(curve.amplitude("tip"), rel=1e-9)
     names = page.run("document.querySelector('#damper .plot')._fullData.map(one => one.name)")
-    assert f"now: {now:.4g}" in names
+    assert f"now: {now:.4g} N" in names
     limits = page.run("document.querySelector('#curve .plot')._fullData.map(one => one.name)")
     assert {"stuck (linear)", "free (linear)", "estimated truncation error"} <= set(limits)
 

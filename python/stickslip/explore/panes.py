@@ -105,12 +105,13 @@ def damper(
     common, now = present(model, parameter)
     found = _optimum(study, result, dof, parameter, common, now, look)
     view, output = view_of([found]), study.tables.output
-    at = now
-    if parameter == "level":
-        at = force_level(model) or now
+    at, unit = now, found.curve.settings.variation.unit.removesuffix("1")
+    if parameter == "level" and force_level(model):
+        at, unit = force_level(model), "N"
+    drawn = view.panels([found], [dof], output)
     return Pane(
         "damper",
-        panels=[partial(_with_present, one, at) for one in view.panels([found], [dof], output)],
+        panels=[partial(_with_present, one, at, unit) for one in drawn],
         tables=view.tables([("", found)], "", [dof], output.length_unit),
         failures=failures(found),
         cautions=cautions(found),
@@ -168,12 +169,13 @@ def _optimum(
     return optimal_damper(result.model, **given, **keys, progress=look)
 
 
-def _with_present(panel: Panel, value: float, *, ax: Axes) -> None:
+def _with_present(panel: Panel, value: float, unit: str, *, ax: Axes) -> None:
     """Draw a damper curve, and where on it the sliders stand."""
     panel(ax=ax)
     low, high = ax.get_xlim()
+    now = style.written(value, unit)
     if low <= value <= high:
-        ax.axvline(value, color="0.35", lw=1.0, ls=":", label=f"now: {value:.4g}")
+        ax.axvline(value, color="0.35", lw=1.0, ls=":", label=f"now: {now}")
         style.finish(ax, made=False)
 
 

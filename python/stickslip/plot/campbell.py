@@ -66,7 +66,7 @@ def campbell(ax: Axes, /, result: Campbell, **options: Unpack[CampbellOptions]) 
     if found:
         at = [one.speed * style.OMEGA["rpm"].factor for one in found]
         height = [omega.factor * one.omega for one in found]
-        ax.plot(at, height, **style.mark("o", 5, "crimson"), label="resonances, stuck")
+        ax.plot(at, height, **style.mark("o", 5, "crimson"), label="resonances" + ", stuck" * slips)
     ax.set(xlim=(min(0.98 * x.min(), x.max()), x.max()), ylim=(0.0, omega.factor * top))
     ax.set(xlabel="rotor speed [rpm]")
     ax.set_ylabel(omega.label.replace("angular frequency ω", "natural frequency"))

@@ -48,7 +48,7 @@ def damper(
             x, y = x[view.best], y[view.best]
             auto = options["length_unit"] == "auto"
             least = style.prefixed(y, view.unit, 4) if auto else f"{y:.4g} {view.unit}"
-            label = f"lowest: {least} at {x:.4g}"
+            label = f"lowest: {least} at {style.written(x, style.unit_of(view.label))}"
             ax.plot(x, y, **style.mark("o", 5, colour), mew=1.3, label=label)
         rigid = np.flatnonzero(np.isinf(one.values) & one.arrays.solved)
         if rigid.size and one.parameter == "stiffness":

@@ -19,6 +19,8 @@ from stickslip.results.nonlinear_modes import NonlinearModes
 _AMPLITUDE = r"modal amplitude [m kg$^{1/2}$]"
 _INSETS = (0.08, 0.42, 0.76)
 """Where the shapes stand across the figure of the frequency."""
+_BELOW = 0.45
+"""Room for them below the frequencies, over the height of these."""
 
 
 @keywords
@@ -90,6 +92,8 @@ def _shapes(ax: Axes, mode: NonlinearModes) -> None:
     known = np.flatnonzero(np.isfinite(mode.omega))
     if not known.size:
         return
+    low, high = ax.get_ylim()
+    ax.set_ylim(low - _BELOW * (high - low), high)
     for left, index in zip(_INSETS, known[[0, known.size // 2, -1]], strict=True):
         inset = ax.inset_axes((left, 0.06, 0.16, 0.2))
         shape = np.abs(mode.arrays.displacement[index, 1])

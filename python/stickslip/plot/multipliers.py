@@ -47,7 +47,7 @@ def multipliers(ax: Axes, /, result: ExactResponse, **options: Unpack[Multiplier
     if kept.size:
         hollow: Looks = {"ls": "", "marker": "o", "mfc": "none", "mec": style.GREY}
         ax.plot(kept.real, kept.imag, **hollow, label="neutral: a contact never slips")
-        ax.legend(frameon=False, fontsize="small", loc="lower left")
+        ax.legend(frameon=False, fontsize="small", loc="lower left", bbox_to_anchor=(0.0, 1.0))
     if len(chosen) > 1:
         ax.figure.colorbar(cloud, ax=ax, label=omega.label)
     else:

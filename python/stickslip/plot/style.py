@@ -212,6 +212,19 @@ def prefixed(value: float, unit: str, digits: int = 3) -> str:
     return f"{value / 10.0**exponent:.{digits}g} {_PREFIXES[exponent]}{unit}"
 
 
+def written(value: float, unit: str) -> str:
+    """Return a number with four digits and its unit, with a prefix where units take one."""
+    if unit in _PREFIXED:
+        return prefixed(value, unit, 4)
+    return f"{value:.4g} {unit}".rstrip()
+
+
+def unit_of(label: str) -> str:
+    """Return the unit at the end of the label of an axis, "" if there is none."""
+    _, between, unit = label.rpartition(" [")
+    return unit.rstrip("]") if between else ""
+
+
 def _exponent(value: float) -> int:
     return int(np.clip(3 * np.floor(np.log10(abs(value)) / 3), -9, 9))
 
@@ -220,6 +233,11 @@ def prefix_of(value: float, unit: str) -> Scale:
     """Return the factor and the unit with the SI prefix that suit a largest value."""
     exponent = _exponent(value) if value and np.isfinite(value) else 0
     return Scale(10.0**-exponent, f"{_PREFIXES[exponent]}{unit}")
+
+
+def scale_of(value: float, unit: str) -> Scale:
+    """Return the factor and the unit that suit a largest value, with a prefix if it takes one."""
+    return prefix_of(value, unit) if unit in _PREFIXED else Scale(1.0, unit)
 
 
 class Prefixed(Formatter):
@@ -244,21 +262,25 @@ class Prefixed(Formatter):
 def prefix_axes(ax: Axes, *, lengths: bool) -> None:
     """Write forces, stiffnesses and, if asked, lengths with the prefix that suits the data."""
     axes = ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim()))
-    words = [axis.get_label_text().rpartition(" [") for axis, _ in axes]
-    units = [unit.rstrip("]") if between else "" for _, between, unit in words]
-    for (axis, ends), (head, _, _), unit in zip(axes, words, units, strict=True):
+    labels = [axis.get_label_text() for axis, _ in axes]
+    units = [unit_of(label) for label in labels]
+    for (axis, ends), label, unit in zip(axes, labels, units, strict=True):
         if unit not in _PREFIXED or (unit in _LENGTHS and not lengths):
             continue
         # Both axes of one plane have one unit.
         reach = [
             end for (_, both), one in zip(axes, units, strict=True) if one == unit for end in both
         ]
-        scale = prefix_of((1.0 - 1e-9) * max(map(abs, reach)), unit)
+        reached = (1.0 - 1e-9) * max(map(abs, reach))
+        if axis is ax.xaxis and axis.get_scale() == "log":
+            # A parameter is varied by factors about its middle.
+            reached = float(np.sqrt(np.prod(ends)))
+        scale = prefix_of(reached, unit)
         if scale.factor == 1.0:
             continue
         low, high = sorted(scale.factor * end for end in ends)
         powers = axis.get_scale() == "log" and not (low > 1e-4 and high < 1e5)
-        axis.set_label_text(f"{head} [{scale.label}]")
+        axis.set_label_text(f"{label.removesuffix(f'[{unit}]')}[{scale.label}]")
         axis.set_major_formatter(Prefixed(scale.factor, powers=powers))
         if axis.get_scale() == "log":
             few = not powers and np.log10(high / low) < _FEW_DECADES

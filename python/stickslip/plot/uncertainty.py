@@ -44,14 +44,16 @@ def uncertainty_distribution(
     )
     share = np.arange(1, values.size + 1) / values.size
     ax.step(values, share, where="post", color=style.BLUE, lw=1.4, label="share below")
+    unit = result.settings.quantity.numbers[number]
+    shown = style.scale_of(float(values[-1]), unit)
     for q in options["percentiles"]:
         found = result.percentile(number, q, options["confidence"])
         ends = np.array([[found.value - found.low], [found.high - found.value]])
         bars = np.where(np.isfinite(ends), ends, 0.0)
-        label = f"{q:g} %: {found.value:.4g} ({found.low:.4g} to {found.high:.4g})"
+        value, low, high = (shown.factor * end for end in (found.value, found.low, found.high))
+        label = f"{q:g} %: {value:.4g} {shown.label}".rstrip() + f" ({low:.4g} to {high:.4g})"
         (mark,) = ax.plot([found.value], [q / 100.0], ls="", marker="D", ms=5, label=label)
         ax.errorbar([found.value], [q / 100.0], xerr=bars, color=mark.get_color(), capsize=3)
-    unit = result.settings.quantity.numbers[number]
     ax.set(xlabel=f"{number} [{unit}]", ylabel="share of the samples", ylim=(0.0, 1.02))
     failed = f", {result.failed} failed" if result.failed else ""
     ax.set_title(f"{values.size} samples{failed}", fontsize="medium")
@@ -81,7 +83,7 @@ def sobol_indices(
         at = place + side * _BAR
         ax.bar(at, value, _BAR, color=colour, label=label)
         ax.errorbar(at, value, yerr=bars, ls="", color="0.2", capsize=3)
-    ax.set_xticks(place, names)
+    ax.set_xticks(place, [name.replace("_", "_\n") for name in names])
     ax.set(ylabel="share of the variance", ylim=(0.0, None))
     ax.set_title(f"{number}: surrogate misses {found.error:.2g} of the variance", fontsize="medium")
 

@@ -41,8 +41,8 @@ class CurveView(View[ForcedResponse]):
                 row.dof,
                 f"{row.omega:#.6g}{mark}",
                 f"{row.omega / (2 * pi):#.6g}",
-                f"{row.amplitude / length:.4e}",
-                "-" if row.amplitude == inf else f"{row.error_estimate / length:.0e}",
+                f"{row.amplitude / length:#.5g}",
+                "-" if row.amplitude == inf else f"{row.error_estimate / length:.1g}",
                 "exact" if isinstance(result, ExactResponse) else f"{row.harmonics}",
                 _converged(result),
             )

@@ -35,7 +35,7 @@ class CycleView(View[LimitCycles]):
                 f"{result.values[index]:.6g}",
                 f"{result.ratio[index]:.6g}",
                 f"{result.omega[index]:#.7g}",
-                *(f"{result.amplitude(dof)[index] / length:.6e}" for dof in dofs),
+                *(f"{result.amplitude(dof)[index] / length:#.7g}" for dof in dofs),
                 f"{sizes.max():.4g}" if sizes.size else "",
                 STATES[str(result.stability[index])].answer,
             )

@@ -32,7 +32,7 @@ class DamperView(View[DamperCurve]):
                 place,
                 f"{result.parameter} [{result.settings.variation.unit}]",
                 f"{result.values[index]:.6g}",
-                f"{result.amplitude[index] / length:.6e}",
+                f"{result.amplitude[index] / length:#.7g}",
                 f"{result.omega[index]:#.6g}",
                 f"{result.error_estimate[index] / result.amplitude[index]:.1e}",
                 f"{result.harmonics[index]}",
@@ -76,7 +76,7 @@ class OptimumView(View[OptimalDamper]):
                 settings.dof,
                 f"{result.parameter} [{settings.variation.unit}]",
                 f"{minimum.value:.6g}",
-                f"{minimum.amplitude / length:.6e}",
+                f"{minimum.amplitude / length:#.7g}",
                 f"{minimum.omega:#.6g}",
             )
 

@@ -43,7 +43,7 @@ class ModeView(View[NonlinearModes]):
                 f"{result.omega[index]:#.8g}",
                 f"{result.damping_ratio[index]:.6g}",
                 f"{result.viscous_ratio[index]:.6g}",
-                *(f"{size[index]:.6e}" for size in sizes),
+                *(f"{size[index]:#.7g}" for size in sizes),
             )
 
     def about(self, result: NonlinearModes) -> list[Row]:

@@ -32,7 +32,7 @@ class MotionView(View[MotionClass]):
                 dof,
                 str(result.motion),
                 "" if result.mode is None else f"{result.mode}",
-                f"{result.amplitude(dof) / length:.6e}",
+                f"{result.amplitude(dof) / length:#.7g}",
                 f"{result.omega:#.6g}" if result.motion == Motion.SETTLED else "",
                 f"{result.time:.4g}",
             )

@@ -25,7 +25,7 @@ class StaticView(View[StaticResponse]):
     def rows(self, result: StaticResponse, dofs: Dofs, length: float) -> Rows:
         """Return a row per DOF and one per contact point."""
         for dof in dofs:
-            yield dof, f"{result.displacement(dof) / length:.6e}", "", ""
+            yield dof, f"{result.displacement(dof) / length:#.7g}", "", ""
         for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
             for point in range(contact.points):
                 force = np.atleast_1d(result.contact_force((name, point)))

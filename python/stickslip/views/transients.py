@@ -25,7 +25,7 @@ class TransientView(View[Transient]):
         for dof in dofs:
             yield (
                 dof,
-                f"{result.amplitude(dof) / length:.6e}",
+                f"{result.amplitude(dof) / length:#.7g}",
                 f"{result.periods}",
                 f"{result.change[-1]:.1e}" if result.periods else "",
                 f"{result.omega:#.6g}",
