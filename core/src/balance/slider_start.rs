@@ -27,9 +27,6 @@ const HALVINGS: i32 = 3;
 /// those inwards.
 const INSIDE: f64 = 1e-7;
 
-/// The same, of a state from which an orbit is sought: where it does not touch its limit the flow is smooth.
-const CLEAR: f64 = 0.1;
-
 /// A motion with its sliders.
 #[derive(Debug, Clone)]
 pub(crate) struct HeldMotion {
@@ -230,13 +227,13 @@ impl<'a> SliderBalance<'a> {
     }
 
     /// A motion as a point: the displacements of all DOFs as they are, those of the contacts as they
-    /// are seen from sliders clear of their limits. By [`Residual::FromRest`] the laws answer to these as
+    /// are seen from sliders by a share of their range clear of its limits: there the flow is smooth. By [`Residual::FromRest`] the laws answer to these as
     /// they do to the motion.
     ///
     /// # Errors
     /// As for a solution.
-    pub(crate) fn seen_point(&mut self, motion: &HeldMotion) -> Result<Point, Error> {
-        let x = self.seen(&motion.u, &motion.inside(CLEAR));
+    pub(crate) fn seen_point(&mut self, motion: &HeldMotion, clear: f64) -> Result<Point, Error> {
+        let x = self.seen(&motion.u, &motion.inside(clear));
         self.equations.residual(&x, &mut vec![0.0; x.len()]);
         let mut slip_load = self.equations.slip_load();
         for (slider, w) in motion.sliders.iter().enumerate() {

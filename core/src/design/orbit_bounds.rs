@@ -5,11 +5,17 @@
 //! leaves out.
 
 use super::bounds::{between, beyond, tables_of, Found, Search};
-use crate::balance::{sweep, AmplitudeBounds, ForcedBalance, Point, Progress, Settings};
+use crate::balance::{
+    sweep, AmplitudeBounds, ForcedBalance, HeldMotion, Point, Progress, Settings,
+};
 use crate::model::Model;
 use crate::orbit::{Orbit, OrbitSettings, Orbits, PeriodicOrbits};
 use crate::Error;
 use std::sync::Arc;
+
+/// How far from their limits, relative to their range, sliders are at the start of an orbit, one after the
+/// other until it is found.
+const CLEAR: [f64; 3] = [1e-6, 1e-2, 0.2];
 
 /// Adds to orbits the bounds of their amplitudes over all residual tractions. `proved` tells that theory
 /// leaves one vibration alone; `search` are the settings of the balance that finds the extreme sliders,
@@ -68,15 +74,30 @@ fn of_orbit(
         return Ok(None);
     };
     let mut others = Vec::new();
-    for motion in &found.extremes {
-        let start = here.balance.seen_point(motion)?;
-        let other = exact.solve_displaced(&start, beyond(motion, &motion.sliders))?;
-        let keeps = |slider: usize| other.response.contacts[slider].slip_fraction == 0.0;
-        if !(other.response.is_solved() && motion.held().all(|(slider, _)| keeps(slider))) {
-            return Ok(None);
+    // The motion of the balance itself may have been left by another past than the orbit.
+    let own = found.extremes.first().map(|_| nominal);
+    for motion in own.into_iter().chain(&found.extremes) {
+        let mut sought = CLEAR.iter().map(|clear| {
+            let start = here.balance.seen_point(motion, *clear)?;
+            let other = exact.solve_displaced(&start, beyond(motion, &motion.sliders))?;
+            Ok(is_alike(&other, motion, nominal).then(|| other.half_ranges()))
+        });
+        match sought.find_map(Result::transpose) {
+            Some(other) => others.push(other?),
+            None => return Ok(None),
         }
-        others.push(other.half_ranges());
     }
     let own = orbit.half_ranges();
     Ok(Some(between(&own, nominal.pushed, others.iter().map(Vec::as_slice))))
+}
+
+/// Whether an orbit leaves the sliders that a motion leaves, and no other ones of the nominal motion.
+fn is_alike(orbit: &Orbit, motion: &HeldMotion, nominal: &HeldMotion) -> bool {
+    let contacts = orbit.response.contacts.iter().zip(motion.range.iter().zip(&nominal.range));
+    let mut same = contacts.map(|(contact, (own, nominal))| match (own, nominal) {
+        (Some(_), _) => contact.slip_fraction == 0.0,
+        (None, Some(_)) => contact.slip_fraction > 0.0,
+        (None, None) => true,
+    });
+    orbit.response.is_solved() && same.all(|same| same)
 }
