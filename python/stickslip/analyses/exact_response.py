@@ -72,7 +72,7 @@ def exact_response(
     span = grid if isinstance(grid, tuple) else None
     kept = ExactSettings.of(**settings.part(OrbitSettings), span=span, bounds=bounded)
     dofs = observed_dofs(settings, model)
-    require_held(model, settings.residual)
+    require_held(model, kept.residual)
     with Run("exact response", progress, model) as run:
         part: Progress = run
         if isinstance(grid, tuple):
