@@ -19,7 +19,7 @@ use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::timing::Profile;
 use crate::Error;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Points after which all corners are tried again.
@@ -110,12 +110,10 @@ impl<'a> Search<'a> {
         };
         let model = made.map_or(Evaluated::Given(model), |made| Evaluated::Made(Arc::new(made)));
         model.compliance().require_grounded()?;
-        let mut marched = BTreeMap::new();
-        for samples in solution.points.iter().filter_map(|point| point.samples) {
-            if !marched.contains_key(&samples) {
-                marched.insert(samples, Arc::new(model.marched(samples)?));
-            }
-        }
+        let samples: BTreeSet<usize> =
+            solution.points.iter().filter_map(|point| point.samples).collect();
+        let marched = samples.into_iter().map(|n| Ok((n, Arc::new(model.marched(n)?))));
+        let marched = marched.collect::<Result<_, Error>>()?;
         let (ranges, profile) = (BTreeMap::new(), Profile::default());
         Ok(Self { model, settings, observe, tables, marched, ranges, profile })
     }
