@@ -182,6 +182,7 @@ impl<'py> Columns<'py> {
             Uniqueness::Unique => 0_u8,
             Uniqueness::Residual => 1,
             Uniqueness::Shakedown => 2,
+            Uniqueness::NotFound => 4,
         };
         self.one("unique", all().map(|bounds| bounds.map_or(3, code)))?;
         self.one("guaranteed", all().map(|bounds| bounds.is_some_and(|bounds| bounds.proved)))

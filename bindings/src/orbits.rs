@@ -10,6 +10,8 @@ use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
+use stickslip_core::balance::Settings;
+use stickslip_core::design::bound_orbits;
 use stickslip_core::fourier::Measure;
 use stickslip_core::motion::{transient, Scheme, TransientSettings};
 use stickslip_core::orbit::{
@@ -24,9 +26,12 @@ fn rotation(given: &Bound<'_, PyAny>) -> PyResult<Option<Rotation>> {
     Ok(given.map(of))
 }
 
-/// Exact periodic orbits over a grid of frequencies.
+/// Exact periodic orbits over a grid of frequencies. `bounds` asks for those over the residual tractions,
+/// and tells whether one vibration alone is known to exist and how accurately extremes are sought.
 #[pyfunction]
-#[pyo3(signature = (problem, omega, observe, harmonics, settings, progress, rotation=None))]
+#[pyo3(signature = (
+    problem, omega, observe, harmonics, settings, progress, rotation=None, bounds=None
+))]
 pub fn exact_response<'py>(
     py: Python<'py>,
     problem: &Problem,
@@ -36,6 +41,7 @@ pub fn exact_response<'py>(
     #[pyo3(from_py_with = orbit)] settings: OrbitSettings,
     progress: Option<Py<PyAny>>,
     #[pyo3(from_py_with = rotation)] rotation: Option<Rotation>,
+    bounds: Option<(bool, f64)>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let settings = OrbitSettings { harmonics, ..settings };
     let (model, own, observed) = (&problem.model, Arc::clone(&problem.model), observe.len());
@@ -43,9 +49,13 @@ pub fn exact_response<'py>(
         py,
         progress,
         move |kept, look| {
-            PeriodicOrbits::new(&own, settings, &observe)
-                .and_then(|orbits| orbits.rotating(rotation))
-                .and_then(|orbits| orbit_sweep(orbits.watched(look).keeping(kept), &omega))
+            let orbits = PeriodicOrbits::new(&own, settings, &observe)?.rotating(rotation)?;
+            let mut found = orbit_sweep(orbits.watched(look).keeping(kept), &omega)?;
+            if let Some((proved, tolerance)) = bounds {
+                let search = Settings { tolerance, ..Settings::default() };
+                bound_orbits(&own, search, &observe, proved, (settings, &mut found), look)?;
+            }
+            Ok(found)
         },
         |points| {
             let half_wave = model.is_symmetric() && settings.residual.is_symmetric();

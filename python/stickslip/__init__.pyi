@@ -178,7 +178,7 @@ def exact_response(
     *,
     observe: Iterable[str] | str | None = None,
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float | None = None,
+    residual: Literal["centred", "from_rest", "bounds"] | float | None = None,
     harmonics: int = 32,
     tolerance: float = 0.001,
     progress: Progress = None,

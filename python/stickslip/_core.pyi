@@ -158,6 +158,7 @@ def exact_response(
     settings: SteadySettings,
     progress: Progress,
     rotation: tuple[int, int, float, float, int] | None = None,
+    bounds: tuple[bool, float] | None = None,
 ) -> Solution: ...
 def exact_peak(
     problem: Problem,

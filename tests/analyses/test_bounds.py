@@ -202,3 +202,65 @@ def test_a_study_file():
     assert found.bounded
     assert found.settings.bounds
     assert found.settings.residual == "centred"
+
+
+def test_orbits_go_as_far_as_a_balance_of_many_harmonics(bounded):
+    """What is extreme is found by few harmonics; what an orbit with it does is exact."""
+    grid = GRID[:8:2]
+    exact = ss.exact_response(pads(), grid, residual="bounds", observe=["a.x"])
+    fine = ss.forced_response(pads(), grid, 63, residual="bounds", observe=["a.x"])
+    np.testing.assert_array_equal(exact.unique, fine.unique)
+    np.testing.assert_allclose(exact.lower("a.x"), fine.lower("a.x"), rtol=2.0 * SEARCH)
+    np.testing.assert_allclose(exact.upper("a.x"), fine.upper("a.x"), rtol=2.0 * SEARCH)
+    assert (exact.upper("a.x") > 1.02 * exact.lower("a.x")).sum() > 1
+    plain = ss.exact_response(pads(), grid, observe=["a.x"])
+    np.testing.assert_array_equal(exact.amplitude("a.x"), plain.amplitude("a.x"))
+    assert exact.settings.bounds
+    assert any(one.code == "bounds" for one in exact.diagnostics)
+
+
+def test_orbits_of_monotone_contacts_are_the_only_ones():
+    exact = ss.exact_response(snecma_beam(force=20.0), [180.0, 260.0], residual="bounds")
+    assert exact.guaranteed.all()
+    np.testing.assert_array_equal(exact.lower("tip"), exact.amplitude("tip"))
+    np.testing.assert_array_equal(exact.upper("tip"), exact.amplitude("tip"))
+
+
+def test_orbits_of_a_wedge():
+    """A static load presses: the past may have left more than one vibration from rest."""
+    blades = (
+        ss.Structure(10.0 * np.eye(2), stiffness, 100.0 * np.eye(2), ["x", "y"])
+        for stiffness in ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]])
+    )
+    wedge = ss.WedgeDamper(
+        angle=40.0, mass=0.1, friction=0.6, tangential_stiffness=3e5, normal_stiffness=3e5, load=240
+    )
+    ends = {"left_dofs": ["x", "y"], "right_dofs": ["x", "y"]}
+    forces = [ss.Force("left.x", 200.0), ss.Force("right.x", 200.0, phase=np.pi)]
+    model = wedge.between(*blades, **ends, forces=forces)
+    grid = [298.5, 305.25, 312.0]
+    exact = ss.exact_response(model, grid, residual="bounds", observe=["left.x"])
+    fine = ss.forced_response(model, grid, 63, residual="bounds", observe=["left.x"])
+    assert (exact.upper("left.x") > 1.02 * exact.lower("left.x")).tolist() == [True, True, False]
+    np.testing.assert_allclose(exact.lower("left.x"), fine.lower("left.x"), rtol=2.0 * SEARCH)
+    np.testing.assert_allclose(exact.upper("left.x"), fine.upper("left.x"), rtol=2.0 * SEARCH)
+
+
+def test_a_structural_damper_beside_a_normal_load_that_varies():
+    """Its sliders are varied with the others: what a preloaded damper holds presses the pads."""
+    base = pads(force=2.0)
+    damper = ss.StructuralDamper(
+        ["a.z", "b.z"],
+        stiffness=[[90.0, 20.0], [20.0, 70.0]],
+        slip_forces=[1.0, 1.2],
+        name="damper",
+    )
+    model = base.replaced(contacts=[*base.contacts, damper])
+    frf = ss.forced_response(model, GRID[::3], 5, residual="bounds", observe=["a.x"])
+    lower, upper = frf.lower("a.x"), frf.upper("a.x")
+    assert not frf.guaranteed.any()
+    assert (upper > 1.01 * lower).any()
+    for residual in ("from_rest", -0.8, -0.3, 0.4, 1.0):
+        other = ss.forced_response(model, GRID[::3], 5, residual=residual, observe=["a.x"])
+        assert (other.amplitude("a.x") <= upper * (1.0 + SEARCH)).all()
+        assert (other.amplitude("a.x") >= lower * (1.0 - SEARCH)).all()

@@ -12,8 +12,8 @@
 
 use super::condensed::Condensed;
 use super::evaluation::Evaluated;
-use super::solution::Point;
-use super::unknowns::scatter;
+use super::solution::{Point, PointStatus};
+use super::unknowns::{gather, scatter};
 use crate::contact::{Held, Residual};
 use crate::fourier::{amplitude, amplitude_gradient, Measure, SampleTable};
 use crate::solve::{newton, NewtonSettings, Outcome, System as _};
@@ -191,14 +191,9 @@ impl<'a> SliderBalance<'a> {
     fn measure(&mut self, motion: &mut HeldMotion, slopes: bool) -> Option<()> {
         let slots = self.slots();
         let mut x = self.seen(&motion.u, &motion.sliders);
-        let inside = |(w, range): (&f64, &Option<[f64; 2]>)| match range {
-            Some([low, high]) => w + INSIDE * (0.5 * (low + high) - w),
-            None => *w,
-        };
         let mut ignored = vec![0.0; x.len()];
         if slopes {
-            let free: Vec<f64> = motion.sliders.iter().zip(&motion.range).map(inside).collect();
-            x = self.seen(&motion.u, &free);
+            x = self.seen(&motion.u, &motion.inside(INSIDE));
             self.equations.residual(&x, &mut ignored);
         }
         // Harmonics from the first on depend on differences from the sliders alone.
@@ -231,6 +226,45 @@ impl<'a> SliderBalance<'a> {
         Some(())
     }
 
+    /// A motion as a point: the displacements of all DOFs as they are, those of the contacts as they
+    /// are seen from sliders by a share of their range clear of its limits: there the flow is smooth. By [`Residual::FromRest`] the laws answer to these as
+    /// they do to the motion.
+    ///
+    /// # Errors
+    /// As for a solution.
+    pub(crate) fn seen_point(&mut self, motion: &HeldMotion, clear: f64) -> Result<Point, Error> {
+        let x = self.seen(&motion.u, &motion.inside(clear));
+        self.equations.residual(&x, &mut vec![0.0; x.len()]);
+        let mut slip_load = self.equations.slip_load();
+        for (slider, w) in motion.sliders.iter().enumerate() {
+            let load = self.spring_load(slider);
+            slip_load.iter_mut().zip(load).for_each(|(slip, by)| *slip += w * by);
+        }
+        let harmonics = self.equations.harmonics();
+        let (orders, omega) = (harmonics.highest() + 1, self.equations.omega);
+        let everywhere: Vec<usize> = (0..self.equations.model.compliance().dofs()).collect();
+        let sizes = (everywhere.len() * orders, self.count() * orders);
+        let mut point = Point::empty(omega, PointStatus::Converged, sizes.0, sizes.1);
+        point.harmonics = harmonics.highest();
+        let moved = &mut point.displacement;
+        let all = [&motion.u[..], &slip_load];
+        self.equations.displacements(
+            Quantity::Whole,
+            all,
+            &everywhere,
+            |order, values, _, _| {
+                values.iter().enumerate().for_each(|(dof, x)| moved[dof * orders + order] = *x);
+            },
+        )?;
+        let mut values = Vec::new();
+        for order in harmonics.orders() {
+            gather(harmonics, order, &x, &mut values);
+            let seen = values.iter().enumerate();
+            seen.for_each(|(i, u)| point.contact_displacement[i * orders + order] = *u);
+        }
+        Ok(point)
+    }
+
     /// Series of the observed DOFs.
     fn series(&self, quantity: Quantity, x: &[f64], slip_load: &[f64]) -> Result<Vec<f64>, Error> {
         let harmonics = self.equations.harmonics();
@@ -261,6 +295,15 @@ impl HeldMotion {
             amplitude: Vec::new(),
             slopes: Vec::new(),
         }
+    }
+
+    /// Positions of the sliders, those that are held by a share nearer to the middle of their range.
+    fn inside(&self, share: f64) -> Vec<f64> {
+        let inside = |(w, range): (&f64, &Option<[f64; 2]>)| match range {
+            Some([low, high]) => w + share * (0.5 * (low + high) - w),
+            None => *w,
+        };
+        self.sliders.iter().zip(&self.range).map(inside).collect()
     }
 
     /// The sliders that are held, by component, with their ranges.

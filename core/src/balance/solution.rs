@@ -48,6 +48,8 @@ pub enum Uniqueness {
     Residual,
     /// It does, and the motion itself has pushed a contact in one sense until it slips no more.
     Shakedown,
+    /// An orbit with other residual tractions was not found.
+    NotFound,
 }
 
 /// Bounds of the half ranges of the observed DOFs over all residual tractions that Coulomb allows.
@@ -67,6 +69,12 @@ impl AmplitudeBounds {
     /// Those of the only vibration.
     pub(crate) fn unique(amplitude: Vec<f64>, proved: bool) -> Self {
         Self { lower: amplitude.clone(), upper: amplitude, unique: Uniqueness::Unique, proved }
+    }
+
+    /// Those of so many DOFs that were not found.
+    pub(crate) fn not_found(dofs: usize) -> Self {
+        let none = vec![f64::NAN; dofs];
+        Self { lower: none.clone(), upper: none, unique: Uniqueness::NotFound, proved: false }
     }
 }
 

@@ -19,7 +19,7 @@ use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::timing::Profile;
 use crate::Error;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Points after which all corners are tried again.
@@ -33,16 +33,16 @@ const SAME: f64 = 1e-3;
 
 /// What is known at a point.
 #[derive(Default)]
-struct Found {
+pub(super) struct Found {
     /// The motion of the curve.
-    nominal: Option<HeldMotion>,
+    pub(super) nominal: Option<HeldMotion>,
     /// The motions that are extreme in some DOF, largest and least.
-    extremes: Vec<HeldMotion>,
+    pub(super) extremes: Vec<HeldMotion>,
     ascents: Vec<Ascent>,
 }
 
 /// Bounds of all points of a curve.
-struct Search<'a> {
+pub(super) struct Search<'a> {
     model: Evaluated<'a>,
     settings: Settings,
     observe: &'a [usize],
@@ -51,7 +51,7 @@ struct Search<'a> {
     marched: BTreeMap<usize, Arc<Model>>,
     /// The ranges of all sliders that have been held, as of late.
     ranges: BTreeMap<usize, [f64; 2]>,
-    profile: Profile,
+    pub(super) profile: Profile,
 }
 
 /// Adds to the points of a curve the bounds of their amplitudes over all residual tractions. `proved`
@@ -75,32 +75,55 @@ pub fn bound(
         return Ok(());
     }
     let start = std::time::Instant::now();
-    let made = match settings.residual {
-        Residual::FromRest => with_history(model)?,
-        Residual::Centred | Residual::Value(_) => None,
-    };
-    let model = made.map_or(Evaluated::Given(model), |made| Evaluated::Made(Arc::new(made)));
-    model.compliance().require_grounded()?;
-    let mut tables = BTreeMap::new();
-    let mut marched = BTreeMap::new();
-    for point in solution.points.iter().filter(|point| point.is_solved()) {
-        let harmonics = || SampleTable::new(Harmonics::new(point.harmonics, false));
-        tables.entry(point.harmonics).or_insert_with(harmonics);
-        if let Some(samples) = point.samples.filter(|samples| !marched.contains_key(samples)) {
-            marched.insert(samples, Arc::new(model.marched(samples)?));
+    let tables = tables_of(solution);
+    let mut search = Search::new(model, settings, observe, solution, &tables)?;
+    let found = search.along(solution, progress)?;
+    for (point, found) in solution.points.iter_mut().zip(&found) {
+        if let Some(bounds) = found.bounds() {
+            Arc::make_mut(point).bounds = Some(bounds);
         }
     }
-    let (tables, ranges, profile) = (&tables, BTreeMap::new(), Profile::default());
-    let mut search = Search { model, settings, observe, tables, marched, ranges, profile };
-    search.along(solution, progress)?;
     solution.profile.add(&search.profile);
     solution.profile.total += start.elapsed();
     Ok(())
 }
 
+/// What the points of a curve resolve.
+pub(super) fn tables_of(solution: &Solution) -> BTreeMap<usize, SampleTable> {
+    let solved = solution.points.iter().filter(|point| point.is_solved());
+    let table = |highest| SampleTable::new(Harmonics::new(highest, false));
+    solved.map(|point| (point.harmonics, table(point.harmonics))).collect()
+}
+
 impl<'a> Search<'a> {
-    /// Goes along the curve and back.
-    fn along(&mut self, solution: &mut Solution, progress: &Progress<'_>) -> Result<(), Error> {
+    /// The search along a curve of a model.
+    pub(super) fn new(
+        model: &'a Model,
+        settings: Settings,
+        observe: &'a [usize],
+        solution: &Solution,
+        tables: &'a BTreeMap<usize, SampleTable>,
+    ) -> Result<Self, Error> {
+        let made = match settings.residual {
+            Residual::FromRest => with_history(model)?,
+            Residual::Centred | Residual::Value(_) => None,
+        };
+        let model = made.map_or(Evaluated::Given(model), |made| Evaluated::Made(Arc::new(made)));
+        model.compliance().require_grounded()?;
+        let samples: BTreeSet<usize> =
+            solution.points.iter().filter_map(|point| point.samples).collect();
+        let marched = samples.into_iter().map(|n| Ok((n, Arc::new(model.marched(n)?))));
+        let marched = marched.collect::<Result<_, Error>>()?;
+        let (ranges, profile) = (BTreeMap::new(), Profile::default());
+        Ok(Self { model, settings, observe, tables, marched, ranges, profile })
+    }
+
+    /// Goes along the curve and back; what was found, as far as nobody has ended it.
+    pub(super) fn along(
+        &mut self,
+        solution: &Solution,
+        progress: &Progress<'_>,
+    ) -> Result<Vec<Found>, Error> {
         let count = solution.points.len();
         let mut found: Vec<Found> = Vec::with_capacity(count);
         for (n, point) in solution.points.iter().enumerate() {
@@ -118,12 +141,7 @@ impl<'a> Search<'a> {
             let (before, after) = found.split_at_mut(n + 1);
             self.again(&solution.points[n], &mut before[n], &after[0])?;
         }
-        for (point, found) in solution.points.iter_mut().zip(&found) {
-            if let Some(bounds) = found.bounds() {
-                Arc::make_mut(point).bounds = Some(bounds);
-            }
-        }
-        Ok(())
+        Ok(found)
     }
 
     /// Searches at a point, from the extremes of the one before.
@@ -181,7 +199,7 @@ impl<'a> Search<'a> {
     }
 
     /// The balance at a point in the positions of its sliders, at the resolution of the point.
-    fn open(&self, point: &Point) -> Result<Option<Here<'a>>, Error> {
+    pub(super) fn open(&self, point: &Point) -> Result<Option<Here<'a>>, Error> {
         let Some(table) = self.tables.get(&point.harmonics).filter(|_| point.is_solved()) else {
             return Ok(None);
         };
@@ -308,18 +326,28 @@ impl Here<'_> {
 impl Found {
     fn bounds(&self) -> Option<AmplitudeBounds> {
         let nominal = self.nominal.as_ref()?;
-        let (mut lower, mut upper) = (nominal.amplitude.clone(), nominal.amplitude.clone());
-        for motion in &self.extremes {
-            lower.iter_mut().zip(&motion.amplitude).for_each(|(l, a)| *l = l.min(*a));
-            upper.iter_mut().zip(&motion.amplitude).for_each(|(u, a)| *u = u.max(*a));
-        }
-        let same = |(l, u): (&f64, &f64)| u - l <= NO_WIDTH * u;
-        if lower.iter().zip(&upper).all(same) {
-            return Some(AmplitudeBounds::unique(nominal.amplitude.clone(), false));
-        }
-        let unique = if nominal.pushed { Uniqueness::Shakedown } else { Uniqueness::Residual };
-        Some(AmplitudeBounds { lower, upper, unique, proved: false })
+        let others = self.extremes.iter().map(|motion| motion.amplitude.as_slice());
+        Some(between(&nominal.amplitude, nominal.pushed, others))
     }
+}
+
+/// The bounds of some amplitudes; `pushed` is that of the first motion.
+pub(super) fn between<'a>(
+    nominal: &[f64],
+    pushed: bool,
+    others: impl Iterator<Item = &'a [f64]>,
+) -> AmplitudeBounds {
+    let (mut lower, mut upper) = (nominal.to_vec(), nominal.to_vec());
+    for amplitude in others {
+        lower.iter_mut().zip(amplitude).for_each(|(l, a)| *l = l.min(*a));
+        upper.iter_mut().zip(amplitude).for_each(|(u, a)| *u = u.max(*a));
+    }
+    let same = |(l, u): (&f64, &f64)| u - l <= NO_WIDTH * u;
+    if lower.iter().zip(&upper).all(same) {
+        return AmplitudeBounds::unique(nominal.to_vec(), false);
+    }
+    let unique = if pushed { Uniqueness::Shakedown } else { Uniqueness::Residual };
+    AmplitudeBounds { lower, upper, unique, proved: false }
 }
 
 /// On which side of its range a slider is in a corner: all corners in turn of up to three sliders, of
@@ -330,7 +358,7 @@ fn is_low(corner: usize, slider: usize) -> bool {
 
 /// Positions, of which those at or past a limit go past it: there the law holds them at it, wherever
 /// it moves.
-fn beyond(motion: &HeldMotion, target: &[f64]) -> Vec<f64> {
+pub(super) fn beyond(motion: &HeldMotion, target: &[f64]) -> Vec<f64> {
     let mut target = target.to_vec();
     for (slider, [low, high]) in motion.held() {
         let width = high - low;

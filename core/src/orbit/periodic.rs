@@ -5,7 +5,7 @@ use super::residual::shifted;
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::{Shooting, STEPS};
-use super::sliders::{choose, Chosen};
+use super::sliders::{choose, Assumption, Chosen};
 use super::start::start_of;
 use super::survey::Survey;
 use crate::balance::{
@@ -63,6 +63,8 @@ pub struct PeriodicOrbits<'a> {
     with_history: Option<Model>,
     system: Arc<ModalSystem>,
     settings: OrbitSettings,
+    /// By how much sliders are displaced, see [`Assumption`].
+    sliders: Vec<f64>,
     observe: &'a [usize],
     everywhere: Vec<usize>,
     half_wave: bool,
@@ -74,7 +76,7 @@ pub struct PeriodicOrbits<'a> {
     /// Steps of the flow that an orbit is granted.
     granted: usize,
     /// Steps of the flow, transition matrices and time.
-    pub(super) profile: Profile,
+    pub(crate) profile: Profile,
 }
 
 impl<'a> PeriodicOrbits<'a> {
@@ -100,6 +102,7 @@ impl<'a> PeriodicOrbits<'a> {
             everywhere: (0..system.modes()).collect(),
             system,
             settings,
+            sliders: Vec::new(),
             observe,
             half_wave: model.is_symmetric() && settings.residual.is_symmetric(),
             rotation: None,
@@ -205,7 +208,8 @@ impl<'a> PeriodicOrbits<'a> {
         let solved = self.shoot(&mut shooting, omega, neighbour);
         let solved = solved.map(|(mut y, mut iterations)| {
             let (residual, newton) = (self.settings.residual, self.newton());
-            let chosen = choose(&mut shooting, residual, &mut y, newton, &mut iterations);
+            let assumption = Assumption { residual, sliders: &self.sliders };
+            let chosen = choose(&mut shooting, assumption, &mut y, newton, &mut iterations);
             (y, iterations, chosen)
         });
         self.profile.evaluations += shooting.flow.steps;
@@ -253,6 +257,31 @@ impl<'a> PeriodicOrbits<'a> {
         Ok(orbit)
     }
 
+    /// The orbit whose sliders are displaced by `sliders` \[m\] from rest, as far as Coulomb allows;
+    /// from a harmonic balance of all DOFs, as [`Residual::FromRest`] sees it.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub(crate) fn solve_displaced(
+        &mut self,
+        start: &Point,
+        sliders: Vec<f64>,
+    ) -> Result<Orbit, Error> {
+        let residual = std::mem::replace(&mut self.settings.residual, Residual::FromRest);
+        self.sliders = sliders;
+        let model = self.with_history.as_ref().unwrap_or(self.model);
+        let state = start_of(model, &self.system, Residual::FromRest, start, false);
+        let orbit = self.solve(start.omega, Some(&state));
+        self.settings.residual = residual;
+        self.sliders = Vec::new();
+        orbit
+    }
+
+    /// Whether an orbit depends on the sliders that it leaves where they are.
+    pub(crate) fn depends_on_sliders(&self) -> bool {
+        self.system.has_normals() && !self.half_wave
+    }
+
     fn newton(&self) -> NewtonSettings {
         NewtonSettings { tolerance: 1e-13, max_iterations: self.settings.max_iterations }
     }
@@ -271,7 +300,9 @@ impl<'a> PeriodicOrbits<'a> {
             Some(state) => shooting.coordinates.coordinates(state),
             None => shooting.coordinates.coordinates(&self.harmonic_start(omega)),
         };
-        for attempt in 0..2 + ROUNDS {
+        // Any other start has other sliders.
+        let attempts = if self.sliders.is_empty() { 2 + ROUNDS } else { 1 };
+        for attempt in 0..attempts {
             match attempt {
                 0 => {}
                 1 if neighbour.is_some() => {
@@ -399,6 +430,12 @@ impl<'a> PeriodicOrbits<'a> {
 }
 
 impl Orbit {
+    /// Half ranges of the observed DOFs \[m\].
+    #[must_use]
+    pub fn half_ranges(&self) -> Vec<f64> {
+        self.range.iter().map(|[low, high]| 0.5 * (high - low)).collect()
+    }
+
     /// State at the start of the period, for a neighbouring frequency to start from.
     #[must_use]
     pub fn start(&self) -> Option<&State> {

@@ -45,6 +45,15 @@ struct Kept {
     scale: f64,
 }
 
+/// What is assumed of the contacts that leave a choice.
+#[derive(Clone, Copy)]
+pub(super) struct Assumption<'a> {
+    pub(super) residual: Residual,
+    /// By how much sliders are displaced that begin at rest, by contact displacement \[m\]; of none
+    /// if it is empty.
+    pub(super) sliders: &'a [f64],
+}
+
 /// How the search for the assumed positions has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Chosen {
@@ -82,7 +91,7 @@ impl Kept {
 /// added. Systems of constant limits have their own way, see [`super::residual`].
 pub(super) fn choose(
     shooting: &mut Shooting<'_>,
-    residual: Residual,
+    assumption: Assumption<'_>,
     y: &mut Vec<f64>,
     settings: NewtonSettings,
     iterations: &mut usize,
@@ -94,12 +103,12 @@ pub(super) fn choose(
         return Chosen::Inside;
     }
     for number in 0..STEPS {
-        let Some(kept) = kept(shooting, residual, y) else { return Chosen::Lost };
+        let Some(kept) = kept(shooting, assumption, y) else { return Chosen::Lost };
         if kept.iter().all(|one| one.miss().abs() <= SETTLED * one.scale) {
             let touches = kept.iter().any(Kept::touches);
             return if touches { Chosen::Touching } else { Chosen::Inside };
         }
-        let Some(step) = step(shooting, residual, y, &kept) else { return Chosen::Lost };
+        let Some(step) = step(shooting, assumption, y, &kept) else { return Chosen::Lost };
         // Where the states on the way go round in circles a shorter step ends that.
         let first = i32::from(number >= FULL);
         let found = (first..HALVINGS).find_map(|n| {
@@ -118,7 +127,7 @@ pub(super) fn choose(
 /// Change of the orbit that leads the sliders to the assumed positions, to first order.
 fn step(
     shooting: &mut Shooting<'_>,
-    residual: Residual,
+    assumption: Assumption<'_>,
     y: &[f64],
     kept: &[Kept],
 ) -> Option<Vec<f64>> {
@@ -133,7 +142,7 @@ fn step(
     for (j, one) in kept.iter().enumerate().filter(|(_, one)| one.touches()) {
         inside.iter_mut().enumerate().for_each(|(i, y)| *y += inwards(one) * moved[(i, j)]);
     }
-    let here = self::kept(shooting, residual, &inside)?;
+    let here = self::kept(shooting, assumption, &inside)?;
     let target = |of: &[Kept], point: usize| {
         of.iter().find(|one| one.point == point).map_or(f64::NAN, Kept::target)
     };
@@ -142,7 +151,7 @@ fn step(
         let by = inwards(one);
         let aside: Vec<f64> =
             inside.iter().enumerate().map(|(i, y)| y + by * moved[(i, j)]).collect();
-        let aside = self::kept(shooting, residual, &aside)?;
+        let aside = self::kept(shooting, assumption, &aside)?;
         for (i, own) in kept.iter().enumerate() {
             let slope = (target(&aside, own.point) - target(&here, own.point)) / by;
             // One that leaves no choice there answers to nothing.
@@ -193,7 +202,7 @@ fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Ma
 
 /// The contacts that an orbit leaves a choice: never open, and never pushed from both sides. `None` if
 /// the motion cannot be followed.
-fn kept(shooting: &mut Shooting<'_>, residual: Residual, y: &[f64]) -> Option<Vec<Kept>> {
+fn kept(shooting: &mut Shooting<'_>, assumption: Assumption<'_>, y: &[f64]) -> Option<Vec<Kept>> {
     let system = shooting.coordinates.system();
     let (mut state, _) = shooting.coordinates.state(y);
     let displacement = system.contact_displacement(&state.displacement);
@@ -211,7 +220,8 @@ fn kept(shooting: &mut Shooting<'_>, residual: Residual, y: &[f64]) -> Option<Ve
         let wall = |sign: f64| pull.iter().zip(&slope).map(|(k, m)| k + sign * m).collect();
         shapes.extend([wall(0.0), wall(-1.0), wall(1.0), slope.clone()]);
         let position = spring * displacement[point] - state.force[point];
-        let rest = spring * body.law.slider_at_rest();
+        let moved = assumption.sliders.get(system.components()[point]).unwrap_or(&0.0);
+        let rest = spring * (body.law.slider_at_rest() + moved);
         found.push((point, root, position, rest));
     }
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; shapes.len()];
@@ -224,7 +234,7 @@ fn kept(shooting: &mut Shooting<'_>, residual: Residual, y: &[f64]) -> Option<Ve
     followed.then(|| {
         let all = found.into_iter().zip(ranges.chunks_exact(4));
         let kept = all.filter_map(|((point, root, position, rest), range)| {
-            one(system, residual, (point, root, position, rest), range)
+            one(system, assumption.residual, (point, root, position, rest), range)
         });
         kept.collect()
     })

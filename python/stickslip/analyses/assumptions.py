@@ -86,6 +86,8 @@ def orbit_assumptions(
                 told("half-period/half" if solution.half_wave else "half-period"),
                 told("harmonics/orbits", most=settings.harmonics),
                 _static_traction(model, settings, arrays),
+                settings.bounds and _bounds(arrays),
+                settings.bounds and _lost_bounds(arrays),
                 _node_traction(model, settings, arrays),
                 _start_of_march(model),
                 settings.span is not None
@@ -186,13 +188,20 @@ def _static_traction(
 
 def _bounds(arrays: Arrays) -> Diagnostic | None:
     """Say what bounds over the residual tractions are worth."""
-    known = arrays.unique != UNIQUE.index("not asked")
+    none = UNIQUE.index("not asked"), UNIQUE.index("not found")
+    known = ~np.isin(arrays.unique, none)
     if not known.any():
         return None
     if arrays.guaranteed[known].all():
         return told("bounds/unique")
     wide = int((arrays.unique[known] != UNIQUE.index("yes")).sum())
     return told("bounds", points=wide, _known=int(known.sum()))
+
+
+def _lost_bounds(arrays: Arrays) -> Diagnostic | None:
+    """Say where an orbit that bounds others was not found."""
+    lost = int((arrays.unique == UNIQUE.index("not found")).sum())
+    return told("bounds-not-found", points=lost) if lost else None
 
 
 def _node_traction(

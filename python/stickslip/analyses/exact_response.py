@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from stickslip import _core
 from stickslip.analyses.arguments import columns_of, observed_dofs, points_of, require_held
-from stickslip.analyses.assumptions import orbit_assumptions
+from stickslip.analyses.assumptions import orbit_assumptions, uniqueness
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.free_flight import with_free_flight
 from stickslip.analyses.run import Progress, Run, refusals, share
 from stickslip.disk.wave_ring import moving
-from stickslip.errors import Interrupted
+from stickslip.errors import Interrupted, ModelError
 from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results.arrays import Float
@@ -38,6 +38,10 @@ def exact_response(
     sector 0, and others by `sector`. What breaks the symmetry of the wave is not followed: its
     multipliers are not-a-number, and its stability is not decided. `disk.mistuned(0)` has them.
 
+    With ``residual="bounds"`` the harmonic balance finds, to `tolerance`, which residual tractions
+    make the amplitudes least and largest; an orbit with each of these gives `lower` and `upper`.
+    Where one of them is not found, `unique` says so and the two are not-a-number.
+
     Returns
     -------
     ExactResponse
@@ -47,7 +51,8 @@ def exact_response(
     Raises
     ------
     ModelError
-        If the model has a static load that nothing holds.
+        If the model has a static load that nothing holds, or the bounds of a travelling wave are
+        asked for.
     Interrupted
         While the frequencies of a range are chosen that is the harmonic balance.
 
@@ -57,11 +62,17 @@ def exact_response(
     see R. I. Leine, H. Nijmeijer, "Dynamics and Bifurcations of Non-Smooth Mechanical Systems"
     (Springer, 2004).
     """
-    grid = settings.omega
+    grid, bounded = settings.omega, settings.bounded
+    if bounded and model.travels:
+        raise ModelError(
+            'residual: "bounds" of a travelling wave are not followed along orbits; give them to '
+            "forced_response, or take the orbits of disk.mistuned(0)"
+        )
+    settings = settings.nominal(model)
     span = grid if isinstance(grid, tuple) else None
-    kept = ExactSettings.of(**settings.part(OrbitSettings), span=span)
+    kept = ExactSettings.of(**settings.part(OrbitSettings), span=span, bounds=bounded)
     dofs = observed_dofs(settings, model)
-    require_held(model, settings.residual)
+    require_held(model, kept.residual)
     with Run("exact response", progress, model) as run:
         part: Progress = run
         if isinstance(grid, tuple):
@@ -83,7 +94,14 @@ def orbits_at(
     columns = columns_of(dofs, model)
     with refusals(model):
         solution = _core.exact_response(
-            problem, grid, columns, settings.harmonics, settings, progress, rotation
+            problem,
+            grid,
+            columns,
+            settings.harmonics,
+            settings,
+            progress,
+            rotation,
+            (uniqueness(model) is None, settings.tolerance) if settings.bounds else None,
         )
     arrays = OrbitArrays.of(solution)
     if rotation is not None:

@@ -41,7 +41,7 @@ Measure: TypeAlias = Literal["half_range", "max", "fundamental"]
 STABILITY = ("unstable", "stable", "not decided")
 """What is known of the stability of a motion."""
 
-UNIQUE = ("yes", "no", "shakedown", "not asked")
+UNIQUE = ("yes", "no", "shakedown", "not asked", "not found")
 """Whether a vibration depends on the tractions that the past has left in contacts."""
 
 SHARE = 1.0 + 1e-6

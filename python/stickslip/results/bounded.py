@@ -58,7 +58,8 @@ class Bounded(ContactMotion):
         """Whether each vibration is the same for all residual tractions, of the observed dofs.
 
         "yes", "no" (it depends on them), "shakedown" (it does, and the motion itself has pushed a
-        contact in one sense until it slips no more) or "not asked".
+        contact in one sense until it slips no more), "not found" (of an exact orbit: one of those
+        that bound it was not found) or "not asked".
         """
         return constant(np.array(UNIQUE)[self.arrays.unique])
 

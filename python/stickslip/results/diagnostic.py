@@ -43,7 +43,7 @@ _CODES = {
     """,
     Severity.FAILURE: """
         mode-not-reached branch-stalled branch-turned-back branch-end no-limit predictions-missing
-        samples-failed waves-missing
+        samples-failed waves-missing bounds-not-found
     """,
 }
 SEVERITIES: Mapping[str, Severity] = MappingProxyType(

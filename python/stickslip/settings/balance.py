@@ -74,6 +74,29 @@ class SteadySettings(PointSettings):
         return self.model_copy(update={"residual": "from_rest" if static else "centred"})
 
 
+class BoundsKey(SteadySettings):
+    """What a steady state leaves open, or the bounds of all that it does."""
+
+    residual: ResidualOrBounds | None = Field(  # type: ignore[assignment]
+        default=None,
+        description="Force [N] that a contact holds at mid-range of its displacement if it never "
+        'slips; the steady state alone does not determine it. "centred" is none, "from_rest" what '
+        'is left of loads raised slowly from nothing, "bounds" everything that Coulomb allows: '
+        "`ForcedResponse.lower` and `upper`, beside the default's curve. Default: centred, and "
+        "from rest as soon as a static load acts. See `ForcedResponse.residual_bounds`.",
+        examples=["from_rest", "10 N", "bounds"],
+    )
+
+    @property
+    def bounded(self) -> bool:
+        """Whether bounds over the residual tractions are asked for."""
+        return self.residual == "bounds"
+
+    def nominal(self, model: Model) -> Self:
+        """Return the settings of the curve that bounds belong to."""
+        return self.model_copy(update={"residual": None}).suited(model) if self.bounded else self
+
+
 class HarmonicSettings(SteadySettings):
     """Which harmonics are kept, and how accurately."""
 
@@ -198,24 +221,5 @@ class ForcedSettings(BalanceSettings, StabilityKey):
     )
 
 
-class BalanceKeys(BalanceSettings, StabilityKey, CurveKeys):
+class BalanceKeys(BoundsKey, BalanceSettings, StabilityKey, CurveKeys):
     """What a forced response is computed of, and how."""
-
-    residual: ResidualOrBounds | None = Field(  # type: ignore[assignment]
-        default=None,
-        description="Force [N] that a contact holds at mid-range of its displacement if it never "
-        'slips; the steady state alone does not determine it. "centred" is none, "from_rest" what '
-        'is left of loads raised slowly from nothing, "bounds" everything that Coulomb allows: '
-        "`ForcedResponse.lower` and `upper`, beside the default's curve. Default: centred, and "
-        "from rest as soon as a static load acts. See `ForcedResponse.residual_bounds`.",
-        examples=["from_rest", "10 N", "bounds"],
-    )
-
-    @property
-    def bounded(self) -> bool:
-        """Whether bounds over the residual tractions are asked for."""
-        return self.residual == "bounds"
-
-    def nominal(self, model: Model) -> Self:
-        """Return the settings of the curve that bounds belong to."""
-        return self.model_copy(update={"residual": None}).suited(model) if self.bounded else self

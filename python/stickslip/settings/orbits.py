@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from stickslip.checks import brief, members, whole_number
 from stickslip.errors import EntryError, ModelError
-from stickslip.settings.balance import CurveKeys, PointSettings, SteadySettings
+from stickslip.settings.balance import BoundsKey, CurveKeys, PointSettings, SteadySettings
 from stickslip.settings.entries import ONE_OF, Flag, Index, Span, Tolerance, Whole
 from stickslip.settings.settings import Settings
 
@@ -32,6 +32,9 @@ class ExactSettings(OrbitSettings):
     """How exact orbits were computed."""
 
     method: Annotated[Literal["exact"], ONE_OF] = Field(default="exact", description="Shooting.")
+    bounds: Flag = Field(
+        default=False, description="Whether the residual tractions were varied, for bounds."
+    )
     span: Span | None = Field(
         default=None, description="Ends of the range of frequencies [rad/s]; none: omega was given."
     )
@@ -47,7 +50,7 @@ class ExactSettings(OrbitSettings):
         return None
 
 
-class OrbitKeys(OrbitSettings, CurveKeys):
+class OrbitKeys(BoundsKey, OrbitSettings, CurveKeys):
     """Where exact orbits are computed, and how; those of a range are of a harmonic balance."""
 
 

@@ -144,7 +144,8 @@ def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterato
 def _bound_rows(result: ForcedResponse) -> list[Row]:
     if not result.bounded:
         return []
-    counts = {name: int((result.unique == name).sum()) for name in ("yes", "no", "shakedown")}
+    names = ("yes", "no", "shakedown", "not found")
+    counts = {name: int((result.unique == name).sum()) for name in names}
     said = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
     kind = "guaranteed" if result.guaranteed[result.unique != "not asked"].all() else "inner"
     return [("unique", f"{said} ({kind} bounds over residual tractions)")]
