@@ -177,7 +177,7 @@ class Solid:
         meshio = optional_package("meshio", f"{path}: .vtu files")
         file = file_path(path, "path")
         values = {name: np.asarray(value, dtype=np.float64) for name, value in fields.items()}
-        cells = [("hexahedron20", self._vtk_cells)]
+        cells = [("hexahedron20", self.elements)]
         mesh = meshio.Mesh(self.nodes, cells, point_data=values)
         try:
             # meshio writes to files by name only.
@@ -231,7 +231,11 @@ class Solid:
         return np.asarray(self._basis.element_dofs[::3].T // 3, dtype=np.int64)
 
     @cached_property
-    def _vtk_cells(self) -> NDArray[np.int64]:
+    def elements(self) -> NDArray[np.int64]:
+        """Positions of the nodes of each element, shape (m, 20).
+
+        In the order of C3D20 of CalculiX and Abaqus, and of VTK: corners, then middles of edges.
+        """
         places = np.rint(2.0 * np.asarray(_skfem().ElementHexS2().doflocs)).astype(int)
         order = [int(np.flatnonzero((places == place).all(axis=1))[0]) for place in _VTK]
         cells = self._node_of_place[:, order]

@@ -11,6 +11,7 @@ from stickslip.plot.cycles import limit_cycles, stability_map
 from stickslip.plot.damper import damper
 from stickslip.plot.diameters import aerodynamic, nodal_diameters, safe
 from stickslip.plot.fit import fit, fit_intervals, fit_residuals
+from stickslip.plot.interface import contact_map
 from stickslip.plot.maps import design_map
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.modes import backbone, mode_damping
@@ -30,6 +31,7 @@ __all__ = [
     "campbell",
     "contact_forces",
     "contact_history",
+    "contact_map",
     "curves",
     "cycle_multipliers",
     "damper",
