@@ -24,8 +24,8 @@ import stickslip as ss
 
 LENGTH, OVERLAP, WIDTH, THICKNESS = 0.10, 0.04, 0.02, 0.006  # m
 STEEL = (210e9, 0.3, 7850.0)  # Pa, -, kg/m3
-CLAMPING, WASHER = 4e3, 0.008  # N, and the radius over which it is spread, m
-FRICTION, K_T, K_N = 0.3, 2e13, 4e13  # -, N/m3, N/m3
+CLAMPING = 4e3  # N, spread over the overlap from both sides
+FRICTION, K_T, K_N = 0.3, 2e12, 4e12  # -, N/m3, N/m3
 LEVELS = (10.0, 40.0, 80.0)  # N, across the plates in the middle of the overlap
 CENTRE = np.array([LENGTH - OVERLAP / 2, WIDTH / 2])
 
@@ -100,12 +100,12 @@ def matrices(model: ss.Solid, mesh: ss.Mesh, deck: Path) -> tuple[object, object
 
 
 def clamping(mesh: ss.Mesh, dofs: list[str]) -> np.ndarray:
-    """Return the load of a bolt on both plates, spread by a bell around the middle (N,) [N]."""
+    """Return the load that presses both plates together, shape (N,) [N]."""
     load = dict.fromkeys(dofs, 0.0)
     for part, sign in (("TOP", -1.0), ("BOTTOM", 1.0)):
         side = mesh.surface(part)
-        away = np.hypot(*(side.points[:, :2] - CENTRE).T) / WASHER
-        shares = side.areas * np.exp(-(away**2))
+        x = side.points[:, 0]
+        shares = side.areas * ((x > LENGTH - OVERLAP - 1e-9) & (x < LENGTH + 1e-9))
         for node, share in zip(side.labels, shares / shares.sum(), strict=True):
             if f"{node}.3" in load:
                 load[f"{node}.3"] += sign * CLAMPING * share
@@ -141,8 +141,10 @@ def main(size: int = 4, picture: str | None = None) -> dict[str, object]:
     at_rest = ss.static_response(ss.Model(plates, [touching], bolt))
     pressed = ss.ContactMap.of(interface, at_rest)
     print(interface)
-    print(f"at rest: {pressed.normal_force:.1f} N on {interface.area * 1e4:.2f} cm2, "
-          f"{pressed.open_area * 1e4:.2f} cm2 open; {time.perf_counter() - clock:.1f} s")
+    print(
+        f"at rest: {pressed.normal_force:.1f} N on {interface.area * 1e4:.2f} cm2, "
+        f"{pressed.open_area * 1e4:.2f} cm2 open; {time.perf_counter() - clock:.1f} s"
+    )
     # Vibration about the state at rest: pressures and gaps are those that the bolt left.
     found = {"force": pressed.normal_force, "open": pressed.open_area, "levels": {}}
     for level in LEVELS:
@@ -152,10 +154,12 @@ def main(size: int = 4, picture: str | None = None) -> dict[str, object]:
         curve = ss.forced_response(model, np.linspace(0.85, 1.03, 19) * stuck, harmonics=3)
         peak = int(np.nanargmax(curve.amplitude("middle")))
         seen = ss.ContactMap.of(interface, curve, index=peak)
-        print(f"{level:5.0f} N: peak {curve.amplitude('middle')[peak] * 1e6:.3f} um at "
-              f"{curve.omega[peak] / 2 / np.pi:.1f} Hz; {seen}; "
-              f"{time.perf_counter() - clock:.1f} s for {curve.omega.size} points, "
-              f"{np.mean(curve.converged):.0%} converged")
+        print(
+            f"{level:5.0f} N: peak {curve.amplitude('middle')[peak] * 1e6:.3f} um at "
+            f"{curve.omega[peak] / 2 / np.pi:.1f} Hz; {seen}; "
+            f"{time.perf_counter() - clock:.1f} s for {curve.omega.size} points, "
+            f"{np.mean(curve.converged):.0%} converged"
+        )
         found["levels"][level] = curve, seen
     if picture is not None:
         seen.plot(field="slip").figure.savefig(picture, dpi=150)
