@@ -109,7 +109,10 @@ def test_a_curved_quadratic_surface_has_its_area():
         surface = flat([np.array(lines)], points)
         errors.append(abs(surface.area - np.pi / 2))
         radial = surface.points * [1.0, 1.0, 0.0]
-        np.testing.assert_allclose(np.einsum("ni,ni->n", surface.normals, radial), 1.0, atol=1e-4)
+        cosine = np.einsum("ni,ni->n", surface.normals, radial)
+        inner = (radial[:, :2] > 1e-9).all(axis=1)  # at the ends faces lie on one side only
+        np.testing.assert_allclose(cosine[inner], 1.0, rtol=0, atol=1e-12)
+        assert (cosine > 0.99).all()
     assert errors[1] < errors[0] / 12.0
     assert errors[1] < 1e-5
 
@@ -243,7 +246,7 @@ def test_one_contact_of_many_nodes_is_many_contacts():
     ]
     plate = reduced.structure(ss.ModalDamping(0.01))
     force = [ss.Force("top", 300.0)]
-    omega = 0.6 * ss.natural_frequencies(ss.Model(plate, [many], force))[0]
+    omega = 0.05 * ss.natural_frequencies(ss.Model(plate, [many], force))[0]
     one = ss.forced_response(ss.Model(plate, [many], force), [omega], harmonics=3)
     each = ss.forced_response(ss.Model(plate, single, force), [omega], harmonics=3)
     assert one.converged.all() and each.converged.all()
@@ -423,7 +426,7 @@ def test_what_does_not_exist_is_named(tmp_path):
         (lambda: mesh.surface("SEATS"), "did you mean 'SEAT'"),
         (lambda: mesh.surface(np.array([5, 6])), "True and False for the 16 nodes"),
         (lambda: mesh.surface(np.zeros(16, dtype=bool)), "it has no faces"),
-        (lambda: pair(mesh, "PAD", mesh, "FEET"), "the nearest are 1 m apart"),
+        (lambda: pair(mesh, "PAD", mesh, "FEET", tolerance=0.5), "the nearest are 1 m apart"),
         (lambda: pair(mesh, "PAD", mesh, "SEAT", tolerance=0.0), "must be positive"),
         (lambda: pair(mesh, "PAD", mesh, "SEAT", tolerance="1"), "not a number"),
         (lambda: pair(mesh, "PAD", mesh, "PAD"), "paired with itself"),
