@@ -39,6 +39,8 @@ from stickslip.disk import cyclic_sector as cyclic_sector
 from stickslip.disk import mistuning_pattern as mistuning_pattern
 from stickslip.errors import Interrupted as Interrupted
 from stickslip.errors import ModelError as ModelError
+from stickslip.fe import ContactInterface as ContactInterface
+from stickslip.fe import Mesh as Mesh
 from stickslip.fe import Reduction as Reduction
 from stickslip.fe import Solid as Solid
 from stickslip.fe import craig_bampton as craig_bampton
@@ -47,6 +49,7 @@ from stickslip.io import Frf as Frf
 from stickslip.io import read_dofs as read_dofs
 from stickslip.io import read_frf as read_frf
 from stickslip.io import read_matrix as read_matrix
+from stickslip.io import read_mesh as read_mesh
 from stickslip.io import write_frf as write_frf
 from stickslip.model import BoucWen as BoucWen
 from stickslip.model import ContactLaw as ContactLaw
@@ -80,6 +83,8 @@ from stickslip.results import ForcedResponse as ForcedResponse
 from stickslip.results import Status as Status
 from stickslip.results.basin_map import BasinMap as BasinMap
 from stickslip.results.campbell import Campbell as Campbell
+from stickslip.results.contact_map import ContactMap as ContactMap
+from stickslip.results.contact_map import slip_area as slip_area
 from stickslip.results.damper_curve import DamperCurve as DamperCurve
 from stickslip.results.diagnostic import Diagnostic as Diagnostic
 from stickslip.results.diagnostic import Severity as Severity

@@ -297,13 +297,13 @@ def _pairs(first: Matrix, second: Matrix, reach: float) -> tuple[Places, Places]
     """Return positions of nodes that are nearest to each other, in the order of the first."""
     from scipy.spatial import cKDTree
 
-    distance, nearest = cKDTree(second).query(first)
-    _, back = cKDTree(first).query(second)
+    distance, nearest = map(np.asarray, cKDTree(second).query(first))
+    back = np.asarray(cKDTree(first).query(second)[1])
     here = np.flatnonzero((back[nearest] == np.arange(len(first))) & (distance <= reach))
     if not here.size:
         raise ModelError(
-            f"{_ENTRY}: no two nodes lie within {reach:.3g} m, the nearest are {distance.min():.3g} "
-            "m apart; check units and surfaces, or raise tolerance"
+            f"{_ENTRY}: no two nodes lie within {reach:.3g} m, the nearest are "
+            f"{distance.min():.3g} m apart; check units and surfaces, or raise tolerance"
         )
     return here, np.asarray(nearest[here], dtype=np.int64)
 
@@ -328,8 +328,8 @@ def _normals(first: Surface, second: Surface, here: Places, there: Places) -> Ma
     if cosine[wrong] > _FACING:
         raise ModelError(
             f"{_ENTRY}: the surfaces do not face each other at nodes {first.labels[here[wrong]]} "
-            f"and {second.labels[there[wrong]]}: the cosine of their normals is {cosine[wrong]:.2f}, "
-            "not about -1; name the sides that touch"
+            f"and {second.labels[there[wrong]]}: the cosine of their normals is "
+            f"{cosine[wrong]:.2f}, not about -1; name the sides that touch"
         )
     mean = own * first.areas[here, None] - facing * second.areas[there, None]
     normals: Matrix = mean / np.linalg.norm(mean, axis=1, keepdims=True)

@@ -20,7 +20,7 @@ Part: TypeAlias = str | NDArray[np.bool_]
 
 _QUADRILATERAL = [(0, 1), (1, 2), (2, 3), (3, 0)]
 _TRIANGLE = [(0, 1), (1, 2), (2, 0)]
-_EDGES = {
+_EDGES: dict[str, list[tuple[int, int]]] = {
     "triangle": _TRIANGLE,
     "quad": _QUADRILATERAL,
     "tetra": [*_TRIANGLE, (0, 3), (1, 3), (2, 3)],
@@ -32,7 +32,7 @@ _EDGES = {
     ],
 }
 """Edges of elements, in the order in which the nodes at their middles are numbered."""
-_FACES = {
+_FACES: dict[str, list[tuple[int, ...]]] = {
     "triangle": [(0, 1, 2)],
     "quad": [(0, 1, 2, 3)],
     "tetra": [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)],

@@ -113,7 +113,7 @@ class Surface:
 
     @property
     def _integrals(self) -> Iterable[tuple[Places, Matrix, Matrix]]:
-        """Of each kind of face its nodes, the shares of the nodes at points, the area vectors there.
+        """Of each kind of face its nodes, their shares at points, and the area vectors there.
 
         Shapes (m, k), (q, k), (m, q, 3); the vectors are normal, as long as the area of the point.
         """
@@ -163,10 +163,14 @@ def _shapes(nodes: int, places: Matrix) -> tuple[Matrix, Matrix]:
         middles = 4 * (corner[:, None] * slopes[:, :, after] + slopes * corner[:, None, after])
     else:
         middle, middles = _columns(
-            [(1 - r**2) * (1 - s) / 2, (1 - s**2) * (1 + r) / 2]
-            + [(1 - r**2) * (1 + s) / 2, (1 - s**2) * (1 - r) / 2],
-            [(-r * (1 - s), -(1 - r**2) / 2), ((1 - s**2) / 2, -s * (1 + r))]
-            + [(-r * (1 + s), (1 - r**2) / 2), (-(1 - s**2) / 2, -s * (1 - r))],
+            [
+                *((1 - r**2) * (1 - s) / 2, (1 - s**2) * (1 + r) / 2),
+                *((1 - r**2) * (1 + s) / 2, (1 - s**2) * (1 - r) / 2),
+            ],
+            [
+                *((-r * (1 - s), -(1 - r**2) / 2), ((1 - s**2) / 2, -s * (1 + r))),
+                *((-r * (1 + s), (1 - r**2) / 2), (-(1 - s**2) / 2, -s * (1 - r))),
+            ],
         )
     # A corner loses half of the functions at the middles of its two edges.
     before = np.roll(np.arange(nodes // 2), 1)

@@ -40,8 +40,9 @@ def contact_map(ax: Axes, /, result: ContactMap, **options: Unpack[ContactMapOpt
     corners = [faces[:, : _CORNERS[faces.shape[1]]] for faces in surface.faces]
     shapes = [polygon for faces in corners for polygon in places[faces]]
     colours = np.concatenate([values[faces].mean(axis=1) for faces in surface.faces])
-    limits = {"clim": (0.0, 1.0)} if name in _SHARES else {}
-    drawn = PolyCollection(shapes, array=np.ma.masked_invalid(colours), cmap="viridis", **limits)
+    drawn = PolyCollection(shapes, array=np.ma.masked_invalid(colours), cmap="viridis")
+    if name in _SHARES:
+        drawn.set_clim(0.0, 1.0)
     drawn.set(edgecolor=GREY, linewidth=0.2)
     ax.add_collection(drawn)
     ax.figure.colorbar(drawn, ax=ax, label=_LABELS[name])

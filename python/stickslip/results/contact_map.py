@@ -82,7 +82,7 @@ class ContactMap:
             )
         if isinstance(result, StaticResponse):
             force = result.contact_force(number)[None]
-            state = own.states(force)[0]  # type: ignore[attr-defined]
+            state = own.states(force)[0]
             shares = (state == 1).astype(float), (state == OPEN).astype(float)
             work = np.zeros(interface.count)
         else:
