@@ -102,8 +102,10 @@ def test_a_curved_quadratic_surface_has_its_area():
         points = np.array([[*ring[i], z] for z in (0.0, 0.5, 1.0) for i in range(len(ring))])
         at = np.arange(len(points)).reshape(3, -1)
         lines = [
-            [at[0, i], at[0, i + 2], at[2, i + 2], at[2, i]]
-            + [at[0, i + 1], at[1, i + 2], at[2, i + 1], at[1, i]]
+            [
+                *(at[0, i], at[0, i + 2], at[2, i + 2], at[2, i]),
+                *(at[0, i + 1], at[1, i + 2], at[2, i + 1], at[1, i]),
+            ]
             for i in range(0, 2 * count, 2)
         ]
         surface = flat([np.array(lines)], points)

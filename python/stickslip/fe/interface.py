@@ -146,10 +146,9 @@ class ContactInterface:
             )
         normals = _normals(first, second, here, there)
         gap = np.einsum("ni,ni->n", normals, second.points[there] - first.points[here])
-        return cls(
-            *(first, here, first.labels[here], second.labels[there]),
-            *(first.areas[here], normals, gap, alone, bodies),
-        )
+        numbers, others = first.labels[here], second.labels[there]
+        areas = first.areas[here]
+        return cls(first, here, numbers, others, areas, normals, gap, alone, bodies)
 
     @property
     def count(self) -> int:

@@ -102,7 +102,8 @@ class Surface:
                 f"surface: node {self.labels[flat[0]]} has no normal: the faces around it have no "
                 "area, or cancel; leave one of two opposite sides out"
             )
-        return sums / length
+        normals: Matrix = sums / length
+        return normals
 
     @cached_property
     def shortest_edge(self) -> float:

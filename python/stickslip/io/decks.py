@@ -41,9 +41,9 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
     Parameters
     ----------
     path : str or os.PathLike
-        The deck, `.inp` of CalculiX or Abaqus, without parts and instances. Solids C3D4, C3D6, C3D8,
-        C3D10, C3D15 and C3D20 and shells S3 to S8 are read with all that is added to their names;
-        other elements have no faces here and are left out.
+        The deck, `.inp` of CalculiX or Abaqus, without parts and instances. Solids C3D4, C3D6,
+        C3D8, C3D10, C3D15 and C3D20 and shells S3 to S8 are read with all that is added to
+        their names; other elements have no faces here and are left out.
 
     Returns
     -------
@@ -191,18 +191,18 @@ class _Deck:
                     raise ValueError(f"surface {name}: element {number} {why}")
                 kind, place = row[number]
                 chosen.setdefault((kind, side), []).append(place)
-        for (kind, side), places in chosen.items():
-            own = cells[kind][places]
+        for (kind, side), rows in chosen.items():
+            own = cells[kind][rows]
             if kind.startswith(("triangle", "quad")):
                 faces = element_faces(kind, own, 1, points)
                 if side not in ("", "S1", "SPOS", "S2", "SNEG"):
                     raise ValueError(f"surface {name}: shells have no face {brief(side)}")
                 yield turned(faces) if side in ("S1", "SNEG") else faces
                 continue
-            number = side.removeprefix("S")
-            if not number.isdigit() or not 1 <= int(number) <= face_count(kind):
+            digit = side.removeprefix("S")
+            if not digit.isdigit() or not 1 <= int(digit) <= face_count(kind):
                 raise ValueError(f"surface {name}: {kind} has no face {brief(side)}; give S1, ...")
-            yield element_faces(kind, own, int(number), points)
+            yield element_faces(kind, own, int(digit), points)
 
 
 def _collect(
