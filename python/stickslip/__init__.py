@@ -38,9 +38,9 @@ _NAMES = {
     "ModalForces "
     "aerodynamic_waves cyclic_sector mistuning_pattern",
     "errors": "Interrupted ModelError",
-    "fe": "Mesh Reduction Solid craig_bampton",
+    "fe": "ContactInterface Mesh Reduction Solid craig_bampton",
     "html.report": "report",
-    "io": "Frf read_dofs read_frf read_matrix write_frf",
+    "io": "Frf read_dofs read_frf read_matrix read_mesh write_frf",
     "model": "BoucWen ContactLaw Coulomb Cubic Force Iwan Jenkins Masing ModalDamping Model "
     "ParallelJenkins Rayleigh Stop StructuralDamper Structure Tangents join natural_frequencies "
     "slip_configurations",
@@ -51,6 +51,7 @@ _NAMES = {
     "results": "ForcedResponse Status",
     "results.basin_map": "BasinMap",
     "results.campbell": "Campbell",
+    "results.contact_map": "ContactMap slip_area",
     "results.damper_curve": "DamperCurve",
     "results.diagnostic": "Diagnostic Severity",
     "results.exact_response": "ExactResponse",

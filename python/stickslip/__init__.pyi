@@ -42,6 +42,7 @@ from stickslip.disk import mistuning_pattern as mistuning_pattern
 from stickslip.disk.aerodynamics import Aerodynamics
 from stickslip.errors import Interrupted as Interrupted
 from stickslip.errors import ModelError as ModelError
+from stickslip.fe import ContactInterface as ContactInterface
 from stickslip.fe import Mesh as Mesh
 from stickslip.fe import Reduction as Reduction
 from stickslip.fe import Solid as Solid
@@ -51,6 +52,7 @@ from stickslip.io import Frf as Frf
 from stickslip.io import read_dofs as read_dofs
 from stickslip.io import read_frf as read_frf
 from stickslip.io import read_matrix as read_matrix
+from stickslip.io import read_mesh as read_mesh
 from stickslip.io import write_frf as write_frf
 from stickslip.model import BoucWen as BoucWen
 from stickslip.model import ContactLaw as ContactLaw
@@ -85,6 +87,8 @@ from stickslip.results import ForcedResponse as ForcedResponse
 from stickslip.results import Status as Status
 from stickslip.results.basin_map import BasinMap as BasinMap
 from stickslip.results.campbell import Campbell as Campbell
+from stickslip.results.contact_map import ContactMap as ContactMap
+from stickslip.results.contact_map import slip_area as slip_area
 from stickslip.results.damper_curve import DamperCurve as DamperCurve
 from stickslip.results.diagnostic import Diagnostic as Diagnostic
 from stickslip.results.diagnostic import Severity as Severity

@@ -91,3 +91,14 @@ def test_the_best_slip_force_of_the_blade():
 def test_the_mode_of_the_study_moves_the_tip_most():
     study = module(EXAMPLES / "turbine-blade" / "study.py", "blade_study")
     assert study.largest_tip_mode(ss.reference.turbine_blade()) == 0
+
+
+def test_a_lap_joint_slips_from_a_deck(capsys):
+    pytest.importorskip("skfem")
+    found = module(EXAMPLES / "lap-joint" / "joint.py", "joint").main(4)
+    assert "37 pairs" in capsys.readouterr().out
+    assert found["open"] == 0.0
+    # the plates themselves, clamped at their ends, bear some 2 % of the 4 kN
+    assert found["force"] == pytest.approx(3924.9, rel=1e-4)
+    slips = [found["slip"][level] for level in (200.0, 400.0, 800.0)]
+    np.testing.assert_allclose(slips, [4.0e-4, 5.737e-4, 6.579e-4], rtol=1e-3)

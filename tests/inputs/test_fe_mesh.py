@@ -38,7 +38,7 @@ def mesh(plate, numbers, tmp_path_factory):
         lines += [f"{number}, " + ", ".join(names[:10]) + ",", ", ".join(names[10:])]
     path = tmp_path_factory.mktemp("deck") / "plate.inp"
     path.write_text("\n".join([*lines, "*STEP", "*END STEP"]) + "\n")
-    return ss.Mesh.read(path)
+    return ss.read_mesh(path)
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +72,7 @@ def test_a_deck_has_nodes_numbers_and_elements(plate, numbers, mesh):
 
 
 def test_the_example_deck():
-    mesh = ss.Mesh.read(DECK)
+    mesh = ss.read_mesh(DECK)
     assert mesh.node_at([0.12, 0.0, 0.0]) == 49
     assert mesh.dof_at([0.1201, 0.0, 0.0], 3, within=1e-3) == "49.3"
 
@@ -80,10 +80,10 @@ def test_the_example_deck():
 def test_other_formats_count_from_one(tmp_path):
     points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
     meshio.Mesh(points, [("triangle", [[0, 1, 2]])]).write(tmp_path / "a.vtk")
-    mesh = ss.Mesh.read(tmp_path / "a.vtk")
+    mesh = ss.read_mesh(tmp_path / "a.vtk")
     assert mesh.numbers.tolist() == [1, 2, 3]
     assert mesh.nodes.shape == (3, 3)
-    assert ss.Mesh.read(tmp_path / "a.vtk", numbers=[30, 10, 20]).node_at([1.0, 0.0, 0.0]) == 10
+    assert ss.read_mesh(tmp_path / "a.vtk", numbers=[30, 10, 20]).node_at([1.0, 0.0, 0.0]) == 10
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_other_formats_count_from_one(tmp_path):
 )
 def test_nastran_numbers(cards, tmp_path):
     (tmp_path / "a.bdf").write_text(f"BEGIN BULK\n{cards}ENDDATA\n")
-    mesh = ss.Mesh.read(tmp_path / "a.bdf")
+    mesh = ss.read_mesh(tmp_path / "a.bdf")
     assert mesh.numbers.tolist() == [41, 7, 90]
     assert mesh.node_at([1.0, 0.1, 0.0]) == 7
 
@@ -241,13 +241,13 @@ def test_a_response_without_all_dofs_or_of_another_structure_is_refused(mesh, re
 def test_damaged_meshes_are_refused(name, content, message, tmp_path):
     (tmp_path / name).write_text(content)
     with pytest.raises(ss.ModelError, match=re.escape(message)) as refused:
-        ss.Mesh.read(tmp_path / name)
+        ss.read_mesh(tmp_path / name)
     assert len(str(refused.value).splitlines()) == 1
 
 
 def test_a_missing_package_or_file_is_named(tmp_path, monkeypatch):
     with pytest.raises(ss.ModelError, match="no such file"):
-        ss.Mesh.read(tmp_path / "a.inp")
+        ss.read_mesh(tmp_path / "a.inp")
     monkeypatch.setitem(sys.modules, "meshio", None)
     with pytest.raises(ss.ModelError, match=r"meshio: pip install 'stickslip\[fe\]'"):
-        ss.Mesh.read(DECK)
+        ss.read_mesh(DECK)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import os
 import re
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,23 +14,24 @@ from scipy.linalg import eigh
 
 from stickslip.checks import (
     brief,
-    file_path,
-    optional_package,
     real_number,
     set_fields,
     unknown,
     whole_number,
 )
 from stickslip.errors import ModelError
+from stickslip.fe.faces import outside
 from stickslip.fe.reduction import Reduction
-from stickslip.files import refusal, write
-from stickslip.io.source import plain, readable
+from stickslip.fe.solid import Solid
+from stickslip.fe.surface import Places, Surface
+from stickslip.fe.vtu import write_vtu
 from stickslip.results.arrays import Measure, amplitude_of
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.units import physical_number
 
+Part: TypeAlias = str | NDArray[np.bool_]
+"""A surface or a set of nodes by its name, or which nodes of the mesh it has."""
 _NAME = re.compile(r"(\d{1,18})\.([1-6])")
-_GRID = re.compile(r"GRID(?:\*\s*|\s*,\s*|\s+)(\d+)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +46,10 @@ class Mesh:
         Elements by their kind, in the names and the order of meshio; nodes are counted from 0.
     numbers : array_like of int, shape (n,), optional
         Numbers of the nodes, as names of degrees of freedom have them. Default: 1, 2, ...
+    node_sets : mapping of str to array_like of int, optional
+        Nodes of each set, counted from 0.
+    surfaces : mapping of str to sequence of array_like of int, optional
+        Faces of each surface, arrays of nodes counted from 0, (m, k), by their number of nodes.
 
     Raises
     ------
@@ -60,12 +61,16 @@ class Mesh:
     nodes: NDArray[np.float64]
     cells: tuple[tuple[str, NDArray[np.int64]], ...]
     numbers: NDArray[np.int64]
+    node_sets: Mapping[str, Places]
+    surfaces: Mapping[str, tuple[Places, ...]]
 
     def __init__(
         self,
         nodes: ArrayLike,
         cells: Sequence[tuple[str, ArrayLike]] = (),
         numbers: ArrayLike | None = None,
+        node_sets: Mapping[str, ArrayLike] | None = None,
+        surfaces: Mapping[str, Sequence[ArrayLike]] | None = None,
     ) -> None:
         places = np.array(nodes, np.float64)
         if places.ndim != 2 or places.shape[1] != 3 or not places.size:
@@ -83,49 +88,65 @@ class Mesh:
         for kind, of in elements:
             if of.ndim != 2 or ((of < 0) | (of >= count)).any():
                 raise ModelError(f"mesh: a {kind} has a node that is not among the {count}")
-        set_fields(self, nodes=places, cells=elements, numbers=known)
+        sets = {name: np.array(own, np.int64) for name, own in (node_sets or {}).items()}
+        faces = {
+            name: tuple(np.array(one, np.int64) for one in own)
+            for name, own in (surfaces or {}).items()
+        }
+        for name, own in [*sets.items(), *((n, f) for n, many in faces.items() for f in many)]:
+            if ((own < 0) | (own >= count)).any():
+                raise ModelError(f"mesh: {name} has a node that is not among the {count}")
+        set_fields(
+            self, nodes=places, cells=elements, numbers=known, node_sets=sets, surfaces=faces
+        )
 
     def __repr__(self) -> str:
-        return f"Mesh({len(self.nodes)} nodes, {sum(len(of) for _, of in self.cells)} elements)"
+        named = [*self.surfaces, *self.node_sets]
+        parts = f", parts {named}" if named else ""
+        elements = sum(len(of) for _, of in self.cells)
+        return f"Mesh({len(self.nodes)} nodes, {elements} elements{parts})"
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str], numbers: ArrayLike | None = None) -> Mesh:
-        """Read the mesh of a finite-element program; the package meshio is needed.
+    def of_solid(cls, solid: Solid) -> Mesh:
+        """Return the mesh of a `Solid`, whose nodes are numbered from 1 as in its `dofs`."""
+        count = len(solid.nodes)
+        return cls(solid.nodes, (("hexahedron20", solid.elements),), np.arange(1, count + 1))
+
+    def surface(self, part: Part) -> Surface:
+        """Return a surface by its name, or that on a set of nodes.
 
         Parameters
         ----------
-        path : path-like
-            The file: `.inp` (Abaqus, CalculiX), `.bdf` (Nastran), `.msh` (Gmsh), `.vtu` and what
-            else meshio reads.
-        numbers : array_like of int, optional
-            Numbers of the nodes in the order of the file. Default: those of the file in `.inp`,
-            `.bdf`, `.nas` and `.fem`, otherwise 1, 2, ...
+        part : str or ndarray of bool, shape (n,)
+            Name of a surface or of a set of nodes, or True for the nodes that belong to it. Of
+            nodes: all faces at the outside that have all their corners among them.
 
         Raises
         ------
         ModelError
-            If meshio is missing, or the file is missing, damaged or of an unknown kind.
+            If there is no such part, or it has no faces.
         """
-        file = file_path(path, "path")
-        with readable(file, "mesh"):
-            meshio = optional_package("meshio", f"{file}: meshes")
-            said = io.StringIO()
-            try:
-                with redirect_stdout(said), redirect_stderr(said):
-                    read = meshio.read(file)
-            except SystemExit:
-                # So it ends where all readers of an ending have failed.
-                raise ValueError(said.getvalue() or "no reader knows it") from None
-            points = np.asarray(read.points, dtype=np.float64)
-            if points.ndim == 2 and points.shape[1] == 2:
-                points = np.pad(points, ((0, 0), (0, 1)))
-            own = _numbers_of(file) if numbers is None else numbers
-            # Elements whose nodes differ in number, as polyhedra, have no table.
-            cells = [(block.type, block.data) for block in read.cells if np.ndim(block.data) == 2]
-        try:
-            return cls(points, cells, own)
-        except ModelError as error:
-            raise ModelError(f"{file}: {error}") from None
+        if isinstance(part, str):
+            entry = f"surface {brief(part)}"
+            if part in self.surfaces:
+                return Surface.of(self.numbers, self.nodes, self.surfaces[part], entry)
+            if part not in self.node_sets:
+                names = [*self.surfaces, *self.node_sets]
+                raise ModelError(f"mesh: {unknown('surface or node set', part, names)}")
+            among = np.zeros(len(self.numbers), dtype=bool)
+            among[self.node_sets[part]] = True
+        else:
+            entry, among = "surface", np.asarray(part)
+            if among.dtype != bool or among.shape != self.numbers.shape:
+                raise ModelError(
+                    f"surface: {brief(part)}; give a name, or True and False for the "
+                    f"{len(self.numbers)} nodes, as nodes[:, 2] == 0.0"
+                )
+        whole = [
+            faces[among[faces[:, : 4 if faces.shape[1] in (4, 8) else 3]].all(axis=1)]
+            for faces in outside(self.cells, self.nodes)
+        ]
+        return Surface.of(self.numbers, self.nodes, whole, entry)
 
     def node_at(self, point: ArrayLike, within: float | None = None) -> int:
         """Return the number of the node nearest to a point.
@@ -309,55 +330,16 @@ class Mesh:
         return nodes, ways
 
 
-def write_vtu(
-    path: str | os.PathLike[str],
-    nodes: NDArray[np.float64],
-    cells: Sequence[tuple[str, NDArray[np.int64]]],
-    fields: Mapping[str, ArrayLike],
-) -> None:
-    """Write nodes, elements and nodal fields for ParaView; see `Mesh.write_vtu`."""
-    meshio = optional_package("meshio", f"{path}: .vtu files")
-    file = file_path(path, "path")
-    values = {name: np.asarray(value) for name, value in fields.items()}
-    for name, value in values.items():
-        if value.shape not in ((len(nodes),), (len(nodes), 3)) or value.dtype.kind not in "fiub":
-            raise ModelError(
-                f"field {brief(name)}: {value.dtype} of shape {value.shape}; give real numbers of "
-                f"shape ({len(nodes)},) or ({len(nodes)}, 3)"
-            )
-    data = {name: value.astype(np.float64) for name, value in values.items()}
-    mesh = meshio.Mesh(nodes, list(cells), point_data=data)
-    try:
-        # meshio writes to files by name only.
-        with tempfile.TemporaryDirectory() as folder:
-            made = Path(folder) / "mesh.vtu"
-            mesh.write(made)
-            content = made.read_bytes()
-    except OSError as error:
-        raise refusal(file, "cannot be written", error) from error
-    write(file, content)
+def mesh_of(value: object, entry: str) -> Mesh:
+    """Return a mesh, of a `Solid` its own."""
+    if isinstance(value, Solid):
+        return Mesh.of_solid(value)
+    if not isinstance(value, Mesh):
+        raise ModelError(f"{entry}: {brief(value)} is no mesh; give ss.read_mesh(...) or a Solid")
+    return value
 
 
 def _rows_of(reduction: Reduction) -> tuple[str, ...]:
     if reduction.row_names is None:
         raise ModelError("reduction: its rows have no names; give dofs= to craig_bampton")
     return reduction.row_names
-
-
-def _numbers_of(file: Path) -> list[int] | None:
-    """Return the numbers of the nodes, which meshio does not tell; None of other formats."""
-    kind = file.suffix.lower()
-    if kind == ".inp":
-        found, among = [], False
-        for line in plain(file.read_bytes(), "latin-1").splitlines():
-            if line.startswith("**"):
-                continue
-            if line.startswith("*"):
-                among = line.partition(",")[0].strip("* ").upper() == "NODE"
-            elif among and line.strip():
-                found.append(int(line.partition(",")[0]))
-        return found
-    if kind in (".bdf", ".nas", ".fem"):
-        lines = plain(file.read_bytes(), "latin-1").splitlines()
-        return [int(match[1][:16]) for line in lines if (match := _GRID.match(line))]
-    return None

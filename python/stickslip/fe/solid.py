@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import optional_package, real_number, whole_number
 from stickslip.errors import ModelError
-from stickslip.fe.mesh import write_vtu
+from stickslip.fe.vtu import write_vtu
 from stickslip.units import physical_number
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ class Solid:
         `fields` are real values at the nodes by name, shape (n,) or (n, 3). The package meshio is
         needed.
         """
-        write_vtu(path, self.nodes, [("hexahedron20", self._vtk_cells)], fields)
+        write_vtu(path, self.nodes, [("hexahedron20", self.elements)], fields)
 
     def _assembled(self, whole: NDArray[np.float64]) -> csc_array:
         """Add up matrices of elements, shape (elements, 20, 3, 20, 3)."""
@@ -216,7 +216,11 @@ class Solid:
         return np.asarray(self._basis.element_dofs[::3].T // 3, dtype=np.int64)
 
     @cached_property
-    def _vtk_cells(self) -> NDArray[np.int64]:
+    def elements(self) -> NDArray[np.int64]:
+        """Positions of the nodes of each element, shape (m, 20).
+
+        In the order of C3D20 of CalculiX and Abaqus, and of VTK: corners, then middles of edges.
+        """
         places = np.rint(2.0 * np.asarray(_skfem().ElementHexS2().doflocs)).astype(int)
         order = [int(np.flatnonzero((places == place).all(axis=1))[0]) for place in _VTK]
         cells = self._node_of_place[:, order]

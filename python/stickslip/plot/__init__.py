@@ -17,6 +17,7 @@ from stickslip.plot.diameters import (
     safe,
 )
 from stickslip.plot.fit import fit, fit_backbone, fit_intervals, fit_residuals
+from stickslip.plot.interface import contact_map
 from stickslip.plot.maps import design_map
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.modes import backbone, mode_damping
@@ -37,6 +38,7 @@ __all__ = [
     "campbell",
     "contact_forces",
     "contact_history",
+    "contact_map",
     "curves",
     "cycle_multipliers",
     "damper",

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from stickslip.plot.style import LengthUnit, OmegaUnit
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Measure
+from stickslip.results.contact_map import MapField
 
 
 class Drawing(TypedDict, total=False):
@@ -288,3 +289,9 @@ class BandOptions(Spectral, total=False):
 
     band: Annotated[tuple[float, float], (5.0, 95.0), "Percentiles at the sides of the band."]
     damping: Annotated[bool, False, "Draw the damping ratio instead of the frequency."]
+
+
+class ContactMapOptions(Drawing, total=False):
+    """Keywords of `contact_map`."""
+
+    field: Annotated[MapField, "pressure", "What is drawn: a field of the map."]

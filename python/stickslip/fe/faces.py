@@ -1,0 +1,98 @@
+"""Faces of finite elements, and those at the outside of a mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from stickslip.checks import Matrix
+from stickslip.fe.surface import Places, outward
+
+_QUADRILATERAL = [(0, 1), (1, 2), (2, 3), (3, 0)]
+_TRIANGLE = [(0, 1), (1, 2), (2, 0)]
+_EDGES: dict[str, list[tuple[int, int]]] = {
+    "triangle": _TRIANGLE,
+    "quad": _QUADRILATERAL,
+    "tetra": [*_TRIANGLE, (0, 3), (1, 3), (2, 3)],
+    "wedge": [*_TRIANGLE, (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
+    "hexahedron": [
+        *_QUADRILATERAL,
+        *((one + 4, other + 4) for one, other in _QUADRILATERAL),
+        *((one, one + 4) for one in range(4)),
+    ],
+}
+"""Edges of elements, in the order in which the nodes at their middles are numbered."""
+_FACES: dict[str, list[tuple[int, ...]]] = {
+    "triangle": [(0, 1, 2)],
+    "quad": [(0, 1, 2, 3)],
+    "tetra": [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)],
+    "wedge": [(0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)],
+    "hexahedron": [
+        *((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1)),
+        *((1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
+    ],
+}
+"""Corners of the faces of elements, in the order of Abaqus' S1, S2, ..."""
+KINDS = {
+    **dict.fromkeys(("triangle", "triangle6"), "triangle"),
+    **dict.fromkeys(("quad", "quad8"), "quad"),
+    **dict.fromkeys(("tetra", "tetra10"), "tetra"),
+    **dict.fromkeys(("wedge", "wedge15"), "wedge"),
+    **dict.fromkeys(("hexahedron", "hexahedron20"), "hexahedron"),
+}
+"""Kinds of elements, named as meshio does, and the shape of each."""
+_SHELLS = ("triangle", "quad")
+
+
+def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]:
+    """Return the faces that belong to one solid element only, and all shells."""
+    known = [(kind, own) for kind, own in cells if kind in KINDS]
+    solid = [(kind, own) for kind, own in known if KINDS[kind] not in _SHELLS]
+    found = [
+        faces
+        for kind, own in solid
+        for number in range(1, len(_FACES[KINDS[kind]]) + 1)
+        for faces in [element_faces(kind, own, number, points)]
+    ]
+    keys = np.vstack([_keys(faces) for faces in found] or [np.zeros((0, 4), np.int64)])
+    _, place, times = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    single = times[place.ravel()] == 1
+    ends = np.cumsum([len(faces) for faces in found])[:-1]
+    kept = [f[one] for f, one in zip(found, np.split(single, ends), strict=True)]
+    shells = [own for kind, own in known if KINDS[kind] in _SHELLS]
+    return kept + shells
+
+
+def element_faces(kind: str, cells: Places, number: int, points: Matrix) -> Places:
+    """Return the faces of one number, from 1, of elements, (m, k), their normals outward."""
+    shape = KINDS[kind]
+    corners = _FACES[shape][number - 1]
+    order = list(corners)
+    if cells.shape[1] > 1 + max(map(max, _FACES[shape])):
+        middle = {frozenset(edge): place for place, edge in enumerate(_EDGES[shape])}
+        first = 1 + max(map(max, _FACES[shape]))
+        edges = zip(corners, (*corners[1:], corners[0]), strict=True)
+        order += [first + middle[frozenset(edge)] for edge in edges]
+    faces = cells[:, order]
+    return faces if shape in _SHELLS else outward(faces, points, points[cells].mean(axis=1))
+
+
+def face_count(kind: str) -> int:
+    """Return the number of faces of an element."""
+    return len(_FACES[KINDS[kind]])
+
+
+def _keys(faces: Places) -> Places:
+    """Return the corners of faces in ascending order, (m, 4), of triangles after a -1."""
+    corners = faces[:, : 4 if faces.shape[1] in (4, 8) else 3]
+    padded = np.full((len(faces), 4), -1)
+    padded[:, 4 - corners.shape[1] :] = corners
+    return np.sort(padded, axis=1)
+
+
+def by_size(faces: Iterable[Places]) -> tuple[Places, ...]:
+    """Return faces in one array for each number of nodes."""
+    given = list(faces)
+    sizes = sorted({one.shape[1] for one in given})
+    return tuple(np.vstack([one for one in given if one.shape[1] == size]) for size in sizes)

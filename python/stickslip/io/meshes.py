@@ -1,0 +1,84 @@
+"""Meshes from the files of finite-element programs."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip.checks import file_path, optional_package
+from stickslip.errors import ModelError
+from stickslip.fe.mesh import Mesh
+from stickslip.io.decks import read_deck
+from stickslip.io.source import plain, readable
+
+_GRID = re.compile(r"GRID(?:\*\s*|\s*,\s*|\s+)(\d+)", re.IGNORECASE)
+
+
+def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) -> Mesh:
+    """Read the mesh of a finite-element program.
+
+    Parameters
+    ----------
+    path : path-like
+        The file. Of a deck, `.inp` of CalculiX or Abaqus without parts and instances, node sets
+        and surfaces are read, too, their names in capitals; solids C3D4, C3D6, C3D8, C3D10, C3D15
+        and C3D20 and shells S3 to S8 with all that is added to their names, others are left out.
+        Other files, `.bdf` (Nastran), `.msh` (Gmsh), `.vtu`, need the package meshio.
+    numbers : array_like of int, optional
+        Numbers of the nodes in the order of the file, of a deck by rising number. Default: those
+        of the file in `.inp`, `.bdf`, `.nas` and `.fem`, otherwise 1, 2, ...
+
+    Returns
+    -------
+    Mesh
+        In the unit of length of the file.
+
+    Raises
+    ------
+    ModelError
+        If meshio is needed and missing, or the file is missing, damaged or of an unknown kind.
+
+    References
+    ----------
+    Dhondt, "CalculiX CrunchiX User's Manual", keywords *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE.
+    """
+    file = file_path(path, "path")
+    if file.suffix.lower() == ".inp":
+        deck = read_deck(file)
+        if numbers is None:
+            return deck
+        return Mesh(deck.nodes, deck.cells, numbers, deck.node_sets, deck.surfaces)
+    with readable(file, "mesh"):
+        meshio = optional_package("meshio", f"{file}: meshes")
+        said = io.StringIO()
+        try:
+            with redirect_stdout(said), redirect_stderr(said):
+                read = meshio.read(file)
+        except SystemExit:
+            # So it ends where all readers of an ending have failed.
+            raise ValueError(said.getvalue() or "no reader knows it") from None
+        points = np.asarray(read.points, dtype=np.float64)
+        if points.ndim == 2 and points.shape[1] == 2:
+            points = np.pad(points, ((0, 0), (0, 1)))
+        own = _numbers_of(file) if numbers is None else numbers
+        # Elements whose nodes differ in number, as polyhedra, have no table.
+        cells = [(block.type, block.data) for block in read.cells if np.ndim(block.data) == 2]
+    try:
+        return Mesh(points, cells, own)
+    except ModelError as error:
+        raise ModelError(f"{file}: {error}") from None
+
+
+def _numbers_of(file: Path) -> list[int] | None:
+    """Return the numbers of the nodes, which meshio does not tell; None of other formats."""
+    kind = file.suffix.lower()
+    if kind in (".bdf", ".nas", ".fem"):
+        lines = plain(file.read_bytes(), "latin-1").splitlines()
+        return [int(match[1][:16]) for line in lines if (match := _GRID.match(line))]
+    return None
