@@ -27,7 +27,7 @@ MAX_COUNT = 2**31 - 1
 """Largest number that counts something."""
 
 Matrix: TypeAlias = NDArray[np.float64]
-_SHOWN = 16
+_SHOWN = 24
 _FEW = 3
 _LONGEST = 60
 # A sign, zeros and a point before a digit that is none: the mantissa of a number that is not 0.

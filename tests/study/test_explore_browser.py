@@ -110,7 +110,7 @@ def test_a_key_moves_a_slider_and_the_curve_is_that_of_the_solver(page):
     shown = page.run(CURVE.format("curve", "P = "))
     curve = peak_of(now)
     assert shown["x"] == pytest.approx(curve.omega)
-    assert shown["y"] == pytest.approx(curve.amplitude("tip"), rel=1e-9)
+    assert shown["y"] == pytest.approx(1e3 * curve.amplitude("tip"), rel=1e-9)  # mm
     names = page.run("document.querySelector('#damper .plot')._fullData.map(one => one.name)")
     assert f"now: {now:.4g} N" in names
     limits = page.run("document.querySelector('#curve .plot')._fullData.map(one => one.name)")
@@ -137,7 +137,7 @@ def test_the_mouse_drags_a_slider(page):
     level = value(page, "box-0")
     assert 2.0 * 20.313 < level < 30.0 * 20.313
     shown = page.run(CURVE.format("curve", "P = "))
-    assert shown["y"] == pytest.approx(peak_of(level=level).amplitude("tip"), rel=1e-9)
+    assert shown["y"] == pytest.approx(1e3 * peak_of(level=level).amplitude("tip"), rel=1e-9)
 
 
 def test_a_number_is_typed_and_all_goes_back(page):
@@ -145,7 +145,7 @@ def test_a_number_is_typed_and_all_goes_back(page):
     assert value(page, "box-2") == 400.0
     amplitude = peak_of(400.0).amplitude("tip")
     shown = page.run(CURVE.format("curve", "P = "))["y"]
-    assert shown == pytest.approx(amplitude, rel=1e-9)
+    assert shown == pytest.approx(1e3 * amplitude, rel=1e-9)
     settled(page, lambda: page.click(element("reset")))
     assert value(page, "box-2") == 246.048
 
@@ -250,7 +250,7 @@ def test_an_exported_study_runs_and_gives_the_curve_of_the_page(page, tmp_path):
     assert result.returncode == 0, result.stderr
     curve = ss.load(tmp_path / "results" / "beam-explored-12.5.nc")
     assert shown["x"] == pytest.approx(curve.omega)
-    assert shown["y"] == pytest.approx(curve.amplitude("tip"), rel=1e-12)
+    assert shown["y"] == pytest.approx(1e3 * curve.amplitude("tip"), rel=1e-12)
     # what was not touched stands as it was written
     assert "# one DOF: to ground" in file.read_text()
 

@@ -28,6 +28,10 @@ impl ModeEquations<'_> {
         }
         // All amplitudes grow alike, and the residual counts in units of a.
         self.add_modal_product(z, &z[..size], &mut rates[2]);
+        if let Feed::Force(shape, _) = &self.feed {
+            let force = -z[size + 1] * unit.powi(2);
+            Feed::add_force(shape, force, &mut rates[2][self.range(1)]);
+        }
         rates
     }
 
