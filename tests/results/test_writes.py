@@ -219,6 +219,10 @@ WRITING = {
 }
 
 
+OF_DATASETS = {("results/sweep.py", "rename")}
+"""Calls that give variables of a dataset other names."""
+
+
 @pytest.mark.slow
 def test_nothing_else_in_the_package_writes_files():
     users = set()
@@ -238,7 +242,7 @@ def test_nothing_else_in_the_package_writes_files():
 
 def require_harmless(place, name, call):
     """Refuse a call that writes a file past the one door."""
-    assert name not in WRITING, (place, name)
+    assert name not in WRITING or (place, name) in OF_DATASETS, (place, name)
     if name not in ("connect", "savefig", "savemat", "File", "open"):
         return
     told = f"{place}: {ast.unparse(call)}"

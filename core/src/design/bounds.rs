@@ -23,7 +23,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Points after which all corners are tried again.
-const SURVEY: usize = 8;
+const SURVEY: usize = 2;
 /// Corners that are tried at most.
 const CORNERS: usize = 8;
 /// Width of the bounds, relative to the amplitude, that is none.

@@ -150,12 +150,11 @@ class Sweep(Result):
             own = member.to_dataset(derived=False).assign(model_variables(member.model))
             told = json.dumps({str(key): _plain(value) for key, value in own.attrs.items()})
             own = own.drop_attrs(deep=False).assign(attributes=((), told))
-            variables, dims = (
-                {str(name): _prefix(number) + str(name) for name in names}
-                for names in (own.variables, own.dims)
+            names = {str(name) for name in (*own.variables, *own.dims)}
+            whole = whole.merge(
+                own.reset_coords().rename({name: _prefix(number) + name for name in names}),
+                join="exact",
             )
-            own = own.reset_coords().rename_vars(variables).rename_dims(dims)
-            whole = whole.merge(own, join="exact")
         return whole
 
     @classmethod
@@ -245,11 +244,12 @@ def _unpacked(dataset: Dataset, prefix: str) -> Dataset:
     """Return one member."""
     names = [name for name in dataset.variables if str(name).startswith(prefix)]
     own = dataset[names]
-    variables, dims = (
-        {name: str(name).removeprefix(prefix) for name in names if str(name).startswith(prefix)}
-        for names in (own.variables, own.dims)
-    )
-    own = own.rename_vars(variables).rename_dims(dims)
+    renamed = {
+        name: str(name).removeprefix(prefix)
+        for name in {*own.variables, *own.dims}
+        if str(name).startswith(prefix)
+    }
+    own = own.rename(renamed)
     told: dict[Hashable, Any] = json.loads(str(own["attributes"].values))
     return own.drop_vars("attributes").drop_attrs(deep=False).assign_attrs(told)
 
