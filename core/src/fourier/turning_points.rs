@@ -48,17 +48,10 @@ impl SampleTable {
         let quarter = (SAMPLES_PER_HARMONIC * harmonics.highest().max(4)).div_ceil(4);
         let quarter = quarter.next_multiple_of(COARSER);
         let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
-        let first: Vec<(f64, f64)> = (0..quarter).map(|i| (i as f64 * step).sin_cos()).collect();
         let (mut cos, mut sin) = (Vec::new(), Vec::new());
         for &order in harmonics.oscillating() {
             for i in 0..padded(quarter + 1) {
-                let (s, c) = first[order * i % quarter];
-                let (c, s) = match order * i / quarter % 4 {
-                    0 => (c, s),
-                    1 => (-s, c),
-                    2 => (-c, -s),
-                    _ => (s, -c),
-                };
+                let (s, c) = (order as f64 * i as f64 * step).sin_cos();
                 cos.push(c);
                 sin.push(s);
             }
