@@ -70,6 +70,10 @@ def results():
         "waves": ss.flutter_map(
             ss.reference.beam_ring(sectors=4), ss.AerodynamicDamping(ratio=[-0.01] * 4), harmonics=1
         ),
+        "levels": ss.sweep(
+            BEAM, lambda model: ss.forced_response(model, grid[::4], 3), slip_force=[100.0, 300.0]
+        ),
+        "turning": ss.campbell(ss.reference.laxalde_blisk(), speed=[100.0, 400.0], orders=[2, 4]),
         "rest": ss.static_response(ss.Model(BEAM.structure, BEAM.contacts, [LOAD])),
     }
 

@@ -33,7 +33,7 @@ def mesh(plate, numbers, tmp_path_factory):
     places = zip(numbers, plate.nodes.tolist(), strict=True)
     lines += [f"{number}, {x!r}, {y!r}, {z!r}" for number, (x, y, z) in places]
     lines.append("*ELEMENT, TYPE=C3D20, ELSET=PLATE")
-    for number, cell in enumerate(plate._vtk_cells, 1):
+    for number, cell in enumerate(plate.elements, 1):
         names = [str(numbers[node]) for node in cell]
         lines += [f"{number}, " + ", ".join(names[:10]) + ",", ", ".join(names[10:])]
     path = tmp_path_factory.mktemp("deck") / "plate.inp"
@@ -67,8 +67,8 @@ def test_a_deck_has_nodes_numbers_and_elements(plate, numbers, mesh):
     np.testing.assert_array_equal(mesh.numbers, numbers)
     ((kind, cells),) = mesh.cells
     assert kind == "hexahedron20"
-    np.testing.assert_array_equal(cells, plate._vtk_cells)
-    assert repr(mesh) == f"Mesh({len(plate.nodes)} nodes, 8 elements)"
+    np.testing.assert_array_equal(cells, plate.elements)
+    assert repr(mesh) == f"Mesh({len(plate.nodes)} nodes, 8 elements, parts ['ALL'])"
 
 
 def test_the_example_deck():

@@ -157,7 +157,8 @@ def _completed(given: Mapping[str, object], example: Mapping[str, object]) -> di
         table, sample = given.get(name), example[name]
         if isinstance(table, dict) and isinstance(sample, dict):
             # These have frequencies of their own, or none.
-            own = ("limit-cycles", "nonlinear-modes", "static", "fit", "uncertainty", "campbell")
+            own = ("limit-cycles", "nonlinear-modes", "static", "fit", "uncertainty")
+            own += ("campbell", "flutter-map")
             driven = table.get("kind") not in own
             needed = ("mass", "stiffness", "omega") if driven else ("mass", "stiffness")
             whole[name] = {key: sample[key] for key in needed if key in sample} | table

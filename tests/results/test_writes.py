@@ -17,6 +17,7 @@ import stickslip as ss
 from failing_disk import Disk, names
 from stickslip import files
 from stickslip.reference import snecma_beam
+from stickslip_reproduce.claims_page import write_claims
 
 PACKAGE = Path(ss.__file__).parent
 
@@ -183,7 +184,7 @@ WRITERS = {
     "a.json": (schema, "cli/commands.py"),
     "a.uff": (universal_file, "io/frf.py"),
     **{f"a.{end}": (export, "results/export.py") for end in ("csv", "parquet", "xlsx", "mat")},
-    "a.vtu": (mesh, "fe/mesh.py"),
+    "a.vtu": (mesh, "fe/vtu.py"),
     "b.png": (reproduced_picture, "stickslip_reproduce/folder.py"),
     "fig-2.3.json": (reproduced_record, "stickslip_reproduce/folder.py"),
     "index.html": (reproduced_index, "stickslip_reproduce/folder.py"),
@@ -212,6 +213,16 @@ def test_every_writer_ends_in_one_line_and_leaves_what_was_there(name, frf, tmp_
         assert target.read_bytes() == whole
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", ["full half-way", "read-only", "failing late"])
+def test_claims_end_in_one_line(fault, tmp_path, monkeypatch):
+    fails, options, message = FAULTS[fault]
+    Disk(monkeypatch, fails, **options)
+    with pytest.raises(ss.ModelError, match="cannot be written") as refused:
+        write_claims([], tmp_path)
+    assert message in str(refused.value)
+
+
 WRITING = {
     *("write_text", "write_bytes", "to_netcdf", "savez", "savez_compressed", "savetxt", "tofile"),
     *("mkdir", "makedirs", "rename", "touch", "copyfile", "copy2", "move", "mkstemp"),
@@ -237,7 +248,8 @@ def test_nothing_else_in_the_package_writes_files():
             imported = isinstance(node, ast.ImportFrom) and node.module == "stickslip.files"
             if imported and any(alias.name == "write" for alias in node.names):
                 users.add(place)
-    assert users == {place for _, place in WRITERS.values()}
+    claims = "stickslip_reproduce/claims_page.py"
+    assert users == {place for _, place in WRITERS.values()} | {claims}
 
 
 def require_harmless(place, name, call):

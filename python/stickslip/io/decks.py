@@ -113,7 +113,7 @@ class _Deck:
         """Return what was read."""
         if not self.points:
             raise ValueError("it has no *NODE")
-        labels = np.array(sorted(self.points), dtype=np.int64)
+        labels = np.array(list(self.points), dtype=np.int64)
         points = np.array([self.points[one] for one in labels.tolist()])
         if not np.isfinite(points).all():
             raise ValueError("a coordinate is not finite")

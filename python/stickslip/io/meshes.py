@@ -31,8 +31,8 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
         and C3D20 and shells S3 to S8 with all that is added to their names, others are left out.
         Other files, `.bdf` (Nastran), `.msh` (Gmsh), `.vtu`, need the package meshio.
     numbers : array_like of int, optional
-        Numbers of the nodes in the order of the file, of a deck by rising number. Default: those
-        of the file in `.inp`, `.bdf`, `.nas` and `.fem`, otherwise 1, 2, ...
+        Numbers of the nodes in the order of the file. Default: those of the file in `.inp`,
+        `.bdf`, `.nas` and `.fem`, otherwise 1, 2, ...
 
     Returns
     -------

@@ -65,8 +65,10 @@ def headed(frame: Frame) -> Frame:
 
 
 def _csv(result: Result, file: Path, table: str | None) -> bytes:
-    # Shortest digits that lead back to the same number.
-    written = headed(result.to_pandas(table)).to_csv(index=False, lineterminator="\n")
+    # Shortest digits that lead back to the same number, whatever NumPy is told to print.
+    written = headed(result.to_pandas(table)).to_csv(
+        index=False, lineterminator="\n", float_format=lambda number: repr(float(number))
+    )
     return str(written).encode()
 
 
