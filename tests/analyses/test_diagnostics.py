@@ -39,7 +39,7 @@ def test_every_code_is_used_and_known():
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "diagnostic":
                 used |= {one.value for one in node.args[:1] if isinstance(one, ast.Constant)}
     assert used | {name.partition("/")[0] for name in TEXTS} == set(SEVERITIES)
-    built = ("modal-base/", "time-steps/", "intervals/")
+    built = ("modal-base/", "time-steps/", "intervals/", "mode-at-rest", "samples-drawn/")
     for name in TEXTS:
         assert said.count(f'"{name}"') > 1 or name.startswith(built), name
 

@@ -50,7 +50,7 @@ class Position(NamedTuple):
     """Where the sliders stand."""
 
     number: int
-    text: str
+    source: str
     """The study file."""
     dof: str
     over: str
@@ -176,8 +176,8 @@ class Session:
 
     def _curve(self, position: Position, look: Look) -> None:
         known = self._computed
-        if known is None or known.position.text != position.text:
-            study = self.draft.parsed(position.text)
+        if known is None or known.position.source != position.source:
+            study = self.draft.parsed(position.source)
             result = cast("ForcedResponse", next(study.run(look)))
         else:
             study, result = known.study, known.result
