@@ -89,6 +89,10 @@ def test_interruption_before_the_first_point():
         fold=np.zeros(n, np.bool_),
         jump=np.zeros(n, np.bool_),
         stability=np.full(n, 2, np.uint8),
+        lower=np.full((n, 1), np.nan),
+        upper=np.full((n, 1), np.nan),
+        unique=np.zeros(n, np.uint8),
+        guaranteed=np.zeros(n, np.bool_),
     )
     frf = replace(ss.forced_response(model, [1.0], 1), arrays=empty, interrupted=True)
     assert np.isnan(frf.amplitude("x")).all()

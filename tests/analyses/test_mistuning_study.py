@@ -282,7 +282,7 @@ def test_progress_and_what_a_callback_raises():
         ({"omega": (150, 150)}, "omega: the range .150, 150. must have two different ends"),
         ({"deviation": -0.1}, r"deviation\[0\] is -0.1; give 0.05 for 5 %, not negative"),
         ({"deviation": [0.1, 0.1]}, "holds a value twice"),
-        ({"deviation": "7 %"}, "deviation: '7 %' holds no real numbers; give 0.05"),
+        ({"deviation": "7 m"}, "deviation = '7 m' is not a ratio"),
         ({"deviation": 0.9}, "deviation: 0.9 leaves blade . of pattern . the stiffness -"),
         ({"patterns": 0}, "patterns: 0 lies below 1"),
         ({"patterns": True}, "patterns: True is not an integer"),

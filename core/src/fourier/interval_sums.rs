@@ -101,21 +101,20 @@ impl IntervalSums {
             (0.5 * factor * self.cos[order], sign * factor * self.sin[order])
         };
         let length = negative + (self.cos.len() - 1) / step + 1;
-        let mut room = vec![0.0; 4 * length + 2 * count];
-        let (p, rest) = room.split_at_mut(2 * length);
-        let (q, row) = rest.split_at_mut(2 * length);
+        let (mut p, mut q) = (vec![0.0; 2 * length], vec![0.0; 2 * length]);
         let pairs = p.chunks_exact_mut(2).zip(q.chunks_exact_mut(2));
         for (at, (p, q)) in pairs.enumerate() {
             let (cos, sin) = pair(at);
             (p[0], p[1], q[0], q[1]) = (cos, sin, sin, -cos);
         }
+        let mut row = vec![0.0; 2 * count];
         let mut slot = 0;
         for order in harmonics.orders() {
             let sum = 2 * (negative + (order + first) / step);
             let difference = 2 * (negative + first / step - order / step);
             let sum = sum..sum + 2 * count;
             let difference = difference..difference + 2 * count;
-            for (of, sign) in [(&*p, 1.0), (&*q, -1.0)].into_iter().take(1 + order.min(1)) {
+            for (of, sign) in [(&p, 1.0), (&q, -1.0)].into_iter().take(1 + order.min(1)) {
                 let parts = of[sum.clone()].iter().zip(&of[difference.clone()]);
                 row.iter_mut().zip(parts).for_each(|(v, (s, d))| *v = s + sign * d);
                 // The mean has no sine.

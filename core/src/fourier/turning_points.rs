@@ -168,31 +168,26 @@ impl SampleTable {
         let length = padded(q + 1);
         let mut sums = vec![0.0; 4 * length];
         let (even, odd) = sums.split_at_mut(2 * length);
-        // What a series does not contain adds nothing: one of few harmonics is recast into many.
-        let contained = |parity: usize| {
+        let factors = |parity: usize| -> Vec<(usize, [f64; 2])> {
             let orders = self.harmonics.oscillating().iter().enumerate();
-            orders.filter(move |(_, order)| **order % 2 == parity).filter_map(|(index, &order)| {
+            let own = orders.filter(|(_, order)| **order % 2 == parity);
+            own.map(|(index, &order)| {
                 let slot = self.harmonics.offset() + 2 * index;
-                let (a, b) = (series[slot], series[slot + 1]);
-                let (of_cos, of_sin) = of(order as f64, a, b);
-                (a != 0.0 || b != 0.0).then_some((index * all, [of_cos, of_sin]))
+                let (of_cos, of_sin) = of(order as f64, series[slot], series[slot + 1]);
+                (index * all, [of_cos, of_sin])
             })
+            .collect()
         };
-        let mut rows = Vec::with_capacity(self.harmonics.oscillating().len());
         for (parity, sums) in [(0, &mut *even), (1, &mut *odd)] {
             let (cosines, sines) = sums.split_at_mut(length);
-            rows.clear();
-            rows.extend(contained(parity));
-            if rows.is_empty() {
-                continue;
-            }
+            let factors = factors(parity);
             if stride == 1 {
                 let sums = [cosines, sines];
                 let tables = [&self.cos[..], &self.sin];
-                pulp::Arch::new().dispatch(RowSums { tables, rows: &rows, sums });
+                pulp::Arch::new().dispatch(RowSums { tables, rows: &factors, sums });
                 continue;
             }
-            for &(first, factors) in &rows {
+            for (first, factors) in factors {
                 for (sum, row, factor) in
                     [(&mut *cosines, &self.cos, factors[0]), (&mut *sines, &self.sin, factors[1])]
                 {
@@ -204,10 +199,7 @@ impl SampleTable {
         let ([even_cos, even_sin], [odd_cos, odd_sin]) =
             (halves(even, length), halves(odd, length));
         let half_wave = self.harmonics.half_wave();
-        let samples = if half_wave { 2 * q } else { 4 * q };
-        // With room for the seam.
-        let mut out = Vec::with_capacity(samples + 2);
-        out.resize(samples + 1, 0.0);
+        let mut out = vec![0.0; if half_wave { 2 * q } else { 4 * q } + 1];
         if half_wave {
             for i in 0..=q {
                 out[i] = odd_cos[i] + odd_sin[i];
