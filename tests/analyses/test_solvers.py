@@ -71,9 +71,9 @@ def test_the_sensitivity_of_a_peak_is_solved_with_the_settings_of_its_curve(monk
     curve = beam(method="broyden", jacobian="differences")
     solve, methods = _core.forced_response, []
 
-    def spy(problem, omega, observe, driving, settings, progress):
+    def spy(problem, omega, observe, driving, settings, *rest):
         methods.append((settings.method, settings.jacobian))
-        return solve(problem, omega, observe, driving, settings, progress)
+        return solve(problem, omega, observe, driving, settings, *rest)
 
     monkeypatch.setattr(_core, "forced_response", spy)
     slope = curve.peak_sensitivity("tip", parameter="level")
