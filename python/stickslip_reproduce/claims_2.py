@@ -8,34 +8,21 @@ from functools import cache
 import numpy as np
 
 import stickslip as ss
+from stickslip_reproduce.beam_orbits import EIGHT, exact, optimum
 from stickslip_reproduce.claims import Found, claim, numbers_of, verdict
 from stickslip_reproduce.curves import maxima
 from stickslip_reproduce.numbers import Fact, Series
 from stickslip_reproduce.resolution import Float, Resolution
+from stickslip_reproduce.solver_experiment import runs
 
 SPAN = (20.0, 350.0)
-NEAR = (100.0, 300.0)
 PLACES = ("tip", "damper")
-
-EIGHT = ss.reference.SNECMA_LOADS
 
 AT_OPTIMUM = {"tip": (16.563, 20.313, 25.0), "damper": (6.563, 16.563)}
 """Loads that the text counts as near optimal damping [N]."""
 
 BLADE = (0.95, 1.05)
 """Range of the blade, over its slipping and stuck first natural frequencies."""
-
-
-@cache
-def optimum(dof: str) -> ss.OptimalDamper:
-    """Return the best load over all, converged."""
-    return ss.optimal_damper(ss.reference.snecma_beam(1.0), dof=dof, parameter="level", mode=0)
-
-
-@cache
-def exact(load: float) -> ss.ExactResponse:
-    """Return exact orbits of the beam around its resonance."""
-    return ss.exact_response(ss.reference.snecma_beam(load), NEAR)
 
 
 @cache
@@ -478,8 +465,6 @@ def blade_at_optimum() -> tuple[ss.ExactResponse, ss.ForcedResponse]:
 )
 def initial_guess(resolution: Resolution) -> Found:
     """Return the runs of Broyden's method from the single harmonic."""
-    from stickslip_reproduce.claims_3 import runs
-
     (good,) = (
         row
         for row in runs(resolution)

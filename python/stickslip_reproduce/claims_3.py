@@ -8,20 +8,21 @@ from functools import cache
 import numpy as np
 
 import stickslip as ss
+from stickslip_reproduce.beam_orbits import EIGHT, NEAR, exact
 from stickslip_reproduce.claims import Found, claim, numbers_of, verdict
-from stickslip_reproduce.claims_2 import NEAR, exact
 from stickslip_reproduce.numbers import Axis, Fact, Panel, Plot, Series
 from stickslip_reproduce.resolution import Float, Resolution
-from stickslip_reproduce.solvers import METHODS, Equations, Run, solve
-
-EIGHT = ss.reference.SNECMA_LOADS
-
-OMEGA = (155.0, 170.0, 195.0, 220.0)
-"""Frequencies of the experiment on solvers [rad/s]."""
-
-HARMONICS = 15
-
-POOR = ("rest", "beam without damper", "ten times too large")
+from stickslip_reproduce.solver_experiment import (
+    HARMONICS,
+    OMEGA,
+    POOR,
+    begins,
+    largest,
+    order,
+    runs,
+    share,
+)
+from stickslip_reproduce.solvers import METHODS
 
 DOZENS = 24
 FEW = 5
@@ -55,7 +56,7 @@ def no_scaling(resolution: Resolution) -> Found:
     """Backward errors of QR decompositions."""
     return Found(
         tuple(
-            Fact(method, _largest(method, resolution))
+            Fact(method, largest(method, resolution))
             for method in ("Newton, QR", "Broyden, QR updated")
         )
     )
@@ -101,10 +102,10 @@ def lu_unstable(resolution: Resolution) -> Found:
             Fact("runs by QR", lost["Newton, QR"]),
             Fact("runs by updated LU", lost["Broyden, LU updated"]),
             Fact("runs by updated QR", lost["Broyden, QR updated"]),
-            Fact("backward error, LU with pivots", _largest("Newton, LU", resolution)),
-            Fact("backward error, QR", _largest("Newton, QR", resolution)),
-            Fact("backward error, updated LU", _largest("Broyden, LU updated", resolution)),
-            Fact("backward error, updated QR", _largest("Broyden, QR updated", resolution)),
+            Fact("backward error, LU with pivots", largest("Newton, LU", resolution)),
+            Fact("backward error, QR", largest("Newton, QR", resolution)),
+            Fact("backward error, updated LU", largest("Broyden, LU updated", resolution)),
+            Fact("backward error, updated QR", largest("Broyden, QR updated", resolution)),
         ),
         plot,
     )
@@ -139,7 +140,7 @@ def operations(resolution: Resolution) -> Found:
 )
 def quadratic(resolution: Resolution) -> Found:
     """Order of Newton's method near the solution."""
-    return Found((Fact("order of Newton", _order("Newton, QR", resolution)),))
+    return Found((Fact("order of Newton", order("Newton, QR", resolution)),))
 
 
 @claim(
@@ -215,8 +216,8 @@ def better_stability(resolution: Resolution) -> Found:
     ]
     return Found(
         (
-            Fact("Broyden", _share(every, "Broyden, QR updated"), "%"),
-            Fact("Newton", _share(every, "Newton, QR"), "%"),
+            Fact("Broyden", share(every, "Broyden, QR updated"), "%"),
+            Fact("Newton", share(every, "Newton, QR"), "%"),
             Fact("Newton here", 100.0 * float(np.mean(solved)), "%"),
         )
     )
@@ -298,8 +299,8 @@ def poor_guess(resolution: Resolution) -> Found:
     poor = [row for row in every if row.start in POOR]
     return Found(
         (
-            Fact("single harmonic", _share(good, "Broyden, QR updated"), "%"),
-            Fact("poor starts", _share(poor, "Broyden, QR updated"), "%"),
+            Fact("single harmonic", share(good, "Broyden, QR updated"), "%"),
+            Fact("poor starts", share(poor, "Broyden, QR updated"), "%"),
         )
     )
 
@@ -428,61 +429,3 @@ def hybrid_method(resolution: Resolution) -> Found:
         )
         facts.append(Fact(f"difference, {name}", 100.0 * abs(kept / true - 1.0), "%"))
     return Found(tuple(facts))
-
-
-@cache
-def begins(resolution: Resolution) -> dict[str, np.ndarray]:
-    """Return the coefficients at the starts of the experiment, shape (m, N_h + 1) each."""
-    equations = experiment()
-    one = np.zeros_like(equations.force)
-    free = np.zeros_like(one)
-    for place, (load, omega) in enumerate(equations.cases):
-        harmonic = ss.single_harmonic(ss.reference.snecma_beam(load), [omega])
-        one[place, 1] = harmonic.coefficients("damper")[0, 1]
-    free[:, 1] = equations.force[:, 1] / equations.stiffness[:, 1]
-    return dict(
-        zip(("single harmonic", *POOR), (one, np.zeros_like(one), free, 10.0 * one), strict=True)
-    )
-
-
-@cache
-def experiment() -> Equations:
-    """Return the equations of the experiment."""
-    return Equations([(load, omega) for load in EIGHT for omega in OMEGA], HARMONICS)
-
-
-@cache
-def runs(resolution: Resolution) -> tuple[Run, ...]:
-    """Return every start by every method; the same at any resolution, as it takes seconds."""
-    equations = experiment()
-    return tuple(
-        solve(equations, equations.vector(begin), method, start)
-        for start, begin in begins(resolution).items()
-        for method in METHODS
-    )
-
-
-def _largest(method: str, resolution: Resolution) -> float:
-    return max(row.backward_error for row in runs(resolution) if row.method == method)
-
-
-def _share(rows: tuple[Run, ...] | list[Run], method: str) -> float:
-    chosen = [row for row in rows if row.method == method]
-    return 100.0 * sum(row.converged for row in chosen) / sum(row.runs for row in chosen)
-
-
-def _order(method: str, resolution: Resolution) -> float:
-    """Return the median order of convergence close to the solutions."""
-    equations = experiment()
-    solved = np.zeros_like(equations.force)
-    for place, (load, omega) in enumerate(equations.cases):
-        kept = ss.forced_response(ss.reference.snecma_beam(load), [omega], HARMONICS)
-        solved[place] = kept.coefficients("damper")[0]
-    near = solve(equations, 1.001 * equations.vector(solved), method, "near")
-    orders = []
-    for history in near.histories:
-        steps = [size for size in history if size > 1e-13]
-        if history[-1] < 1e-9 and len(steps) >= 3:
-            first, second, third = np.log(steps[-3:])
-            orders.append((third - second) / (second - first))
-    return float(np.median(orders)) if orders else np.nan

@@ -9,8 +9,8 @@ from math import inf
 import numpy as np
 
 import stickslip as ss
+from stickslip_reproduce.beam_orbits import EIGHT, NEAR, exact, optimum
 from stickslip_reproduce.claims import Found, claim, numbers_of, verdict
-from stickslip_reproduce.claims_2 import EIGHT, NEAR, exact, optimum
 from stickslip_reproduce.numbers import Axis, Fact, Panel, Plot, Series
 from stickslip_reproduce.resolution import Resolution
 

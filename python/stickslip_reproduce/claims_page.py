@@ -13,12 +13,13 @@ from stickslip import ModelError
 from stickslip.files import make_folder
 from stickslip.files import write as write_file
 from stickslip_reproduce.claims import VERDICTS, Finding
-from stickslip_reproduce.index import STYLE, number
+from stickslip_reproduce.folder import write_picture
+from stickslip_reproduce.index import CLAIMS, STYLE, number
 from stickslip_reproduce.item import heading
 
-__all__ = ["PAGE", "Entry", "chapters", "counts", "entries", "picture", "write_claims"]
+__all__ = ["Entry", "chapters", "counts", "entries", "picture", "write_claims"]
 
-PAGE, RECORD = "claims.html", "claims.json"
+RECORD = "claims.json"
 
 Entry: TypeAlias = Mapping[str, Any]
 """What the record says of one claim."""
@@ -50,8 +51,6 @@ def write_claims(
     list of mapping
         What the record says of each.
     """
-    from stickslip_reproduce.folder import write_picture
-
     make_folder(folder)
     for one in findings:
         if one.found.plot is not None:
@@ -59,7 +58,7 @@ def write_claims(
     kept: list[Entry] = [_entry(one) for one in findings]
     text = json.dumps(kept, indent=1, ensure_ascii=False, allow_nan=False)
     write_file(folder / RECORD, (text + "\n").encode())
-    write_file(folder / PAGE, _page(kept).encode())
+    write_file(folder / CLAIMS, _page(kept).encode())
     return kept
 
 

@@ -89,8 +89,9 @@ def key_numbers(numbers: Numbers) -> Iterator[str]:
 def _claims(resolution: Resolution, out: Path, *, quiet: bool) -> None:
     """Judge what the text claims, and write the page."""
     from stickslip_reproduce.claims import claims
-    from stickslip_reproduce.claims_page import PAGE, counts, write_claims
+    from stickslip_reproduce.claims_page import counts, write_claims
     from stickslip_reproduce.folder import write_index
+    from stickslip_reproduce.index import CLAIMS
 
     begin = time.perf_counter()
     findings = []
@@ -101,7 +102,7 @@ def _claims(resolution: Resolution, out: Path, *, quiet: bool) -> None:
     kept = write_claims(findings, out)
     write_index(out)
     if not quiet:
-        print(f"claims     {time.perf_counter() - begin:6.1f} s  {out / PAGE}")
+        print(f"claims     {time.perf_counter() - begin:6.1f} s  {out / CLAIMS}")
         print(counts(kept))
 
 

@@ -13,8 +13,7 @@ from typing import Any
 from stickslip import ModelError
 from stickslip.files import make_folder
 from stickslip.files import write as write_file
-from stickslip_reproduce.claims_page import PAGE
-from stickslip_reproduce.index import page
+from stickslip_reproduce.index import CLAIMS, page
 from stickslip_reproduce.item import Item
 from stickslip_reproduce.numbers import Cell, Numbers, Plot, Table
 from stickslip_reproduce.resolution import Resolution
@@ -139,7 +138,7 @@ def _record(file: Path) -> dict[str, Any]:
 
 def write_index(folder: Path) -> None:
     """Write the index of what a folder holds."""
-    claims = PAGE if (folder / PAGE).is_file() else ""
+    claims = CLAIMS if (folder / CLAIMS).is_file() else ""
     _write_text(folder / INDEX, page(records(folder), claims=claims))
 
 

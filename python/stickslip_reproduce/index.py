@@ -9,7 +9,10 @@ from typing import Any
 from stickslip_reproduce.item import heading
 from stickslip_reproduce.subjects import SUBJECTS
 
-__all__ = ["STYLE", "fact_rows", "number", "page"]
+__all__ = ["CLAIMS", "STYLE", "fact_rows", "number", "page"]
+
+CLAIMS = "claims.html"
+"""The page of claims beside it."""
 
 STYLE = """
 body { font: 16px/1.45 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem;

@@ -4,7 +4,7 @@
 //! gradient points; from then on steps are those of a quasi-Newton method (BFGS), shortened by the
 //! cubic through two heights and slopes where they lead too far.
 
-use super::bounds::Here;
+use super::held_pool::HeldPool;
 use crate::balance::HeldMotion;
 
 /// Steps of a climb.
@@ -36,24 +36,33 @@ struct Place {
     promise: f64,
 }
 
+/// Raises every DOF to its largest and lowers it to its least amplitude, with what neighbours have learnt.
+pub(super) fn climb(pool: &mut HeldPool<'_>, before: &[Ascent]) -> Vec<Ascent> {
+    let dofs = pool.motions[0].amplitude.len();
+    let mut ascents = Vec::with_capacity(2 * dofs);
+    for (dof, sign) in (0..dofs).flat_map(|dof| [(dof, 1.0), (dof, -1.0)]) {
+        let known = before.iter().find(|ascent| ascent.dof == dof && ascent.sign == sign);
+        let mut ascent = known.cloned().unwrap_or_else(|| Ascent::new(dof, sign));
+        ascent.climb(pool);
+        ascents.push(ascent);
+    }
+    ascents
+}
+
 impl Ascent {
-    pub(super) fn new(dof: usize, sign: f64) -> Self {
+    fn new(dof: usize, sign: f64) -> Self {
         Self { dof, sign, curvature: Vec::new() }
     }
 
-    pub(super) fn is_of(&self, dof: usize, sign: f64) -> bool {
-        self.dof == dof && self.sign == sign
-    }
-
     /// Climbs from the best motion of a pool.
-    pub(super) fn climb(&mut self, here: &mut Here<'_>) {
-        let mut best = here.best(self.dof, self.sign);
+    fn climb(&mut self, pool: &mut HeldPool<'_>) {
+        let mut best = pool.best(self.dof, self.sign);
         for _ in 0..STEPS {
-            let place = self.place(&here.pool[best]);
+            let place = self.place(&pool.motions[best]);
             if place.promise <= ENOUGH * place.height.abs() {
                 return;
             }
-            let Some(next) = self.step(here, best, &place) else { return };
+            let Some(next) = self.step(pool, best, &place) else { return };
             best = next;
         }
     }
@@ -75,8 +84,8 @@ impl Ascent {
     }
 
     /// The next better motion, if there is one.
-    fn step(&mut self, here: &mut Here<'_>, from: usize, place: &Place) -> Option<usize> {
-        let origin = here.pool[from].clone();
+    fn step(&mut self, pool: &mut HeldPool<'_>, from: usize, place: &Place) -> Option<usize> {
+        let origin = pool.motions[from].clone();
         let widths = |slider: usize| origin.range[slider].map_or(0.0, |[low, high]| high - low);
         let direction = self.direction(&place.slopes);
         let mut target: Vec<f64> = origin.sliders.clone();
@@ -85,8 +94,8 @@ impl Ascent {
             target[slider] = at.clamp(low, high);
         }
         for _ in 0..=SHORTENED {
-            let tried = here.reach(from, &target)?;
-            let motion = &here.pool[tried];
+            let tried = pool.reach(from, &target)?;
+            let motion = &pool.motions[tried];
             let way: Vec<f64> = (0..origin.sliders.len())
                 .map(|i| match widths(i) {
                     0.0 => 0.0,

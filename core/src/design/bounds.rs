@@ -5,13 +5,14 @@
 //! one (see [`crate::contact::Residual`]). Amplitudes are made largest and least over them, by steps
 //! along the exact gradient of the balance (quasi-Newton, Broyden 1970; Nocedal and Wright 2006,
 //! chapter 6), which the law itself projects to what is admissible. What was extreme at one frequency
-//! is followed to the next, forwards and then backwards; from time to time all corners are tried.
+//! is followed to the next, forwards and then backwards; at every other point all corners are tried.
 //!
 //! What is found is attained, so that these are *inner* bounds: others could lie outside. Where all
 //! laws are monotone operators and the structure is damped there is one vibration alone, and the two
 //! coincide: that is proved (`docs/theory.md`, one solution).
 
-use super::ascent::Ascent;
+use super::ascent::{climb, Ascent};
+use super::held_pool::{HeldPool, NO_WIDTH};
 use crate::balance::{with_history, AmplitudeBounds, Evaluated, Point, Progress, Settings};
 use crate::balance::{HeldMotion, SliderBalance, Solution, Uniqueness};
 use crate::contact::Residual;
@@ -24,13 +25,6 @@ use std::sync::Arc;
 
 /// Points after which all corners are tried again.
 const SURVEY: usize = 2;
-/// Corners that are tried at most.
-const CORNERS: usize = 8;
-/// Width of the bounds, relative to the amplitude, that is none.
-const NO_WIDTH: f64 = 1e-9;
-/// Distance of two positions, relative to their range, that is none.
-const SAME: f64 = 1e-3;
-
 /// What is known at a point.
 #[derive(Default)]
 pub(super) struct Found {
@@ -151,26 +145,26 @@ impl<'a> Search<'a> {
         before: Option<&Found>,
         survey: bool,
     ) -> Result<Found, Error> {
-        let Some(mut here) = self.open(point)? else { return Ok(Found::default()) };
-        let Some(nominal) = here.balance.of_point(point, self.settings.residual) else {
+        let Some(mut pool) = self.open(point)? else { return Ok(Found::default()) };
+        let Some(nominal) = pool.balance.of_point(point, self.settings.residual) else {
             return Ok(Found::default());
         };
-        here.pool.push(nominal);
-        if let Some(before) = before {
-            here.continue_from(before, |_| true);
+        pool.motions.push(nominal);
+        if let Some((before, from)) = before.and_then(|one| Some((one, one.nominal.as_ref()?))) {
+            pool.continue_from(from, before.extremes.iter());
         }
-        self.learn(&here.pool);
+        self.learn(&pool.motions);
         let known: Vec<(usize, [f64; 2])> = self.ranges.iter().map(|(n, r)| (*n, *r)).collect();
         let held = |found: &Found| found.nominal.as_ref().map(|motion| motion.held().count());
-        let lost = here.pool[0].held().count() < known.len();
-        let changed = before.and_then(held) != Some(here.pool[0].held().count());
+        let lost = pool.motions[0].held().count() < known.len();
+        let changed = before.and_then(held) != Some(pool.motions[0].held().count());
         if survey || changed {
-            here.try_corners(&known, lost);
-            self.learn(&here.pool);
+            pool.try_corners(&known, lost);
+            self.learn(&pool.motions);
         }
-        here.climb(before.map_or(&[], |before| &before.ascents));
-        let found = here.end();
-        self.profile.add(here.balance.profile());
+        let ascents = climb(&mut pool, before.map_or(&[], |before| &before.ascents));
+        let found = Found::of(&pool, ascents);
+        self.profile.add(pool.balance.profile());
         Ok(found)
     }
 
@@ -182,24 +176,26 @@ impl<'a> Search<'a> {
     /// Tries at a point what is extreme at the next one and not here.
     fn again(&mut self, point: &Point, found: &mut Found, after: &Found) -> Result<(), Error> {
         let strange = |motion: &HeldMotion| !found.extremes.iter().any(|own| is_like(own, motion));
-        if found.nominal.is_none() || !after.extremes.iter().any(strange) {
+        let (Some(nominal), Some(from)) = (&found.nominal, &after.nominal) else { return Ok(()) };
+        let mut others = after.extremes.iter().filter(|motion| strange(motion)).peekable();
+        if others.peek().is_none() {
             return Ok(());
         }
-        let Some(mut here) = self.open(point)? else { return Ok(()) };
-        here.pool.extend(found.nominal.clone());
-        here.pool.extend(found.extremes.iter().cloned());
-        let known = here.bounds();
-        here.continue_from(after, strange);
-        if here.is_beyond(&known) {
-            here.climb(&found.ascents);
-            *found = here.end();
+        let Some(mut pool) = self.open(point)? else { return Ok(()) };
+        pool.motions.push(nominal.clone());
+        pool.motions.extend(found.extremes.iter().cloned());
+        let known = pool.bounds();
+        pool.continue_from(from, others);
+        if pool.is_beyond(&known) {
+            let ascents = climb(&mut pool, &found.ascents);
+            *found = Found::of(&pool, ascents);
         }
-        self.profile.add(here.balance.profile());
+        self.profile.add(pool.balance.profile());
         Ok(())
     }
 
     /// The balance at a point in the positions of its sliders, at the resolution of the point.
-    pub(super) fn open(&self, point: &Point) -> Result<Option<Here<'a>>, Error> {
+    pub(super) fn open(&self, point: &Point) -> Result<Option<HeldPool<'a>>, Error> {
         let Some(table) = self.tables.get(&point.harmonics).filter(|_| point.is_solved()) else {
             return Ok(None);
         };
@@ -207,123 +203,15 @@ impl<'a> Search<'a> {
         let model = marched.map_or_else(|| self.model.clone(), |m| Evaluated::Made(Arc::clone(m)));
         let newton = self.settings.newton;
         let balance = SliderBalance::new(model, table, point.omega, newton, self.observe)?;
-        Ok(Some(Here { balance, pool: Vec::new(), ascents: Vec::new() }))
-    }
-}
-
-/// The search at one point: every motion found is a bound of every DOF.
-pub(super) struct Here<'a> {
-    pub(super) balance: SliderBalance<'a>,
-    /// All motions found, that of the curve first.
-    pub(super) pool: Vec<HeldMotion>,
-    ascents: Vec<Ascent>,
-}
-
-impl Here<'_> {
-    /// Follows the extremes of a neighbour to here.
-    fn continue_from(&mut self, other: &Found, wanted: impl Fn(&HeldMotion) -> bool) {
-        let Some(from) = &other.nominal else { return };
-        for motion in other.extremes.iter().filter(|motion| wanted(motion)) {
-            let u = &self.pool[0].u;
-            let mut start = motion.clone();
-            if start.u.len() == u.len() && from.u.len() == u.len() {
-                let moved = u.iter().zip(&from.u);
-                start.u.iter_mut().zip(moved).for_each(|(x, (here, there))| *x += here - there);
-            } else {
-                start.u.clone_from(u);
-            }
-            let target = beyond(motion, &motion.sliders);
-            let found = self.balance.solve(&target, Some(&start.u), true);
-            let stays = |found: &HeldMotion| found.held().count() >= motion.held().count();
-            let lost = !found.as_ref().is_some_and(stays);
-            self.pool.extend(found);
-            if lost && motion.u.len() == start.u.len() {
-                // The curve itself may have come to another state.
-                self.pool.extend(self.balance.solve(&target, Some(&motion.u), true));
-            }
-        }
-    }
-
-    /// Tries all corners of what is known of the sliders; with some that the curve's motion does not
-    /// hold, motions that begin without slip as well.
-    fn try_corners(&mut self, ranges: &[(usize, [f64; 2])], lost: bool) {
-        let nominal = self.pool[0].clone();
-        let most = if ranges.is_empty() { 0 } else { CORNERS };
-        for corner in 0..most.min(1 << ranges.len().min(CORNERS)) {
-            let mut target = nominal.sliders.clone();
-            for (bit, (slider, [low, high])) in ranges.iter().enumerate() {
-                let past = high - low;
-                target[*slider] = if is_low(corner, bit) { low - past } else { high + past };
-            }
-            self.reach(0, &target);
-            if lost {
-                self.pool.extend(self.balance.solve(&target, None, true));
-            }
-        }
-    }
-
-    /// Moves the sliders of a motion of the pool; those that are sent to a limit go with it.
-    pub(super) fn reach(&mut self, from: usize, target: &[f64]) -> Option<usize> {
-        let from = self.pool[from].clone();
-        let target = beyond(&from, target);
-        let found = self.balance.follow(&from, &target)?;
-        self.pool.push(found);
-        Some(self.pool.len() - 1)
-    }
-
-    /// Raises every DOF to its largest and lowers it to its least amplitude.
-    fn climb(&mut self, before: &[Ascent]) {
-        let dofs = self.pool[0].amplitude.len();
-        for dof in 0..dofs {
-            for sign in [1.0, -1.0] {
-                let known = before.iter().find(|ascent| ascent.is_of(dof, sign));
-                let mut ascent = known.cloned().unwrap_or_else(|| Ascent::new(dof, sign));
-                ascent.climb(self);
-                self.ascents.push(ascent);
-            }
-        }
-    }
-
-    /// The motion with the largest amplitude of a DOF, or the least one.
-    pub(super) fn best(&self, dof: usize, sign: f64) -> usize {
-        let height = |motion: &HeldMotion| sign * motion.amplitude[dof];
-        let order = |a: &usize, b: &usize| {
-            height(&self.pool[*a]).total_cmp(&height(&self.pool[*b])).then(b.cmp(a))
-        };
-        (0..self.pool.len()).max_by(order).unwrap_or(0)
-    }
-
-    fn bounds(&self) -> Vec<[f64; 2]> {
-        let dofs = self.pool[0].amplitude.len();
-        let of = |dof: usize, sign: f64| self.pool[self.best(dof, sign)].amplitude[dof];
-        (0..dofs).map(|dof| [of(dof, -1.0), of(dof, 1.0)]).collect()
-    }
-
-    /// Whether the motions found last have left bounds.
-    fn is_beyond(&self, known: &[[f64; 2]]) -> bool {
-        let wider = |(a, b): (&[f64; 2], &[f64; 2])| a[0] < b[0] || a[1] > b[1];
-        self.bounds().iter().zip(known).any(wider)
-    }
-
-    fn end(&mut self) -> Found {
-        let nominal = self.pool[0].amplitude.clone();
-        let mut extremes: Vec<HeldMotion> = Vec::new();
-        for (dof, amplitude) in nominal.into_iter().enumerate() {
-            for sign in [1.0, -1.0] {
-                let best = &self.pool[self.best(dof, sign)];
-                let beyond = (best.amplitude[dof] - amplitude).abs() > NO_WIDTH * amplitude;
-                let known = |own: &HeldMotion| own.amplitude == best.amplitude;
-                if beyond && !extremes.iter().any(known) {
-                    extremes.push(best.clone());
-                }
-            }
-        }
-        let ascents = std::mem::take(&mut self.ascents);
-        Found { nominal: self.pool.first().cloned(), extremes, ascents }
+        Ok(Some(HeldPool { balance, motions: Vec::new() }))
     }
 }
 
 impl Found {
+    fn of(pool: &HeldPool<'_>, ascents: Vec<Ascent>) -> Self {
+        Self { nominal: pool.motions.first().cloned(), extremes: pool.extremes(), ascents }
+    }
+
     fn bounds(&self) -> Option<AmplitudeBounds> {
         let nominal = self.nominal.as_ref()?;
         let others = self.extremes.iter().map(|motion| motion.amplitude.as_slice());
@@ -348,27 +236,6 @@ pub(super) fn between<'a>(
     }
     let unique = if pushed { Uniqueness::Shakedown } else { Uniqueness::Residual };
     AmplitudeBounds { lower, upper, unique, proved: false }
-}
-
-/// On which side of its range a slider is in a corner: all corners in turn of up to three sliders, of
-/// more those of the columns of a Hadamard matrix.
-fn is_low(corner: usize, slider: usize) -> bool {
-    (corner & (1 << (slider % 3) | (slider / 3))).count_ones() % 2 == 0
-}
-
-/// Positions, of which those at or past a limit go past it: there the law holds them at it, wherever
-/// it moves.
-pub(super) fn beyond(motion: &HeldMotion, target: &[f64]) -> Vec<f64> {
-    let mut target = target.to_vec();
-    for (slider, [low, high]) in motion.held() {
-        let width = high - low;
-        if target[slider] <= low + SAME * width {
-            target[slider] = low - width;
-        } else if target[slider] >= high - SAME * width {
-            target[slider] = high + width;
-        }
-    }
-    target
 }
 
 /// Whether two motions of neighbouring points have their sliders at the same places of their ranges.

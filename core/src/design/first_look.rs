@@ -1,7 +1,6 @@
 //! Where a search for the highest point looks first.
 
 use super::samples::Sample;
-use super::search::SEEN;
 use crate::fourier::Measure;
 use crate::model::{Model, Resonance};
 use crate::Error;
@@ -11,6 +10,9 @@ use crate::Error;
 const INTERVALS: [usize; 2] = [8, 24];
 /// Length of an even interval that no resonance slips through, in bandwidths of the narrowest.
 const BANDWIDTHS: f64 = 3.0;
+/// Resonances closer than this share of a bandwidth to a point are seen from there; of those whose
+/// height is not known, which are many and lie close, the second.
+pub(super) const SEEN: [f64; 2] = [0.5, 1.0];
 /// Points closer than this share of an even interval stand for each other.
 const BESIDE: f64 = 0.02;
 /// Maxima from this share of the highest are looked at again in the next response.

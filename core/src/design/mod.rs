@@ -7,6 +7,7 @@ mod curve;
 mod envelope;
 mod first_look;
 mod global_peak;
+mod held_pool;
 mod interpolant;
 mod member;
 mod mistuned;

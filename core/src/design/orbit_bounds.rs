@@ -4,7 +4,8 @@
 //! those sliders then says how far the vibration goes. Its amplitude is attained, whatever the balance
 //! leaves out.
 
-use super::bounds::{between, beyond, tables_of, Found, Search};
+use super::bounds::{between, tables_of, Found, Search};
+use super::held_pool::beyond;
 use crate::balance::{
     sweep, AmplitudeBounds, ForcedBalance, HeldMotion, Point, Progress, Settings,
 };
@@ -70,7 +71,7 @@ fn of_orbit(
     point: &Point,
     found: &Found,
 ) -> Result<Option<AmplitudeBounds>, Error> {
-    let (Some(nominal), Some(mut here)) = (&found.nominal, search.open(point)?) else {
+    let (Some(nominal), Some(mut pool)) = (&found.nominal, search.open(point)?) else {
         return Ok(None);
     };
     let mut others = Vec::new();
@@ -78,7 +79,7 @@ fn of_orbit(
     let own = found.extremes.first().map(|_| nominal);
     for motion in own.into_iter().chain(&found.extremes) {
         let mut sought = CLEAR.iter().map(|clear| {
-            let start = here.balance.seen_point(motion, *clear)?;
+            let start = pool.balance.seen_point(motion, *clear)?;
             let other = exact.solve_displaced(&start, beyond(motion, &motion.sliders))?;
             Ok(is_alike(&other, motion, nominal).then(|| other.half_ranges()))
         });

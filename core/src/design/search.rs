@@ -8,7 +8,7 @@
 //! is followed by itself.
 
 use super::envelope::{is_shortest, Envelope, Gap};
-use super::first_look::{Aim, Candidate, FirstLook};
+use super::first_look::{Aim, Candidate, FirstLook, SEEN};
 use super::interpolant::Knot;
 use super::samples::{predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
@@ -23,9 +23,6 @@ const DOUBT: f64 = 1e-6;
 const ASIDE: f64 = 1e-8;
 /// Distance at which a resonance is looked at from the side, in bandwidths.
 const FLANK: f64 = 0.5;
-/// Resonances closer than this share of a bandwidth to a point are seen from there; of those whose
-/// height is not known, which are many and lie close, the second.
-pub(super) const SEEN: [f64; 2] = [0.5, 1.0];
 /// What others overlay is seen if there are points on both sides within this share.
 const AROUND: f64 = 0.75;
 /// What a resonance may exceed the height by that its load and friction can give it.

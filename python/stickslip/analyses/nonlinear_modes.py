@@ -10,7 +10,8 @@ from stickslip.analyses.texts import told
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
-from stickslip.results.nonlinear_modes import ModeArrays, NonlinearModes
+from stickslip.results.mode_arrays import ModeArrays
+from stickslip.results.nonlinear_modes import NonlinearModes
 from stickslip.settings.modes import BackboneSettings, ModeKeys, ModeSettings
 from stickslip.settings.settings import configured
 

@@ -10,6 +10,7 @@ import hashlib
 import json
 import math
 import sqlite3
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -97,7 +98,7 @@ _REMEDIES = {
 """What to do where the file itself is not at fault."""
 
 
-class RowStore:
+class RowStore(ABC):
     """The results of a study, in a file; a kind of study names its table.
 
     The file is made if there is none. Refused is one of another study, of a newer format, damaged,
@@ -145,9 +146,9 @@ class RowStore:
         self._base.close()
 
     @classmethod
+    @abstractmethod
     def place(cls, values: Sequence[Any]) -> str:
         """Say by its values which row it is."""
-        raise NotImplementedError
 
     def take(self, other: RowStore) -> int:
         """Take over the rows of another store of the same study; return how many."""
@@ -207,7 +208,7 @@ class RowStore:
     def _newest(cls) -> int:
         return max(cls.tables)
 
-    def _update(self, version: int) -> None:
+    def _update(self, version: int) -> None:  # noqa: B027 (most have one format)
         """Bring a store of an older format to the newest."""
 
     def _required_format(self) -> int:

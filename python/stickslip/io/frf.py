@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import Literal, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,9 +26,7 @@ from stickslip.checks import (
 from stickslip.errors import ModelError
 from stickslip.files import write
 from stickslip.io.source import readable
-
-if TYPE_CHECKING:
-    from stickslip.results import ForcedResponse
+from stickslip.model import Model
 
 Quantity: TypeAlias = Literal["displacement", "velocity", "acceleration"]
 
@@ -41,6 +39,18 @@ _NUMBERS = re.compile(rb"[-+.0-9eEdD \t]*")
 _NODE_DOF = re.compile(r"([1-9]\d{0,9})\.([1-6])(-?)")
 _LONGEST = 10
 """Characters that the format leaves for the name of an entity."""
+
+
+class Response(Protocol):
+    """What a function is made of: a `ForcedResponse`."""
+
+    @property
+    def model(self) -> Model: ...  # noqa: D102
+    @property
+    def omega(self) -> NDArray[np.float64]: ...  # noqa: D102
+    @property
+    def converged(self) -> NDArray[np.bool_]: ...  # noqa: D102
+    def coefficients(self, dof: str) -> NDArray[np.complex128]: ...  # noqa: D102
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +112,7 @@ class Frf:
         )
 
     @classmethod
-    def of(cls, response: ForcedResponse, dof: str, reference: str) -> Frf:
+    def of(cls, response: Response, dof: str, reference: str) -> Frf:
         """Return the fundamental of a computed response per force, of the points that were solved.
 
         `dof` is an observed degree of freedom, `reference` one with a force of the first harmonic;

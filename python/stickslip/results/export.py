@@ -7,17 +7,16 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from typing import Any, ClassVar, Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
 from stickslip.checks import brief, file_path, optional_package, text, unknown
 from stickslip.errors import ModelError
 from stickslip.files import refusal, require_place, write
+from stickslip.io.frf import Frf, universal_file
+from stickslip.results.dataset import Dataset
 from stickslip.results.table import Frame, Tables
-
-if TYPE_CHECKING:
-    from stickslip.results.result import Result
 
 _ROWS, _COLUMNS, _CHARACTERS = 2**20, 2**14, 2**15 - 1
 """Of a sheet, and of one of its cells."""
@@ -27,7 +26,18 @@ _ABOUT = "about"
 """The sheet that says what the columns are."""
 
 
-def export(result: Result, path: str | os.PathLike[str], table: str | None) -> None:
+class Exported(Protocol):
+    """What is asked of a result."""
+
+    kind: ClassVar[str]
+    headline: ClassVar[str]
+
+    def tables(self) -> Tables: ...  # noqa: D102
+    def to_pandas(self, table: str | None = None) -> Frame: ...  # noqa: D102
+    def to_dataset(self) -> Dataset: ...  # noqa: D102
+
+
+def export(result: Exported, path: str | os.PathLike[str], table: str | None) -> None:
     """Write a result to a file of another program; see `Result.export`."""
     file = file_path(path, "path")
     suffix = ending(file.suffix, str(file))
@@ -44,7 +54,7 @@ def ending(suffix: str, entry: str) -> str:
     return suffix.lower()
 
 
-def table_of(result: Result, tables: Tables, name: str | None) -> str:
+def table_of(result: Exported, tables: Tables, name: str | None) -> str:
     """Return the name of a table of a result, by default of that of its main numbers."""
     if name is None:
         return tables.holding(result.headline)
@@ -64,7 +74,7 @@ def headed(frame: Frame) -> Frame:
     return made
 
 
-def _csv(result: Result, file: Path, table: str | None) -> bytes:
+def _csv(result: Exported, file: Path, table: str | None) -> bytes:
     # Shortest digits that lead back to the same number, whatever NumPy is told to print.
     written = headed(result.to_pandas(table)).to_csv(
         index=False, lineterminator="\n", float_format=lambda number: repr(float(number))
@@ -72,14 +82,14 @@ def _csv(result: Result, file: Path, table: str | None) -> bytes:
     return str(written).encode()
 
 
-def _parquet(result: Result, file: Path, table: str | None) -> bytes:
+def _parquet(result: Exported, file: Path, table: str | None) -> bytes:
     optional_package("pyarrow", f"{file}: Parquet files", extra="export")
     content = io.BytesIO()
     headed(result.to_pandas(table)).to_parquet(content, engine="pyarrow", index=False)
     return content.getvalue()
 
 
-def _excel(result: Result, file: Path, table: str | None) -> bytes:
+def _excel(result: Exported, file: Path, table: str | None) -> bytes:
     openpyxl = optional_package("openpyxl", f"{file}: Excel files", extra="export")
     tables = result.tables()
     names = list(tables) if table is None else [table_of(result, tables, table)]
@@ -140,7 +150,7 @@ def _titles(names: list[str]) -> list[str]:
     return titles
 
 
-def _matlab(result: Result, file: Path, _: str | None) -> bytearray | memoryview:
+def _matlab(result: Exported, file: Path, _: str | None) -> bytearray | memoryview:
     """Write every variable as an array with its dimensions; texts about them as structures."""
     from scipy.io import savemat
     from scipy.io.matlab import MatWriteError
@@ -180,11 +190,8 @@ def _plain(value: Any) -> Any:
     return value if isinstance(value, str | np.ndarray | np.generic) else np.asarray(value)
 
 
-def _universal(result: Result, file: Path, _: str | None) -> bytes:
-    from stickslip.io.frf import Frf, universal_file
-    from stickslip.results.forced_response import ForcedResponse
-
-    if not isinstance(result, ForcedResponse):
+def _universal(result: Any, file: Path, _: str | None) -> bytes:
+    if result.kind != "forced_response":
         kind = result.kind.replace("_", " ")
         raise ModelError(
             f"{file}: a Universal File holds response functions, the result is a {kind}; export it "
@@ -207,7 +214,7 @@ class _Format(NamedTuple):
     """How many tables a file holds."""
 
 
-_Content: TypeAlias = Callable[["Result", Path, str | None], bytes | bytearray | memoryview]
+_Content: TypeAlias = Callable[["Exported", Path, str | None], bytes | bytearray | memoryview]
 
 FORMATS: Mapping[str, _Format] = {
     ".csv": _Format(_csv, tables="one"),

@@ -13,15 +13,9 @@ from stickslip.checks import choice, whole_number
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model.force import Force
-from stickslip.results.arrays import (
-    Float,
-    Int,
-    Measure,
-    PeriodicArrays,
-    amplitude_of,
-    constant,
-)
-from stickslip.results.fields import Shown, column
+from stickslip.results.arrays import Float, Int, Measure, amplitude_of, constant
+from stickslip.results.fields import Shown
+from stickslip.results.mode_arrays import ModeArrays
 from stickslip.results.periodic import PeriodicMotions
 from stickslip.results.synthesis import SynthesizedResponse, force_vector, synthesized
 from stickslip.settings.modes import ModeSettings
@@ -33,51 +27,6 @@ _LEAST_WIDTH = 0.01
 """... so much more, relative to the frequency, ..."""
 _MOST_WIDTH = 0.6
 """... and no more than this."""
-
-
-class ModeArrays(PeriodicArrays):
-    """The numbers of a nonlinear mode, in the order of its branch.
-
-    At amplitudes that were not reached all but the amplitude is not-a-number.
-    """
-
-    along = "mode_point"
-    labels: ClassVar[Mapping[str, Sequence[str]]] = {"mode_entry": ("omega", "damping_ratio")}
-
-    omega: Float = column("*", "rad/s", "angular frequency of the mode")
-    amplitude: Float = column(
-        "*",
-        "m kg^(1/2)",
-        "modal amplitude (X_1^H M X_1)^(1/2), of the mass-normalised fundamental",
-        least=0.0,
-        file_name="modal_amplitude",
-    )
-    damping_ratio: Float = column("*", "1", "modal damping ratio, viscous damping included")
-    viscous_ratio: Float = column("*", "1", "part of it that is due to viscous damping")
-    force_level: Float = column(
-        "*",
-        "1",
-        "multiple of the forces of harmonic 1 that keep the motion up in quadrature",
-        absent=lambda file: np.full(file["omega"].shape, np.nan),
-    )
-    relative_error: Float = column(
-        "* mode_entry",
-        "1",
-        "what the discarded harmonics could still change, relative to frequency and damping",
-        least=0.0,
-    )
-    residual: Float = column(
-        "*", "1", "residual of the equations, relative to the motion", least=0.0
-    )
-    resonance_order: Int = column(
-        "*", "1", "order of a harmonic in internal resonance, 0 if there is none", least=0
-    )
-    resonance_omega: Float = column(
-        "*", "rad/s", "natural frequency of the stuck structure that it meets"
-    )
-    resonance_share: Float = column("*", "1", "modal amplitude of that harmonic over the amplitude")
-    turns: Float = column("turn", "m kg^(1/2)", "amplitudes at which the branch turns")
-    linear: Float = column("mode_entry", "1", "natural frequency and damping ratio at rest")
 
 
 class NonlinearModes(PeriodicMotions):

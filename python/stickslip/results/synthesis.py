@@ -13,23 +13,36 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Protocol, get_args
 
 import numpy as np
 
 from stickslip.checks import choice, unknown
 from stickslip.errors import ModelError
+from stickslip.model import Model
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
+from stickslip.results.mode_arrays import ModeArrays
+from stickslip.settings.modes import ModeSettings
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
-
-    from stickslip.results.nonlinear_modes import NonlinearModes
 
 _FINE = 4000
 """Amplitudes between which solutions are bracketed."""
 _STILL = 1e-9
 """Contact displacement, relative to the largest one, that says nothing about a stiffness."""
+
+
+class Mode(Protocol):
+    """What is asked of a nonlinear mode: a `NonlinearModes`."""
+
+    @property
+    def model(self) -> Model: ...  # noqa: D102
+    @property
+    def settings(self) -> ModeSettings: ...  # noqa: D102
+    @property
+    def arrays(self) -> ModeArrays: ...  # noqa: D102
+    def _column(self, dof: str) -> int: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +61,7 @@ class SynthesizedResponse:
         holding, in terms of displacements. Above 0.01 compute the response directly.
     """
 
-    mode: NonlinearModes
+    mode: Mode
     omega: Float
     modal_amplitude: Float
     error_indicator: Float
@@ -80,7 +93,7 @@ class SynthesizedResponse:
 class _Shapes:
     """A nonlinear mode between its amplitudes, interpolated in their logarithm."""
 
-    def __init__(self, mode: NonlinearModes) -> None:
+    def __init__(self, mode: Mode) -> None:
         from scipy.interpolate import PchipInterpolator
 
         arrays = mode.arrays
@@ -89,7 +102,7 @@ class _Shapes:
         if rising.size < known.size or known.size < 2:
             raise ModelError(
                 "forced_response: the mode needs two amplitudes and more, and a branch that does "
-                f"not turn; it has {known.size} with {mode.turns.size} turns; compute it over "
+                f"not turn; it has {known.size} with {arrays.turns.size} turns; compute it over "
                 "another range"
             )
         log = np.log(arrays.amplitude[known])
@@ -136,7 +149,7 @@ class _Shapes:
         return series
 
 
-def synthesized(mode: NonlinearModes, force: Complex, omega: Float) -> SynthesizedResponse:
+def synthesized(mode: Mode, force: Complex, omega: Float) -> SynthesizedResponse:
     """Return the response of a mode to the fundamental of forces on its DOFs, shape (N,) [N]."""
     shapes = _Shapes(mode)
     grid = np.exp(np.linspace(shapes.low, shapes.high, _FINE))
@@ -170,7 +183,7 @@ def synthesized(mode: NonlinearModes, force: Complex, omega: Float) -> Synthesiz
 
 
 def _indicator(
-    mode: NonlinearModes,
+    mode: Mode,
     shapes: _Shapes,
     force: Complex,
     omega: Float,
@@ -229,7 +242,7 @@ def _indicator(
     return found
 
 
-def force_vector(mode: NonlinearModes, given: object) -> Complex:
+def force_vector(mode: Mode, given: object) -> Complex:
     """Return the fundamental of forces on the DOFs of a mode [N]."""
     from stickslip.model.force import Force
 
