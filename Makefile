@@ -49,7 +49,7 @@ test: tools rust python docs
 
 quick: $(VENV)/.developed
 	$(BIN)/ruff check .
-	$(BIN)/pytest -m "not slow"
+	$(BIN)/pytest -n auto --dist loadfile -m "not slow"
 
 rust:
 	cargo fmt --all --check
@@ -60,7 +60,7 @@ python: $(VENV)/.developed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/pytest
+	$(BIN)/pytest -n auto --dist loadfile
 
 docs: $(VENV)/.developed
 	PYTHONPATH=docs $(BIN)/zensical build --strict

@@ -2,9 +2,22 @@
 
 import os
 import signal
+import sys
 import threading
 
+import numpy as np
 import pytest
+
+os.environ["MPLBACKEND"] = "agg"  # no test opens a window, nor does a command that it runs
+
+
+@pytest.fixture(autouse=True)
+def nothing_stays():
+    """Close the figures of a test, and print as NumPy does: pyyeti changes it for all."""
+    with np.printoptions(legacy=False):
+        yield
+    if pyplot := sys.modules.get("matplotlib.pyplot"):
+        pyplot.close("all")
 
 
 @pytest.fixture

@@ -2,10 +2,8 @@
 
 import pickle
 
-import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip import plot
@@ -14,15 +12,6 @@ from stickslip.model import Model
 
 PATTERN = ss.mistuning_pattern(36, 0.07, "uniform", seed=0)
 OMEGA = np.linspace(150.0, 260.0, 56)
-
-
-@pytest.fixture(autouse=True)
-def no_window():
-    before = mpl.get_backend()
-    pyplot.switch_backend("agg")
-    yield
-    pyplot.close("all")
-    pyplot.switch_backend(before)
 
 
 def small(sectors=6, engine_order=1, **options):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from matplotlib import pyplot
 
 import stickslip as ss
 
@@ -187,7 +186,6 @@ def test_a_fit_to_backbones_is_saved_and_drawn(fitted, tmp_path):
             assert ax.get_ylabel() == label
         points = ax.lines[0]
         np.testing.assert_array_equal(points.get_xdata(), AMPLITUDE)
-        pyplot.close(ax.figure)
     with pytest.raises(ss.ModelError, match="draw them with plot_backbone"):
         again.plot()
 

@@ -2,7 +2,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from matplotlib import pyplot
 
 import stickslip as ss
 
@@ -17,12 +16,6 @@ MASS = {
     (3.0, "slipping"): (7.0556856e-5, 166.33920),
     (5.0, "slipping"): (2.8865970e-5, 183.15447),
 }
-
-
-@pytest.fixture(autouse=True)
-def closed_figures():
-    yield
-    pyplot.close("all")
 
 
 @pytest.fixture(scope="module")

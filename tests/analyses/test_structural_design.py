@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from matplotlib import pyplot
 from typer.testing import CliRunner
 
 import stickslip as ss
@@ -12,13 +11,6 @@ from stickslip.settings.variation import Variation
 
 ENDS = ("1.tip", "2.tip")
 SPRING = 1e6
-
-
-@pytest.fixture(autouse=True)
-def no_window():
-    pyplot.switch_backend("agg")
-    yield
-    pyplot.close("all")
 
 
 @pytest.fixture(scope="module")

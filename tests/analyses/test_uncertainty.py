@@ -442,18 +442,12 @@ def test_numbers_and_parameters_that_are_none_are_refused(study):
 
 
 def test_figures_say_how_many_failed(study):
-    from matplotlib import pyplot
-
     ax = study.plot_distribution("amplitude")
     assert ax.get_title() == "12 samples"
-    pyplot.close(ax.figure)
 
 
 def test_bars_of_the_shares(rubbing):
-    from matplotlib import pyplot
-
     ax = rubbing.plot_sobol("amplitude")
     named = [label.get_text() for label in ax.get_xticklabels()]
     assert [name.replace("\n", "") for name in named] == ["pad.slip_force", "pad.stiffness"]
     assert "surrogate misses" in ax.get_title()
-    pyplot.close(ax.figure)

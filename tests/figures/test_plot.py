@@ -1,9 +1,5 @@
 """Figures: the right numbers on axes that say what they show."""
 
-import matplotlib
-
-matplotlib.use("Agg")
-
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt

@@ -1,9 +1,5 @@
 """Figures of one point: waveforms, loops and slip."""
 
-import matplotlib
-
-matplotlib.use("Agg")
-
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt

@@ -197,8 +197,6 @@ def test_what_cannot_be_drawn(exact, run, ax):
 
 @pytest.mark.slow
 def test_methods_make_figures(exact, run, tmp_path):
-    from matplotlib import pyplot
-
     made = [
         exact.plot("tip"),
         exact.plot_multipliers(),
@@ -209,10 +207,7 @@ def test_methods_make_figures(exact, run, tmp_path):
         run.plot_poincare("tip"),
         run.plot_spectrum("tip"),
     ]
-    try:
-        for position, drawn in enumerate(made):
-            target = tmp_path / f"{position}.png"
-            drawn.figure.savefig(target)
-            assert target.stat().st_size > 5_000
-    finally:
-        pyplot.close("all")
+    for position, drawn in enumerate(made):
+        target = tmp_path / f"{position}.png"
+        drawn.figure.savefig(target)
+        assert target.stat().st_size > 5_000

@@ -5,7 +5,6 @@ import pickle
 
 import numpy as np
 import pytest
-from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip import plot, reference
@@ -13,13 +12,6 @@ from stickslip.model.laws import contact_from_spec
 from stickslip.study import Study
 
 D = [[2.0, -2.0], [-2.0, 2.0]]
-
-
-@pytest.fixture(autouse=True)
-def no_window():
-    pyplot.switch_backend("agg")
-    yield
-    pyplot.close("all")
 
 
 @pytest.fixture(scope="module")

@@ -23,10 +23,7 @@ from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
 
-import matplotlib as mpl
-import numpy as np
 import pytest
-from matplotlib import pyplot
 from typer.testing import CliRunner
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -76,15 +73,11 @@ def _named(page: Path) -> str:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A working folder with the example studies; no window is opened, no figure stays open."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
-    before = mpl.get_backend()
-    pyplot.switch_backend("agg")
-    yield tmp_path
-    pyplot.close("all")
-    pyplot.switch_backend(before)
+    return tmp_path
 
 
 @pytest.mark.slow
@@ -107,8 +100,7 @@ def _run(block: Block, namespace: dict[str, object]) -> str:
     # Empty lines in front make a traceback point to the line of the page.
     source = "\n" * (block.line - 1) + block.body
     out = StringIO()
-    # Other libraries of the tests may have changed how arrays are printed.
-    with redirect_stdout(out), np.printoptions(legacy=False):
+    with redirect_stdout(out):
         exec(compile(source, str(block.page), "exec"), namespace)
     return out.getvalue()
 

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip.study import Study
@@ -73,9 +72,7 @@ def test_the_mistuned_ring_is_amplified_as_the_table_says(tmp_path, monkeypatch,
     # computed independently: 7 %, seed 0, couplings of 7000 N/m, 3 harmonics
     assert mistuned.amplification(tuned, "damper").factor == pytest.approx(1.575, rel=1e-3)
     monkeypatch.chdir(tmp_path)
-    pyplot.switch_backend("agg")
     runpy.run_path(os.fspath(EXAMPLES / "beam-ring" / "ring.py"), run_name="__main__")
-    pyplot.close("all")
     assert capsys.readouterr().out == "amplification 1.575 at blade 13, 193.1 rad/s\n"
     assert (tmp_path / "beam-ring.png").stat().st_size > 0
 
@@ -137,9 +134,7 @@ def test_the_pair_peaks_and_slips_as_the_dissertation_corrected(tmp_path, monkey
         for dof, peak in peaks.items():
             assert curves[level].peak(dof).amplitude == pytest.approx(peak, rel=2e-3)
     monkeypatch.chdir(tmp_path)
-    pyplot.switch_backend("agg")
     runpy.run_path(os.fspath(EXAMPLES / "beam-pair" / "pair.py"), run_name="__main__")
-    pyplot.close("all")
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].endswith("slip sets []")
     assert lines[1].endswith("slip sets [(0,)]")

@@ -1,11 +1,8 @@
 """Campbell and SAFE diagrams, slip forces by friction, engine orders on all sectors."""
 
-import matplotlib
-
-matplotlib.use("Agg")
-
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip import plot
@@ -95,17 +92,16 @@ def test_the_diagram_has_the_modes_near_the_excitation():
     drawn = [line for line in axes.lines if line.get_label().endswith("4, stuck")]
     assert len(drawn) == 1  # the first mode of nodal diameter 4 alone
     np.testing.assert_allclose(drawn[0].get_ydata(), found.stuck[:, 4, 0] / (2 * np.pi))
-    matplotlib.pyplot.close(axes.figure)
 
 
 def test_safe_shows_the_next_family_and_no_more():
     (found,) = Study.parse(DISK + 'kind = "safe"\nspeed = ["3000 rpm"]').run()
     drawing = view_of([found]).panels([found], (), None)
-    axes = matplotlib.figure.Figure().add_subplot()
+    axes = Figure().add_subplot()
     drawing[0](ax=axes)
     assert axes.get_ylim()[1] < found.stuck[0, :, 1].max() / (2 * np.pi)
     assert "excitation at 3000 rpm" in axes.get_legend_handles_labels()[1]
-    every = matplotlib.figure.Figure().add_subplot()
+    every = Figure().add_subplot()
     plot.safe(found.at(0), 3000 * RPM, modes=3, ax=every)
     assert every.get_ylim()[1] > found.stuck[0].max() / (2 * np.pi)
 

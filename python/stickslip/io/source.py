@@ -59,7 +59,8 @@ def readable(file: Path, kind: str) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        if isinstance(error, ModelError) and str(error).startswith(str(file)):
+        # The text of a model's own error stands: of this file, or of the one beside it (k.dof).
+        if isinstance(error, ModelError) and str(error).startswith(str(file.with_suffix(""))):
             raise
         cause = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
         raise ModelError(
