@@ -5,10 +5,12 @@ import signal
 import sys
 import threading
 
+os.environ["MPLBACKEND"] = "agg"  # no test opens a window, nor does a command that it runs
+# Tests run on every core: threads of small products would wait for each other.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
 import numpy as np
 import pytest
-
-os.environ["MPLBACKEND"] = "agg"  # no test opens a window, nor does a command that it runs
 
 
 @pytest.fixture(autouse=True)
