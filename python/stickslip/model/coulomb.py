@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any, ClassVar, Self, TypeAlias
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,13 +22,9 @@ from stickslip.errors import ModelError
 from stickslip.model.bonded import Bonded
 from stickslip.model.contact import OPEN, Contact
 from stickslip.model.dofs import Dofs
+from stickslip.model.node_values import Each, number_of_each, times_areas
 from stickslip.model.nodes import Displacement, Nodes
-from stickslip.units import physical_number
-
-Each: TypeAlias = float | tuple[float, ...]
-"""One number for all nodes, or one per node."""
-Vectors: TypeAlias = tuple[float, ...] | tuple[tuple[float, ...], ...]
-"""One vector for all nodes, or one per node."""
+from stickslip.model.normals import Vectors, frame_of, unit_normals
 
 _ENTRY = "coulomb contact"
 _OPTIONAL = ("normal_stiffness", "preload", "gap")
@@ -39,17 +35,11 @@ _UNITS = {
     "preload": "N",
     "gap": "m",
 }
-_UNITS_PER_AREA = _UNITS | {
-    "tangential_stiffness": "N/m^3",
-    "normal_stiffness": "N/m^3",
-    "preload": "Pa",
-}
+_PER_AREA = {"tangential_stiffness": "N/m^3", "normal_stiffness": "N/m^3", "preload": "Pa"}
 _ON_CONE = 1e-9
 """Distance from the cone, relative to it, that is none."""
 _SPACE = 3
 """Dimensions of space."""
-_STEEP = 0.9
-"""Component of the normal from which on the tangent is laid along the next axis."""
 
 
 @dataclass(frozen=True, init=False)
@@ -153,7 +143,7 @@ class Coulomb(Contact):
                 "the tangential ones with normal=None"
             )
         shape = nodes.shape
-        vectors = _normal(normal, shape)
+        vectors = unit_normals(normal, shape, _ENTRY)
         preload, gap = _closure(preload, gap, constant=normal is None)
         if (normal_stiffness is None) != (normal is None):
             raise ModelError(
@@ -167,15 +157,15 @@ class Coulomb(Contact):
             "preload": preload,
             "gap": gap,
         }
-        units = _UNITS if areas is None else _UNITS_PER_AREA
+        units = _UNITS if areas is None else _UNITS | _PER_AREA
         each = {
             key: None
             if one is None and key in _OPTIONAL
-            else _each(one, key, units[key], shape, negative=key == "gap")
+            else number_of_each(one, units[key], shape, f"{_ENTRY}: {key}", negative=key == "gap")
             for key, one in given.items()
         }
         if areas is not None:
-            _spread(each, areas, shape)
+            each |= times_areas({key: each[key] for key in _PER_AREA}, areas, shape, _ENTRY)
         set_fields(self, **each, normal=vectors, nodes=nodes)
 
     def __repr__(self) -> str:
@@ -215,7 +205,7 @@ class Coulomb(Contact):
 
         Shape (d, d), or (points, d, d) of many nodes: rows t1, t2, n, or t, n.
         """
-        frames = np.array([_frame(one) for one in self._normals])
+        frames = np.array([frame_of(one) for one in self._normals])
         return frames[0] if self.single else frames
 
     def on_first(self, force: Matrix) -> Matrix:
@@ -236,7 +226,7 @@ class Coulomb(Contact):
 
     def rows(self, dofs: Dofs) -> Matrix:
         """Return B of u = B x, in the frame of each node, shape (points * d, N)."""
-        frames = np.array([_frame(one) for one in self._normals])
+        frames = np.array([frame_of(one) for one in self._normals])
         return np.ascontiguousarray((frames @ self.nodes.rows(dofs)).reshape(-1, len(dofs)))
 
     @property
@@ -373,44 +363,6 @@ class Coulomb(Contact):
         return cls(*nodes.names, **values, name=name)
 
 
-def _normal(value: object, shape: tuple[int, ...]) -> Vectors | None:
-    """Return unit normals, one or one per node."""
-    size = shape[-1]
-    if value is None:
-        if size > 2:
-            raise ModelError(
-                f"{_ENTRY}: normal: None, a constant load, with 3 dofs per node; give the one or "
-                "two tangential ones, or the normal"
-            )
-        return None
-    try:
-        vectors = np.array(value)
-    except ValueError:
-        vectors = np.array(None)
-    fits = (size,) if len(shape) == 1 or vectors.ndim < 2 else shape
-    if vectors.dtype.kind not in "fiu" or vectors.shape != fits or size == 1:
-        many = "" if len(shape) == 1 else ", or one such list per node"
-        raise ModelError(
-            f"{_ENTRY}: normal: {brief(value)}; give {max(size, 2)} numbers, as many as a node has "
-            f"dofs{many}, or None for a constant load"
-        )
-    vectors = vectors.astype(np.float64)
-    # Numbers far from 1 would overflow when squared.
-    largest = np.abs(vectors).max(axis=-1, keepdims=True)
-    if not (np.isfinite(largest) & (largest > 0.0)).all():
-        raise ModelError(
-            f"{_ENTRY}: normal: {brief(value)} has no direction; give a finite vector that is not "
-            "zero"
-        )
-    length = np.linalg.norm(vectors / largest, axis=-1, keepdims=True) * largest
-    # What has unit length already stays as it is, bit by bit.
-    near = np.abs(length - 1.0) <= 4.0 * np.finfo(np.float64).eps
-    unit = np.where(near, vectors, vectors / largest / (length / largest))
-    if unit.ndim == 1:
-        return tuple(unit.tolist())
-    return tuple(map(tuple, unit.tolist()))
-
-
 def _closure(preload: Any, gap: Any, *, constant: bool) -> tuple[Any, Any]:
     """Return preload and gap, of which one is None."""
     if preload is not None and gap is not None:
@@ -423,54 +375,6 @@ def _closure(preload: Any, gap: Any, *, constant: bool) -> tuple[Any, Any]:
             f"{_ENTRY}: preload is missing; give the constant normal load in N, or a normal"
         )
     return preload, 0.0 if preload is None and gap is None else gap
-
-
-def _each(value: object, key: str, unit: str, shape: tuple[int, ...], *, negative: bool) -> Each:
-    """Return the number of all nodes, or one per node."""
-    entry = f"{_ENTRY}: {key}"
-    if not (isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim)):
-        return _number(value, unit, entry, negative=negative)
-    listed = tuple(value)
-    if len(shape) == 1 or len(listed) != shape[0]:
-        nodes = "one node" if len(shape) == 1 else f"{shape[0]} nodes"
-        expected = "one number" if len(shape) == 1 else "one number, or one per node"
-        raise ModelError(f"{entry}: {len(listed)} numbers for {nodes}; give {expected}")
-    return tuple(
-        _number(one, unit, f"{entry}[{place}]", negative=negative)
-        for place, one in enumerate(listed)
-    )
-
-
-def _number(value: object, unit: str, entry: str, *, negative: bool) -> float:
-    number = physical_number(value, unit, entry)
-    if number < 0.0 and not negative:
-        raise ModelError(f"{entry} {number:g} is negative; give a number from zero, in SI units")
-    return number
-
-
-def _spread(each: dict[str, Each | None], areas: object, shape: tuple[int, ...]) -> None:
-    """Multiply what is given per area by the areas of the nodes."""
-    if len(shape) == 1:
-        raise ModelError(
-            f"{_ENTRY}: areas {brief(areas)} of one node; give its stiffness in N/m, or a list of "
-            "nodes"
-        )
-    sizes = np.asarray(_each(areas, "areas", "m^2", shape, negative=False))
-    for key in ("tangential_stiffness", "normal_stiffness", "preload"):
-        if (one := each[key]) is not None:
-            each[key] = tuple((sizes * np.asarray(one) * np.ones(shape[0])).tolist())
-
-
-def _frame(normal: Matrix | int) -> Matrix:
-    """Return rows t1, t2, n of a unit normal, or t, n; the axes where there is none."""
-    if isinstance(normal, int):
-        return np.eye(normal)
-    if normal.size == 2:
-        return np.array([[normal[1], -normal[0]], normal])
-    axis = np.eye(3)[int(abs(normal[0]) > _STEEP)]
-    first = axis - (axis @ normal) * normal
-    first /= np.linalg.norm(first)
-    return np.array([first, np.cross(normal, first), normal])
 
 
 def _range(values: Iterable[float]) -> str:
