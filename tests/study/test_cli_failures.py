@@ -9,16 +9,7 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
-from beam_study import COMMAND, EXAMPLE, invoke, script, study_text
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    for file in ("mass.mtx", "stiffness.mtx"):
-        shutil.copy(EXAMPLE / file, tmp_path)
-    (tmp_path / "study.toml").write_text('name = "beam"\n' + study_text())
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+from beam_study import COMMAND, invoke, script, study_text
 
 
 @pytest.mark.parametrize(

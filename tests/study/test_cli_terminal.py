@@ -1,37 +1,16 @@
 """The command line on a terminal: tables, progress and help."""
 
 import io
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import stickslip as ss
-from beam_study import COMMAND, EXAMPLE, invoke, study_text
+from beam_study import COMMAND, invoke
 from stickslip.cli import console
 from stickslip.views.curves import CurveView
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    for file in ("mass.mtx", "stiffness.mtx"):
-        shutil.copy(EXAMPLE / file, tmp_path)
-    (tmp_path / "study.toml").write_text('name = "beam"\n' + study_text())
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("results")
-    for load in (6.563, 20.313):
-        model = ss.reference.snecma_beam(load)
-        omega = np.linspace(150, 250, 12)
-        ss.forced_response(model, omega, 5).save(folder / f"beam-{load}.nc")
-    return folder
 
 
 @pytest.mark.slow

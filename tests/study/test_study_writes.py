@@ -4,7 +4,6 @@ Real refusals come from the limit of the size of files, in processes of their ow
 """
 
 import errno
-import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,18 +12,9 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
-from beam_study import COMMAND, EXAMPLE, invoke, study_text
+from beam_study import COMMAND, invoke
 from failing_disk import Disk, names
 from stickslip.reference import snecma_beam
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    for file in ("mass.mtx", "stiffness.mtx"):
-        shutil.copy(EXAMPLE / file, tmp_path)
-    (tmp_path / "study.toml").write_text('name = "beam"\n' + study_text())
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 @pytest.mark.slow
