@@ -27,6 +27,9 @@ from stickslip_reproduce.resolution import Resolution
 
 SECTORS = 36
 SPAN = (150.0, 260.0)
+SUBRESONANCES = (205.0, 222.0)
+"""Where those of Fig. 4.21f are [rad/s]."""
+
 COUPLING = 1e5
 """Stiffness between the tips of the tuned ring [N/m]."""
 
@@ -176,16 +179,22 @@ def figure_4_20(resolution: Resolution) -> Numbers:
 @reproduces(
     "fig-4.21",
     """Localisation is strong at intermediate coupling and gone at 1e5 N/m, where the beams move
-    nearly alike again.""",
+    nearly alike again. The inset enlarges the subresonances of (f).""",
     corrected=(errata.PHASES, errata.BLADE_FREQUENCIES),
     inferred=(OURS,),
 )
 def figure_4_21(resolution: Resolution) -> Numbers:
     """Beams 1 to 12 of the mistuned ring, k_c = 6000, 12000 and 1e5 N/m."""
-    return _couplings("def", (6e3, 1.2e4, 1e5), resolution)
+    return _couplings("def", (6e3, 1.2e4, 1e5), resolution, enlarged={1e5: SUBRESONANCES})
 
 
-def _couplings(letters: str, values: Sequence[float], resolution: Resolution) -> Numbers:
+def _couplings(
+    letters: str,
+    values: Sequence[float],
+    resolution: Resolution,
+    *,
+    enlarged: Mapping[float, tuple[float, float]] | None = None,
+) -> Numbers:
     panels, facts = [], []
     observe = [f"{beam}.damper" for beam in range(SECTORS)]
     for letter, value in zip(letters, values, strict=True):
@@ -194,7 +203,8 @@ def _couplings(letters: str, values: Sequence[float], resolution: Resolution) ->
             ring, SPAN, 3, method="broyden", tolerance=resolution.tolerance, observe=observe
         )
         series = [curve(shown, f"{beam}.damper", f"beam {beam}") for beam in range(1, 13)]
-        panels.append(Panel(tuple(series), f"({letter}) k_c = {value:.0f} N/m"))
+        title = f"({letter}) k_c = {value:.0f} N/m"
+        panels.append(Panel(tuple(series), title, enlarged=(enlarged or {}).get(value)))
         peaks = shown.blade_amplitudes("damper").max(axis=0)
         ratio = float(peaks.max() / peaks.min())
         facts.append(Fact(f"highest over lowest peak at {value:g} N/m", ratio))

@@ -23,13 +23,22 @@ VERDICTS: tuple[Verdict, ...] = ("holds", "holds with limits", "false", "open")
 that decides."""
 
 CHAPTERS = (
-    "claims_2",
-    "claims_3",
-    "claims_4",
+    "claims_2_mass",
+    "claims_2_beam",
+    "claims_3_force",
+    "claims_3_solvers",
+    "claims_4_beam",
+    "claims_4_blade",
     "claims_4_rings",
-    "claims_5",
-    "claims_5_beam",
-    "claims_6",
+    "claims_4_localization",
+    "claims_5_mass",
+    "claims_5_stiffness",
+    "claims_5_modes",
+    "claims_5_stability",
+    "claims_5_single_mode",
+    "claims_6_force",
+    "claims_6_histories",
+    "claims_6_response",
     "claims_7",
 )
 """Modules with claims, in the order of the text."""

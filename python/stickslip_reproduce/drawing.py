@@ -39,6 +39,8 @@ _COUNTED = 12
 """So many whole numbers at most are all written on an axis."""
 _ROW = 3
 """Panels beside each other."""
+_INSET = (0.09, 0.4, 0.5, 0.52)
+"""Place of an inset in its axes: left, lower, width, height, as shares."""
 _SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]\d?)\b")
 
 
@@ -75,16 +77,15 @@ def draw(plot: Plot) -> Figure:
     drawn = dict(zip(plot.panels, grid, strict=True))
     for place, (panel, ax) in enumerate(drawn.items()):
         y = panel.y or plot.y
-        for series in panel.series:
-            look = looks[series.label] | _thinned(series)
-            ax.plot(
-                plot.x.factor * series.x, y.factor * series.y, label=_typeset(series.label), **look
-            )
+        _lines(ax, panel, plot, looks)
         ax.set_title(_typeset(panel.title), fontsize="medium")
         _frame(ax, plot.x, y)
         if place % _ROW == 0:
             ax.set_ylabel(_typeset(y.label))
     _from_zero(drawn, plot)
+    for panel, ax in drawn.items():
+        if panel.enlarged:
+            _inset(ax, panel, plot, looks)
     handles: dict[str, Any] = {}
     for ax in drawn.values():
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
@@ -99,6 +100,32 @@ def draw(plot: Plot) -> Figure:
             handlelength=3.2,
         )
     return figure
+
+
+def _lines(
+    ax: Axes, panel: Panel, plot: Plot, looks: Mapping[str, dict[str, Any]], **changed: Any
+) -> None:
+    y = panel.y or plot.y
+    for series in panel.series:
+        look = looks[series.label] | _thinned(series) | changed
+        ax.plot(plot.x.factor * series.x, y.factor * series.y, label=_typeset(series.label), **look)
+
+
+def _inset(ax: Axes, panel: Panel, plot: Plot, looks: Mapping[str, dict[str, Any]]) -> None:
+    """Enlarge a range in the upper left corner, where a resonance curve leaves room."""
+    assert panel.enlarged is not None
+    low, high = panel.enlarged
+    inset = ax.inset_axes(_INSET)
+    _lines(inset, panel, plot, looks, markevery=1.0)
+    inside = [series.y[(series.x >= low) & (series.x <= high)] for series in panel.series]
+    y = panel.y or plot.y
+    least, most = (y.factor * end(np.concatenate(inside)) for end in (np.min, np.max))
+    inset.set_xlim(plot.x.factor * low, plot.x.factor * high)
+    inset.set_ylim(least - 0.05 * (most - least), most + 0.05 * (most - least))
+    inset.tick_params(labelsize="x-small")
+    inset.locator_params(nbins=5)
+    inset.grid(True, lw=0.4, alpha=0.4)
+    ax.indicate_inset_zoom(inset, edgecolor="0.4")
 
 
 def _typeset(text: str) -> str:

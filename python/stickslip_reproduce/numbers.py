@@ -104,11 +104,24 @@ class Series:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """Series on one pair of axes; `y` only where it is not that of the plot."""
+    """Series on one pair of axes.
+
+    Parameters
+    ----------
+    series : tuple of Series
+        What is drawn.
+    title : str, optional
+        What stands above.
+    y : Axis, optional
+        Only where it is not that of the plot.
+    enlarged : (float, float), optional
+        Range of abscissae that an inset shows enlarged, in SI units.
+    """
 
     series: tuple[Series, ...]
     title: str = ""
     y: Axis | None = None
+    enlarged: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)

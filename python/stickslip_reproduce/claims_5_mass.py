@@ -2,39 +2,24 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 import stickslip as ss
 from stickslip_reproduce.claims import Found, claim, verdict
 from stickslip_reproduce.cycles import at, turn
+from stickslip_reproduce.mass_cycles import (
+    FREE,
+    LIMIT,
+    MODEL,
+    NEGATIVE,
+    STUCK,
+    TRIED,
+    exact,
+    kept,
+    tried,
+)
 from stickslip_reproduce.numbers import Fact
 from stickslip_reproduce.resolution import Resolution
-
-MODEL, NEGATIVE = ss.reference.flutter_mass()
-NOMINAL, LIMIT = ss.reference.DAMPER_STIFFNESS, ss.reference.DAMPER_SLIP_FORCE
-FREE = float(ss.natural_frequencies(MODEL, slipping=[0])[0])
-STUCK = float(ss.natural_frequencies(MODEL)[0])
-TRIED = (0.1, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0)
-
-
-@cache
-def exact() -> ss.LimitCycles:
-    """Return the whole exact branch."""
-    return ss.limit_cycles(MODEL, NEGATIVE, method="exact")
-
-
-@cache
-def kept(harmonics: int) -> ss.LimitCycles:
-    """Return the whole branch of a number of harmonics."""
-    return ss.limit_cycles(MODEL, NEGATIVE, harmonics=harmonics)
-
-
-@cache
-def tried() -> ss.LimitCycles:
-    """Return the exact cycles at the ratios that are tried."""
-    return ss.limit_cycles(MODEL, NEGATIVE, ratio=TRIED, method="exact")
 
 
 @claim(
@@ -247,120 +232,5 @@ def good_agreement(resolution: Resolution) -> Found:
             Fact("amplitude", 100.0 * float(np.abs(sizes).max()), "%"),
             Fact("frequency", 100.0 * float(np.abs(omegas).max()), "%"),
             Fact("sticking", reached),
-        )
-    )
-
-
-@cache
-def softest() -> ss.LimitCycles:
-    """Return the exact branch over the stiffness of the damper at r = 1."""
-    return ss.limit_cycles(MODEL, NEGATIVE, stiffness=(4e6, 2.4e10), method="exact")
-
-
-@claim(
-    "too-soft",
-    "5.2.3",
-    "no periodic motion is possible if the damper stiffness is too small",
-    """Smallest stiffness with an exact limit cycle at r = 1, over the nominal one.""",
-    rule=lambda n: verdict(n["smallest ν"] > 0.0),
-    see="fig-5.8",
-)
-def too_soft(resolution: Resolution) -> Found:
-    """Smallest stiffness with a limit cycle."""
-    return Found((Fact("smallest ν", turn(softest()).value / NOMINAL),))
-
-
-@claim(
-    "unique-solution",
-    "5.2.3",
-    "the mostly sticking and the mostly slipping solutions defined in Section 5.2.1 tend toward a "
-    "unique solution as the damper stiffness decreases to zero",
-    """Stiffness at which the two meet, at r = 1, over the nominal one: they do so long before
-    zero.""",
-    rule=lambda n: verdict(n["they meet at ν"] < 1e-3, n["they meet at ν"] < 1.0),
-    see="fig-5.8 fig-5.9",
-)
-def unique_solution(resolution: Resolution) -> Found:
-    """Stiffness at which both solutions meet."""
-    return Found((Fact("they meet at ν", turn(softest()).value / NOMINAL),))
-
-
-@claim(
-    "soft-frequency",
-    "5.2.3",
-    "there is no periodic solution for values of the friction damper stiffness that are small "
-    "enough, and then the frequency of oscillation tends towards the minimum frequency, ω_min",
-    """Frequency where the two solutions meet, at r = 1, between ω_min = 0 and ω_max = 1 of that
-    stiffness.""",
-    rule=lambda n: verdict(n["place between ω_min and ω_max"] < 0.1),
-    see="fig-5.9",
-)
-def soft_frequency(resolution: Resolution) -> Found:
-    """Frequency of the softest limit cycle."""
-    limit = turn(softest())
-    stuck = FREE * np.sqrt(1.0 + limit.value / NOMINAL)
-    return Found(
-        (Fact("place between ω_min and ω_max", float((limit.omega - FREE) / (stuck - FREE))),)
-    )
-
-
-@claim(
-    "two-rigid-solutions",
-    "5.2.3",
-    "there are two periodic solutions. One solution corresponds to the trivial case: A = 0, and "
-    "the other one has an amplitude and frequency independent of the damper stiffness.",
-    """Exact amplitudes at ν = 10 and 1000: the sticking one at 1000 over that at 10, and the change
-    of the slipping one.""",
-    rule=lambda n: verdict(n["sticking, ratio"] < 0.02 and n["slipping, change"] < 1.0),
-    see="fig-5.8 fig-5.9",
-)
-def two_rigid(resolution: Resolution) -> Found:
-    """Amplitudes of stiff dampers."""
-    found = ss.limit_cycles(
-        MODEL, NEGATIVE, stiffness=[10 * NOMINAL, 1000 * NOMINAL], method="exact"
-    )
-    size = found.amplitude("mass")
-    low, high = (
-        [size[at(found, nu * NOMINAL, side)] for nu in (10, 1000)]
-        for side in ("sticking", "slipping")
-    )
-    return Found(
-        (
-            Fact("sticking, ratio", float(low[1] / low[0])),
-            Fact("slipping, change", 100.0 * abs(float(high[1] / high[0]) - 1.0), "%"),
-        )
-    )
-
-
-@claim(
-    "rigid-values",
-    "5.2.3",
-    "the one-harmonic approximation in the rigid friction damper case predicts ω_min = 159.5 "
-    "rad/s, and A = 2.65·10⁻⁴ m, and these are the values also found by the multi-harmonic, "
-    "Broyden method",
-    """Eq. (5.20) at r = 1, and the exact rigid damper. The print's frequency is rounded, its
-    amplitude is not reproduced at r = 1.""",
-    rule=lambda n: verdict(
-        abs(n["A of (5.20)"] / 2.65e-4 - 1.0) < 0.01 and abs(n["ω_min"] - 159.5) < 0.15
-    ),
-    see="fig-5.8 fig-5.9",
-)
-def rigid_values(resolution: Resolution) -> Found:
-    """Amplitude and frequency of the rigid damper."""
-    rigid, rough = (
-        ss.rigid_limit_cycle(
-            mass=MODEL.structure.mass[0, 0],
-            damping=NEGATIVE[0, 0],
-            stiffness=MODEL.structure.stiffness[0, 0],
-            slip_force=LIMIT,
-            single_harmonic=single,
-        )
-        for single in (False, True)
-    )
-    return Found(
-        (
-            Fact("A of (5.20)", rough.amplitude, "m", 2.65e-4),
-            Fact("A, exact", rigid.amplitude, "m", 2.65e-4),
-            Fact("ω_min", rough.omega, "rad/s", 159.5),
         )
     )
