@@ -31,3 +31,19 @@ def cases(ratio: float, forces: str) -> ss.BasinMap:
     """Return what becomes of the starts of Table 5.2 with a reading of the friction force."""
     driven = ss.destabilised(BEAM, NEGATIVE, ratio)
     return ss.basin_map(driven, starts=[held(driven, start, forces) for start in STARTS])
+
+
+@cache
+def at_one(mode: int) -> ss.LimitCycles:
+    """Return the exact cycles of a mode at r = 1, all three damped negatively."""
+    return ss.limit_cycles(BEAM, NEGATIVE, mode=mode, ratio=[1.0], method="exact")
+
+
+RATIOS = (1.0, 2.0, 3.0)
+"""Ratios at which cycles of mode 3 alone are tried."""
+
+
+@cache
+def alone() -> ss.LimitCycles:
+    """Return the exact cycles with mode 3 alone damped negatively at these ratios."""
+    return ss.limit_cycles(*ss.reference.flutter_beam(mode=2), mode=2, ratio=RATIOS, method="exact")

@@ -12,6 +12,18 @@ NEAR = (100.0, 300.0)
 EIGHT = ss.reference.SNECMA_LOADS
 """Loads of the dissertation [N]."""
 
+FORCE = 20.313
+"""The one of them at which the stiffness varies, and the rings are driven [N]."""
+
+SLIPPING, STUCK = (
+    float(one[0])
+    for one in (
+        ss.natural_frequencies(ss.reference.snecma_beam(), slipping=[0]),
+        ss.natural_frequencies(ss.reference.snecma_beam()),
+    )
+)
+"""First natural frequencies [rad/s]."""
+
 
 @cache
 def optimum(dof: str) -> ss.OptimalDamper:

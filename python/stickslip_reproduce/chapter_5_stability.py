@@ -203,22 +203,28 @@ def figure_5_23(resolution: Resolution) -> Numbers:
 
 
 @cache
-def _wild(forces: str = "zero") -> tuple[ss.MotionClass, ss.LimitCycles, int]:
-    """Return the motion at r = 0.361, and the limit cycles of mode 1 there with their place."""
+def wild_start(forces: str) -> tuple[ss.Model, ss.State, ss.LimitCycles, int]:
+    """Return model and start at r = 0.361, and the limit cycles of mode 1 with their place."""
     beam, negative = ss.reference.flutter_beam()
     third = ss.limit_cycles(beam, negative, mode=2, ratio=[WILD], harmonics=5, stability=False)
     place = at(third, WILD, "slipping")
     start = {dof: 0.98 * float(third.amplitude(dof)[place]) for dof in beam.structure.dofs}
-    driven = third.model_at(place)
-    motion = ss.classify(driven, held(driven, start, forces), periods=1500)
     first = ss.limit_cycles(beam, negative, mode=0, ratio=[WILD], harmonics=15)
-    return motion, first, at(first, WILD, "sticking")
+    driven = third.model_at(place)
+    return driven, held(driven, start, forces), first, at(first, WILD, "sticking")
+
+
+@cache
+def _wild(forces: str = "zero") -> tuple[ss.MotionClass, ss.LimitCycles, int]:
+    """Return the motion from there, and the limit cycles of mode 1 with their place."""
+    driven, start, first, place = wild_start(forces)
+    return ss.classify(driven, start, periods=1500), first, place
 
 
 def _history(dof: str) -> Numbers:
     motion, cycles, place = _wild()
     omega = float(cycles.omega[place])
-    count = int(PERIODS * 2.0 * np.pi / omega / motion.step) + 1
+    count = int(np.ceil(PERIODS * 2.0 * np.pi / omega / motion.step)) + 1
     angle = omega * motion.step * np.arange(count)
     tip = motion.tail[:count, motion.dofs.index("tip")]
     orbit = cycles.coefficients(dof)[place]

@@ -209,3 +209,42 @@ def virtually_perfect(resolution: Resolution) -> Found:
         apart = np.abs(rough.amplitude("mass") - true.amplitude("mass")).max()
         worst = max(worst, float(apart) / true.peak("mass").amplitude)
     return Found((Fact("largest distance over the peak", 100.0 * worst, "%"),))
+
+
+@claim(
+    "sticking-to-slipping",
+    "2.2.5",
+    "ranging from a low level (P = 0.5F_d) for which the damper is mostly sticking during one "
+    "period of the motion, to a high level (P = 2F_d) for which the damper is mostly slipping "
+    "during one period of the motion",
+    """Share of the period that the damper slips at the exact peak, at both levels.""",
+    rule=lambda n: verdict(n["P = 0.5 F_d"] < 0.5 < n["P = 2 F_d"]),
+    see="fig-2.4 fig-2.5",
+)
+def sticking_to_slipping(resolution: Resolution) -> Found:
+    """Slip fractions at the peaks."""
+    facts = []
+    for ratio in (0.5, 2.0):
+        true, _ = mass(ratio)
+        top = int(true.amplitude("mass").argmax())
+        facts.append(Fact(f"P = {ratio:g} F_d", float(true.slip_fraction((0, 0))[top])))
+    return Found(tuple(facts))
+
+
+@claim(
+    "much-more-accurately",
+    "2.5",
+    "the force transmitted by the friction dampers is much more accurately represented than in "
+    "standard single-harmonic methods",
+    """Error of the first harmonic of z over that of the friction law followed through the harmonic
+    motion, in the case of Fig. 2.3; much is more than five times.""",
+    rule=lambda n: verdict(n["error over error"] > 5.0, n["error over error"] > 1.0),
+    see="fig-2.3",
+)
+def much_more_accurately(resolution: Resolution) -> Found:
+    """Ratio of the errors of z."""
+    shown = numbers_of("fig-2.3", resolution)
+    rough, better = (
+        shown.fact(f"largest difference of {name} z") for name in ("Griffin's", "improved")
+    )
+    return Found((Fact("error over error", rough / better, "times"),))

@@ -65,8 +65,8 @@ def _as_printed(moved: Float) -> Float:
     return force
 
 
-def _returned(moved: Float) -> Float:
-    force = np.zeros_like(moved)
+def _returned(moved: Float, start: float = 0.0) -> Float:
+    force = np.full_like(moved, start)
     for place in range(1, len(moved)):
         force[place] = np.clip(force[place - 1] + moved[place] - moved[place - 1], -1.0, 1.0)
     return force
@@ -152,3 +152,71 @@ def hybrid_method(resolution: Resolution) -> Found:
         )
         facts.append(Fact(f"difference, {name}", 100.0 * abs(kept / true - 1.0), "%"))
     return Found(tuple(facts))
+
+
+@claim(
+    "fully-determined",
+    "3.2",
+    "The force is fully determined from the displacements and velocities of the structure DOF's to "
+    "which the i-th friction damper is attached.",
+    """Forces in the fourth period of u = A cos from f(0) = 0 and from f(0) = F_d: largest
+    difference over F_d where the contact slips (A = 2 F_d / k_d) and where it never has to
+    (A = 0.4 F_d / k_d). What never slips keeps what it started with.""",
+    rule=lambda n: verdict(max(n.values()) < 1e-9, n["with slip"] < 1e-9),
+)
+def fully_determined(resolution: Resolution) -> Found:
+    """Return the forces of one motion from two starts."""
+    angle = 2.0 * np.pi * np.arange(4 * 200 + 1) / 200
+    facts = []
+    for name, size in (("with slip", 2.0), ("without slip", 0.4)):
+        one, other = (_returned(size * np.cos(angle), start)[-200:] for start in (0.0, 1.0))
+        facts.append(Fact(name, float(np.abs(one - other).max())))
+    return Found(tuple(facts))
+
+
+@claim(
+    "orthogonal-functions",
+    "3.3",
+    "All sin(kωt) and cos(lωt) functions are orthogonal to each other over one period of the "
+    "motion: (3.6)-(3.8)",
+    """Integrals of products up to 15 harmonics over π/ω: largest of different functions, largest
+    distance of the squares from 1 for k ≥ 1, and the square of cos(0), which (3.8) puts at 1: it is
+    2, as the integral is T.""",
+    rule=lambda n: verdict(
+        max(n["different"], n["squares"]) < 1e-9 and abs(n["k = l = 0"] - 1.0) < 1e-9,
+        max(n["different"], n["squares"]) < 1e-9,
+    ),
+)
+def orthogonal_functions(resolution: Resolution) -> Found:
+    """Integrals of products of harmonics."""
+    angle = 2.0 * np.pi * np.arange(256) / 256
+    orders = np.arange(16)
+    rows = np.vstack([np.cos(np.outer(orders, angle)), np.sin(np.outer(orders[1:], angle))])
+    products = rows @ rows.T * 2.0 / 256
+    squares = np.diag(products)
+    return Found(
+        (
+            Fact("different", float(np.abs(products - np.diag(squares)).max())),
+            Fact("squares", float(np.abs(squares[1:] - 1.0).max())),
+            Fact("k = l = 0", float(squares[0]), "", 1.0),
+        )
+    )
+
+
+@claim(
+    "smaller-system",
+    "3.3",
+    "The size of the reduced system, Eq. (3.16), may be significantly smaller than the size of the "
+    "initial system, Eq. (3.10), if many DOF's of the structure are linear",
+    """N_d over N of the beam, of the blade and of the ring.""",
+    rule=lambda n: verdict(min(n.values()) < 0.1 and max(n.values()) < 0.5),
+)
+def smaller_system(resolution: Resolution) -> Found:
+    """Share of the unknowns that stay."""
+    ring = ss.reference.beam_ring(coupling=7e3, engine_order=3)
+    models = (
+        ("beam", ss.reference.snecma_beam()),
+        ("blade", ss.reference.turbine_blade()),
+        ("ring", ring.mistuned(np.zeros(36))),
+    )
+    return Found(tuple(Fact(name, len(one.contacts) / len(one.structure)) for name, one in models))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import stickslip as ss
+from stickslip_reproduce import beam_orbits
 from stickslip_reproduce.claims import Found, claim, verdict
 from stickslip_reproduce.cycles import at, turn
 from stickslip_reproduce.mass_cycles import (
@@ -234,3 +235,102 @@ def good_agreement(resolution: Resolution) -> Found:
             Fact("sticking", reached),
         )
     )
+
+
+@claim(
+    "chosen-alike",
+    "5.2.1",
+    "The mass and the stiffness are chosen so that the sticking and slipping resonance frequencies "
+    "of the single-DOF system are identical to the ones of the 3-DOF beam",
+    """Both natural frequencies of the mass over those of the beam; identical to the printed digits
+    is 0.003 %.""",
+    rule=lambda n: verdict(max(n.values()) < 0.003, max(n.values()) < 0.5),
+    see="table-5.3",
+)
+def chosen_alike(resolution: Resolution) -> Found:
+    """Differences of the natural frequencies."""
+    return Found(
+        tuple(
+            Fact(name, 100.0 * abs(own / beam - 1.0), "%")
+            for name, own, beam in (
+                ("sticking", STUCK, beam_orbits.STUCK),
+                ("slipping", FREE, beam_orbits.SLIPPING),
+            )
+        )
+    )
+
+
+@claim(
+    "lower-sticks-higher-slips",
+    "5.2.1",
+    "The lower one corresponds to a mostly sticking motion, and the higher one corresponds to a "
+    "mostly slipping motion.",
+    """Slip fractions of the exact cycles at seven ratios: the largest of the lower and the smallest
+    of the higher one, there and at r = 1 and less. Near r_max both slip for half of the period.""",
+    rule=lambda n: verdict(
+        n["lower, all ratios"] < 0.5 < n["higher, all ratios"],
+        n["lower, r ≤ 1"] < 0.5 < n["higher, r ≤ 1"],
+    ),
+    see="fig-5.1 fig-5.3",
+)
+def lower_sticks(resolution: Resolution) -> Found:
+    """Slip fractions of both cycles."""
+    shares = np.asarray(tried().slip_fraction(0)).reshape(len(tried().values))
+    facts = []
+    for name, top in (("all ratios", TRIED[-1]), ("r ≤ 1", 1.0)):
+        ratios = [ratio for ratio in TRIED if ratio <= top]
+        low, high = (
+            [float(shares[at(tried(), ratio, side)]) for ratio in ratios]
+            for side in ("sticking", "slipping")
+        )
+        facts += [Fact(f"lower, {name}", max(low)), Fact(f"higher, {name}", min(high))]
+    return Found(tuple(facts))
+
+
+@claim(
+    "stable-and-unstable",
+    "5.2.1",
+    "The higher one is stable and corresponds to the mostly sticking motion, and the lower one is "
+    "unstable and corresponds to the mostly slipping motion.",
+    """Multiplier of the exact cycles at seven ratios: the largest on the sticking and the smallest
+    on the slipping side, which has the lower frequency.""",
+    rule=lambda n: verdict(
+        n["sticking"] < 1.0 < n["slipping"] and n["sticking over slipping frequency"] > 1.0
+    ),
+    see="fig-5.2",
+)
+def stable_and_unstable(resolution: Resolution) -> Found:
+    """Multipliers and frequencies of both cycles."""
+    places = {
+        side: [at(tried(), ratio, side) for ratio in TRIED] for side in ("sticking", "slipping")
+    }
+    largest = {
+        side: [float(np.abs(tried().multipliers[place]).max()) for place in own]
+        for side, own in places.items()
+    }
+    turns = [
+        tried().omega[a] / tried().omega[b]
+        for a, b in zip(places["sticking"], places["slipping"], strict=True)
+    ]
+    return Found(
+        (
+            Fact("sticking", max(largest["sticking"])),
+            Fact("slipping", min(largest["slipping"])),
+            Fact("sticking over slipping frequency", float(min(turns))),
+        )
+    )
+
+
+@claim(
+    "slip-and-stiction",
+    "5.2.1",
+    "periods of slip alternated with periods of stiction are always present in the steady-state "
+    "free response",
+    """Smallest and largest slip fraction on the whole exact branch.""",
+    rule=lambda n: verdict(n["least"] > 0.0 and n["most"] < 1.0),
+    see="fig-5.1",
+)
+def slip_and_stiction(resolution: Resolution) -> Found:
+    """Slip fractions of the branch."""
+    shares = np.asarray(exact().slip_fraction(0))
+    return Found((Fact("least", float(shares.min())), Fact("most", float(shares.max()))))

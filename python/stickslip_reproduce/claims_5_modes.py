@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 import stickslip as ss
@@ -9,6 +11,7 @@ from stickslip_reproduce.beam_cycles import (
     BEAM,
     EVERY,
     NEGATIVE,
+    at_one,
     branch,
     cases,
 )
@@ -122,7 +125,7 @@ def two_branches(resolution: Resolution) -> Found:
     """Branches of every mode at r = 1."""
     counts, high, low = [], [], []
     for mode in range(3):
-        found = ss.limit_cycles(BEAM, NEGATIVE, mode=mode, ratio=[1.0], method="exact")
+        found = at_one(mode)
         counts.append(len(found.values))
         shares = np.asarray(found.slip_fraction(0)).reshape(len(found.values))
         high.append(float(shares[at(found, 1.0, "slipping")]))
@@ -182,3 +185,81 @@ def several_modes(resolution: Resolution) -> Found:
     ]
     share = sum(motion == "aperiodic" for motion in motions) / len(motions)
     return Found((Fact("aperiodic", 100.0 * share, "%"),))
+
+
+@claim(
+    "frequencies-in-order",
+    "5.3.2",
+    "The frequencies for the first mode are the lowest ones: the lower part of the curve "
+    "corresponds to the mostly slipping motion, and the upper part corresponds to the mostly "
+    "sticking motion.",
+    """Exact cycles at r = 1: smallest ratio of the sticking to the slipping frequency of a mode,
+    and of the slipping frequency of a mode to the sticking one of the mode below.""",
+    rule=lambda n: verdict(min(n.values()) > 1.0),
+    see="fig-5.16",
+)
+def in_order(resolution: Resolution) -> Found:
+    """Ratios of the frequencies at r = 1."""
+    pairs = []
+    for mode in range(3):
+        found = at_one(mode)
+        pairs.append([found.omega[at(found, 1.0, side)] for side in ("slipping", "sticking")])
+    own = min(high / low for low, high in pairs)
+    next_one = min(above[0] / below[1] for below, above in pairwise(pairs))
+    return Found(
+        (
+            Fact("sticking over slipping", float(own)),
+            Fact("over the mode below", float(next_one)),
+        )
+    )
+
+
+@claim(
+    "almost-linear",
+    "5.3.2",
+    "As the negative viscous damping tends toward zero, the motion of the system becomes almost "
+    "linear: it tends either towards the linear, totally stuck case [...] or towards the piecewise "
+    "linear, totally slipping case",
+    """Exact cycles at r = 0.01 of the three modes: largest slip fraction of the sticking and
+    smallest of the slipping ones, and the largest difference of x₁ from its fundamental.""",
+    rule=lambda n: verdict(
+        n["sticking"] < 0.1 and n["slipping"] > 0.9 and n["difference from a harmonic"] < 5.0
+    ),
+    see="fig-5.13 fig-5.16",
+)
+def almost_linear(resolution: Resolution) -> Found:
+    """Slip and distortion at a small ratio."""
+    shares: dict[str, list[float]] = {"sticking": [], "slipping": []}
+    worst = 0.0
+    for mode in range(3):
+        found = ss.limit_cycles(BEAM, NEGATIVE, mode=mode, ratio=[0.01], method="exact")
+        slips = np.asarray(found.slip_fraction(0)).reshape(len(found.values))
+        for side, own in shares.items():
+            place = at(found, 0.01, side)
+            own.append(float(slips[place]))
+            sizes = np.abs(np.fft.rfft(found.waveform("damper", place)))
+            worst = max(worst, float(np.linalg.norm(sizes[2:]) / sizes[1]))
+    return Found(
+        (
+            Fact("sticking", max(shares["sticking"])),
+            Fact("slipping", min(shares["slipping"])),
+            Fact("difference from a harmonic", 100.0 * worst, "%"),
+        )
+    )
+
+
+@claim(
+    "not-unique",
+    "5.5",
+    "If several modes of vibrations are negatively damped, the solution predicted by the method is "
+    "non-unique.",
+    """Exact limit cycles of the beam at r = 1 with all modes damped negatively, and with mode 3
+    alone, counted.""",
+    rule=lambda n: verdict(n["all modes"] > n["mode 3 alone"], n["all modes"] > 1),
+    see="fig-5.13",
+)
+def not_unique(resolution: Resolution) -> Found:
+    """Return the number of limit cycles at r = 1."""
+    every = sum(len(at_one(mode).values) for mode in range(3))
+    alone = ss.limit_cycles(*ss.reference.flutter_beam(mode=2), mode=2, ratio=[1.0], method="exact")
+    return Found((Fact("all modes", every), Fact("mode 3 alone", len(alone.values))))

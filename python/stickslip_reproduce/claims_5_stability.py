@@ -13,8 +13,9 @@ from stickslip_reproduce.beam_cycles import (
     cases,
 )
 from stickslip_reproduce.chapter_5_modes import STARTS
+from stickslip_reproduce.chapter_5_stability import wild_start
 from stickslip_reproduce.claims import Found, claim, numbers_of, verdict
-from stickslip_reproduce.cycles import held, turn
+from stickslip_reproduce.cycles import beside, held, turn
 from stickslip_reproduce.numbers import Axis, Fact, Panel, Plot, Series
 from stickslip_reproduce.resolution import Resolution
 
@@ -294,3 +295,118 @@ def friction_forces(resolution: Resolution) -> Found:
         rows = zip(zero.motion, pulled.motion, zero.mode, pulled.mode, strict=True)
         changed += sum(a != b or m != n for a, b, m, n in rows)
     return Found((Fact("changed", changed), Fact("starts", len(EVERY) * len(STARTS))))
+
+
+@claim(
+    "higher-modes-less-stable",
+    "5.4.1",
+    "Therefore, the higher modes are relatively less stable than the lower ones.",
+    """Exact r_max of modes 2 and 3 over that of mode 1, and the ratio up to which their sticking
+    orbits are stable over it. The friction damper holds the higher modes to larger ratios: mode 1
+    is the first without a limit cycle.""",
+    rule=lambda n: verdict(max(n["r_max, 2"], n["r_max, 3"]) < 1.0, n["r_max, 3"] < 1.0),
+    see="fig-5.13",
+)
+def less_stable(resolution: Resolution) -> Found:
+    """r_max of the higher modes over that of the first."""
+    lasts = [turn(branch(mode)).ratio for mode in range(3)]
+    return Found(tuple(Fact(f"r_max, {m + 1}", lasts[m] / lasts[0]) for m in (1, 2)))
+
+
+@claim(
+    "most-times-mode-3",
+    "5.4.1",
+    "after having started around the converged point on mode 3, the system tends most times "
+    "towards mode 3",
+    """Of the eight starts each around the sticking orbit of mode 3 at r = 2, 3 and 4, f(0) = 0,
+    those that settle in mode 3: with the print's signs and with those of the mode.""",
+    rule=lambda n: verdict(min(n.values()) > 50.0, max(n.values()) > 50.0),
+    see="fig-5.17",
+)
+def most_times(resolution: Resolution) -> Found:
+    """Share of the starts that settle in mode 3."""
+    facts = []
+    for kind in ("unsigned", "signed"):
+        ends = [one for part in beside((2.0, 3.0, 4.0), kind, "zero") for one in _fates(part)]
+        share = float(np.mean([one == ("settled", 2) for one in ends]))
+        facts.append(Fact(f"{kind} starts", 100.0 * share, "%"))
+    return Found(tuple(facts))
+
+
+def _fates(ends: ss.BasinMap) -> list[tuple[str, int]]:
+    return [(str(a), int(b)) for a, b in zip(ends.motion, ends.mode, strict=True)]
+
+
+@claim(
+    "fails-at-low-damping",
+    "5.4.1",
+    "for low values of negative viscous damping, the time integration procedure fails to converge "
+    "or is unstable: see the first two values of the ratio in Fig. 5.17",
+    """Of the eight starts each at r = 0.25 and 0.5, those that do not settle: with the print's
+    signs and with those of mode 3.""",
+    rule=lambda n: verdict(min(n.values()) > 50.0, n["unsigned starts"] > 50.0),
+    see="fig-5.17",
+)
+def fails_at_low(resolution: Resolution) -> Found:
+    """Share of the starts that do not settle."""
+    facts = []
+    for kind in ("unsigned", "signed"):
+        ends = [one for part in beside((0.25, 0.5), kind, "zero") for one in _fates(part)]
+        share = float(np.mean([motion != "settled" for motion, _ in ends]))
+        facts.append(Fact(f"{kind} starts", 100.0 * share, "%"))
+    return Found(tuple(facts))
+
+
+@claim(
+    "no-improvement",
+    "5.4.1",
+    "no improvement was observed. The time integration results were checked after several thousand "
+    "cycles, but the discrepancies were of the same order of magnitude as after several hundreds "
+    "of cycles.",
+    """Amplitude of x₃ over that of the limit cycle of mode 1 at r = 0.361, after 300 and after
+    4000 periods of an integration that is exact between stick and slip, and the largest multiplier
+    of that limit cycle: it is unstable, so that no step and no patience leads to it.""",
+    rule=lambda n: verdict(
+        n["multiplier"] > 1.0
+        and 0.1 < (n["after 4000 periods"] - 1.0) / (n["after 300 periods"] - 1.0) < 10.0
+    ),
+    see="fig-5.23",
+)
+def no_improvement(resolution: Resolution) -> Found:
+    """Return the distance of the aperiodic motion after a short and a long time."""
+    driven, start, cycles, place = wild_start("zero")
+    size = cycles.amplitude("mode")[place]
+    facts = []
+    for periods in (300, 4000):
+        motion = ss.classify(driven, start, periods=periods)
+        facts.append(Fact(f"after {periods} periods", float(motion.amplitude("mode") / size)))
+    largest = float(np.abs(cycles.multipliers[place]).max())
+    return Found((*facts, Fact("multiplier", largest)))
+
+
+@claim(
+    "nodes-at-the-damper",
+    "5.4.1",
+    "those modes which possess nodes at the location of the dry friction damper are completely "
+    "uncoupled from the system. With no positive damping contribution from the friction damper, "
+    "these modes are always unstable.",
+    """Three equal masses in a row, fixed at both ends, with the damper in the middle, where the
+    second mode has its node: change of its frequency between stuck and slipping, and its rate of
+    growth with r = 0.1.""",
+    rule=lambda n: verdict(n["change of the frequency"] < 1e-9 and n["growth"] > 0.0),
+)
+def nodes(resolution: Resolution) -> Found:
+    """Frequency and growth of a mode with its node at the damper."""
+    stiffness = 1e6 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 2.0]])
+    mass, damping = np.eye(3), -0.1 * (2.6e-5 * stiffness + 7.49 * np.eye(3))
+    structure = ss.Structure(mass, stiffness, damping, ["a", "b", "c"])
+    model = ss.Model(structure, [ss.Jenkins("b", stiffness=1e6, slip_force=1.0)])
+    free, held = (ss.natural_frequencies(model, slipping=one) for one in ([0], []))
+    apart = np.abs(held[:, None] / free[None, :] - 1.0).min()
+    shape = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0)
+    return Found(
+        (
+            Fact("change of the frequency", float(apart)),
+            Fact("growth", float(-0.5 * shape @ damping @ shape), "1/s"),
+        )
+    )

@@ -133,3 +133,45 @@ def rigid_values(resolution: Resolution) -> Found:
             Fact("ω_min", rough.omega, "rad/s", 159.5),
         )
     )
+
+
+@claim(
+    "softer-slips-less",
+    "5.2.3",
+    "with all other parameters fixed, the lower the damper stiffness, the less slipping during "
+    "each cycle of motion",
+    """Exact cycles at r = 1 and ν = 0.2, 0.5, 1, 2 and 5: steps in which the slip fraction falls
+    with the stiffness. It does on the slipping side; on the sticking side, the stable one, a softer
+    damper slips more, as it has to lose the same share of a larger energy.""",
+    rule=lambda n: verdict(min(n.values()) == 4, max(n.values()) == 4),
+    see="fig-5.8",
+)
+def softer_slips_less(resolution: Resolution) -> Found:
+    """Slip fractions by stiffness."""
+    values = [NOMINAL * nu for nu in (0.2, 0.5, 1.0, 2.0, 5.0)]
+    found = ss.limit_cycles(MODEL, NEGATIVE, stiffness=values, method="exact")
+    shares = np.asarray(found.slip_fraction(0)).reshape(len(found.values))
+    facts = []
+    for side in ("sticking", "slipping"):
+        own = [shares[at(found, value, side)] for value in values]
+        facts.append(Fact(f"steps on the {side} side", int((np.diff(own) > 0.0).sum())))
+    return Found(tuple(facts))
+
+
+@claim(
+    "narrower-range",
+    "5.2.3",
+    "the range of possible oscillation frequency decreases as the damper stiffness decreases",
+    """Distance of the frequencies of both exact cycles at r = 1, over that at ν = 1.""",
+    rule=lambda n: verdict(n["ν = 0.2"] < n["ν = 0.5"] < 1.0),
+    see="fig-5.9",
+)
+def narrower_range(resolution: Resolution) -> Found:
+    """Distance of the frequencies by stiffness."""
+    values = [NOMINAL * nu for nu in (0.2, 0.5, 1.0)]
+    found = ss.limit_cycles(MODEL, NEGATIVE, stiffness=values, method="exact")
+    apart = [
+        float(found.omega[at(found, value, "sticking")] - found.omega[at(found, value, "slipping")])
+        for value in values
+    ]
+    return Found((Fact("ν = 0.2", apart[0] / apart[2]), Fact("ν = 0.5", apart[1] / apart[2])))

@@ -16,7 +16,7 @@ from stickslip_reproduce.pair_orbits import (
     orbit,
     stuck,
 )
-from stickslip_reproduce.resolution import Resolution
+from stickslip_reproduce.resolution import Float, Resolution
 
 
 @claim(
@@ -47,11 +47,7 @@ def mere_stiffness(resolution: Resolution) -> Found:
 )
 def non_smooth(resolution: Resolution) -> Found:
     """Corners of the force of contact 2."""
-    jumps = []
-    for forces in (forces_at(550.0, 35.0), stuck(550.0, 35.0)):
-        every = max(len(forces) // 128, 1)
-        slope = np.diff(np.append(forces[::every, 1], forces[0, 1]))
-        jumps.append(float(np.abs(slope - np.roll(slope, 1)).max() / np.abs(slope).max()))
+    jumps = [_jump(one(550.0, 35.0)[:, 1]) for one in (forces_at, stuck)]
     slipping = set().union(*orbit(550.0, 35.0).contact_states(0, 0).sets)
     return Found(
         (
@@ -179,3 +175,67 @@ def three_at_once(resolution: Resolution) -> Found:
             Fact("largest change", float(change[both].max() / change.max())),
         )
     )
+
+
+@claim(
+    "force-4-non-smooth",
+    "6.4.1",
+    "even the force transmitted by the non-slipping damper, damper 4, is non-smooth. It can also "
+    "be seen that there are discontinuities in the force derivatives",
+    """Largest jump of the slope of f₄ from one of 128 instants to the next, over the largest slope,
+    at 550 rad/s, 140 N, and of the force if all stuck.""",
+    rule=lambda n: verdict(n["jump"] > 3.0 * n["jump if stuck"], n["jump"] > n["jump if stuck"]),
+    see="fig-6.6",
+)
+def force_4(resolution: Resolution) -> Found:
+    """Corners of the force of contact 4."""
+    return Found(
+        tuple(
+            Fact(name, _jump(forces[:, 3]))
+            for name, forces in (
+                ("jump", forces_at(550.0, 140.0)),
+                ("jump if stuck", stuck(550.0, 140.0)),
+            )
+        )
+    )
+
+
+@claim(
+    "like-an-elementary-damper",
+    "6.4.1",
+    "The time history of the friction force at damper 1 is very similar to the time histories of "
+    "elementary friction dampers.",
+    """Share of the period at the limit, largest force over the limit, and turns of the force per
+    period, of contact 1 at 550 rad/s, 35 N, and of the beam's damper at 20.313 N, 170 rad/s. Both
+    are cut off; between the limits contact 1 goes back and forth, the elementary one does not.""",
+    rule=lambda n: verdict(
+        0.0 < n["share at the limit"] < 1.0 and n["turns"] == n["turns of the elementary damper"],
+        0.0 < n["share at the limit"] < 1.0 and n["largest over the limit"] < 1.0 + 1e-9,
+    ),
+    see="fig-6.5 fig-4.1",
+)
+def like_elementary(resolution: Resolution) -> Found:
+    """Shape of the force of contact 1."""
+    force = forces_at(550.0, 35.0)[:, 0] / LIMITS[0]
+    one = ss.exact_response(ss.reference.snecma_beam(20.313), [170.0])
+    other = np.asarray(one.contact_force((0, 0), 0))
+    return Found(
+        (
+            Fact("share at the limit", float((np.abs(force) > 1.0 - 1e-9).mean())),
+            Fact("largest over the limit", float(np.abs(force).max())),
+            Fact("turns", _turns(force)),
+            Fact("turns of the elementary damper", _turns(other)),
+        )
+    )
+
+
+def _turns(force: Float) -> int:
+    change = np.diff(force, append=force[0])
+    signs = np.sign(change[np.abs(change) > 1e-9 * np.ptp(force)])
+    return int((signs != np.roll(signs, 1)).sum())
+
+
+def _jump(force: Float) -> float:
+    every = max(len(force) // 128, 1)
+    slope = np.diff(np.append(force[::every], force[0]))
+    return float(np.abs(slope - np.roll(slope, 1)).max() / np.abs(slope).max())

@@ -14,6 +14,9 @@ from stickslip_reproduce.resolution import Float
 WIDE = (450.0, 760.0)
 """Range that holds the resonance with contact 1 slipping [rad/s]."""
 
+CASES = ((250.0, 15.0), (550.0, 35.0), (550.0, 140.0), (550.0, 550.0))
+"""Frequency [rad/s] and force [N] of Figs 6.4 to 6.7."""
+
 LIMITS = np.array([24.6, 100.0, 246.05, inf])
 """Slip forces of the contacts [N]."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from functools import cache
 
 import numpy as np
@@ -62,3 +63,20 @@ def histories() -> tuple[ss.ForcedResponse, ...]:
         ss.forced_response(model, [200.0], kept, observe=observe, tolerance=1e-3)
         for kept in (1, 9, "auto")
     )
+
+
+@cache
+def marched() -> float:
+    """Return the processor time of Runge-Kutta on the ring of Fig. 4.19, from rest [s]."""
+    begin = time.process_time()
+    ss.transient(ring(7e3, 0), 200.0, periods=5000, scheme="rk4", tolerance=1e-6, keep=1)
+    return time.process_time() - begin
+
+
+def balanced(harmonics: int) -> float:
+    """Return that of Broyden's method, from the single harmonic [s]."""
+    model, repeats = ring(7e3, 0), 3
+    begin = time.process_time()
+    for _ in range(repeats):
+        ss.forced_response(model, [200.0], harmonics, method="broyden")
+    return (time.process_time() - begin) / repeats

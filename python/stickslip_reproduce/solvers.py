@@ -14,7 +14,7 @@ import numpy as np
 import stickslip as ss
 from stickslip_reproduce.resolution import Float
 
-__all__ = ["METHODS", "Equations", "Run", "solve"]
+__all__ = ["CONVERGED", "METHODS", "Equations", "Run", "solve"]
 
 SAMPLES = 256
 MOST, MOST_NEWTON = 100, 40
@@ -105,8 +105,9 @@ def _transmitted(moved: np.ndarray) -> np.ndarray:
     for _ in range(2):
         for place, step in enumerate(change):
             # np.clip checks more than these two.
-            force = np.minimum(np.maximum(force + step, -limit), limit)
-            period[place] = force
+            now = np.add(force, step, out=period[place])
+            np.maximum(now, -limit, out=now)
+            force = np.minimum(now, limit, out=now)
     found = np.fft.rfft(period.T, axis=1)[:, :kept] / SAMPLES
     found[:, 1:] *= 2.0
     return found
