@@ -15,9 +15,10 @@ from pathlib import Path
 from stickslip.files import write
 from stickslip_reproduce import FULL, chosen, costs, items
 from stickslip_reproduce.claims import claims, computed
-from stickslip_reproduce.claims_page import PAGE, counts, write_claims
+from stickslip_reproduce.claims_page import counts, write_claims
 from stickslip_reproduce.costs import FILE
 from stickslip_reproduce.folder import write_picture, write_record
+from stickslip_reproduce.index import CLAIMS
 
 FOLDER = Path(__file__).parent / "assets" / "reproduction"
 COLOURS = 48
@@ -45,7 +46,7 @@ def main(names: list[str]) -> None:
                 flush=True,
             )
         print(counts(write_claims(findings, FOLDER, colours=COLOURS)))
-        (FOLDER / PAGE).unlink()
+        (FOLDER / CLAIMS).unlink()
 
 
 def _remember(name: str, seconds: float) -> None:

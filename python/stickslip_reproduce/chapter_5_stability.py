@@ -224,7 +224,7 @@ def _wild(forces: str = "zero") -> tuple[ss.MotionClass, ss.LimitCycles, int]:
 def _history(dof: str) -> Numbers:
     motion, cycles, place = _wild()
     omega = float(cycles.omega[place])
-    count = int(np.ceil(PERIODS * 2.0 * np.pi / omega / motion.step)) + 1
+    count = int(PERIODS * 2.0 * np.pi / omega / motion.step) + 1
     angle = omega * motion.step * np.arange(count)
     tip = motion.tail[:count, motion.dofs.index("tip")]
     orbit = cycles.coefficients(dof)[place]

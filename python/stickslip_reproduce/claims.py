@@ -42,6 +42,7 @@ CHAPTERS = (
     "claims_6_histories",
     "claims_6_response",
     "claims_7",
+    "claims_equations",
 )
 """Modules with claims, in the order of the text."""
 

@@ -125,8 +125,9 @@ def _humps(curve: ss.ExactResponse) -> int:
     "Of particular interest here is the fifth mode of vibration, which has been shown to yield a "
     "large response amplitude at the tip of the blade",
     """Open blade: stuck peak of the tip around mode 5 over that around mode 1, and what the best
-    slip force leaves of it. The blade of the text is proprietary; of the open one it is the first
-    mode that moves the tip most, so that its figures show that one.""",
+    slip force leaves of it. The blade of the text is proprietary, and nothing that is published
+    decides it: open. Of the open blade it is the first mode that moves the tip most, so that its
+    figures show that one.""",
     rule=lambda n: "holds" if n["mode 5 over mode 1, stuck"] > 1.0 else "open",
 )
 def fifth_mode(resolution: Resolution) -> Found:
