@@ -43,7 +43,7 @@ def _around(mode: int, margin: float = 0.05) -> tuple[float, float]:
     "three-groups-of-the-blade",
     "4.3",
     "As noticed for the beam system in Section 4.2.1, three groups of frequency responses can be "
-    "observed.",
+    "observed. [...] The energy dissipation by friction is optimal in these latter cases.",
     """Open blade, nine slip forces from 0.01 to 100 F_d0: curves that slip more than half of the
     period at the peak, within 1 % of the slipping frequency; that slip less than a twentieth,
     within 1 % of the stuck one; and those between, whose lowest peak is the best.""",

@@ -361,6 +361,38 @@ def fails_at_low(resolution: Resolution) -> Found:
 
 
 @claim(
+    "no-stable-motion",
+    "5.4.1",
+    "For values of the viscous damping ratio greater than 4.9, the time integration procedure "
+    "shows that there is no stable motion, even when the initial conditions are given around mode "
+    "3, which should be stable at these viscous damping ratios.",
+    """Of the eight starts each around the sticking orbit of mode 3 at r = 4.95, 5.1 and 5.5, with
+    both signs and f(0) = 0, those that grow without bound, and the ratio up to which that orbit is
+    stable: it is not at these ratios.""",
+    rule=lambda n: verdict(
+        n["unbounded"] == n["starts"] and n["mode 3 stable up to r"] > END,
+        n["unbounded"] == n["starts"],
+    ),
+    see="fig-5.17",
+)
+def no_stable_motion(resolution: Resolution) -> Found:
+    """Return the starts around mode 3 that grow without bound."""
+    ends = [
+        motion
+        for kind in ("unsigned", "signed")
+        for part in beside((4.95, 5.1, 5.5), kind, "zero")
+        for motion, _ in _fates(part)
+    ]
+    return Found(
+        (
+            Fact("unbounded", sum(motion == "unbounded" for motion in ends)),
+            Fact("starts", len(ends)),
+            Fact("mode 3 stable up to r", branch(2).changes[0].value),
+        )
+    )
+
+
+@claim(
     "no-improvement",
     "5.4.1",
     "no improvement was observed. The time integration results were checked after several thousand "

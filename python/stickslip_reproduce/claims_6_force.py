@@ -22,6 +22,8 @@ from stickslip_reproduce.pair_orbits import (
     with_limits,
 )
 from stickslip_reproduce.resolution import Float, Resolution
+from stickslip_reproduce.solver_experiment import begins, experiment
+from stickslip_reproduce.solvers import Overshooting, solve
 
 
 @claim(
@@ -226,6 +228,35 @@ def true_solution(resolution: Resolution) -> Found:
         panels.append(Panel(tuple(series), f"contacts {points[0] + 1} and {points[1] + 1}"))
     plot = Plot(PERIOD_SHARE, Axis("contact force", "N"), tuple(panels))
     return Found((Fact("by Procedure 2", means[0], "N"), Fact("exact", means[1], "N", 0.0)), plot)
+
+
+@claim(
+    "failure-by-overshooting",
+    "6.3.3",
+    "If not addressed, any of these problems hinders the convergence of the method and results in "
+    "the failure of the solution algorithm.",
+    """Beam at eight loads and four frequencies, Broyden's method from the single harmonic with the
+    force by Procedure 2, 256 samples: runs that converge without and with (6.21), and with the
+    return map.""",
+    rule=lambda n: verdict(
+        n["without (6.21)"] == 0, n["without (6.21)"] < min(n["with (6.21)"], n["return map"])
+    ),
+)
+def failure(resolution: Resolution) -> Found:
+    """Return the runs of Broyden's method with overshooting forces."""
+    begin = experiment().vector(begins(resolution)["single harmonic"])
+    cases = experiment().cases
+    kinds = {
+        "without (6.21)": Overshooting(cases, HARMONICS, corrected=False),
+        "with (6.21)": Overshooting(cases, HARMONICS, corrected=True),
+        "return map": experiment(),
+    }
+    return Found(
+        tuple(
+            Fact(name, solve(one, begin, "Broyden, QR updated", "single harmonic").converged)
+            for name, one in kinds.items()
+        )
+    )
 
 
 @claim(

@@ -14,7 +14,7 @@ import numpy as np
 import stickslip as ss
 from stickslip_reproduce.resolution import Float
 
-__all__ = ["CONVERGED", "METHODS", "Equations", "Run", "solve"]
+__all__ = ["CONVERGED", "METHODS", "Equations", "Overshooting", "Run", "solve"]
 
 SAMPLES = 256
 MOST, MOST_NEWTON = 100, 40
@@ -76,8 +76,12 @@ class Equations:
     def residual(self, vector: Float, cases: np.ndarray) -> Float:
         """Return F of (3.22) for unknowns of shape (m, n) of the cases of shape (m,)."""
         moved = self.coefficients(vector)
-        force = _transmitted(moved)
+        force = self.transmitted(moved)
         return self.vector(self.stiffness[cases] * moved + force - self.force[cases])
+
+    def transmitted(self, moved: np.ndarray) -> np.ndarray:
+        """Return the coefficients of the force of the damper."""
+        return _transmitted(moved)
 
     def jacobian(self, vector: Float, cases: np.ndarray) -> Float:
         """Return finite differences of F, shape (m, n, n)."""
@@ -91,14 +95,25 @@ class Equations:
         return np.ascontiguousarray(slopes.transpose(0, 2, 1))
 
 
+def _samples(moved: np.ndarray) -> Float:
+    """Return displacements at the instants of a period, shape (SAMPLES, m), of coefficients."""
+    spectrum = np.zeros((len(moved), SAMPLES // 2 + 1), complex)
+    spectrum[:, : moved.shape[1]] = moved
+    spectrum[:, 1:] /= 2.0
+    return np.fft.irfft(spectrum * SAMPLES, SAMPLES, axis=1).T
+
+
+def _harmonics(period: Float, kept: int) -> np.ndarray:
+    """Return the coefficients of a period of forces, shape (m, kept)."""
+    found = np.fft.rfft(period.T, axis=1)[:, :kept] / SAMPLES
+    found[:, 1:] *= 2.0
+    return found
+
+
 def _transmitted(moved: np.ndarray) -> np.ndarray:
     """Return the coefficients of the force of the damper, marched through two periods."""
     stiffness, limit = ss.reference.DAMPER_STIFFNESS, ss.reference.DAMPER_SLIP_FORCE
-    kept = moved.shape[1]
-    spectrum = np.zeros((len(moved), SAMPLES // 2 + 1), complex)
-    spectrum[:, :kept] = moved
-    spectrum[:, 1:] /= 2.0
-    displacement = np.fft.irfft(spectrum * SAMPLES, SAMPLES, axis=1).T
+    displacement = _samples(moved)
     change = stiffness * (displacement - np.roll(displacement, 1, axis=0))
     force = np.clip(stiffness * displacement[-1], -limit, limit)
     period = np.empty_like(displacement)
@@ -108,9 +123,44 @@ def _transmitted(moved: np.ndarray) -> np.ndarray:
             now = np.add(force, step, out=period[place])
             np.maximum(now, -limit, out=now)
             force = np.minimum(now, limit, out=now)
-    found = np.fft.rfft(period.T, axis=1)[:, :kept] / SAMPLES
-    found[:, 1:] *= 2.0
-    return found
+    return _harmonics(period, moved.shape[1])
+
+
+class Overshooting(Equations):
+    """The same equations with the force by Procedure 2, which finds slip one step late.
+
+    Parameters
+    ----------
+    cases, harmonics
+        As of `Equations`.
+    corrected : bool
+        Whether (6.21) puts a slipping contact on its limit.
+    """
+
+    def __init__(
+        self, cases: Sequence[tuple[float, float]], harmonics: int, *, corrected: bool
+    ) -> None:
+        super().__init__(cases, harmonics)
+        self.corrected = corrected
+
+    def transmitted(self, moved: np.ndarray) -> np.ndarray:
+        """Return the coefficients of the force, marched through three periods."""
+        stiffness, limit = ss.reference.DAMPER_STIFFNESS, ss.reference.DAMPER_SLIP_FORCE
+        displacement = _samples(moved)
+        change = stiffness * (displacement - np.roll(displacement, 1, axis=0))
+        force = np.zeros(displacement.shape[1])
+        slips = np.zeros(force.shape, bool)
+        period = np.empty_like(displacement)
+        before = change[-1]
+        for _ in range(3):
+            for place, step in enumerate(change):
+                slips &= step * before > 0.0
+                held = np.copysign(limit, force) if self.corrected else force
+                force = np.where(slips, held, force + step)
+                slips |= np.abs(force) >= limit
+                before = step
+                period[place] = force
+        return _harmonics(period, moved.shape[1])
 
 
 class Factors(NamedTuple):

@@ -151,6 +151,10 @@ NUMBERS: dict[str, tuple[str, dict[str, tuple[float, float]]]] = {
         "holds with limits",
         {"unsigned starts": (100, 0), "signed starts": (0, 1e-9)},
     ),
+    "no-stable-motion": (
+        "holds with limits",
+        {"unbounded": (48, 0), "starts": (48, 0), "mode 3 stable up to r": (4.6863, 1e-2)},
+    ),
     "no-improvement": (
         "holds",
         {
