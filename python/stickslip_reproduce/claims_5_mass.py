@@ -275,7 +275,7 @@ def chosen_alike(resolution: Resolution) -> Found:
 )
 def lower_sticks(resolution: Resolution) -> Found:
     """Slip fractions of both cycles."""
-    shares = np.asarray(tried().slip_fraction(0)).reshape(len(tried().values))
+    shares = tried().slip_fraction((0, 0))
     facts = []
     for name, top in (("all ratios", TRIED[-1]), ("r ≤ 1", 1.0)):
         ratios = [ratio for ratio in TRIED if ratio <= top]

@@ -127,7 +127,7 @@ def two_branches(resolution: Resolution) -> Found:
     for mode in range(3):
         found = at_one(mode)
         counts.append(len(found.values))
-        shares = np.asarray(found.slip_fraction(0)).reshape(len(found.values))
+        shares = found.slip_fraction((0, 0))
         high.append(float(shares[at(found, 1.0, "slipping")]))
         low.append(float(shares[at(found, 1.0, "sticking")]))
     return Found(
@@ -233,7 +233,7 @@ def almost_linear(resolution: Resolution) -> Found:
     worst = 0.0
     for mode in range(3):
         found = ss.limit_cycles(BEAM, NEGATIVE, mode=mode, ratio=[0.01], method="exact")
-        slips = np.asarray(found.slip_fraction(0)).reshape(len(found.values))
+        slips = found.slip_fraction((0, 0))
         for side, own in shares.items():
             place = at(found, 0.01, side)
             own.append(float(slips[place]))

@@ -197,7 +197,7 @@ def as_one_mass(resolution: Resolution) -> Found:
 def like_one_mass(resolution: Resolution) -> Found:
     """Branches of mode 3 alone."""
     found = alone()
-    slips = np.asarray(found.slip_fraction(0)).reshape(len(found.values))
+    slips = found.slip_fraction((0, 0))
     upper, lower = (
         [at(found, ratio, side) for ratio in RATIOS] for side in ("slipping", "sticking")
     )

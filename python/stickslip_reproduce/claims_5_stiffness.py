@@ -150,7 +150,7 @@ def softer_slips_less(resolution: Resolution) -> Found:
     """Slip fractions by stiffness."""
     values = [NOMINAL * nu for nu in (0.2, 0.5, 1.0, 2.0, 5.0)]
     found = ss.limit_cycles(MODEL, NEGATIVE, stiffness=values, method="exact")
-    shares = np.asarray(found.slip_fraction(0)).reshape(len(found.values))
+    shares = found.slip_fraction((0, 0))
     facts = []
     for side in ("sticking", "slipping"):
         own = [shares[at(found, value, side)] for value in values]
