@@ -7,6 +7,7 @@ from math import inf, pi
 import numpy as np
 
 import stickslip as ss
+from stickslip_reproduce.beam_orbits import FORCE
 from stickslip_reproduce.chapter_6 import DOFS, HARMONICS, SPAN
 from stickslip_reproduce.claims import Found, claim, verdict
 from stickslip_reproduce.curves import FREQUENCY
@@ -18,6 +19,9 @@ from stickslip_reproduce.pair_orbits import (
     with_limits,
 )
 from stickslip_reproduce.resolution import Resolution
+
+LINK = 1e5
+"""Stiffness between the tips of two beams that a spring links [N/m]."""
 
 
 @claim(
@@ -233,12 +237,18 @@ def steepness(resolution: Resolution) -> Found:
 )
 def two_linked(resolution: Resolution) -> Found:
     """Slopes of two linked beams with forces in opposition and in phase."""
+    beam, (damper,) = ss.reference.snecma_structure(), ss.reference.snecma_beam().contacts
+    linked = ss.join({"1": beam, "2": beam}, [ss.Coupling("1.tip", "2.tip", stiffness=LINK)])
+    dampers = [
+        ss.Jenkins(f"{part}.damper", name=f"damper-{part}", **damper.parameters())
+        for part in (1, 2)
+    ]
+    omega = np.linspace(100.0, 500.0, 801)
     slopes = {}
-    for name, order in (("in opposition", 1), ("in phase", 0)):
-        # A ring of two sectors has its link twice.
-        both = ss.reference.beam_ring(sectors=2, coupling=0.5e5, engine_order=order)
-        omega = np.linspace(100.0, 500.0, 801)
-        size = ss.forced_response(both, omega, HARMONICS).amplitude("damper")
+    for name, phase in (("in opposition", pi), ("in phase", 0.0)):
+        forces = [ss.Force("1.tip", FORCE), ss.Force("2.tip", FORCE, phase)]
+        both = ss.Model(linked, dampers, forces)
+        size = ss.forced_response(both, omega, HARMONICS).amplitude("1.damper")
         slopes[name] = float(np.abs(np.diff(np.log(size)) / np.diff(np.log(omega))).max())
     ratio = slopes["in opposition"] / slopes["in phase"]
     return Found(
