@@ -37,6 +37,7 @@ CHAPTERS = (
     "claims_5_stiffness",
     "claims_5_modes",
     "claims_5_stability",
+    "claims_5_aperiodic",
     "claims_5_single_mode",
     "claims_6_force",
     "claims_6_histories",
