@@ -237,10 +237,16 @@ def steepness(resolution: Resolution) -> Found:
 )
 def two_linked(resolution: Resolution) -> Found:
     """Slopes of two linked beams with forces in opposition and in phase."""
-    beam, (damper,) = ss.reference.snecma_structure(), ss.reference.snecma_beam().contacts
-    linked = ss.join({"1": beam, "2": beam}, [ss.Coupling("1.tip", "2.tip", stiffness=LINK)])
+    beam = ss.reference.snecma_structure()
+    link = ss.Coupling("1.tip", "2.tip", stiffness=LINK)
+    linked = ss.join({"1": beam, "2": beam}, [link])
     dampers = [
-        ss.Jenkins(f"{part}.damper", name=f"damper-{part}", **damper.parameters())
+        ss.Jenkins(
+            f"{part}.damper",
+            stiffness=ss.reference.DAMPER_STIFFNESS,
+            slip_force=ss.reference.DAMPER_SLIP_FORCE,
+            name=f"damper-{part}",
+        )
         for part in (1, 2)
     ]
     omega = np.linspace(100.0, 500.0, 801)
