@@ -58,8 +58,8 @@ LETTERS = {"damper": "x₁", "tip": "x₂", "mode": "x₃"}
 @reproduces(
     "table-5.2",
     """The three starts lead to the modes 1, 2 and 3 at small ratios. With a growing ratio the
-    higher modes win, and from 2.5 on only the third is left; where mode 1 has no limit cycle any
-    more (5), all grow without bound. What changes with the friction force at the start is marked:
+    higher modes win, and from 2.5 on only the third is left; at 5, near the last fold of mode 1
+    (5.169), all grow without bound. What changes with the friction force at the start is marked:
     case 2 at r = 1 and case 1 at 1.5.""",
     inferred=(OUR_RATIO, OPEN_FORCES, "Integrated exactly, over 3000 periods of mode 1."),
 )

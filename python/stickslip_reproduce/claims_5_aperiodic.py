@@ -113,7 +113,8 @@ def no_such(resolution: Resolution) -> Found:
     of that limit cycle: it is unstable, so that no step and no patience leads to it.""",
     rule=lambda n: verdict(
         n["multiplier"] > 1.0
-        and 0.1 < (n["after 4000 periods"] - 1.0) / (n["after 300 periods"] - 1.0) < 10.0
+        and abs(n["after 4000 periods"] - 1.0) < 10.0 * abs(n["after 300 periods"] - 1.0)
+        and abs(n["after 4000 periods"] - 1.0) > 0.1 * abs(n["after 300 periods"] - 1.0)
     ),
     see="fig-5.23",
 )
