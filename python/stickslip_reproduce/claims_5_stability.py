@@ -145,7 +145,7 @@ def ends_at(resolution: Resolution) -> Found:
         Series("printed end", ends, [END] * 2),
     )
     plot = Plot(
-        Axis("highest harmonic H", log=True),
+        Axis("highest harmonic H"),
         Axis("negative viscous damping ratio r"),
         (Panel(series, "folds of mode 1"),),
     )
