@@ -107,8 +107,10 @@ def _claims(resolution: Resolution, out: Path, *, quiet: bool) -> None:
 
 
 def _list() -> None:
-    """Print every table and figure with its status and what it takes."""
+    """Print everything numbered with its status and what it takes, and the number of claims."""
     from stickslip_reproduce import SUBJECTS, costs, items
+    from stickslip_reproduce.claims import claims
+    from stickslip_reproduce.numbered import NUMBERED
 
     done, measured = items(), costs()
     print(f"{'name':<18}  {'status':<7}  {'cost [s]':>8}  subject")
@@ -116,4 +118,8 @@ def _list() -> None:
         cost = f"{measured[name]:.2g}" if name in done and name in measured else ""
         print(f"{name:<18}  {'done' if name in done else 'not yet':<7}  {cost:>8}  {subject}")
     whole = sum(measured.get(name, 0.0) for name in done)
+    for name, (subject, place) in NUMBERED.items():
+        status = {"claim": "judged", "none": "left"}.get(place.partition(" ")[0], "given")
+        print(f"{name:<18}  {status:<7}  {'':>8}  {subject}: {place}")
     print(f"{len(done)} of {len(SUBJECTS)} are reproduced, all of them in {whole:.0f} s")
+    print(f"{len(claims())} claims of the text have verdicts: stickslip reproduce claims")

@@ -3,6 +3,7 @@
 Numbers without a remark are those of exact orbits, computed independently of this package.
 """
 
+import re
 import runpy
 from functools import cache
 from pathlib import Path
@@ -30,9 +31,11 @@ from stickslip_reproduce import (
     items,
     write,
 )
+from stickslip_reproduce.claims import claims
 from stickslip_reproduce.curves import settled
 from stickslip_reproduce.drawing import draw
 from stickslip_reproduce.folder import records
+from stickslip_reproduce.numbered import NUMBERED
 
 pytestmark = pytest.mark.slow
 
@@ -174,6 +177,9 @@ def test_command_lists_status_and_cost():
         assert ("done" in lines[name]) == (name in items())
         assert ("not yet" in lines[name]) == (name not in items())
     assert f"{len(items())} of {len(SUBJECTS)}" in outcome.output
+    assert f"{len(claims())} claims" in outcome.output
+    for name, (_, place) in NUMBERED.items():
+        assert re.search(rf"^{re.escape(name)} .*: {re.escape(place)}$", outcome.output, re.M)
 
 
 def test_command_adds_to_a_folder(tmp_path):
