@@ -198,7 +198,7 @@ def test_one_table_forces_all_sectors():
     [
         (("engine_order = 1", ""), "'dof' with a star.*belong together"),
         (('"*.tip"', '"1.tip"'), "'dof' with a star.*belong together"),
-        (('"*.tip"', '"*.root"'), "force 1: .*sectors none among"),
+        (('"*.tip"', '"*.root"'), "force 1: .*no sectors among"),
         (('"3.tip"', '"7.tip"'), "sectors 1, 2, 4, 7 among"),
         (('"*.tip"', '"*.*"'), "write one star"),
     ],

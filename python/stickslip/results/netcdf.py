@@ -148,16 +148,14 @@ def _read(stored: h5py.Dataset, dims: tuple[str, ...]) -> Variable:
     import h5py
 
     about = _attributes(stored)
-    if h5py.check_string_dtype(stored.dtype) is not None:
-        return Variable(dims, np.asarray(stored.asstr()[...], dtype=object), about)
     # HDF5 asks for the memory of what it has not been given.
-    if math.prod(stored.shape) == 0:
-        return Variable(dims, np.empty(stored.shape, stored.dtype), about)
-    values = stored[...]
+    values = stored[...] if math.prod(stored.shape) else np.empty(stored.shape, stored.dtype)
     if values.dtype == "S1" and values.ndim:
         # Texts of one length are characters along a dimension of their own.
         joined = np.ascontiguousarray(values).view(f"S{values.shape[-1]}")
         return Variable(dims[:-1], joined[..., 0], about)
+    if h5py.check_string_dtype(stored.dtype) is not None:
+        return Variable(dims, np.asarray(stored.asstr()[...], dtype=object), about)
     if about.pop("dtype", "") == "bool":
         values = values.astype(np.bool_)
     return Variable(dims, np.asarray(values), about)
