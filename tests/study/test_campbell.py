@@ -106,6 +106,20 @@ def test_safe_shows_the_next_family_and_no_more():
     assert every.get_ylim()[1] > found.stuck[0].max() / (2 * np.pi)
 
 
+def test_a_diagram_begins_at_rest_and_one_speed_needs_no_list():
+    text = DISK + 'kind = "campbell"\nspeed = { from = "0 rpm", to = "6000 rpm", points = 3 }'
+    (found,) = Study.parse(text).run()
+    np.testing.assert_allclose(found.speed, np.array([0.0, 3000.0, 6000.0]) * RPM)
+    assert all(one.speed > 0.0 for one in found.crossings())
+    one, listed = (
+        Study.parse(DISK + f'kind = "safe"\nspeed = {text}').run()
+        for text in ('"3000 rpm"', '["3000 rpm"]')
+    )
+    np.testing.assert_array_equal(next(one).stuck, next(listed).stuck)
+    with pytest.raises(ss.ModelError, match="'log' has no 0"):
+        Study.parse(text.replace("points = 3", 'points = 3, spacing = "log"'))
+
+
 def test_nodal_diameters_need_no_speed():
     (found,) = Study.parse(DISK + 'kind = "nodal-diameters"').run()
     (table,) = view_of([found]).tables([("", found)], "", (), "auto")
@@ -119,7 +133,14 @@ def test_nodal_diameters_need_no_speed():
         (lambda: ss.campbell(blade), "speed: a campbell diagram needs it"),
         (lambda: ss.campbell(blade, speed=[100.0]), "speed: one alone makes no line"),
         (lambda: ss.campbell(blade, speed=["3 m", "5 m"]), "'3 m' is not a frequency"),
-        (lambda: ss.campbell(blade, speed=[0.0, 5.0]), r"speed\[0\] is 0; give finite speeds"),
+        (
+            lambda: ss.campbell(blade, speed=[-1.0, 5.0]),
+            r"speed\[0\] is -1; give finite values from 0",
+        ),
+        (
+            lambda: ss.campbell(blade, speed=[0.0, 5.0], diagram="safe"),
+            "nothing is excited at rest",
+        ),
         (lambda: ss.campbell(lambda w: w, speed=[1.0, 5.0]), "models: it returned 1.0, no Model"),
         (lambda: ss.campbell(3, speed=[1.0, 5.0]), "models: 3 is neither"),
         (lambda: ss.campbell(blade, speed=[1.0], diagram="safe"), "that of a tuned disk"),

@@ -47,6 +47,8 @@ class Record:
     coordinates: frozenset[str] = frozenset()
 
     def __getitem__(self, name: str) -> Variable:
+        if name not in self.variables:
+            raise KeyError(f"No variable named {name!r}")
         return self.variables[name]
 
     def __contains__(self, name: object) -> bool:
