@@ -85,9 +85,11 @@ def label_omega(ax: Axes, omega: Scale) -> None:
     ax.set_xlabel(omega.label)
     if omega.label.startswith(_ROTOR):
         per_hertz = omega.factor / OMEGA["Hz"].factor
-        above = ax.secondary_xaxis(
-            "top", functions=(lambda x: x / per_hertz, lambda x: x * per_hertz)
-        )
+
+        def hertz(x: Any) -> Any:
+            return x / per_hertz
+
+        above = ax.secondary_xaxis("top", functions=(hertz, lambda x: per_hertz * np.asarray(x)))
         above.set_xlabel("frequency [Hz]")
 
 
