@@ -130,7 +130,8 @@ class OptimalDamper(Result):
     @classmethod
     def from_dataset(cls, dataset: Stored, model: Model) -> Self:
         """Return the result that a dataset holds; `model` is the one at the best value."""
-        given = Model(model.structure, *parts_of(dataset, "given_"))
+        contacts, forces = parts_of(dataset, "given_")
+        given = model.replaced(contacts=contacts, forces=forces)
         prefix = "curve_"
         told = dataset.attrs.items()
         of_curve = {name.removeprefix(prefix): one for name, one in told if name.startswith(prefix)}
