@@ -189,9 +189,7 @@ def test_a_contact_is_found_from_what_another_integrator_made():
 def ran(script, folder, monkeypatch, capsys):
     """Run a script in an empty folder; return the lines that it prints."""
     monkeypatch.chdir(folder)
-    pyplot.switch_backend("agg")
     runpy.run_path(os.fspath(EXAMPLES / "four-tasks" / script), run_name="__main__")
-    pyplot.close("all")
     return capsys.readouterr().out.splitlines()
 
 
