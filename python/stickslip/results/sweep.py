@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.drawn import Axes, Drawn, plots
 from stickslip.errors import ModelError
 from stickslip.model import Model
@@ -140,6 +141,8 @@ class Sweep(Result):
         """Return all members with their models, each under names of its own."""
         whole = Record(
             attrs={
+                "title": "Results along a parameter of the model",
+                "stickslip_version": _core.__version__,
                 "settings": json.dumps(self.settings.model_dump()),
                 "interrupted": int(self.interrupted),
                 "member_kind": self.results[0].kind,
