@@ -255,3 +255,14 @@ def test_reports_draw_them(tmp_path):
     figures = Page(tmp_path / "a.html").figures
     titles = [figure["layout"]["xaxis"]["title"]["text"] for figure in figures]
     assert titles == ["rotor speed [rpm]", "nodal diameter"]
+
+
+def test_aerodynamic_damping_takes_percent_and_waves_that_decay_leave_no_empty_axes():
+    kind = 'kind = "flutter-map"\ndamping_ratio = '
+    written = f"{kind}{['0.2 %'] * 24}".replace("'", '"')
+    (found,) = Study.parse(DISK + written).run()
+    (plain,) = Study.parse(DISK + kind + f"{[0.002] * 24}").run()
+    np.testing.assert_allclose(found.arrays.rest_aerodynamic_ratio, 0.002, rtol=1e-12)
+    np.testing.assert_array_equal(plain.rest_ratio, found.rest_ratio)
+    axes = found.plot("tip")
+    assert [text.get_text() for text in axes.texts] == ["all waves decay"]
