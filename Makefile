@@ -4,12 +4,13 @@ VENV   := .venv
 PYTHON ?= python3
 BIN    := $(VENV)/bin
 
-.PHONY: demo test quick rust python docs bench peers clean tools
+.PHONY: demo test wheel quick rust python docs bench peers clean tools
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo   build, run the SNECMA beam study, say where its table, picture and files are"
 	@echo "make test   build, then all Rust and Python tests, linters and the documentation"
+	@echo "make wheel  a wheel in dist, which pip installs where there is no Rust"
 	@echo "make quick  build, then the linter and the quick Python tests: a minute after the build"
 	@echo "make bench  criterion benchmarks of the core and the speed tables of the package"
 	@echo "make peers  the same study with pyHarm-os, in an environment of its own"
@@ -44,6 +45,11 @@ $(VENV)/.developed: $(BIN)/python $(SOURCES)
 
 demo: tools $(VENV)/.installed
 	$(BIN)/stickslip run examples/snecma-beam/study.toml --out results
+
+# For machines of the same kind as this one, with any Python from 3.11 on.
+wheel: tools $(BIN)/python
+	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .
+	@ls dist/*.whl
 
 test: tools rust python docs
 
@@ -81,4 +87,4 @@ peers: $(VENV)/.developed
 	$(BIN)/python benchmarks/contacts.py --peers
 
 clean:
-	rm -rf $(VENV) .peers target site results
+	rm -rf $(VENV) .peers target site results dist

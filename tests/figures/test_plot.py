@@ -1,5 +1,7 @@
 """Figures: the right numbers on axes that say what they show."""
 
+import io
+
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
@@ -386,3 +388,8 @@ def test_rotor_speeds_of_a_disk(ax):
     assert ax.get_xlabel() == "rotor speed at engine order 2 [rpm]"
     line = next(one for one in ax.lines if one.get_gid() == style.RESPONSE)
     np.testing.assert_allclose(line.get_xdata(), disk_response.omega * 30 / np.pi / 2, rtol=1e-12)
+    (above,) = ax.child_axes
+    ax.figure.savefig(io.BytesIO())
+    hertz = np.array(ax.get_xlim()) * 2 / 60  # two periods of the force per turn
+    np.testing.assert_allclose(above.get_xlim(), hertz, rtol=1e-12)
+    assert above.get_xlabel() == "frequency [Hz]"

@@ -244,7 +244,7 @@ def test_names_are_texts_only(hostile, tmp_path):
 class Branch(Result):
     kind: ClassVar[str] = "branch"
 
-    def to_dataset(self, *, derived=True):
+    def record(self, *, derived=True):
         raise NotImplementedError
 
     @classmethod

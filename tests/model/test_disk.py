@@ -276,7 +276,7 @@ def test_the_wave_has_no_motion_of_its_own_in_time():
     ],
     ids=["jenkins", "structural"],
 )
-def test_dampers_between_sectors_are_designed_as_those_of_all_sectors(contact):
+def test_dampers_between_sectors_are_designed_as_those_of_all_sectors(contact, tmp_path):
     disk = BladedDisk(
         ss.reference.snecma_structure(),
         sectors=6,
@@ -301,3 +301,7 @@ def test_dampers_between_sectors_are_designed_as_those_of_all_sectors(contact):
     for parameter in ("slip_force", "stiffness"):
         best = ss.optimal_damper(disk, parameter=parameter, dof="tip", **options)
         assert best.amplitude <= tuned.amplitude.min() * (1.0 + 1e-3)
+        best.save(tmp_path / "best.nc")
+        stored = ss.load(tmp_path / "best.nc")
+        assert stored.minima == best.minima
+        assert stored.curve.model.contacts == disk.contacts

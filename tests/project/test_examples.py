@@ -181,3 +181,61 @@ def test_a_contact_is_found_from_what_another_integrator_made():
     settled = rig["settled"]
     hertz, seen = np.loadtxt(EXAMPLES / "friction-test" / "level-8.csv", delimiter=",")[9]
     assert 1e6 * settled(2.0 * np.pi * hertz, 8.0) == pytest.approx(seen, rel=0.08)
+
+
+# ------------------------------------------------------------------------- four tasks of four users
+
+
+def ran(script, folder, monkeypatch, capsys):
+    """Run a script in an empty folder; return the lines that it prints."""
+    monkeypatch.chdir(folder)
+    runpy.run_path(os.fspath(EXAMPLES / "four-tasks" / script), run_name="__main__")
+    return capsys.readouterr().out.splitlines()
+
+
+def test_each_task_is_short():
+    for script in (EXAMPLES / "four-tasks").glob("*.py"):
+        assert len(script.read_text().splitlines()) <= 30
+
+
+@pytest.mark.slow
+def test_the_designer_finds_a_slip_force_with_a_low_peak():
+    study = Study.load(EXAMPLES / "four-tasks" / "designer.toml")
+    assert study.model.contacts[0].slip_force == 0.5 * 10.0
+    (swept,) = study.run()
+    peaks = [one.peak("tip").amplitude for one in swept.results]
+    assert np.argmin(peaks) in (1, 2)
+
+
+def test_the_designer_sees_every_order_meet_the_first_mode():
+    (found,) = Study.load(EXAMPLES / "four-tasks" / "campbell.toml").run()
+    assert found.speed[0] == 0.0
+    first = {one.order for one in found.crossings() if one.mode == 0}
+    assert first >= {2, 3, 4}
+
+
+@pytest.mark.slow
+def test_the_flow_feeds_two_waves_that_friction_holds():
+    (found,) = Study.load(EXAMPLES / "four-tasks" / "flutter.toml").run()
+    assert {d for d in found.diameters.tolist() if "limit cycle" in found.fate(d)} == {2, 3}
+
+
+@pytest.mark.slow
+def test_the_researcher_has_backbones_and_a_true_error(tmp_path, monkeypatch, capsys):
+    jenkins, iwan, _, error = ran("researcher.py", tmp_path, monkeypatch, capsys)
+    # both laws dissipate; of one slider the share of the cycle that slips is larger
+    assert float(jenkins.split()[-1].rstrip("%")) > float(iwan.split()[-1].rstrip("%")) > 1.0
+    assert float(error.split()[-1]) < 1e-3
+    assert (tmp_path / "backbones.png").stat().st_size > 0
+
+
+@pytest.mark.slow
+def test_the_plate_leaves_what_other_programs_read(tmp_path, monkeypatch, capsys):
+    ran("elements.py", tmp_path, monkeypatch, capsys)
+    mesh = ss.read_mesh("peak.vtu")
+    assert mesh.dof_at([0.03, 0.015, 0], 3) == "141.3"
+    receptances = ss.read_frf("plate.uff")
+    for one in receptances:
+        # the format keeps six digits of the first frequency and of the step
+        assert one.omega[[0, -1]] == pytest.approx([1450.0, 1850.0], rel=1e-5)
+    assert len(receptances) > 0

@@ -41,6 +41,20 @@ def test_heavy_libraries_wait_for_their_use():
     assert done.stdout.strip() == "[]"
 
 
+def test_show_reads_a_file_without_what_draws_and_parses(tmp_path):
+    model = ss.Model(ss.Structure([[1.0]], [[1.0]], [[0.1]]), [], [ss.Force("0", 1.0)])
+    ss.forced_response(model, [0.5], 1).save(tmp_path / "it.nc")
+    heavy = ("scipy", "xarray", "pandas", "matplotlib", "pint", "h5netcdf", "stickslip.study")
+    code = (
+        "import atexit, sys; from stickslip.cli import app; "
+        f"atexit.register(lambda: print([name for name in {heavy} if name in sys.modules])); "
+        "app(['show', sys.argv[1]])"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path / "it.nc")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
 @pytest.mark.slow
 def test_the_stub_has_the_keys_of_the_settings():
     """What editors read is what `docs/make_stub.py` writes of the signatures at run time."""

@@ -106,6 +106,20 @@ def test_safe_shows_the_next_family_and_no_more():
     assert every.get_ylim()[1] > found.stuck[0].max() / (2 * np.pi)
 
 
+def test_a_diagram_begins_at_rest_and_one_speed_needs_no_list():
+    text = DISK + 'kind = "campbell"\nspeed = { from = "0 rpm", to = "6000 rpm", points = 3 }'
+    (found,) = Study.parse(text).run()
+    np.testing.assert_allclose(found.speed, np.array([0.0, 3000.0, 6000.0]) * RPM)
+    assert all(one.speed > 0.0 for one in found.crossings())
+    one, listed = (
+        Study.parse(DISK + f'kind = "safe"\nspeed = {text}').run()
+        for text in ('"3000 rpm"', '["3000 rpm"]')
+    )
+    np.testing.assert_array_equal(next(one).stuck, next(listed).stuck)
+    with pytest.raises(ss.ModelError, match="'log' has no 0"):
+        Study.parse(text.replace("points = 3", 'points = 3, spacing = "log"'))
+
+
 def test_nodal_diameters_need_no_speed():
     (found,) = Study.parse(DISK + 'kind = "nodal-diameters"').run()
     (table,) = view_of([found]).tables([("", found)], "", (), "auto")
@@ -119,7 +133,14 @@ def test_nodal_diameters_need_no_speed():
         (lambda: ss.campbell(blade), "speed: a campbell diagram needs it"),
         (lambda: ss.campbell(blade, speed=[100.0]), "speed: one alone makes no line"),
         (lambda: ss.campbell(blade, speed=["3 m", "5 m"]), "'3 m' is not a frequency"),
-        (lambda: ss.campbell(blade, speed=[0.0, 5.0]), r"speed\[0\] is 0; give finite speeds"),
+        (
+            lambda: ss.campbell(blade, speed=[-1.0, 5.0]),
+            r"speed\[0\] is -1; give finite values from 0",
+        ),
+        (
+            lambda: ss.campbell(blade, speed=[0.0, 5.0], diagram="safe"),
+            "nothing is excited at rest",
+        ),
         (lambda: ss.campbell(lambda w: w, speed=[1.0, 5.0]), "models: it returned 1.0, no Model"),
         (lambda: ss.campbell(3, speed=[1.0, 5.0]), "models: 3 is neither"),
         (lambda: ss.campbell(blade, speed=[1.0], diagram="safe"), "that of a tuned disk"),
@@ -198,7 +219,7 @@ def test_one_table_forces_all_sectors():
     [
         (("engine_order = 1", ""), "'dof' with a star.*belong together"),
         (('"*.tip"', '"1.tip"'), "'dof' with a star.*belong together"),
-        (('"*.tip"', '"*.root"'), "force 1: .*sectors none among"),
+        (('"*.tip"', '"*.root"'), "force 1: .*no sectors among"),
         (('"3.tip"', '"7.tip"'), "sectors 1, 2, 4, 7 among"),
         (('"*.tip"', '"*.*"'), "write one star"),
     ],
@@ -234,3 +255,14 @@ def test_reports_draw_them(tmp_path):
     figures = Page(tmp_path / "a.html").figures
     titles = [figure["layout"]["xaxis"]["title"]["text"] for figure in figures]
     assert titles == ["rotor speed [rpm]", "nodal diameter"]
+
+
+def test_aerodynamic_damping_takes_percent_and_waves_that_decay_leave_no_empty_axes():
+    kind = 'kind = "flutter-map"\ndamping_ratio = '
+    written = f"{kind}{['0.2 %'] * 24}".replace("'", '"')
+    (found,) = Study.parse(DISK + written).run()
+    (plain,) = Study.parse(DISK + kind + f"{[0.002] * 24}").run()
+    np.testing.assert_allclose(found.arrays.rest_aerodynamic_ratio, 0.002, rtol=1e-12)
+    np.testing.assert_array_equal(plain.rest_ratio, found.rest_ratio)
+    axes = found.plot("tip")
+    assert [text.get_text() for text in axes.texts] == ["all waves decay"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -12,12 +11,11 @@ from stickslip.checks import brief, unknown
 from stickslip.disk.bladed_disk import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.model.notable import loaded_dofs, physical_dofs
 from stickslip.model.state import State
 from stickslip.results.arrays import Int
 from stickslip.settings.balance import HarmonicSettings, ObserveKeys
 from stickslip.settings.entries import Residual
-
-_MODAL = re.compile(r"(.*\.)?mode-\d+")
 
 
 def require_time(model: Model) -> None:
@@ -28,23 +26,6 @@ def require_time(model: Model) -> None:
             f"model: a tuned BladedDisk is {reason}; give all sectors, disk.mistuned(0)",
             study=f"disk: a tuned disk is {reason}; compute all sectors, {ALL_SECTORS}",
         )
-
-
-def physical_dofs(model: Model) -> tuple[str, ...]:
-    """Return the degrees of freedom that are no modal coordinates; all if there are no others.
-
-    Modal coordinates are known by the names that `craig_bampton` gives them, "mode-1", ..., also
-    behind the name of a part or a sector.
-    """
-    dofs = model.structure.dofs
-    return tuple(dof for dof in dofs if not _MODAL.fullmatch(dof)) or dofs
-
-
-def loaded_dofs(model: Model) -> tuple[str, ...]:
-    """Return the degrees of freedom with a force or a contact, each once."""
-    loaded = [force.dof for force in model.forces]
-    touching = [dof for contact in model.contacts for dof in contact.dofs if dof]
-    return tuple(dict.fromkeys((*loaded, *touching)))
 
 
 def driving_dofs(

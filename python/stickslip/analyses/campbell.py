@@ -50,6 +50,8 @@ def campbell(
             f"speed: a {settings.diagram} diagram needs it; give speed=[...]",
             study=f"speed: a {settings.diagram} diagram needs it; give it",
         )
+    if settings.diagram == "safe" and not speeds.all():
+        raise ModelError("speed: nothing is excited at rest; give speeds above 0 rad/s")
     if settings.diagram == "campbell" and speeds.size == 1:
         raise ModelError("speed: one alone makes no line; give several")
     found, members = [], []

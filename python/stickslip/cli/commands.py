@@ -28,7 +28,7 @@ def show(results: Files) -> None:
     """Print what results hold: the model, the numbers, what was assumed, what did not converge."""
     from stickslip import load
     from stickslip.cli import console
-    from stickslip.study import notable_dofs
+    from stickslip.model.notable import notable_dofs
     from stickslip.views.kinds import failures, view_of
 
     for number, file in enumerate(results):

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from functools import partial
 
 from stickslip.errors import ModelError
+from stickslip.model.notable import notable_dofs
 from stickslip.plot.style import OmegaUnit
 from stickslip.results import ForcedResponse
 from stickslip.results.exact_response import ExactResponse
 from stickslip.results.result import Result
-from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import view_of
 from stickslip.views.picture import Panel, titled

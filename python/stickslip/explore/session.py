@@ -13,13 +13,13 @@ from typing import Any, Literal, NamedTuple, cast
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from stickslip.analyses.arguments import physical_dofs
 from stickslip.checks import choice
 from stickslip.errors import ModelError
 from stickslip.explore import panes
 from stickslip.explore.desk import Desk, OutdatedError
 from stickslip.explore.draft import Draft
 from stickslip.explore.panes import Look, Pane
+from stickslip.model.notable import physical_dofs
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.settings.variation import Parameter
 from stickslip.study import Study

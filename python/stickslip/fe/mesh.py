@@ -10,7 +10,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eigh
 
 from stickslip.checks import (
     brief,
@@ -226,6 +225,8 @@ class Mesh:
             stiffness[place, place] += physical_number(spring, "N/m", f"springs: {dof}")
         largest = len(reduction.dofs)
         wanted = whole_number(count, "count", smallest=1, largest=largest)
+        from scipy.linalg import eigh
+
         squares, shapes = eigh(stiffness, reduction.mass, subset_by_index=(0, wanted - 1))
         hertz = np.sqrt(np.clip(squares, 0.0, None)) / (2.0 * np.pi)
         moved = reduction.recover(shapes.T)

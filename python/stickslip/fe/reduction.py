@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eigh
-from scipy.sparse import csc_array, diags_array
 
 from stickslip.checks import Matrix, MatrixLike, unknown, whole_number
 from stickslip.errors import ModelError
@@ -21,7 +19,10 @@ from stickslip.model.structure import Structure
 from stickslip.units import physical_number
 
 if TYPE_CHECKING:
-    from stickslip.results.dataset import Dataset
+    from scipy.sparse import csc_array
+
+    from stickslip.results.dataset import Stored
+from stickslip.results.record import Record
 
 
 class Reduction:
@@ -100,9 +101,9 @@ class Reduction:
         ModelError
             If the file cannot be written.
         """
-        from stickslip.results.store import save_dataset
+        from stickslip.results.store import save_record
 
-        save_dataset(path, KIND, dataset_of(self))
+        save_record(path, KIND, record_of(self))
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Reduction:
@@ -118,9 +119,9 @@ class Reduction:
         ModelError
             If there is no such file, or it is damaged or holds something else.
         """
-        from stickslip.results.store import load_dataset
+        from stickslip.results.store import load_record
 
-        return load_dataset(path, KIND, reduction_of)
+        return load_record(path, KIND, reduction_of)
 
     def structure(self, damping: MatrixLike | DampingLaw | None = None) -> Structure:
         """Return the reduced structure, with the degrees of freedom `dofs`.
@@ -174,6 +175,9 @@ class Reduction:
         structures: stuck dampers.
         """
         count = whole_number(frequencies, "frequencies", smallest=1, largest=self.size - 1)
+        from scipy.linalg import eigh
+        from scipy.sparse import diags_array
+
         count = min(count, len(self.dofs))
         reduced, added = self.stiffness.copy(), np.zeros(self.size)
         for dof, value in (springs or {}).items():
@@ -218,10 +222,8 @@ KIND = "reduction"
 """What files call it."""
 
 
-def dataset_of(reduction: Reduction) -> Dataset:
-    """Return a reduction as a dataset of everything that it has."""
-    import xarray as xr
-
+def record_of(reduction: Reduction) -> Record:
+    """Return a reduction as a record of everything that it has."""
     variables: dict[str, Any] = {
         "reduced_mass": (("dof", "other_dof"), reduction.mass, "kg", "reduced mass matrix"),
         "reduced_stiffness": (
@@ -247,20 +249,20 @@ def dataset_of(reduction: Reduction) -> Dataset:
     if reduction.row_names is not None:
         names = np.array(reduction.row_names, np.str_)
         variables["row_names"] = ("row", names, "1", "names of the rows")
-    return xr.Dataset(
+    about = {
+        "title": "Structure reduced to component modes",
+        "decoupling": reduction.decoupling,
+        "asymmetry": np.array(reduction.asymmetry),
+    }
+    return Record(attrs=about).assign(
         {
             name: (dims, values, {"units": unit, "long_name": meaning})
             for name, (dims, values, unit, meaning) in variables.items()
-        },
-        attrs={
-            "title": "Structure reduced to component modes",
-            "decoupling": reduction.decoupling,
-            "asymmetry": np.array(reduction.asymmetry),
-        },
+        }
     )
 
 
-def reduction_of(dataset: Dataset) -> Reduction:
+def reduction_of(dataset: Stored) -> Reduction:
     """Return the reduction that a dataset holds; a ValueError if its parts do not fit together."""
     made = Reduction.__new__(Reduction)
     basis = dataset["basis"].values
@@ -290,7 +292,9 @@ def reduction_of(dataset: Dataset) -> Reduction:
 _SPARSE = ("data", "indices", "indptr")
 
 
-def _sparse_of(dataset: Dataset, name: str, size: int) -> csc_array:
+def _sparse_of(dataset: Stored, name: str, size: int) -> csc_array:
+    from scipy.sparse import csc_array
+
     data, indices, indptr = (dataset[f"{name}_{part}"].values for part in _SPARSE)
     matrix = csc_array((data, indices, indptr), shape=(size, size))
     # Wrong indices would lead outside the vectors that it is multiplied with.

@@ -19,9 +19,9 @@ from stickslip import _core
 from stickslip.errors import ModelError
 from stickslip.html.figures import Drawn, drawn
 from stickslip.html.models import summaries
+from stickslip.model.notable import notable_dofs
 from stickslip.results.result import Result
 from stickslip.results.store import content_of
-from stickslip.study import notable_dofs
 from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import VIEWS, cautions, failures, view_of
 from stickslip.views.picture import Panel

@@ -110,8 +110,13 @@ def engine_order_forces(
     pattern = re.compile(re.escape(dof).replace(r"\*", "([0-9]{1,6})"))
     found = {int(match[1]): name for name in known if (match := pattern.fullmatch(name))}
     places = sorted(found)
+    if not places:
+        raise ModelError(
+            f"{entry}: no sectors among {listed(known)}; of a bladed disk a force acts on every "
+            f"sector by itself: name the dof without star, {dof.replace('*.', '', 1)!r}"
+        )
     if len(places) < 2 or places != list(range(places[0], places[0] + len(places))):
-        given = ", ".join(map(str, places)) or "none"
+        given = ", ".join(map(str, places))
         raise ModelError(
             f"{entry}: sectors {given} among {listed(known)}; number them without a gap"
         )

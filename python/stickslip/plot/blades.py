@@ -94,5 +94,6 @@ def blade_curves(
         looks: Looks = {"color": "black", "lw": 1.4, "ls": style.STUCK, "gid": style.RESPONSE}
         reference = length.factor * tuned.amplitude(dof, options["measure"])
         ax.plot(omega.factor * tuned.omega, reference, label="tuned", **looks)
-    ax.set(xlabel=omega.label, ylabel=f"amplitude of {dof} [{length.label}]")
+    style.label_omega(ax, omega)
+    ax.set(ylabel=f"amplitude of {dof} [{length.label}]")
     style.fit(ax, log=options["log"])

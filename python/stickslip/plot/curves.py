@@ -99,7 +99,8 @@ def slip(
             ax.plot(x, opens, color=colour, lw=1.1, ls="--", label=f"{label} open")
     if x.min() < x.max():
         ax.set_xlim(x.min(), x.max())
-    ax.set(ylim=(-0.03, 1.03), xlabel=omega.label, ylabel="slipping share of the period")
+    style.label_omega(ax, omega)
+    ax.set(ylim=(-0.03, 1.03), ylabel="slipping share of the period")
     if len(lines) == 1:
         ax.set_title(lines[0][0], fontsize="medium")
 
@@ -126,7 +127,7 @@ class _View:
     def label_axes(self) -> None:
         """Write what the axes show."""
         per_force = " per force" if self.per_force else ""
-        self.ax.set_xlabel(self.omega.label)
+        style.label_omega(self.ax, self.omega)
         self.ax.set_ylabel(f"{_MEASURE[self.measure]} of {self.dof}{per_force} [{self.unit}]")
 
     def draw(self, result: ForcedResponse, colour: Colour, label: str) -> None:

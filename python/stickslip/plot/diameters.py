@@ -9,7 +9,7 @@ from typing import Unpack
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogFormatter, MaxNLocator
 
 from stickslip.checks import brief, members, whole_number
 from stickslip.disk import BladedDisk, NodalDiameters
@@ -130,6 +130,11 @@ def flutter_map(ax: Axes, /, result: FlutterMap, dof: str, **options: Unpack[Fra
         ax.plot(growing, [0.97] * len(growing), transform=frame, **looks, label="grows")
     if x.size:
         ax.set_yscale("log")
+    else:
+        ax.set_yticks([])
+        ax.set_xlim(*result.diameters[order[[0, -1]]])
+    if not (x.size or growing):
+        ax.text(0.5, 0.5, "all waves decay", transform=ax.transAxes, ha="center", va="center")
     _over_diameters(ax, f"amplitude of {dof} [{length.label}]")
 
 
@@ -150,13 +155,19 @@ def aerodynamic_limits(
     given = options["aerodynamic_ratio"]
     lowest = 1.1 * float(np.nanmin(held))
     ratios = np.linspace(lowest, 0.0, 120) if given is None else np.sort(np.atleast_1d(given))
-    size = length.factor * result.limit_amplitude(dof, ratios)[order, :, 0]
+    size = result.limit_amplitude(dof, ratios)[order, :, 0]
+    if options["length_unit"] == "auto":
+        length = style.prefix_of(float(np.nanmax(size, initial=0.0)), "m")
+    size = length.factor * size
     ax.set_facecolor("0.93")
     colour = LogNorm() if np.isfinite(size).any() else None
     shade = ax.pcolormesh(
         x, 100.0 * ratios, size.T, shading="nearest", cmap="viridis", norm=colour, rasterized=True
     )
-    ax.figure.colorbar(shade, ax=ax, label=f"amplitude of {dof} [{length.label}]")
+    bar = ax.figure.colorbar(shade, ax=ax, label=f"amplitude of {dof} [{length.label}]")
+    if colour is not None:
+        bar.ax.yaxis.set_major_formatter(LogFormatter())
+        bar.ax.yaxis.set_minor_formatter(LogFormatter())
     ax.plot(x, 100.0 * held, color="crimson", lw=1.2, label="friction holds above")
     flow = 100.0 * result.arrays.rest_aerodynamic_ratio[order]
     shown = flow >= 100.0 * ratios[0]

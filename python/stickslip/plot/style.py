@@ -58,6 +58,8 @@ class Scale(NamedTuple):
     label: str
 
 
+_ROTOR = "rotor speed"
+
 OMEGA: dict[str, Scale] = {
     "rad/s": Scale(1.0, "angular frequency ω [rad/s]"),
     "Hz": Scale(0.5 / np.pi, "frequency [Hz]"),
@@ -75,7 +77,20 @@ def omega_scale(unit: OmegaUnit, results: Any) -> Scale:
     order = orders.pop() if len(orders) == 1 else None
     if unit != "rpm" or not order:
         return OMEGA[unit]
-    return Scale(OMEGA["rpm"].factor / order, f"rotor speed at engine order {order} [rpm]")
+    return Scale(OMEGA["rpm"].factor / order, f"{_ROTOR} at engine order {order} [rpm]")
+
+
+def label_omega(ax: Axes, omega: Scale) -> None:
+    """Write what the axis of frequencies shows; over rotor speeds stand the frequencies."""
+    ax.set_xlabel(omega.label)
+    if omega.label.startswith(_ROTOR):
+        per_hertz = omega.factor / OMEGA["Hz"].factor
+
+        def hertz(x: Any) -> Any:
+            return x / per_hertz
+
+        above = ax.secondary_xaxis("top", functions=(hertz, lambda x: per_hertz * np.asarray(x)))
+        above.set_xlabel("frequency [Hz]")
 
 
 LENGTH: dict[str, Scale] = {

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
-from stickslip.results.dataset import Dataset
+from stickslip.results.dataset import Stored
 from stickslip.results.fields import Bool, Code, Columns, Complex, Computed, Float, Int, column
 from stickslip.results.status import Status
 
@@ -48,7 +48,7 @@ SHARE = 1.0 + 1e-6
 """Largest share of a period: sums of times are rounded."""
 
 
-def _samples(dataset: Dataset) -> Int:
+def _samples(dataset: Stored) -> Int:
     """Return the samples that the first files name in their settings, unless they were chosen."""
     settings = json.loads(dataset.attrs["settings"])
     samples = settings["samples"] if settings.get("evaluation") == "marched" else 0
@@ -57,23 +57,23 @@ def _samples(dataset: Dataset) -> Int:
     return np.full(dataset.sizes["omega"], samples, np.int64)
 
 
-def _unknown(dataset: Dataset) -> Float:
+def _unknown(dataset: Stored) -> Float:
     return np.full_like(dataset["error_estimate"].values, np.nan)
 
 
-def _nowhere(dataset: Dataset) -> Bool:
+def _nowhere(dataset: Stored) -> Bool:
     return np.zeros(dataset.sizes["omega"], np.bool_)
 
 
-def _unbounded(dataset: Dataset) -> Float:
+def _unbounded(dataset: Stored) -> Float:
     return np.full(tuple(dataset.sizes[name] for name in ("omega", "dof")), np.nan)
 
 
-def _not_asked(dataset: Dataset) -> Code:
+def _not_asked(dataset: Stored) -> Code:
     return np.full(dataset.sizes["omega"], UNIQUE.index("not asked"), np.uint8)
 
 
-def _undecided(dataset: Dataset) -> Code:
+def _undecided(dataset: Stored) -> Code:
     return np.full(dataset.sizes["omega"], STABILITY.index("not decided"), np.uint8)
 
 

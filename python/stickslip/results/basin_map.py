@@ -15,7 +15,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int, constant
-from stickslip.results.dataset import Dataset, labels
+from stickslip.results.dataset import Stored, labels
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
 from stickslip.results.result import ColumnResult
 from stickslip.settings.motion import BasinSettings
@@ -124,7 +124,7 @@ class BasinMap(ColumnResult):
         return State.of_vector(self.model, self.arrays.start[row])
 
     @classmethod
-    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Stored, model: Model) -> Self:
         """Return the map that a dataset holds."""
         found = super().from_dataset(dataset, model)
         if np.prod(found.shape) != len(found):

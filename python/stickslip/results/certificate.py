@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.checks import text, unknown
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
-from stickslip.results.dataset import Dataset, labels
+from stickslip.results.dataset import Stored, labels
 from stickslip.results.fields import Columns, column
 from stickslip.results.status import Status
 
@@ -141,7 +141,7 @@ class Certificate(Columns):
         return variables
 
     @classmethod
-    def of_dataset(cls, dataset: Dataset) -> Certificate | None:
+    def of_dataset(cls, dataset: Stored) -> Certificate | None:
         """Return what `variables` added to a dataset; None if nothing was."""
         if "certified_dof" not in dataset:
             return None

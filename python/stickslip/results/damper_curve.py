@@ -12,7 +12,7 @@ from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
-from stickslip.results.dataset import Dataset
+from stickslip.results.dataset import Stored
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
@@ -126,7 +126,7 @@ class DamperCurve(ColumnResult):
         return self.settings.variation.apply(self.model, value)
 
     @classmethod
-    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Stored, model: Model) -> Self:
         """Return the curve that a dataset holds."""
         curve = super().from_dataset(dataset, model)
         curve.settings.variation.varied(model)

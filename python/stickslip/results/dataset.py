@@ -13,12 +13,16 @@ from stickslip.model import Model
 if TYPE_CHECKING:
     import xarray as xr
 
+    from stickslip.results.record import Record
+
 Dataset: TypeAlias = "xr.Dataset"
 """Of xarray, which takes long to load."""
+Stored: TypeAlias = "xr.Dataset | Record"
+"""What results are read from."""
 Coordinate: TypeAlias = tuple[str, NDArray[np.generic], dict[str, str]]
 
 
-def require_fit(dataset: Dataset, model: Model, states: Sequence[str]) -> tuple[str, ...]:
+def require_fit(dataset: Stored, model: Model, states: Sequence[str]) -> tuple[str, ...]:
     """Return the observed dofs of a dataset, or refuse one that belongs to another model."""
     for dimension, noun, names in (
         ("point", "contact points in the arrays", displacement_names(model)),

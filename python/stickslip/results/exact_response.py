@@ -29,7 +29,7 @@ from stickslip.results.arrays import (
     amplitude_in,
     constant,
 )
-from stickslip.results.dataset import Dataset
+from stickslip.results.dataset import Stored
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import KINDS, ContactStates, Events, states_of
 from stickslip.results.fields import Computed, column
@@ -91,7 +91,7 @@ class OrbitArrays(Arrays, ExactColumns):
         return replace(made, stability=np.array(codes, np.uint8))
 
     @classmethod
-    def read(cls, dataset: Dataset, **more: Any) -> Self:
+    def read(cls, dataset: Stored, **more: Any) -> Self:
         """Return the columns that a dataset holds; see `Columns.read`."""
         arrays = super().read(dataset, **more)
         ends, events = arrays.event_offset, arrays.event_time.size

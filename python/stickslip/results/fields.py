@@ -29,7 +29,7 @@ from typing import (
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.results.dataset import Dataset
+from stickslip.results.dataset import Stored
 
 Bool: TypeAlias = NDArray[np.bool_]
 Code: TypeAlias = NDArray[np.uint8]
@@ -61,7 +61,7 @@ class _Column(NamedTuple):
     most: float | str
     file_name: str | None
     codes: Sequence[str]
-    absent: Callable[[Dataset], NDArray[Any]] | None
+    absent: Callable[[Stored], NDArray[Any]] | None
     optional: bool
 
 
@@ -81,7 +81,7 @@ def column(
     most: float | str = inf,
     file_name: str | None = None,
     codes: Iterable[str] = (),
-    absent: Callable[[Dataset], NDArray[Any]] | None = None,
+    absent: Callable[[Stored], NDArray[Any]] | None = None,
     optional: bool = False,
 ) -> Any:
     """Return a field of `Columns`.
@@ -184,7 +184,7 @@ class Columns:
         return made
 
     @classmethod
-    def read(cls, dataset: Dataset, **more: Any) -> Self:
+    def read(cls, dataset: Stored, **more: Any) -> Self:
         """Return the columns that a dataset holds, with fields that are no columns.
 
         A variable that is missing is a KeyError; other dimensions, or numbers that no result has,

@@ -14,7 +14,7 @@ from stickslip.checks import unknown
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Code, Float, Int, constant
-from stickslip.results.dataset import Dataset, labels
+from stickslip.results.dataset import Stored, labels
 from stickslip.results.fields import Columns, column
 from stickslip.results.result import Attributes, ColumnResult
 from stickslip.settings.fit import FitSettings
@@ -32,11 +32,11 @@ WIDE = 0.25
 """Width of an interval, relative to the value, from which the data do not determine it."""
 
 
-def _kinds(dataset: Dataset) -> Code:
+def _kinds(dataset: Stored) -> Code:
     return np.asarray(dataset["test_kind"].values, np.uint8)
 
 
-def _quantities(dataset: Dataset) -> Code:
+def _quantities(dataset: Stored) -> Code:
     """Return what the numbers of the first files are: behind the height of a peak its frequency."""
     test = dataset["test"].values
     kinds = _kinds(dataset)[test]
@@ -46,7 +46,7 @@ def _quantities(dataset: Dataset) -> Code:
     return np.array([QUANTITIES.index(one) for one in found], np.uint8)
 
 
-def _against(dataset: Dataset) -> Code:
+def _against(dataset: Stored) -> Code:
     return np.asarray(_kinds(dataset) == KINDS.index("measured loop"), np.uint8)
 
 
@@ -225,7 +225,7 @@ class Fit(ColumnResult):
         }
 
     @classmethod
-    def _further_arguments(cls, dataset: Dataset) -> dict[str, Any]:
+    def _further_arguments(cls, dataset: Stored) -> dict[str, Any]:
         return {"names": tuple(map(str, dataset["test_name"].values))}
 
 

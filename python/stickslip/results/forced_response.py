@@ -14,7 +14,7 @@ from stickslip.results.arrays import STABILITY, Int, constant
 from stickslip.results.blades import BladeMotion
 from stickslip.results.bounded import Bounded
 from stickslip.results.certificate import Certificate
-from stickslip.results.dataset import Dataset
+from stickslip.results.dataset import Stored
 from stickslip.results.energy import Energy, energy_of
 from stickslip.results.sensitivities import Sensitivities
 from stickslip.results.stability import States, truths
@@ -102,5 +102,5 @@ class ForcedResponse(BladeMotion, Sensitivities, Bounded):
         return certified | super()._further_variables(derived=derived)
 
     @classmethod
-    def _further_arguments(cls, dataset: Dataset) -> dict[str, Any]:
+    def _further_arguments(cls, dataset: Stored) -> dict[str, Any]:
         return {"certificate": Certificate.of_dataset(dataset)}

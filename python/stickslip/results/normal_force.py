@@ -13,8 +13,6 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag
-from scipy.optimize import linprog
 
 from stickslip.errors import ModelError
 from stickslip.model import Coulomb, Model
@@ -52,6 +50,8 @@ def normal_force_range(
             "normal_force_range: a travelling wave has no statics of its own here; ask the whole "
             "disk, disk.mistuned(np.zeros(sectors))"
         )
+    from scipy.linalg import block_diag
+
     held = block_diag(*(contact.stuck_stiffness for contact in model.contacts))
     nodes, slides = [], np.zeros(len(force), np.bool_)
     for node in _nodes(model):
@@ -93,6 +93,8 @@ def _nodes(model: Model) -> Iterator[_Node]:
 
 def _extreme(nodes: list[_Node], force: Float, change: Float, weights: Float) -> Float | None:
     """Return the forces of which a weighted sum is least; None if it has no bound."""
+    from scipy.optimize import linprog
+
     scale = float(np.abs(force).max())
     cuts = [cut for node in nodes for cut in _first_cuts(node)]
     for _ in range(_MOST_CUTS):

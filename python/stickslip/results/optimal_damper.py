@@ -10,9 +10,10 @@ from stickslip.drawn import Axes
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
-from stickslip.results.dataset import Dataset
+from stickslip.results.dataset import Stored
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.fields import Columns, Float, column
+from stickslip.results.record import Record
 from stickslip.results.result import Result
 from stickslip.results.status import Status
 from stickslip.results.stored_model import part_variables, parts_of
@@ -107,30 +108,30 @@ class OptimalDamper(Result):
         """Number of peaks computed; `curve.counters` tells of how many solutions each."""
         return int(self.curve.values.size)
 
-    def to_dataset(self, *, derived: bool = True) -> Dataset:
-        """Return everything as an xarray dataset with units on every variable.
+    def record(self, *, derived: bool = True) -> Record:
+        """Return everything, of which `to_dataset` is the dataset.
 
         That of the curve, with the dimension minimum of the local minima, the least first, and the
         contacts and forces of the model that was given.
         """
-        dataset = self.curve.to_dataset(derived=derived)
         unit = self.curve.settings.variation.unit
         minima = _Minima(**dict(zip(LeastPeak._fields, np.array(self.minima).T, strict=True)))
-        dataset = dataset.assign(minima.variables({"unit": unit}))
-        bounds = {"units": unit, "long_name": "between which values the least was looked for"}
-        dataset["bounds"] = ("bound", np.array(self.bounds), bounds)
-        dataset = dataset.assign(part_variables(self.curve.model, "given_"))
-        dataset.attrs |= {
-            "title": "Least peak of a structure with dry friction over a parameter",
-            "diagnostics": to_json(self.diagnostics),
-            "curve_diagnostics": to_json(self.curve.diagnostics),
-        }
-        return dataset
+        about = {"units": unit, "long_name": "between which values the least was looked for"}
+        found = minima.variables({"unit": unit}) | {"bounds": ("bound", self.bounds, about)}
+        made = self.curve.record(derived=derived).assign(found)
+        return made.assign(part_variables(self.curve.model, "given_")).assign_attrs(
+            {
+                "title": "Least peak of a structure with dry friction over a parameter",
+                "diagnostics": to_json(self.diagnostics),
+                "curve_diagnostics": to_json(self.curve.diagnostics),
+            }
+        )
 
     @classmethod
-    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Stored, model: Model) -> Self:
         """Return the result that a dataset holds; `model` is the one at the best value."""
-        given = Model(model.structure, *parts_of(dataset, "given_"))
+        contacts, forces = parts_of(dataset, "given_")
+        given = model.replaced(contacts=contacts, forces=forces)
         prefix = "curve_"
         told = dataset.attrs.items()
         of_curve = {name.removeprefix(prefix): one for name, one in told if name.startswith(prefix)}

@@ -22,6 +22,7 @@ from stickslip.model import Model, PointRef
 from stickslip.results.arrays import constant
 from stickslip.results.dataset import (
     Dataset,
+    Stored,
     displacement_names,
     labels,
     require_fit,
@@ -30,6 +31,7 @@ from stickslip.results.dataset import (
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.documented import Frozen
 from stickslip.results.fields import Columns, Float, Shown
+from stickslip.results.record import Record
 from stickslip.results.table import Frame, Tables
 from stickslip.settings.settings import Settings
 
@@ -99,6 +101,9 @@ class Result(Frozen, ABC):
         return partial(type(self), **values), ()
 
     @abstractmethod
+    def record(self, *, derived: bool = True) -> Record:
+        """Return everything, of which `to_dataset` is the dataset."""
+
     def to_dataset(self, *, derived: bool = True) -> Dataset:
         """Return everything as an xarray dataset with units on every variable.
 
@@ -109,10 +114,11 @@ class Result(Frozen, ABC):
         derived : bool, optional
             Whether to add what follows from the other variables, as amplitudes.
         """
+        return self.record(derived=derived).to_dataset()
 
     @classmethod
     @abstractmethod
-    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Stored, model: Model) -> Self:
         """Return the result that a dataset holds.
 
         Equal to the one that made the dataset, bit by bit.
@@ -142,7 +148,7 @@ class Result(Frozen, ABC):
         """
         from stickslip.results.store import save
 
-        save(path, self.kind, self.to_dataset(derived=False), self.model)
+        save(path, self.kind, self.record(derived=False), self.model)
 
     def tables(self) -> Tables:
         """Return the numbers as tidy tables by name, each a pandas DataFrame.
@@ -279,25 +285,21 @@ class ColumnResult(Result):
         names = {"timings", "counters", *cls.attributes} - set(given)
         return cls(**{name: getattr(solution, name) for name in names}, **given)
 
-    def to_dataset(self, *, derived: bool = True) -> Dataset:
-        """Return everything as an xarray dataset with units on every variable.
+    def record(self, *, derived: bool = True) -> Record:
+        """Return everything, of which `to_dataset` is the dataset.
 
         The columns of `arrays` are the variables, with names along their dimensions; everything
         else are attributes, of which `settings`, `diagnostics`, `timings` and `counters` are JSON
         texts.
         """
-        import xarray as xr
-
-        dataset = xr.Dataset(
-            self.arrays.variables(self._words()) | self._further_variables(derived=derived),
-            attrs=_attributes(self),
-        )
+        variables = self.arrays.variables(self._words()) | self._further_variables(derived=derived)
+        made = Record(attrs=_attributes(self)).assign(variables)
         half_wave = bool(getattr(self, "half_wave", False))
         states = self._states(self.model, half_wave=half_wave)
-        return dataset.assign_coords(_coordinates(self, dataset.sizes, states))
+        return made.assign_coords(_coordinates(self, made.sizes, states))
 
     @classmethod
-    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Stored, model: Model) -> Self:
         """Return the result that a dataset holds."""
         told = dataset.attrs
         states = cls._states(model, half_wave=bool(told.get("half_wave", False)))
@@ -328,7 +330,7 @@ class ColumnResult(Result):
         return {}
 
     @classmethod
-    def _further_arguments(cls, dataset: Dataset) -> dict[str, Any]:
+    def _further_arguments(cls, dataset: Stored) -> dict[str, Any]:
         """Return what `_further_variables` wrote and cannot be derived."""
         return {}
 
@@ -348,7 +350,7 @@ def _attributes(result: ColumnResult) -> dict[str, object]:
     }
 
 
-def _settings_of(kind: type[ColumnResult], dataset: Dataset) -> Settings:
+def _settings_of(kind: type[ColumnResult], dataset: Stored) -> Settings:
     """Return the settings that `attributes` wrote."""
     values = json.loads(dataset.attrs["settings"])
     if values.get("samples", 0) is None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import io
 import os
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,10 +14,10 @@ import numpy as np
 from stickslip.checks import brief, file_path, is_file, listed
 from stickslip.errors import ModelError
 from stickslip.files import refusal, require_place, write
-from stickslip.io.hdf5 import require_held, require_own
 from stickslip.memory import SHARE, physical_memory
 from stickslip.model import Model
-from stickslip.results.dataset import Dataset
+from stickslip.results.netcdf import netcdf, record_of
+from stickslip.results.record import Record, Variable
 from stickslip.results.seal import SEAL, require_harmless, seal_variable, sealed, sealed_whole
 from stickslip.results.stored_model import model_of, model_variables
 
@@ -47,20 +47,17 @@ OTHERS: Mapping[str, str] = {"reduction": "stickslip.Reduction.load"}
 
 _Made = TypeVar("_Made")
 
-_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"
-"""Marks what has a length and no numbers."""
-
 FORMAT = 2
 """Version of the layout of the file; it rises when an older reader could not read it."""
 
 
-def save(path: str | os.PathLike[str], kind: str, dataset: Dataset, model: Model) -> None:
-    """Write the dataset of a result, also a partial one, with its model; see `Result.save`."""
-    save_dataset(path, kind, dataset.assign(model_variables(model)))
+def save(path: str | os.PathLike[str], kind: str, record: Record, model: Model) -> None:
+    """Write the record of a result, also a partial one, with its model; see `Result.save`."""
+    save_record(path, kind, record.assign(model_variables(model)))
 
 
-def save_dataset(path: str | os.PathLike[str], kind: str, dataset: Dataset) -> None:
-    """Write a dataset of some kind.
+def save_record(path: str | os.PathLike[str], kind: str, record: Record) -> None:
+    """Write a record of some kind.
 
     Complex variables are split in two, `displacement_real` and `displacement_imag`, so that any
     reader opens the file; what follows from other variables is left out. Contacts and forces are
@@ -69,20 +66,9 @@ def save_dataset(path: str | os.PathLike[str], kind: str, dataset: Dataset) -> N
     """
     target = file_path(path, "path")
     require_place(target)
-    dataset = _split(dataset).assign(seal_variable())
-    dataset.attrs |= {"stickslip_format": FORMAT, "stickslip_kind": kind}
-    write(target, sealed(_netcdf(dataset)))
-
-
-def _netcdf(dataset: Dataset) -> memoryview:
-    """Return the bytes of a NetCDF 4 file."""
-    import h5netcdf  # type: ignore[import-untyped, unused-ignore]
-    from xarray.backends import H5NetCDFStore
-
-    content = io.BytesIO()
-    with h5netcdf.File(content, "w") as file:
-        dataset.dump_to_store(H5NetCDFStore(file), encoding=_encoding(dataset))
-    return content.getbuffer()
+    about = {"stickslip_format": FORMAT, "stickslip_kind": kind}
+    record = _split(record).assign(seal_variable()).assign_attrs(about)
+    write(target, sealed(netcdf(record, plain=SEAL)))
 
 
 def load(path: str | os.PathLike[str]) -> Any:
@@ -104,25 +90,23 @@ def load(path: str | os.PathLike[str]) -> Any:
     ModelError
         If there is no such file, it is damaged, from elsewhere, or of a newer format.
     """
-    source, dataset = _opened(path)
-    kind = _required_kind(dataset, source)
+    source, record = _opened(path)
+    kind = _required_kind(record, source)
     fault = "not a complete stickslip result"
-    return _made(source, fault, lambda: kind.from_dataset(_joined(dataset), model_of(dataset)))
+    return _made(source, fault, lambda: kind.from_dataset(_joined(record), model_of(record)))
 
 
-def load_dataset(
-    path: str | os.PathLike[str], kind: str, make: Callable[[Dataset], _Made]
-) -> _Made:
-    """Return what is made of a dataset that `save_dataset` wrote, of the kind that is wanted."""
-    source, dataset = _opened(path)
-    stored = dataset.attrs.get("stickslip_kind")
+def load_record(path: str | os.PathLike[str], kind: str, make: Callable[[Record], _Made]) -> _Made:
+    """Return what is made of a record that `save_record` wrote, of the kind that is wanted."""
+    source, record = _opened(path)
+    stored = record.attrs.get("stickslip_kind")
     if stored != kind:
         raise ModelError(f"{source}: holds no {kind}, but {brief(stored)}; give another file")
-    _require_version(dataset, source)
-    return _made(source, f"not a complete stickslip {kind}", lambda: make(_joined(dataset)))
+    _require_version(record, source)
+    return _made(source, f"not a complete stickslip {kind}", lambda: make(_joined(record)))
 
 
-def _opened(path: str | os.PathLike[str]) -> tuple[Path, Dataset]:
+def _opened(path: str | os.PathLike[str]) -> tuple[Path, Record]:
     source = file_path(path, "path")
     if not is_file(source):
         raise ModelError(f"{source}: no such file")
@@ -151,10 +135,7 @@ def content_of(source: Path) -> bytes:
         raise refusal(source, "cannot be read", error) from error
 
 
-def _read(source: Path) -> Dataset:
-    import h5py
-    import xarray as xr
-
+def _read(source: Path) -> Record:
     content = content_of(source)
     whole = sealed_whole(content)
     if whole is False:
@@ -162,24 +143,16 @@ def _read(source: Path) -> Dataset:
     try:
         if whole is None:
             require_harmless(content)
-        with h5py.File(io.BytesIO(content)) as stored:
-            for name in stored:
-                require_own(stored, name)
-                if _NO_VARIABLE not in str(stored[name].attrs.get("NAME", "")):
-                    require_held(stored[name])
-        # Nothing is decoded: the numbers must come back bit by bit.
-        dataset = xr.load_dataset(
-            io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False
-        )
+        record = record_of(content)
     except Exception as error:
         # The readers raise whatever the bytes of a damaged file lead them to.
         raise ModelError(
             f"{source}: not a readable NetCDF file, or a damaged one ({_line(error)}); "
             "load reads what save wrote"
         ) from error
-    if SEAL in dataset and whole is None:
+    if SEAL in record and whole is None:
         raise _changed(source)
-    return dataset
+    return record
 
 
 def _changed(source: Path) -> ModelError:
@@ -189,9 +162,9 @@ def _changed(source: Path) -> ModelError:
     )
 
 
-def _required_kind(dataset: Dataset, source: Path) -> Any:
+def _required_kind(record: Record, source: Path) -> Any:
     """Return the class of the result in a file, or refuse a file of which this version has none."""
-    kind, version = (dataset.attrs.get(f"stickslip_{key}") for key in ("kind", "format"))
+    kind, version = (record.attrs.get(f"stickslip_{key}") for key in ("kind", "format"))
     if kind is None or version is None:
         raise ModelError(f"{source}: a NetCDF file, but not a stickslip result")
     if isinstance(kind, str) and kind in OTHERS:
@@ -201,65 +174,52 @@ def _required_kind(dataset: Dataset, source: Path) -> Any:
             f"{source}: holds {brief(kind)}, this version reads {listed(list(KINDS))}; upgrade "
             "stickslip"
         )
-    _require_version(dataset, source)
+    _require_version(record, source)
     module, name = KINDS[kind]
     return getattr(import_module(module), name)
 
 
-def _require_version(dataset: Dataset, source: Path) -> None:
+def _require_version(record: Record, source: Path) -> None:
     """Refuse a layout that this version does not know."""
-    version = dataset.attrs.get("stickslip_format")
+    version = record.attrs.get("stickslip_format")
     if not isinstance(version, int | np.integer) or not 1 <= version <= FORMAT:
-        writer = dataset.attrs.get("stickslip_version", "another version")
+        writer = record.attrs.get("stickslip_version", "another version")
         raise ModelError(
             f"{source}: written by stickslip {_line(writer)} in format {_line(version)}, this "
             f"version reads format 1 to {FORMAT}; upgrade stickslip"
         )
 
 
-def _split(dataset: Dataset) -> Dataset:
+def _split(record: Record) -> Record:
     """Replace every complex variable by its real and its imaginary part."""
-    parts = {}
-    names = [name for name, variable in dataset.data_vars.items() if variable.dtype.kind == "c"]
-    for name in names:
-        variable = dataset[name]
+    parts: dict[str, Variable] = {}
+    for name, variable in record.variables.items():
+        if variable.values.dtype.kind != "c":
+            parts[name] = variable
+            continue
         for part in ("real", "imag"):
-            long_name = f"{part} part of the {variable.attrs['long_name']}"
-            parts[f"{name}_{part}"] = (
-                variable.dims,
-                getattr(variable.values, part),
-                variable.attrs | {"long_name": long_name},
+            about = f"{part} part of the {variable.attrs['long_name']}"
+            values = getattr(variable.values, part)
+            parts[f"{name}_{part}"] = Variable(
+                variable.dims, values, {**variable.attrs, "long_name": about}
             )
-    return dataset.drop_vars(names).assign(parts)
+    return replace(record, variables=parts)
 
 
-def _joined(dataset: Dataset) -> Dataset:
+def _joined(record: Record) -> Record:
     """Undo `_split`."""
     wholes = {}
-    names = [str(name) for name in dataset.data_vars if str(name).endswith("_real")]
-    for name in names:
-        real, imag = dataset[name], dataset[name.replace("_real", "_imag")]
-        for part in (real, imag):
-            if part.dtype != np.float64:
-                raise ValueError(f"{part.name} holds {part.dtype.name} instead of float64")
+    for name in [name for name in record if name.endswith("_real")]:
+        parts = {one: record[one] for one in (name, name.replace("_real", "_imag"))}
+        for stored, part in parts.items():
+            if part.values.dtype != np.float64:
+                raise ValueError(f"{stored} holds {part.values.dtype.name} instead of float64")
+        real, imag = parts.values()
         # Adding 1j * imag would turn an infinite or a negative zero into something else.
-        values = np.empty(real.shape, dtype=np.complex128)
+        values = np.empty(real.values.shape, dtype=np.complex128)
         values.real, values.imag = real.values, imag.values
         wholes[name.removesuffix("_real")] = (real.dims, values, real.attrs)
-    return dataset.assign(wholes)
-
-
-def _encoding(dataset: Dataset) -> dict[Hashable, dict[str, object]]:
-    """Compress tables, with check sums, and declare no fill value: every bit pattern counts."""
-    encoding: dict[Hashable, dict[str, object]] = {}
-    for name, variable in dataset.variables.items():
-        if variable.dtype.kind == "U":
-            continue
-        encoding[name] = {"_FillValue": None}
-        # The seal is filled in where its bytes stand.
-        if variable.ndim and variable.size and name != SEAL:
-            encoding[name] |= {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True}
-    return encoding
+    return record.assign(wholes)
 
 
 def _line(value: object) -> str:

@@ -14,7 +14,7 @@ from stickslip.model.coupling import coupling_from_spec
 from stickslip.model.force import force_from_spec
 from stickslip.model.laws import contact_from_spec, law_from_spec
 from stickslip.model.structure import Structure
-from stickslip.results.dataset import Dataset, labels
+from stickslip.results.dataset import Stored, labels
 from stickslip.results.fields import Float
 
 _MATRICES = {
@@ -34,7 +34,7 @@ def model_variables(model: Model) -> Mapping[Hashable, object]:
     return {"model": ((), kind, {"long_name": "kind of model"}), **_KINDS[kind][0](model)}
 
 
-def model_of(dataset: Dataset) -> Model:
+def model_of(dataset: Stored) -> Model:
     """Return the model that a dataset holds; see `model_variables`."""
     # The first files held no other kind and did not say so.
     kind = str(dataset["model"].values) if "model" in dataset else "Model"
@@ -45,7 +45,7 @@ def _model(model: Model) -> dict[Hashable, object]:
     return _structure_variables(model.structure) | part_variables(model)
 
 
-def _read_model(dataset: Dataset) -> Model:
+def _read_model(dataset: Stored) -> Model:
     return Model(_structure(dataset), *parts_of(dataset))
 
 
@@ -66,7 +66,7 @@ def _bladed(model: Any) -> dict[Hashable, object]:
     return variables
 
 
-def _read_bladed(dataset: Dataset, prefix: str = "") -> BladedDisk:
+def _read_bladed(dataset: Stored, prefix: str = "") -> BladedDisk:
     contacts, forces = parts_of(dataset, prefix)
     settings = _read_texts(dataset, "disk")[0]
     interface = None
@@ -99,7 +99,7 @@ def _mistuned(model: Any) -> dict[Hashable, object]:
     return variables
 
 
-def _read_mistuned(dataset: Dataset) -> MistunedDisk:
+def _read_mistuned(dataset: Stored) -> MistunedDisk:
     disk = _read_bladed(dataset, "sector_")
     stacks = [_real(dataset, f"blade_{name}") for name in ("mass", "stiffness", "damping")]
     known = np.zeros(disk.sectors)
@@ -113,7 +113,7 @@ def _read_mistuned(dataset: Dataset) -> MistunedDisk:
 
 
 _Writer: TypeAlias = Callable[[Any], Mapping[Hashable, object]]
-_KINDS: Mapping[str, tuple[_Writer, Callable[[Dataset], Model]]] = {
+_KINDS: Mapping[str, tuple[_Writer, Callable[[Stored], Model]]] = {
     "Model": (_model, _read_model),
     "BladedDisk": (_bladed, _read_bladed),
     "MistunedDisk": (_mistuned, _read_mistuned),
@@ -133,7 +133,7 @@ def _structure_variables(structure: Structure) -> dict[Hashable, object]:
     return variables | _texts("damping_law", [] if law is None else [law.to_spec()])
 
 
-def _structure(dataset: Dataset) -> Structure:
+def _structure(dataset: Stored) -> Structure:
     laws = _read_texts(dataset, "damping_law") if "damping_law" in dataset else []
     return Structure.of_law(
         _real(dataset, "mass"),
@@ -145,7 +145,7 @@ def _structure(dataset: Dataset) -> Structure:
     )
 
 
-def _real(dataset: Dataset, name: str) -> Float:
+def _real(dataset: Stored, name: str) -> Float:
     """Return a matrix, or several, of real numbers."""
     values: Float = dataset[name].values
     if values.dtype != np.float64:
@@ -159,7 +159,7 @@ def part_variables(model: Model, prefix: str = "") -> dict[Hashable, object]:
     return contacts | _texts(f"{prefix}forces", [force.to_spec() for force in model.forces])
 
 
-def parts_of(dataset: Dataset, prefix: str = "") -> tuple[list[Any], list[Any]]:
+def parts_of(dataset: Stored, prefix: str = "") -> tuple[list[Any], list[Any]]:
     """Return the contacts and forces that `part_variables` wrote."""
     contacts = _read_texts(dataset, f"{prefix}contacts")
     forces = _read_texts(dataset, f"{prefix}forces")
@@ -175,5 +175,5 @@ def _texts(name: str, entries: Iterable[Mapping[str, object]]) -> dict[Hashable,
     return {name: labels(f"{name}_entry", [json.dumps(entry) for entry in entries], meaning)}
 
 
-def _read_texts(dataset: Dataset, name: str) -> list[Any]:
+def _read_texts(dataset: Stored, name: str) -> list[Any]:
     return [json.loads(text) for text in dataset[name].values]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from importlib import import_module
@@ -11,12 +11,14 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from stickslip import _core
 from stickslip.drawn import Axes, Drawn, plots
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.dataset import Dataset
+from stickslip.results.dataset import Dataset, Stored
 from stickslip.results.diagnostic import Diagnostic
 from stickslip.results.fields import Float
+from stickslip.results.record import Record, Variable
 from stickslip.results.result import Result
 from stickslip.results.stored_model import model_of, model_variables
 from stickslip.results.table import Family, Tables
@@ -101,7 +103,7 @@ class Sweep(Result):
         Results with frequencies of their own are put side by side: the dimension is then
         "position", and "omega" a variable; what is missing is not-a-number.
         """
-        return self._family() if derived else self._packed()
+        return self._family() if derived else self.record().to_dataset()
 
     def tables(self) -> Tables:
         """Return the tables of all results, one below the other, the parameter in front."""
@@ -135,30 +137,31 @@ class Sweep(Result):
         )
         return family.assign_coords({self.parameter: coordinate})
 
-    def _packed(self) -> Dataset:
+    def record(self, *, derived: bool = False) -> Record:
         """Return all members with their models, each under names of its own."""
-        import xarray as xr
-
-        whole = xr.Dataset(
+        whole = Record(
             attrs={
+                "title": "Results along a parameter of the model",
+                "stickslip_version": _core.__version__,
                 "settings": json.dumps(self.settings.model_dump()),
                 "interrupted": int(self.interrupted),
                 "member_kind": self.results[0].kind,
             }
         )
         for number, member in enumerate(self.results):
-            own = member.to_dataset(derived=False).assign(model_variables(member.model))
+            own = member.record(derived=derived).assign(model_variables(member.model))
             told = json.dumps({str(key): _plain(value) for key, value in own.attrs.items()})
-            own = own.drop_attrs(deep=False).assign(attributes=((), told))
-            names = {str(name) for name in (*own.variables, *own.dims)}
-            whole = whole.merge(
-                own.reset_coords().rename({name: _prefix(number) + name for name in names}),
-                join="exact",
+            prefix = _prefix(number)
+            whole = whole.assign(
+                {
+                    prefix + name: (tuple(prefix + dim for dim in one.dims), *one[1:])
+                    for name, one in own.assign({"attributes": ((), told)}).variables.items()
+                }
             )
         return whole
 
     @classmethod
-    def from_dataset(cls, dataset: Dataset, model: Model) -> Self:
+    def from_dataset(cls, dataset: Stored, model: Model) -> Self:
         """Return the sweep that a dataset holds."""
         from stickslip.results.store import KINDS
 
@@ -240,18 +243,16 @@ def _plain(value: object) -> object:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _unpacked(dataset: Dataset, prefix: str) -> Dataset:
+def _unpacked(dataset: Stored, prefix: str) -> Record:
     """Return one member."""
-    names = [name for name in dataset.variables if str(name).startswith(prefix)]
-    own = dataset[names]
-    renamed = {
-        name: str(name).removeprefix(prefix)
-        for name in {*own.variables, *own.dims}
+    own = {
+        str(name).removeprefix(prefix): Variable(
+            tuple(str(dim).removeprefix(prefix) for dim in one.dims), one.values, one.attrs
+        )
+        for name, one in dataset.variables.items()
         if str(name).startswith(prefix)
     }
-    own = own.rename(renamed)
-    told: dict[Hashable, Any] = json.loads(str(own["attributes"].values))
-    return own.drop_vars("attributes").drop_attrs(deep=False).assign_attrs(told)
+    return Record(own, json.loads(str(own.pop("attributes").values)))
 
 
 def _same_axes(one: Dataset, other: Dataset) -> bool:

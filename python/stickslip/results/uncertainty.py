@@ -14,7 +14,7 @@ from stickslip.checks import unknown
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Bool, Code, Float, constant
-from stickslip.results.dataset import Dataset, labels
+from stickslip.results.dataset import Stored, labels
 from stickslip.results.expansion import Expansion, SobolIndices, fit_expansion
 from stickslip.results.fields import Columns, column
 from stickslip.results.result import ColumnResult
@@ -252,7 +252,7 @@ class Uncertainty(ColumnResult):
         }
 
     @classmethod
-    def _further_arguments(cls, dataset: Dataset) -> dict[str, Any]:
+    def _further_arguments(cls, dataset: Stored) -> dict[str, Any]:
         return {"reasons": tuple(map(str, dataset["reason"].values))}
 
 

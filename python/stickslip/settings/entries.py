@@ -130,6 +130,9 @@ Angle = Annotated[float, quantity_of("rad"), _quantity_schema("90 deg", "1.57 ra
 Omega = Annotated[
     float, quantity_of("rad/s", "be positive"), _quantity_schema("20 rad/s", "25 Hz", "1500 rpm")
 ]
+Speed = Annotated[
+    float, quantity_of("rad/s", "not be negative"), _quantity_schema("3000 rpm", "50 Hz")
+]
 Ratio = Annotated[float, quantity_of(""), _quantity_schema("0.1 %")]
 Friction = Annotated[float, quantity_of("", "not be negative"), _quantity_schema("30 %")]
 percent = _quantity_schema("0.1 %")

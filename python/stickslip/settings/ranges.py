@@ -36,6 +36,7 @@ from stickslip.settings.entries import (
     SlipForce,
     Some,
     Span,
+    Speed,
     StiffnessValue,
     Table,
     Whole,
@@ -213,10 +214,27 @@ class OmegaRange(_Ends[Omega]):
         return space(self.begin, self.end, self.points)
 
 
+class SpeedRange(OmegaRange):
+    """A range of speeds of rotation."""
+
+    begin: Speed = Field(alias="from", description="First speed.")
+    end: Speed = Field(alias="to", description="Last speed.")
+
+    @model_validator(mode="after")
+    def _require_ratio(self) -> Self:
+        if self.spacing == "log" and 0.0 in (self.begin, self.end):
+            raise ValueError("spacing = 'log' has no 0; begin above it")
+        return self
+
+
 def _omega_form(value: object) -> str | None:
     if isinstance(value, Mapping | OmegaRange):
         return "<range>"
     return "<list>" if isinstance(value, list | tuple) else None
+
+
+def _speed_form(value: object) -> str:
+    return _omega_form(value) or "<number>"
 
 
 _Rigid = Annotated[
@@ -291,6 +309,12 @@ _Omegas = Annotated[
         custom_error_message="is neither {from = ..., to = ..., points = ...} nor a list",
     ),
 ]
+_Speeds = Annotated[
+    Annotated[SpeedRange, Tag("<range>")]
+    | Annotated[Some[Speed], Tag("<list>")]
+    | Annotated[Speed, Tag("<number>")],
+    Discriminator(_speed_form),
+]
 _Ratios = ListOr[Factor, RatioRange]
 _Stiffnesses = ListOr[_Rigid, StiffnessRange]
 _SlipForces = ListOr[SlipForce, SlipForceRange]
@@ -310,10 +334,7 @@ Amplitudes = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_BOTH, _bra
 Ratios = Annotated[Float | Span, Or(_Ratios, *_BOTH, _branch(""))]
 BranchStiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_BOTH, _branch("N/m"))]
 BranchSlipForces = Annotated[Float | Span, Or(_SlipForces, *_BOTH, _branch("N"))]
-Speeds = Annotated[
-    Float | Span,
-    Or(_Omegas, *_LIST, _listed("rad/s", "finite speeds above 0 rad/s", positive)),
-]
+Speeds = Annotated[Float | Span, Or(_Speeds, *_LIST, _not_negative("rad/s"))]
 SlipForceList = Annotated[Float, Or(Some[SlipForce], *_LIST, _above_zero("N"))]
 StiffnessList = Annotated[Float, Or(Some[StiffnessValue], *_LIST, _above_zero("N/m"))]
 Dofs = Annotated[tuple[str, ...], Or(Some[Dof], "Iterable[str] | str", "iterable of str", _names)]

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from stickslip.disk.aerodynamics import AerodynamicDamping, Aerodynamics, ModalForces
 from stickslip.disk.waves import InfluenceCoefficients
 from stickslip.errors import ModelError
-from stickslip.settings.entries import Dof, Index, Number, Some, Table
+from stickslip.settings.entries import Dof, Index, Number, Ratio, Some, Table
 
 Pair = Annotated[Some[Number], Field(min_length=2, max_length=2)]
 """Real and imaginary part."""
@@ -37,12 +37,12 @@ class InfluenceTable(Table):
 class FlowKeys(Table):
     """What the flow does; one of four forms."""
 
-    damping_ratio: Some[Number] | None = Field(
+    damping_ratio: Some[Ratio] | None = Field(
         default=None,
         description="Aerodynamic damping ratio of the nodal diameters 0 to n-1.",
-        examples=[[-0.001, 0.002]],
+        examples=[["-0.1 %", "0.2 %"]],
     )
-    decrement: Some[Number] | None = Field(
+    decrement: Some[Ratio] | None = Field(
         default=None, description="Instead: logarithmic decrement, likewise."
     )
     modal_force: Some[Pair] | None = Field(

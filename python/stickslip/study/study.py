@@ -11,12 +11,12 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from stickslip.analyses.arguments import loaded_dofs, physical_dofs
 from stickslip.analyses.run import Progress, share
 from stickslip.analyses.sweep import swept
 from stickslip.checks import brief, file_path, is_file, is_reserved, vanished
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.model.notable import notable_dofs, physical_dofs
 from stickslip.results.result import Result
 from stickslip.settings.refusal import refusal
 from stickslip.study.analysis import level_name
@@ -24,7 +24,6 @@ from stickslip.study.assembly import at_speed_of, depends_on_speed, model_of
 from stickslip.study.matrices import named, neighbour
 from stickslip.study.tables import StudyTables
 
-_SHOWN_DOFS = 4
 # tomllib takes hours for a key of 100 000 parts.
 _DEEP = re.compile(r"(?<![\w.'\"-])(?:[\w'\"-]+[ \t]*\.[ \t]*){40}")
 _LONGEST_NAME = 150
@@ -204,25 +203,6 @@ class Study:
             return analysis.run(at_speed if turns else case.model, progress, shown)  # type: ignore[arg-type]
         models = at_speed if keys.speed is not None else case.model
         return swept(models, keys, lambda model, part: analysis.run(model, part, shown), progress)
-
-
-def notable_dofs(model: Model, observed: Sequence[str]) -> tuple[str, ...]:
-    """Choose the DOFs to show when none are named.
-
-    Parameters
-    ----------
-    model : Model
-        What was computed.
-    observed : sequence of str
-        The DOFs whose motion is known.
-
-    Returns
-    -------
-    tuple of str
-        Up to four that carry a force or a contact, in this order, or else the first ones.
-    """
-    notable = [dof for dof in loaded_dofs(model) if dof in observed]
-    return tuple(notable or observed)[:_SHOWN_DOFS]
 
 
 def json_schema() -> dict[str, object]:

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from math import pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.campbell import Campbell
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 _NEAR = 3
 

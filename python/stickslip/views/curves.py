@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from math import inf, pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,11 +17,12 @@ from stickslip.results.exact_response import ExactResponse
 from stickslip.results.fields import Int
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts
-from stickslip.study.tables import OutputTable
-from stickslip.units import quantity
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import LENGTHS, Dofs, Rows, View
 from stickslip.views.picture import Panel, Panels
 from stickslip.views.tables import Row, Table, tabulated
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 _SLIP_POINTS = 12
 _LOOPS = 2
@@ -219,7 +221,7 @@ def certificates(
         return []
     promised = any(certificate.tolerance is not None for _, certificate in compared)
     headings = ("orbits", "rad/s", f"error [{length_unit}]", "relative", "estimate holds")
-    length = quantity(f"1 {length_unit}", "m", "unit of length")
+    length = LENGTHS[length_unit]
     rows = [
         (name, (dof, *_certificate(certificate, column, length)[: 6 if promised else 5]))
         for name, certificate in compared

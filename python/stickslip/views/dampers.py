@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 from stickslip.drawn import plots
 from stickslip.results.damper_curve import DamperCurve
 from stickslip.results.optimal_damper import OptimalDamper
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row, assumed, counted
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 
 class DamperView(View[DamperCurve]):

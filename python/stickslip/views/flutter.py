@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.flutter_map import FATES, FlutterMap
 from stickslip.results.stability import STATES
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panel, Panels
 from stickslip.views.tables import Row
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 
 class FlutterView(View[FlutterMap]):

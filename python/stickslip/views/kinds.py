@@ -7,15 +7,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from math import inf
-from typing import Any, Generic, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from stickslip.errors import ModelError
 from stickslip.results.diagnostic import Severity
 from stickslip.results.result import Result
-from stickslip.study.tables import OutputTable
-from stickslip.units import quantity
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row, Table, assumed, model_rows, tabulated
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 VIEWS: Mapping[str, tuple[str, str]] = {
     "forced_response": ("stickslip.views.curves", "CurveView"),
@@ -40,7 +41,8 @@ VIEWS: Mapping[str, tuple[str, str]] = {
 
 
 _ANY = "?"
-_LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
+LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
+"""Units of amplitudes in tables, in metres."""
 _NUMBER = re.compile(r"[+-]?[0-9.]+(e[+-]?[0-9]+)?")
 
 Kind = TypeVar("Kind", bound=Result)
@@ -90,7 +92,7 @@ class View(ABC, Generic[Kind]):
         """
         shown = list(dofs)
         length_unit = self.length_unit(results, shown, length_unit)
-        length = quantity(f"1 {length_unit}", "m", "unit of length")
+        length = LENGTHS[length_unit]
         rows = [
             (name, row)
             for name, result in results
@@ -116,7 +118,7 @@ class View(ABC, Generic[Kind]):
         ]
         sizes = [abs(float(cell)) for cell in cells if _NUMBER.fullmatch(cell)]
         largest = max((size for size in sizes if 0.0 < size < inf), default=1.0)
-        return next((unit for unit, size in _LENGTHS.items() if largest >= size), "nm")
+        return next((unit for unit, size in LENGTHS.items() if largest >= size), "nm")
 
     def facts(self, result: Kind) -> list[Row]:
         """Say what a result is of, how it was computed and, as "assumed", what it assumes."""

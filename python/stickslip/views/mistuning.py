@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,10 +12,12 @@ from stickslip.drawn import plots
 from stickslip.errors import ModelError
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import fit_weibull
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row, counted, listed
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 _HIGH = 99.9
 """Percentile of the fit that is printed."""

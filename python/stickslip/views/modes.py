@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.nonlinear_modes import NonlinearModes
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row, counted
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 _MOST = 12
 """Rows of a branch."""

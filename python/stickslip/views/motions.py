@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +14,12 @@ from stickslip.errors import ModelError
 from stickslip.results.basin_map import BasinMap
 from stickslip.results.fate_arrays import Motion
 from stickslip.results.motion_class import MotionClass
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 
 class MotionView(View[MotionClass]):

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from stickslip.drawn import plots
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.sweep import Sweep
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View, view_of
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row, Table
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 
 class SweepView(View[Sweep]):

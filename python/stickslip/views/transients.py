@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 from stickslip.drawn import plots
 from stickslip.results.transient import Transient
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 
 class TransientView(View[Transient]):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,10 +13,12 @@ from stickslip.drawn import plots
 from stickslip.results.expansion import FEWEST
 from stickslip.results.uncertainty import Uncertainty, reasons_in_words
 from stickslip.settings.quantities import Backbone
-from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
+
+if TYPE_CHECKING:
+    from stickslip.study.tables import OutputTable
 
 _SHOWN = (5.0, 50.0, 95.0)
 
