@@ -6,23 +6,25 @@
 //! the slip loads that are left. Modes at their resonance keep unknowns of their own: there D is
 //! made regular, `D + ρ e eᵀ`, and `κ = eᵀ y` takes that back.
 //!
-//! Few slip loads are solved for directly, which tells the orientation of the curve too. Many are
-//! solved for by GMRES, with the solution of each harmonic by itself as preconditioner.
+//! A contact that slips but never opens changes its tangential slip loads alone, one that sticks at most
+//! their means: only rows of T that differ from zero have unknowns.
+//!
+//! Few slip loads are solved for directly, which tells the orientation of the curve too.
+//! Many are solved for by GMRES, with the solution of each harmonic by itself as preconditioner.
 
 use super::mode_equations::{ModeEquations, FLOOR};
 use super::mode_preconditioner::Preconditioner;
 use crate::solve::{factorised, gmres, KrylovSettings};
-use faer::linalg::solvers::{PartialPivLu, Solve as _};
-use faer::{c64, Mat};
+use faer::linalg::solvers::{PartialPivLu, Solve as _, SolveCore as _};
+use faer::{c64, Conj, Mat};
+use std::ops::Range;
 
 /// Unknowns up to which they are solved for directly.
-const LARGEST_FORMED: usize = 400;
-/// Relative residual of linear equations: Newton's method squares the rest.
-const LINEAR: f64 = 1e-6;
+const LARGEST_FORMED: usize = 600;
 /// Most products with the tangent per Newton step.
 const PRODUCTS: usize = 400;
-/// Products from which on a preconditioner is made anew.
-const STALE: usize = 30;
+/// Products, against those with a new preconditioner, from which on it is made anew.
+const STALE: usize = 15;
 /// Residual up to which a solution leads on.
 const USEFUL: f64 = 0.1;
 
@@ -43,6 +45,19 @@ impl Inverse {
             Self::Coupled(factors) => factors.solve_in_place(columns),
         }
     }
+
+    fn apply_adjoint(&self, columns: &mut Mat<c64>) {
+        match self {
+            Self::Diagonal(inverse) => {
+                for j in 0..columns.ncols() {
+                    columns.col_mut(j).iter_mut().zip(inverse).for_each(|(x, d)| *x *= d.conj());
+                }
+            }
+            Self::Coupled(factors) => {
+                factors.solve_transpose_in_place_with_conj(Conj::Yes, columns.as_mut());
+            }
+        }
+    }
 }
 
 /// The linear equations at a point that has been evaluated, with one more row.
@@ -55,13 +70,17 @@ pub(super) struct Condensed<'e, 'a> {
     border: &'e [f64],
     /// Where the slip loads that change stand, point after point.
     active: Vec<usize>,
+    /// Of every contact with such loads: itself, and their positions in `active`.
+    own: Vec<(usize, Range<usize>)>,
 }
 
-/// Solution, the sign of the determinant where it is known, and products with the tangent.
+/// Solution, the sign of the determinant or 0 where it is not known, products with the tangent and
+/// factorisations.
 pub(super) struct Solved {
     pub(super) step: Vec<f64>,
     pub(super) sign: f64,
     pub(super) products: usize,
+    pub(super) factorisations: usize,
 }
 
 impl<'e, 'a> Condensed<'e, 'a> {
@@ -105,16 +124,36 @@ impl<'e, 'a> Condensed<'e, 'a> {
             inverses.push((order, inverse));
         }
         let slots = equations.harmonics().slots();
-        let laws = equations.loads.iter().zip(equations.model.points());
-        let active = laws
-            .filter(|(load, _)| load.active)
-            .flat_map(|(_, points)| points.start * slots..points.end * slots)
-            .collect();
-        Self { equations, inverses, kept, rates: equations.scalar_rates(z), border, active }
+        let (mut active, mut own) = (Vec::new(), Vec::new());
+        let laws = equations.loads.iter().zip(equations.model.points()).enumerate();
+        for (index, (load, points)) in laws.filter(|(_, (load, _))| load.active) {
+            let (first, size) = (active.len(), points.len() * slots);
+            let changes =
+                |row: &usize| load.tangent[row * size..][..size].iter().any(|t| *t != 0.0);
+            active.extend((0..size).filter(changes).map(|row| points.start * slots + row));
+            own.push((index, first..active.len()));
+        }
+        Self { equations, inverses, kept, rates: equations.scalar_rates(z), border, active, own }
     }
 
     fn size(&self) -> usize {
         self.active.len() + self.kept.len() + 3
+    }
+
+    /// Changes of the slip loads that change, by changes of the contact displacements.
+    fn changes(&self, moved: &[f64]) -> Vec<f64> {
+        let slots = self.equations.harmonics().slots();
+        let mut out = Vec::with_capacity(self.active.len());
+        for (index, range) in &self.own {
+            let points = &self.equations.model.points()[*index];
+            let (first, size) = (points.start * slots, points.len() * slots);
+            let (tangent, moved) = (&self.equations.loads[*index].tangent, &moved[first..][..size]);
+            for at in &self.active[range.clone()] {
+                let row = &tangent[(at - first) * size..][..size];
+                out.push(row.iter().zip(moved).map(|(t, u)| t * u).sum());
+            }
+        }
+        out
     }
 
     /// Amplitudes that belong to slip loads, κ and scalars, and to the right-hand side of the modes.
@@ -139,17 +178,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
                 rows[j] = right.map_or(0.0, |right| right[j]);
             }
         }
-        for (order, inverse) in &self.inverses {
-            let own = equations.part(&rows, *order);
-            let mut column = Mat::from_fn(own.nrows(), 1, |j, _| {
-                c64::new(own[(j, 0)], if *order > 0 { -own[(j, 1)] } else { 0.0 })
-            });
-            inverse.apply(&mut column);
-            let (range, modes) = (equations.range(*order), column.nrows());
-            for (i, row) in rows[range].iter_mut().enumerate() {
-                *row = if i < modes { column[(i, 0)].re } else { -column[(i - modes, 0)].im };
-            }
-        }
+        self.divide(&mut rows, Inverse::apply);
         rows
     }
 
@@ -157,14 +186,13 @@ impl<'e, 'a> Condensed<'e, 'a> {
     fn rows(&self, unknowns: &[f64], amplitudes: &[f64]) -> Vec<f64> {
         let equations = self.equations;
         let moved = equations.at_contacts(amplitudes, 1.0, false);
-        let load = equations.load_change(&moved);
         let (loads, rest) = unknowns.split_at(self.active.len());
         let (kappa, scalars) = rest.split_at(self.kept.len());
         let range = equations.range(1);
         let own = &amplitudes[range.clone()];
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut out: Vec<f64> =
-            loads.iter().zip(&self.active).map(|(w, at)| w - load[*at]).collect();
+            loads.iter().zip(self.changes(&moved)).map(|(w, change)| w - change).collect();
         out.extend(kappa.iter().zip(&self.kept).map(|(kappa, (at, _))| kappa - amplitudes[*at]));
         let border = dot(self.border, amplitudes) + dot(&self.border[amplitudes.len()..], scalars);
         out.extend([dot(&equations.at[range], own), dot(&equations.phase, own), border]);
@@ -187,48 +215,44 @@ impl<'e, 'a> Condensed<'e, 'a> {
         let of_right = self.rows(&none, &self.amplitudes(&none, Some(&right[..modes])));
         let mut rhs: Vec<f64> = of_right.iter().map(|row| -row).collect();
         rhs[size - 3..].iter_mut().zip(&right[modes..]).for_each(|(row, right)| *row += right);
-        let (unknowns, sign, products) = if size <= LARGEST_FORMED {
-            let mut matrix = Mat::zeros(size, size);
-            for j in 0..size {
-                let mut unit = none.clone();
-                unit[j] = 1.0;
-                self.product(&unit).iter().enumerate().for_each(|(i, row)| matrix[(i, j)] = *row);
-            }
+        let (unknowns, sign, [products, factorisations]) = if size <= LARGEST_FORMED {
+            let mut matrix = self.matrix();
             let (unknowns, sign) = factorised(&mut matrix, &rhs, &vec![1.0; size])?;
-            (unknowns, sign, size)
+            (unknowns, sign, [0, 1])
         } else {
-            let (unknowns, products) = self.iterate(&rhs, preconditioner)?;
-            (unknowns, 1.0, products)
+            let (unknowns, effort) = self.iterate(&rhs, preconditioner)?;
+            (unknowns, 0.0, effort)
         };
         let mut step = self.amplitudes(&unknowns, Some(&right[..modes]));
         step.extend(&unknowns[size - 3..]);
-        step.iter().all(|s| s.is_finite()).then_some(Solved { step, sign, products })
+        step.iter().all(|s| s.is_finite()).then_some(Solved {
+            step,
+            sign,
+            products,
+            factorisations,
+        })
     }
 
-    /// GMRES with the preconditioner that is there, or a new one.
+    /// GMRES with the preconditioner that is there, or a new one; products and factorisations.
     fn iterate(
         &self,
         rhs: &[f64],
         preconditioner: &mut Option<Preconditioner>,
-    ) -> Option<(Vec<f64>, usize)> {
-        let known = preconditioner.take().filter(|own| own.active == self.active);
-        let fresh = known.is_none();
-        let blocks = known.unwrap_or_else(|| self.preconditioner());
-        let (unknowns, residual, mut products) = self.preconditioned(rhs, &blocks)?;
-        if products < STALE {
-            *preconditioner = Some(blocks);
+    ) -> Option<(Vec<f64>, [usize; 2])> {
+        let mut wasted = 0;
+        if let Some(blocks) = preconditioner.take() {
+            let (unknowns, residual, products) = self.preconditioned(rhs, &blocks)?;
+            if residual < USEFUL {
+                *preconditioner = Some(blocks).filter(|own| products < own.products + STALE);
+                return Some((unknowns, [products, 0]));
+            }
+            wasted = products;
         }
-        if residual < USEFUL {
-            return Some((unknowns, products));
-        }
-        if fresh {
-            return None;
-        }
-        let blocks = self.preconditioner();
-        let (unknowns, residual, more) = self.preconditioned(rhs, &blocks)?;
-        products += more;
+        let mut blocks = self.preconditioner();
+        let (unknowns, residual, products) = self.preconditioned(rhs, &blocks)?;
+        blocks.products = products;
         *preconditioner = Some(blocks);
-        (residual < USEFUL).then_some((unknowns, products))
+        (residual < USEFUL).then_some((unknowns, [wasted + products, 1]))
     }
 
     /// Solution, its residual, and the products that it took.
@@ -239,6 +263,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
     ) -> Option<(Vec<f64>, f64, usize)> {
         let (size, few) = (self.size(), self.kept.len() + 3);
         let split = self.active.len();
+        let blocks = blocks.fitted(&self.active);
         // The last columns as they are; the rest of the last rows follows from them.
         let mut columns = Vec::with_capacity(few);
         let mut corner = Mat::zeros(few, few);
@@ -276,58 +301,189 @@ impl<'e, 'a> Condensed<'e, 'a> {
             },
             rhs,
             &mut x,
-            KrylovSettings { tolerance: LINEAR, max_products: PRODUCTS },
+            KrylovSettings { tolerance: self.equations.linear, max_products: PRODUCTS },
         );
         report.residual.is_finite().then(|| (apply(&x), report.residual, report.products))
     }
 
     /// The tangents within each harmonic, factorised.
     fn preconditioner(&self) -> Preconditioner {
-        let equations = self.equations;
-        let slots = equations.harmonics().slots();
-        let laws = || equations.loads.iter().zip(equations.model.points());
-        let points: Vec<usize> =
-            laws().filter(|(load, _)| load.active).flat_map(|(_, p)| p.clone()).collect();
-        let count = points.len();
         let mut blocks = Vec::new();
         for (order, inverse) in &self.inverses {
-            let Some(slot) = equations.harmonics().slot(*order) else { continue };
-            let shapes = equations.basis(*order).contacts.matrix();
-            let own = Mat::from_fn(count, shapes.ncols(), |i, j| shapes[(points[i], j)]);
-            let mut moved = own.adjoint().to_owned();
-            inverse.apply(&mut moved);
-            let receptance = own * moved;
-            let width = if *order > 0 { 2 } else { 1 };
-            // Cosines before sines: c − i s.
-            let entry = |i: usize, j: usize| {
-                let value = receptance[(i % count, j % count)];
-                match (i / count, j / count) {
-                    (0, 1) => value.im,
-                    (1, 0) => -value.im,
-                    _ => value.re,
+            let places = self.places(*order);
+            let responses = self.responses(*order, inverse, [&places, &places]);
+            let matrix = Mat::<f64>::identity(places.len(), places.len()) - responses;
+            let loads = places.iter().map(|place| self.active[*place]).collect();
+            blocks.push((loads, matrix.partial_piv_lu()));
+        }
+        Preconditioner { blocks, products: 0 }
+    }
+
+    /// The matrix of the condensed equations.
+    fn matrix(&self) -> Mat<f64> {
+        let (equations, size, split) = (self.equations, self.size(), self.active.len());
+        let mut matrix = Mat::<f64>::zeros(size, size);
+        (0..split).for_each(|i| matrix[(i, i)] = 1.0);
+        let rows: Vec<usize> = (0..split).collect();
+        for (order, inverse) in &self.inverses {
+            let places = self.places(*order);
+            let responses = self.responses(*order, inverse, [&rows, &places]);
+            for (j, at) in places.iter().enumerate() {
+                let column = matrix.col_mut(*at).subrows_mut(0, split);
+                column.iter_mut().zip(responses.col(j).iter()).for_each(|(entry, r)| *entry -= r);
+            }
+        }
+        for j in split..size {
+            let mut unit = vec![0.0; size];
+            unit[j] = 1.0;
+            let column = self.product(&unit);
+            matrix.col_mut(j).iter_mut().zip(&column).for_each(|(entry, row)| *entry = *row);
+        }
+        let modes = self.border.len() - 3;
+        let mut functionals = Vec::with_capacity(size - split);
+        for (at, _) in &self.kept {
+            let mut functional = vec![0.0; modes];
+            functional[*at] = -1.0;
+            functionals.push(functional);
+        }
+        let range = equations.range(1);
+        for own in [&equations.at[range.clone()], &equations.phase] {
+            let mut functional = vec![0.0; modes];
+            functional[range.clone()].copy_from_slice(own);
+            functionals.push(functional);
+        }
+        functionals.push(self.border[..modes].to_vec());
+        for (i, mut functional) in functionals.into_iter().enumerate() {
+            self.divide(&mut functional, Inverse::apply_adjoint);
+            if equations.harmonics().has_mean() {
+                let free = &equations.basis(0).free;
+                (0..free.len()).filter(|j| free[*j]).for_each(|j| functional[j] = 0.0);
+            }
+            let moved = equations.at_contacts(&functional, 1.0, false);
+            for (j, at) in self.active.iter().enumerate() {
+                matrix[(split + i, j)] = moved[*at];
+            }
+        }
+        matrix
+    }
+
+    /// Applies inverses, or their adjoints, to rows of modes in place.
+    fn divide(&self, rows: &mut [f64], by: impl Fn(&Inverse, &mut Mat<c64>)) {
+        for (order, inverse) in &self.inverses {
+            let own = self.equations.part(rows, *order);
+            let mut column = Mat::from_fn(own.nrows(), 1, |j, _| {
+                c64::new(own[(j, 0)], if *order > 0 { -own[(j, 1)] } else { 0.0 })
+            });
+            by(inverse, &mut column);
+            let (range, modes) = (self.equations.range(*order), column.nrows());
+            for (i, row) in rows[range].iter_mut().enumerate() {
+                *row = if i < modes { column[(i, 0)].re } else { -column[(i - modes, 0)].im };
+            }
+        }
+    }
+
+    /// Positions of the slip loads of an order.
+    fn places(&self, order: usize) -> Vec<usize> {
+        let harmonics = self.equations.harmonics();
+        let (slots, Some(slot)) = (harmonics.slots(), harmonics.slot(order)) else {
+            return Vec::new();
+        };
+        let width = if order > 0 { 2 } else { 1 };
+        let own = |place: &usize| (slot..slot + width).contains(&(self.active[*place] % slots));
+        (0..self.active.len()).filter(own).collect()
+    }
+
+    /// What slip loads of an order, the columns, change in those of the rows, by its receptance.
+    fn responses(
+        &self,
+        order: usize,
+        inverse: &Inverse,
+        [rows, columns]: [&[usize]; 2],
+    ) -> Mat<f64> {
+        let equations = self.equations;
+        let slots = equations.harmonics().slots();
+        let slot = equations.harmonics().slot(order).unwrap_or(0);
+        let points = equations.model.points();
+        // Points of these contacts, and those that the columns load.
+        let moving: Vec<usize> =
+            self.own.iter().flat_map(|(index, _)| points[*index].clone()).collect();
+        let mut loaded: Vec<usize> = columns.iter().map(|at| self.active[*at] / slots).collect();
+        loaded.dedup();
+        let receptance = self.receptance(order, inverse, [&moving, &loaded]);
+        let width = if order > 0 { 2 } else { 1 };
+        let mut out = Mat::<f64>::zeros(rows.len(), columns.len());
+        let (mut row, mut first) = (0, 0);
+        for (index, range) in &self.own {
+            let begin = row;
+            while row < rows.len() && range.contains(&rows[row]) {
+                row += 1;
+            }
+            let (start, count) = (points[*index].start * slots, points[*index].len());
+            let tangent = &equations.loads[*index].tangent;
+            let size = count * slots;
+            // The tangent at this order, row after row.
+            let own: Vec<f64> = rows[begin..row]
+                .iter()
+                .flat_map(|at| {
+                    let line = &tangent[(self.active[*at] - start) * size..][..size];
+                    (0..count)
+                        .flat_map(move |q| (0..width).map(move |b| line[q * slots + slot + b]))
+                })
+                .collect();
+            let mut moved = vec![0.0; count * width];
+            let mut load = 0;
+            for (j, at) in columns.iter().enumerate() {
+                let (point, part) = (self.active[*at] / slots, self.active[*at] % slots - slot);
+                while loaded[load] != point {
+                    load += 1;
                 }
-            };
-            let mut matrix = Mat::<f64>::identity(width * count, width * count);
-            let mut first = 0;
-            for (load, range) in laws().filter(|(load, _)| load.active) {
-                let size = range.len() * slots;
-                for (p, a) in (0..range.len()).flat_map(|p| (0..width).map(move |a| (p, a))) {
-                    for (q, b) in (0..range.len()).flat_map(|q| (0..width).map(move |b| (q, b))) {
-                        let tangent =
-                            load.tangent[(p * slots + slot + a) * size + q * slots + slot + b];
-                        if tangent != 0.0 {
-                            for j in 0..width * count {
-                                matrix[(a * count + first + p, j)] -=
-                                    tangent * entry(b * count + first + q, j);
-                            }
-                        }
+                for (q, moved) in moved.chunks_exact_mut(width).enumerate() {
+                    let value = receptance[(first + q, load)];
+                    // Cosines before sines: c − i s.
+                    moved[0] = if part == 0 { value.re } else { value.im };
+                    if let Some(sine) = moved.get_mut(1) {
+                        *sine = if part == 0 { -value.im } else { value.re };
                     }
                 }
-                first += range.len();
+                let changes = out.col_mut(j).subrows_mut(begin, row - begin);
+                for (change, line) in changes.iter_mut().zip(own.chunks_exact(count * width)) {
+                    *change = line.iter().zip(&moved).map(|(t, u)| t * u).sum();
+                }
             }
-            let places = (0..width).flat_map(|a| (0..count).map(move |i| i * slots + slot + a));
-            blocks.push((places.collect(), matrix.partial_piv_lu()));
+            first += count;
         }
-        Preconditioner { active: self.active.clone(), blocks }
+        out
+    }
+
+    /// `Ψ D⁻¹ Ψᴴ` between points.
+    fn receptance(&self, order: usize, inverse: &Inverse, points: [&[usize]; 2]) -> Mat<c64> {
+        let contacts = &self.equations.basis(order).contacts;
+        match (contacts.as_real(), inverse) {
+            (Some(shapes), Inverse::Diagonal(inverse)) => {
+                let modes = shapes.ncols();
+                let at = |of: &[usize]| Mat::from_fn(of.len(), modes, |i, j| shapes[(of[i], j)]);
+                let [moving, loaded] = points.map(at);
+                let part = |of: fn(&c64) -> f64| {
+                    let scaled = Mat::from_fn(loaded.nrows(), modes, |i, j| {
+                        loaded[(i, j)] * of(&inverse[j])
+                    });
+                    &moving * scaled.transpose()
+                };
+                let [real, imaginary] = [part(|d| d.re), part(|d| d.im)];
+                Mat::from_fn(real.nrows(), real.ncols(), |i, j| {
+                    c64::new(real[(i, j)], imaginary[(i, j)])
+                })
+            }
+            _ => {
+                let shapes = contacts.matrix();
+                let at = |of: &[usize]| {
+                    Mat::from_fn(of.len(), shapes.ncols(), |i, j| shapes[(of[i], j)])
+                };
+                let [moving, loaded] = points.map(at);
+                let mut moved = loaded.adjoint().to_owned();
+                inverse.apply(&mut moved);
+                moving * moved
+            }
+        }
     }
 }
