@@ -29,13 +29,13 @@ const STALE: usize = 15;
 const USEFUL: f64 = 0.1;
 
 /// `D⁻¹` of one order, made regular.
-enum Inverse {
+pub(super) enum Inverse {
     Diagonal(Vec<c64>),
     Coupled(PartialPivLu<c64>),
 }
 
 impl Inverse {
-    fn apply(&self, columns: &mut Mat<c64>) {
+    pub(super) fn apply(&self, columns: &mut Mat<c64>) {
         match self {
             Self::Diagonal(inverse) => {
                 for j in 0..columns.ncols() {
@@ -46,7 +46,7 @@ impl Inverse {
         }
     }
 
-    fn apply_adjoint(&self, columns: &mut Mat<c64>) {
+    pub(super) fn apply_adjoint(&self, columns: &mut Mat<c64>) {
         match self {
             Self::Diagonal(inverse) => {
                 for j in 0..columns.ncols() {
@@ -62,16 +62,16 @@ impl Inverse {
 
 /// The linear equations at a point that has been evaluated, with one more row.
 pub(super) struct Condensed<'e, 'a> {
-    equations: &'e ModeEquations<'a>,
-    inverses: Vec<(usize, Inverse)>,
+    pub(super) equations: &'e ModeEquations<'a>,
+    pub(super) inverses: Vec<(usize, Inverse)>,
     /// Modes at their resonance: where they stand among the amplitudes, and ρ.
-    kept: Vec<(usize, f64)>,
+    pub(super) kept: Vec<(usize, f64)>,
     rates: [Vec<f64>; 3],
-    border: &'e [f64],
+    pub(super) border: &'e [f64],
     /// Where the slip loads that change stand, point after point.
-    active: Vec<usize>,
+    pub(super) active: Vec<usize>,
     /// Of every contact with such loads: itself, and their positions in `active`.
-    own: Vec<(usize, Range<usize>)>,
+    pub(super) own: Vec<(usize, Range<usize>)>,
 }
 
 /// Solution, the sign of the determinant or 0 where it is not known, products with the tangent and
@@ -136,7 +136,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
         Self { equations, inverses, kept, rates: equations.scalar_rates(z), border, active, own }
     }
 
-    fn size(&self) -> usize {
+    pub(super) fn size(&self) -> usize {
         self.active.len() + self.kept.len() + 3
     }
 
@@ -199,7 +199,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
         out
     }
 
-    fn product(&self, unknowns: &[f64]) -> Vec<f64> {
+    pub(super) fn product(&self, unknowns: &[f64]) -> Vec<f64> {
         self.rows(unknowns, &self.amplitudes(unknowns, None))
     }
 
@@ -306,69 +306,8 @@ impl<'e, 'a> Condensed<'e, 'a> {
         report.residual.is_finite().then(|| (apply(&x), report.residual, report.products))
     }
 
-    /// The tangents within each harmonic, factorised.
-    fn preconditioner(&self) -> Preconditioner {
-        let mut blocks = Vec::new();
-        for (order, inverse) in &self.inverses {
-            let places = self.places(*order);
-            let responses = self.responses(*order, inverse, [&places, &places]);
-            let matrix = Mat::<f64>::identity(places.len(), places.len()) - responses;
-            let loads = places.iter().map(|place| self.active[*place]).collect();
-            blocks.push((loads, matrix.partial_piv_lu()));
-        }
-        Preconditioner { blocks, products: 0 }
-    }
-
-    /// The matrix of the condensed equations.
-    fn matrix(&self) -> Mat<f64> {
-        let (equations, size, split) = (self.equations, self.size(), self.active.len());
-        let mut matrix = Mat::<f64>::zeros(size, size);
-        (0..split).for_each(|i| matrix[(i, i)] = 1.0);
-        let rows: Vec<usize> = (0..split).collect();
-        for (order, inverse) in &self.inverses {
-            let places = self.places(*order);
-            let responses = self.responses(*order, inverse, [&rows, &places]);
-            for (j, at) in places.iter().enumerate() {
-                let column = matrix.col_mut(*at).subrows_mut(0, split);
-                column.iter_mut().zip(responses.col(j).iter()).for_each(|(entry, r)| *entry -= r);
-            }
-        }
-        for j in split..size {
-            let mut unit = vec![0.0; size];
-            unit[j] = 1.0;
-            let column = self.product(&unit);
-            matrix.col_mut(j).iter_mut().zip(&column).for_each(|(entry, row)| *entry = *row);
-        }
-        let modes = self.border.len() - 3;
-        let mut functionals = Vec::with_capacity(size - split);
-        for (at, _) in &self.kept {
-            let mut functional = vec![0.0; modes];
-            functional[*at] = -1.0;
-            functionals.push(functional);
-        }
-        let range = equations.range(1);
-        for own in [&equations.at[range.clone()], &equations.phase] {
-            let mut functional = vec![0.0; modes];
-            functional[range.clone()].copy_from_slice(own);
-            functionals.push(functional);
-        }
-        functionals.push(self.border[..modes].to_vec());
-        for (i, mut functional) in functionals.into_iter().enumerate() {
-            self.divide(&mut functional, Inverse::apply_adjoint);
-            if equations.harmonics().has_mean() {
-                let free = &equations.basis(0).free;
-                (0..free.len()).filter(|j| free[*j]).for_each(|j| functional[j] = 0.0);
-            }
-            let moved = equations.at_contacts(&functional, 1.0, false);
-            for (j, at) in self.active.iter().enumerate() {
-                matrix[(split + i, j)] = moved[*at];
-            }
-        }
-        matrix
-    }
-
     /// Applies inverses, or their adjoints, to rows of modes in place.
-    fn divide(&self, rows: &mut [f64], by: impl Fn(&Inverse, &mut Mat<c64>)) {
+    pub(super) fn divide(&self, rows: &mut [f64], by: impl Fn(&Inverse, &mut Mat<c64>)) {
         for (order, inverse) in &self.inverses {
             let own = self.equations.part(rows, *order);
             let mut column = Mat::from_fn(own.nrows(), 1, |j, _| {
@@ -378,111 +317,6 @@ impl<'e, 'a> Condensed<'e, 'a> {
             let (range, modes) = (self.equations.range(*order), column.nrows());
             for (i, row) in rows[range].iter_mut().enumerate() {
                 *row = if i < modes { column[(i, 0)].re } else { -column[(i - modes, 0)].im };
-            }
-        }
-    }
-
-    /// Positions of the slip loads of an order.
-    fn places(&self, order: usize) -> Vec<usize> {
-        let harmonics = self.equations.harmonics();
-        let (slots, Some(slot)) = (harmonics.slots(), harmonics.slot(order)) else {
-            return Vec::new();
-        };
-        let width = if order > 0 { 2 } else { 1 };
-        let own = |place: &usize| (slot..slot + width).contains(&(self.active[*place] % slots));
-        (0..self.active.len()).filter(own).collect()
-    }
-
-    /// What slip loads of an order, the columns, change in those of the rows, by its receptance.
-    fn responses(
-        &self,
-        order: usize,
-        inverse: &Inverse,
-        [rows, columns]: [&[usize]; 2],
-    ) -> Mat<f64> {
-        let equations = self.equations;
-        let slots = equations.harmonics().slots();
-        let slot = equations.harmonics().slot(order).unwrap_or(0);
-        let points = equations.model.points();
-        // Points of these contacts, and those that the columns load.
-        let moving: Vec<usize> =
-            self.own.iter().flat_map(|(index, _)| points[*index].clone()).collect();
-        let mut loaded: Vec<usize> = columns.iter().map(|at| self.active[*at] / slots).collect();
-        loaded.dedup();
-        let receptance = self.receptance(order, inverse, [&moving, &loaded]);
-        let width = if order > 0 { 2 } else { 1 };
-        let mut out = Mat::<f64>::zeros(rows.len(), columns.len());
-        let (mut row, mut first) = (0, 0);
-        for (index, range) in &self.own {
-            let begin = row;
-            while row < rows.len() && range.contains(&rows[row]) {
-                row += 1;
-            }
-            let (start, count) = (points[*index].start * slots, points[*index].len());
-            let tangent = &equations.loads[*index].tangent;
-            let size = count * slots;
-            // The tangent at this order, row after row.
-            let own: Vec<f64> = rows[begin..row]
-                .iter()
-                .flat_map(|at| {
-                    let line = &tangent[(self.active[*at] - start) * size..][..size];
-                    (0..count)
-                        .flat_map(move |q| (0..width).map(move |b| line[q * slots + slot + b]))
-                })
-                .collect();
-            let mut moved = vec![0.0; count * width];
-            let mut load = 0;
-            for (j, at) in columns.iter().enumerate() {
-                let (point, part) = (self.active[*at] / slots, self.active[*at] % slots - slot);
-                while loaded[load] != point {
-                    load += 1;
-                }
-                for (q, moved) in moved.chunks_exact_mut(width).enumerate() {
-                    let value = receptance[(first + q, load)];
-                    // Cosines before sines: c − i s.
-                    moved[0] = if part == 0 { value.re } else { value.im };
-                    if let Some(sine) = moved.get_mut(1) {
-                        *sine = if part == 0 { -value.im } else { value.re };
-                    }
-                }
-                let changes = out.col_mut(j).subrows_mut(begin, row - begin);
-                for (change, line) in changes.iter_mut().zip(own.chunks_exact(count * width)) {
-                    *change = line.iter().zip(&moved).map(|(t, u)| t * u).sum();
-                }
-            }
-            first += count;
-        }
-        out
-    }
-
-    /// `Ψ D⁻¹ Ψᴴ` between points.
-    fn receptance(&self, order: usize, inverse: &Inverse, points: [&[usize]; 2]) -> Mat<c64> {
-        let contacts = &self.equations.basis(order).contacts;
-        match (contacts.as_real(), inverse) {
-            (Some(shapes), Inverse::Diagonal(inverse)) => {
-                let modes = shapes.ncols();
-                let at = |of: &[usize]| Mat::from_fn(of.len(), modes, |i, j| shapes[(of[i], j)]);
-                let [moving, loaded] = points.map(at);
-                let part = |of: fn(&c64) -> f64| {
-                    let scaled = Mat::from_fn(loaded.nrows(), modes, |i, j| {
-                        loaded[(i, j)] * of(&inverse[j])
-                    });
-                    &moving * scaled.transpose()
-                };
-                let [real, imaginary] = [part(|d| d.re), part(|d| d.im)];
-                Mat::from_fn(real.nrows(), real.ncols(), |i, j| {
-                    c64::new(real[(i, j)], imaginary[(i, j)])
-                })
-            }
-            _ => {
-                let shapes = contacts.matrix();
-                let at = |of: &[usize]| {
-                    Mat::from_fn(of.len(), shapes.ncols(), |i, j| shapes[(of[i], j)])
-                };
-                let [moving, loaded] = points.map(at);
-                let mut moved = loaded.adjoint().to_owned();
-                inverse.apply(&mut moved);
-                moving * moved
             }
         }
     }
