@@ -22,7 +22,7 @@ impl Condensed<'_, '_> {
 
     /// The matrix of the condensed equations.
     pub(super) fn matrix(&self) -> Mat<f64> {
-        let (equations, size, split) = (self.equations, self.size(), self.active.len());
+        let (size, split) = (self.size(), self.active.len());
         let mut matrix = Mat::<f64>::zeros(size, size);
         (0..split).for_each(|i| matrix[(i, i)] = 1.0);
         let rows: Vec<usize> = (0..split).collect();
@@ -40,32 +40,34 @@ impl Condensed<'_, '_> {
             let column = self.product(&unit);
             matrix.col_mut(j).iter_mut().zip(&column).for_each(|(entry, row)| *entry = *row);
         }
-        let modes = self.border.len() - 3;
-        let mut functionals = Vec::with_capacity(size - split);
-        for (at, _) in &self.kept {
-            let mut functional = vec![0.0; modes];
-            functional[*at] = -1.0;
-            functionals.push(functional);
+        for (i, row) in self.last_rows().iter().enumerate() {
+            row.iter().enumerate().for_each(|(j, entry)| matrix[(split + i, j)] = *entry);
         }
+        matrix
+    }
+
+    /// What κ, amplitude, phase and border make of the slip loads: their rows, by adjoint solutions.
+    pub(super) fn last_rows(&self) -> Vec<Vec<f64>> {
+        let (equations, modes) = (self.equations, self.border.len() - 3);
         let range = equations.range(1);
-        for own in [&equations.at[range.clone()], &equations.phase] {
-            let mut functional = vec![0.0; modes];
-            functional[range.clone()].copy_from_slice(own);
-            functionals.push(functional);
+        let mut functionals = vec![vec![0.0; modes]; self.kept.len() + 2];
+        for (functional, (at, _)) in functionals.iter_mut().zip(&self.kept) {
+            functional[*at] = -1.0;
+        }
+        for (i, own) in [&equations.at[range.clone()], &equations.phase].into_iter().enumerate() {
+            functionals[self.kept.len() + i][range.clone()].copy_from_slice(own);
         }
         functionals.push(self.border[..modes].to_vec());
-        for (i, mut functional) in functionals.into_iter().enumerate() {
+        let row = |mut functional: Vec<f64>| {
             self.divide(&mut functional, Inverse::apply_adjoint);
             if equations.harmonics().has_mean() {
                 let free = &equations.basis(0).free;
                 (0..free.len()).filter(|j| free[*j]).for_each(|j| functional[j] = 0.0);
             }
             let moved = equations.at_contacts(&functional, 1.0, false);
-            for (j, at) in self.active.iter().enumerate() {
-                matrix[(split + i, j)] = moved[*at];
-            }
-        }
-        matrix
+            self.active.iter().map(|at| moved[*at]).collect()
+        };
+        functionals.into_iter().map(row).collect()
     }
 
     /// Positions of the slip loads of an order.

@@ -24,7 +24,7 @@ const LARGEST_FORMED: usize = 600;
 /// Most products with the tangent per Newton step.
 const PRODUCTS: usize = 400;
 /// Products, against those with a new preconditioner, from which on it is made anew.
-const STALE: usize = 15;
+const STALE: usize = 40;
 /// Residual up to which a solution leads on.
 const USEFUL: f64 = 0.1;
 
@@ -263,7 +263,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
     ) -> Option<(Vec<f64>, f64, usize)> {
         let (size, few) = (self.size(), self.kept.len() + 3);
         let split = self.active.len();
-        let blocks = blocks.fitted(&self.active);
+        let (blocks, rows) = (blocks.fitted(&self.active), self.last_rows());
         // The last columns as they are; the rest of the last rows follows from them.
         let mut columns = Vec::with_capacity(few);
         let mut corner = Mat::zeros(few, few);
@@ -273,11 +273,9 @@ impl<'e, 'a> Condensed<'e, 'a> {
             let column = self.product(&unit);
             let mut solved = column[..split].to_vec();
             blocks.apply(&mut solved);
-            unit[..split].copy_from_slice(&solved);
-            unit[split + j] = 0.0;
-            let through = self.product(&unit);
-            for i in 0..few {
-                corner[(i, j)] = column[split + i] - through[split + i];
+            for (i, row) in rows.iter().enumerate() {
+                let through: f64 = row.iter().zip(&solved).map(|(row, w)| row * w).sum();
+                corner[(i, j)] = column[split + i] - through;
             }
             columns.push(solved);
         }
