@@ -38,12 +38,13 @@ fn branch<'py>(
         ModeEnd::Returned => "returned",
         ModeEnd::Stalled => "stalled",
         ModeEnd::Points => "points",
+        ModeEnd::Evaluations => "evaluations",
         ModeEnd::Interrupted => "interrupted",
     };
     columns.tell("end", (end, found.end_amplitude))?;
     columns.tell("half_wave", found.half_wave)?;
     columns.tell("interrupted", found.end == ModeEnd::Interrupted)?;
-    columns.effort(&found.profile, ("products", found.products))?;
+    columns.effort(&found.profile, ("points", found.points.len()))?;
     columns.end()
 }
 

@@ -11,6 +11,7 @@ mod held_pool;
 mod interpolant;
 mod member;
 mod mistuned;
+mod mode_assembly;
 mod mode_branch;
 mod mode_condensed;
 mod mode_equations;

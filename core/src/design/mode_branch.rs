@@ -32,6 +32,8 @@ const LEAST_START: f64 = 1e-9;
 const LINEAR: [f64; 2] = [0.02, 0.02];
 /// Times that the way between two points is halved to find one between them.
 const HALVINGS: usize = 20;
+/// Share of the way between two points that steps then have.
+const SHORTER: f64 = 0.25;
 /// Amplitudes below the least one by this factor at which a branch that has turned back ends.
 const BACK: f64 = 10.0;
 /// Most evaluations of the equations: so many per step, and so many more for a few hard places.
@@ -159,8 +161,10 @@ impl<'a> Walk<'a> {
                 return ModeEnd::Returned;
             }
             let evaluations = self.equations().profile.evaluations;
-            let spent = evaluations > EVALUATIONS[0] * taken + EVALUATIONS[1];
-            if spent || taken.max(self.points.len()) >= self.settings.most {
+            if evaluations > EVALUATIONS[0] * taken + EVALUATIONS[1] {
+                return ModeEnd::Evaluations;
+            }
+            if taken.max(self.points.len()) >= self.settings.most {
                 return ModeEnd::Points;
             }
             let share = ((from - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
@@ -236,9 +240,33 @@ impl<'a> Walk<'a> {
                 z = middle;
             }
         }
+        if let Some(point) = self.walked([before, z], value) {
+            return self.take(point);
+        }
         let compliance = self.truncation.equations.model.compliance();
         let (dofs, contacts) = (compliance.dofs(), compliance.contacts());
         self.points.push(ModePoint::missing(dofs, contacts, value.exp()));
+    }
+
+    /// The point at an amplitude on the curve from one point to another, by shorter steps: about an internal
+    /// resonance the curve is far from the chord.
+    fn walked(&mut self, [before, z]: [Vec<f64>; 2], value: f64) -> Option<Vec<f64>> {
+        let equations = &mut self.truncation.equations;
+        let longest = (SHORTER * distance(&before, &z)).max(STEPS.shortest);
+        let steps = Steps { first: 0.5 * longest, longest, ..STEPS };
+        let mut walk = Continuation::new(equations, before, 1.0, steps)?;
+        let most = equations.profile.evaluations + 2 * EVALUATIONS[1];
+        while equations.profile.evaluations < most {
+            let from = walk.point.clone();
+            if walk.advance(equations) != Advance::Point {
+                return None;
+            }
+            if log(&walk.point) >= value {
+                let found = between(equations, &from, &walk.point, value);
+                return found.map(|(point, _)| point);
+            }
+        }
+        None
     }
 
     /// Takes a point, in as many harmonics as the tolerance asks for.

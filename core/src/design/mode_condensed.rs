@@ -6,34 +6,36 @@
 //! the slip loads that are left. Modes at their resonance keep unknowns of their own: there D is
 //! made regular, `D + ρ e eᵀ`, and `κ = eᵀ y` takes that back.
 //!
-//! Few slip loads are solved for directly, which tells the orientation of the curve too. Many are
-//! solved for by GMRES, with the solution of each harmonic by itself as preconditioner.
+//! A contact that slips but never opens changes its tangential slip loads alone, one that sticks at most
+//! their means: only rows of T that differ from zero have unknowns.
+//!
+//! Few slip loads are solved for directly, which tells the orientation of the curve too.
+//! Many are solved for by GMRES, with the solution of each harmonic by itself as preconditioner.
 
 use super::mode_equations::{ModeEquations, FLOOR};
 use super::mode_preconditioner::Preconditioner;
 use crate::solve::{factorised, gmres, KrylovSettings};
-use faer::linalg::solvers::{PartialPivLu, Solve as _};
-use faer::{c64, Mat};
+use faer::linalg::solvers::{PartialPivLu, Solve as _, SolveCore as _};
+use faer::{c64, Conj, Mat};
+use std::ops::Range;
 
 /// Unknowns up to which they are solved for directly.
-const LARGEST_FORMED: usize = 400;
-/// Relative residual of linear equations: Newton's method squares the rest.
-const LINEAR: f64 = 1e-6;
+const LARGEST_FORMED: usize = 600;
 /// Most products with the tangent per Newton step.
 const PRODUCTS: usize = 400;
-/// Products from which on a preconditioner is made anew.
-const STALE: usize = 30;
+/// Products, against those with a new preconditioner, from which on it is made anew.
+const STALE: usize = 40;
 /// Residual up to which a solution leads on.
 const USEFUL: f64 = 0.1;
 
 /// `D⁻¹` of one order, made regular.
-enum Inverse {
+pub(super) enum Inverse {
     Diagonal(Vec<c64>),
     Coupled(PartialPivLu<c64>),
 }
 
 impl Inverse {
-    fn apply(&self, columns: &mut Mat<c64>) {
+    pub(super) fn apply(&self, columns: &mut Mat<c64>) {
         match self {
             Self::Diagonal(inverse) => {
                 for j in 0..columns.ncols() {
@@ -43,25 +45,42 @@ impl Inverse {
             Self::Coupled(factors) => factors.solve_in_place(columns),
         }
     }
+
+    pub(super) fn apply_adjoint(&self, columns: &mut Mat<c64>) {
+        match self {
+            Self::Diagonal(inverse) => {
+                for j in 0..columns.ncols() {
+                    columns.col_mut(j).iter_mut().zip(inverse).for_each(|(x, d)| *x *= d.conj());
+                }
+            }
+            Self::Coupled(factors) => {
+                factors.solve_transpose_in_place_with_conj(Conj::Yes, columns.as_mut());
+            }
+        }
+    }
 }
 
 /// The linear equations at a point that has been evaluated, with one more row.
 pub(super) struct Condensed<'e, 'a> {
-    equations: &'e ModeEquations<'a>,
-    inverses: Vec<(usize, Inverse)>,
+    pub(super) equations: &'e ModeEquations<'a>,
+    pub(super) inverses: Vec<(usize, Inverse)>,
     /// Modes at their resonance: where they stand among the amplitudes, and ρ.
-    kept: Vec<(usize, f64)>,
+    pub(super) kept: Vec<(usize, f64)>,
     rates: [Vec<f64>; 3],
-    border: &'e [f64],
+    pub(super) border: &'e [f64],
     /// Where the slip loads that change stand, point after point.
-    active: Vec<usize>,
+    pub(super) active: Vec<usize>,
+    /// Of every contact with such loads: itself, and their positions in `active`.
+    pub(super) own: Vec<(usize, Range<usize>)>,
 }
 
-/// Solution, the sign of the determinant where it is known, and products with the tangent.
+/// Solution, the sign of the determinant or 0 where it is not known, products with the tangent and
+/// factorisations.
 pub(super) struct Solved {
     pub(super) step: Vec<f64>,
     pub(super) sign: f64,
     pub(super) products: usize,
+    pub(super) factorisations: usize,
 }
 
 impl<'e, 'a> Condensed<'e, 'a> {
@@ -105,16 +124,36 @@ impl<'e, 'a> Condensed<'e, 'a> {
             inverses.push((order, inverse));
         }
         let slots = equations.harmonics().slots();
-        let laws = equations.loads.iter().zip(equations.model.points());
-        let active = laws
-            .filter(|(load, _)| load.active)
-            .flat_map(|(_, points)| points.start * slots..points.end * slots)
-            .collect();
-        Self { equations, inverses, kept, rates: equations.scalar_rates(z), border, active }
+        let (mut active, mut own) = (Vec::new(), Vec::new());
+        let laws = equations.loads.iter().zip(equations.model.points()).enumerate();
+        for (index, (load, points)) in laws.filter(|(_, (load, _))| load.active) {
+            let (first, size) = (active.len(), points.len() * slots);
+            let changes =
+                |row: &usize| load.tangent[row * size..][..size].iter().any(|t| *t != 0.0);
+            active.extend((0..size).filter(changes).map(|row| points.start * slots + row));
+            own.push((index, first..active.len()));
+        }
+        Self { equations, inverses, kept, rates: equations.scalar_rates(z), border, active, own }
     }
 
-    fn size(&self) -> usize {
+    pub(super) fn size(&self) -> usize {
         self.active.len() + self.kept.len() + 3
+    }
+
+    /// Changes of the slip loads that change, by changes of the contact displacements.
+    fn changes(&self, moved: &[f64]) -> Vec<f64> {
+        let slots = self.equations.harmonics().slots();
+        let mut out = Vec::with_capacity(self.active.len());
+        for (index, range) in &self.own {
+            let points = &self.equations.model.points()[*index];
+            let (first, size) = (points.start * slots, points.len() * slots);
+            let (tangent, moved) = (&self.equations.loads[*index].tangent, &moved[first..][..size]);
+            for at in &self.active[range.clone()] {
+                let row = &tangent[(at - first) * size..][..size];
+                out.push(row.iter().zip(moved).map(|(t, u)| t * u).sum());
+            }
+        }
+        out
     }
 
     /// Amplitudes that belong to slip loads, κ and scalars, and to the right-hand side of the modes.
@@ -139,17 +178,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
                 rows[j] = right.map_or(0.0, |right| right[j]);
             }
         }
-        for (order, inverse) in &self.inverses {
-            let own = equations.part(&rows, *order);
-            let mut column = Mat::from_fn(own.nrows(), 1, |j, _| {
-                c64::new(own[(j, 0)], if *order > 0 { -own[(j, 1)] } else { 0.0 })
-            });
-            inverse.apply(&mut column);
-            let (range, modes) = (equations.range(*order), column.nrows());
-            for (i, row) in rows[range].iter_mut().enumerate() {
-                *row = if i < modes { column[(i, 0)].re } else { -column[(i - modes, 0)].im };
-            }
-        }
+        self.divide(&mut rows, Inverse::apply);
         rows
     }
 
@@ -157,21 +186,20 @@ impl<'e, 'a> Condensed<'e, 'a> {
     fn rows(&self, unknowns: &[f64], amplitudes: &[f64]) -> Vec<f64> {
         let equations = self.equations;
         let moved = equations.at_contacts(amplitudes, 1.0, false);
-        let load = equations.load_change(&moved);
         let (loads, rest) = unknowns.split_at(self.active.len());
         let (kappa, scalars) = rest.split_at(self.kept.len());
         let range = equations.range(1);
         let own = &amplitudes[range.clone()];
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut out: Vec<f64> =
-            loads.iter().zip(&self.active).map(|(w, at)| w - load[*at]).collect();
+            loads.iter().zip(self.changes(&moved)).map(|(w, change)| w - change).collect();
         out.extend(kappa.iter().zip(&self.kept).map(|(kappa, (at, _))| kappa - amplitudes[*at]));
         let border = dot(self.border, amplitudes) + dot(&self.border[amplitudes.len()..], scalars);
         out.extend([dot(&equations.at[range], own), dot(&equations.phase, own), border]);
         out
     }
 
-    fn product(&self, unknowns: &[f64]) -> Vec<f64> {
+    pub(super) fn product(&self, unknowns: &[f64]) -> Vec<f64> {
         self.rows(unknowns, &self.amplitudes(unknowns, None))
     }
 
@@ -187,48 +215,44 @@ impl<'e, 'a> Condensed<'e, 'a> {
         let of_right = self.rows(&none, &self.amplitudes(&none, Some(&right[..modes])));
         let mut rhs: Vec<f64> = of_right.iter().map(|row| -row).collect();
         rhs[size - 3..].iter_mut().zip(&right[modes..]).for_each(|(row, right)| *row += right);
-        let (unknowns, sign, products) = if size <= LARGEST_FORMED {
-            let mut matrix = Mat::zeros(size, size);
-            for j in 0..size {
-                let mut unit = none.clone();
-                unit[j] = 1.0;
-                self.product(&unit).iter().enumerate().for_each(|(i, row)| matrix[(i, j)] = *row);
-            }
+        let (unknowns, sign, [products, factorisations]) = if size <= LARGEST_FORMED {
+            let mut matrix = self.matrix();
             let (unknowns, sign) = factorised(&mut matrix, &rhs, &vec![1.0; size])?;
-            (unknowns, sign, size)
+            (unknowns, sign, [0, 1])
         } else {
-            let (unknowns, products) = self.iterate(&rhs, preconditioner)?;
-            (unknowns, 1.0, products)
+            let (unknowns, effort) = self.iterate(&rhs, preconditioner)?;
+            (unknowns, 0.0, effort)
         };
         let mut step = self.amplitudes(&unknowns, Some(&right[..modes]));
         step.extend(&unknowns[size - 3..]);
-        step.iter().all(|s| s.is_finite()).then_some(Solved { step, sign, products })
+        step.iter().all(|s| s.is_finite()).then_some(Solved {
+            step,
+            sign,
+            products,
+            factorisations,
+        })
     }
 
-    /// GMRES with the preconditioner that is there, or a new one.
+    /// GMRES with the preconditioner that is there, or a new one; products and factorisations.
     fn iterate(
         &self,
         rhs: &[f64],
         preconditioner: &mut Option<Preconditioner>,
-    ) -> Option<(Vec<f64>, usize)> {
-        let known = preconditioner.take().filter(|own| own.active == self.active);
-        let fresh = known.is_none();
-        let blocks = known.unwrap_or_else(|| self.preconditioner());
-        let (unknowns, residual, mut products) = self.preconditioned(rhs, &blocks)?;
-        if products < STALE {
-            *preconditioner = Some(blocks);
+    ) -> Option<(Vec<f64>, [usize; 2])> {
+        let mut wasted = 0;
+        if let Some(blocks) = preconditioner.take() {
+            let (unknowns, residual, products) = self.preconditioned(rhs, &blocks)?;
+            if residual < USEFUL {
+                *preconditioner = Some(blocks).filter(|own| products < own.products + STALE);
+                return Some((unknowns, [products, 0]));
+            }
+            wasted = products;
         }
-        if residual < USEFUL {
-            return Some((unknowns, products));
-        }
-        if fresh {
-            return None;
-        }
-        let blocks = self.preconditioner();
-        let (unknowns, residual, more) = self.preconditioned(rhs, &blocks)?;
-        products += more;
+        let mut blocks = self.preconditioner();
+        let (unknowns, residual, products) = self.preconditioned(rhs, &blocks)?;
+        blocks.products = products;
         *preconditioner = Some(blocks);
-        (residual < USEFUL).then_some((unknowns, products))
+        (residual < USEFUL).then_some((unknowns, [wasted + products, 1]))
     }
 
     /// Solution, its residual, and the products that it took.
@@ -239,6 +263,7 @@ impl<'e, 'a> Condensed<'e, 'a> {
     ) -> Option<(Vec<f64>, f64, usize)> {
         let (size, few) = (self.size(), self.kept.len() + 3);
         let split = self.active.len();
+        let (blocks, rows) = (blocks.fitted(&self.active), self.last_rows());
         // The last columns as they are; the rest of the last rows follows from them.
         let mut columns = Vec::with_capacity(few);
         let mut corner = Mat::zeros(few, few);
@@ -248,11 +273,9 @@ impl<'e, 'a> Condensed<'e, 'a> {
             let column = self.product(&unit);
             let mut solved = column[..split].to_vec();
             blocks.apply(&mut solved);
-            unit[..split].copy_from_slice(&solved);
-            unit[split + j] = 0.0;
-            let through = self.product(&unit);
-            for i in 0..few {
-                corner[(i, j)] = column[split + i] - through[split + i];
+            for (i, row) in rows.iter().enumerate() {
+                let through: f64 = row.iter().zip(&solved).map(|(row, w)| row * w).sum();
+                corner[(i, j)] = column[split + i] - through;
             }
             columns.push(solved);
         }
@@ -276,58 +299,23 @@ impl<'e, 'a> Condensed<'e, 'a> {
             },
             rhs,
             &mut x,
-            KrylovSettings { tolerance: LINEAR, max_products: PRODUCTS },
+            KrylovSettings { tolerance: self.equations.linear, max_products: PRODUCTS },
         );
         report.residual.is_finite().then(|| (apply(&x), report.residual, report.products))
     }
 
-    /// The tangents within each harmonic, factorised.
-    fn preconditioner(&self) -> Preconditioner {
-        let equations = self.equations;
-        let slots = equations.harmonics().slots();
-        let laws = || equations.loads.iter().zip(equations.model.points());
-        let points: Vec<usize> =
-            laws().filter(|(load, _)| load.active).flat_map(|(_, p)| p.clone()).collect();
-        let count = points.len();
-        let mut blocks = Vec::new();
+    /// Applies inverses, or their adjoints, to rows of modes in place.
+    pub(super) fn divide(&self, rows: &mut [f64], by: impl Fn(&Inverse, &mut Mat<c64>)) {
         for (order, inverse) in &self.inverses {
-            let Some(slot) = equations.harmonics().slot(*order) else { continue };
-            let shapes = equations.basis(*order).contacts.matrix();
-            let own = Mat::from_fn(count, shapes.ncols(), |i, j| shapes[(points[i], j)]);
-            let mut moved = own.adjoint().to_owned();
-            inverse.apply(&mut moved);
-            let receptance = own * moved;
-            let width = if *order > 0 { 2 } else { 1 };
-            // Cosines before sines: c − i s.
-            let entry = |i: usize, j: usize| {
-                let value = receptance[(i % count, j % count)];
-                match (i / count, j / count) {
-                    (0, 1) => value.im,
-                    (1, 0) => -value.im,
-                    _ => value.re,
-                }
-            };
-            let mut matrix = Mat::<f64>::identity(width * count, width * count);
-            let mut first = 0;
-            for (load, range) in laws().filter(|(load, _)| load.active) {
-                let size = range.len() * slots;
-                for (p, a) in (0..range.len()).flat_map(|p| (0..width).map(move |a| (p, a))) {
-                    for (q, b) in (0..range.len()).flat_map(|q| (0..width).map(move |b| (q, b))) {
-                        let tangent =
-                            load.tangent[(p * slots + slot + a) * size + q * slots + slot + b];
-                        if tangent != 0.0 {
-                            for j in 0..width * count {
-                                matrix[(a * count + first + p, j)] -=
-                                    tangent * entry(b * count + first + q, j);
-                            }
-                        }
-                    }
-                }
-                first += range.len();
+            let own = self.equations.part(rows, *order);
+            let mut column = Mat::from_fn(own.nrows(), 1, |j, _| {
+                c64::new(own[(j, 0)], if *order > 0 { -own[(j, 1)] } else { 0.0 })
+            });
+            by(inverse, &mut column);
+            let (range, modes) = (self.equations.range(*order), column.nrows());
+            for (i, row) in rows[range].iter_mut().enumerate() {
+                *row = if i < modes { column[(i, 0)].re } else { -column[(i - modes, 0)].im };
             }
-            let places = (0..width).flat_map(|a| (0..count).map(move |i| i * slots + slot + a));
-            blocks.push((places.collect(), matrix.partial_piv_lu()));
         }
-        Preconditioner { active: self.active.clone(), blocks }
     }
 }

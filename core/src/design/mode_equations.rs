@@ -15,7 +15,8 @@ use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{ModalBases, ModalBasis, Model};
 use crate::solve::norm;
 use crate::timing::Profile;
-use faer::MatRef;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, ColRef, MatMut, MatRef, Par};
 use std::cell::Cell;
 use std::sync::Arc;
 use std::time::Instant;
@@ -23,6 +24,11 @@ use std::time::Instant;
 /// Rows are scaled by their own diagonal entry, but by no less than this share of the squared frequency:
 /// that of the mode itself vanishes.
 pub(super) const FLOOR: f64 = 0.05;
+
+/// Relative residual of linear equations: Newton's method squares the rest.
+const LINEAR: f64 = 1e-4;
+/// Share of the stiffness of means that tangents keep.
+const HELD: f64 = 1e-6;
 
 /// The equations in one set of harmonics.
 pub(super) struct ModeEquations<'a> {
@@ -55,8 +61,8 @@ pub(super) struct ModeEquations<'a> {
     pub(super) loads: Vec<SlipLoad>,
     /// Work so far.
     pub(super) profile: Profile,
-    /// Products with the tangent so far.
-    pub(super) products: usize,
+    /// Relative residual of linear equations that are solved by iteration.
+    pub(super) linear: f64,
 }
 
 impl<'a> ModeEquations<'a> {
@@ -86,7 +92,7 @@ impl<'a> ModeEquations<'a> {
             share: Cell::new(0.0),
             contact: Vec::new(),
             profile: Profile::default(),
-            products: 0,
+            linear: LINEAR,
         }
     }
 
@@ -95,7 +101,6 @@ impl<'a> ModeEquations<'a> {
         Self {
             unit: self.unit,
             profile: Profile::default(),
-            products: 0,
             ..Self::new(
                 self.model,
                 self.bases.clone(),
@@ -172,6 +177,20 @@ impl<'a> ModeEquations<'a> {
         let slots = self.harmonics().slots();
         let points = self.model.compliance().contacts();
         let mut out = vec![0.0; points * slots];
+        if let Some(shapes) = self.bases.common() {
+            let amplitudes = MatRef::from_column_major_slice(
+                &y[..shapes.ncols() * slots],
+                shapes.ncols(),
+                slots,
+            );
+            let moved = MatMut::from_row_major_slice_mut(&mut out, points, slots);
+            matmul(moved, Accum::Replace, shapes, amplitudes, factor, Par::Seq);
+            if whole && self.harmonics().has_mean() {
+                let rest = shapes * ColRef::from_slice(&self.rest);
+                out.iter_mut().step_by(slots).zip(rest.iter()).for_each(|(u, rest)| *u += rest);
+            }
+            return out;
+        }
         for order in self.harmonics().orders() {
             let Some(slot) = self.harmonics().slot(order) else { continue };
             let mut part = faer::Scale(factor) * self.part(y, order);
@@ -192,6 +211,13 @@ impl<'a> ModeEquations<'a> {
     pub(super) fn subtract_forces(&self, load: &[f64], share: f64, rows: &mut [f64]) {
         let slots = self.harmonics().slots();
         let points = self.model.compliance().contacts();
+        if let Some(shapes) = self.bases.common() {
+            let load = MatRef::from_row_major_slice(load, points, slots);
+            let size = shapes.ncols() * slots;
+            let rows =
+                MatMut::from_column_major_slice_mut(&mut rows[..size], shapes.ncols(), slots);
+            return matmul(rows, Accum::Add, shapes.transpose(), load, -share, Par::Seq);
+        }
         for order in self.harmonics().orders() {
             let Some(slot) = self.harmonics().slot(order) else { continue };
             let width = if order == 0 { 1 } else { 2 };
@@ -253,6 +279,7 @@ impl<'a> ModeEquations<'a> {
         }
         self.profile.law += start.elapsed();
         self.profile.evaluations += 1;
+        self.hold_means(&mut loads);
         self.loads = loads;
         out[..size].fill(0.0);
         self.add_structure(&z[..size], |order| dynamic(order, omega, excess), &mut out[..size]);
@@ -273,6 +300,21 @@ impl<'a> ModeEquations<'a> {
         out[size] = 0.5 * (first.iter().map(|y| y * y).sum::<f64>() - 1.0);
         out[size + 1] = first.iter().zip(&self.phase).map(|(y, row)| y * row).sum();
         out
+    }
+
+    /// Leaves a little of their stiffness to means in the tangents: a body that nothing but sliding or
+    /// open contacts hold has no mean position, and stays where it is. What is solved is not changed.
+    fn hold_means(&self, loads: &mut [SlipLoad]) {
+        if !self.harmonics().has_mean() {
+            return;
+        }
+        let slots = self.harmonics().slots();
+        for load in loads.iter_mut().filter(|load| load.active) {
+            let size = load.value.len();
+            for row in load.tangent.chunks_exact_mut(size).step_by(slots) {
+                row.iter_mut().step_by(slots).for_each(|entry| *entry *= 1.0 - HELD);
+            }
+        }
     }
 
     /// Motion of the points of a contact, as evaluated last.

@@ -13,13 +13,15 @@ use std::time::{Duration, Instant};
 /// Newton iterations in more harmonics.
 const ITERATIONS: usize = 20;
 
+/// Relative residual of the linear equations of an error estimate.
+const ESTIMATE: f64 = 1e-2;
+
 /// The equations in the harmonics kept, and in more than twice as many.
 pub(super) struct Truncation<'a> {
     pub(super) equations: ModeEquations<'a>,
     finer: Option<ModeEquations<'a>>,
     /// Work in harmonics that have been left.
     profile: Profile,
-    products: usize,
     estimate: Duration,
 }
 
@@ -48,8 +50,7 @@ impl Step {
 
 impl<'a> Truncation<'a> {
     pub(super) fn new(equations: ModeEquations<'a>) -> Self {
-        let (profile, products) = (Profile::default(), 0);
-        Self { equations, finer: None, profile, products, estimate: Duration::ZERO }
+        Self { equations, finer: None, profile: Profile::default(), estimate: Duration::ZERO }
     }
 
     /// A point in as many harmonics as the tolerance asks for.
@@ -86,6 +87,7 @@ impl<'a> Truncation<'a> {
         let highest = 2 * self.equations.harmonics().highest() + 3;
         let known = self.finer.take().filter(|own| own.harmonics().highest() == highest);
         let mut equations = known.unwrap_or_else(|| self.in_harmonics(highest));
+        equations.linear = ESTIMATE;
         equations.rest.clone_from(&self.equations.rest);
         let z = equations.recast(z, equations.size());
         equations.hold(&z);
@@ -115,18 +117,18 @@ impl<'a> Truncation<'a> {
 
     fn leave(&mut self, equations: &ModeEquations<'_>) {
         self.profile.add(&equations.profile);
-        self.products += equations.products;
     }
 
-    /// Work in all harmonics, and products with tangents.
-    pub(super) fn effort(mut self) -> (Profile, usize) {
+    /// Work in all harmonics.
+    pub(super) fn effort(mut self) -> Profile {
         if let Some(finer) = self.finer.take() {
-            self.profile.evaluations += finer.profile.evaluations;
-            self.products += finer.products;
+            let Profile { evaluations, factorisations, products, .. } = finer.profile;
+            let own = Profile { evaluations, factorisations, products, ..Profile::default() };
+            self.profile.add(&own);
         }
         self.profile.add(&self.equations.profile);
         self.profile.estimate += self.estimate;
-        (self.profile, self.products + self.equations.products)
+        self.profile
     }
 }
 

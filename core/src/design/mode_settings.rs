@@ -57,6 +57,8 @@ pub enum ModeEnd {
     Stalled,
     /// As many points as allowed.
     Points,
+    /// Far more evaluations of the equations than steps need: it crawls.
+    Evaluations,
     /// The caller ended the analysis.
     Interrupted,
 }
@@ -76,8 +78,6 @@ pub struct NonlinearMode {
     pub end: ModeEnd,
     /// … and at which amplitude.
     pub end_amplitude: f64,
-    /// Products with the tangent.
-    pub products: usize,
     /// Where the time went.
     pub profile: Profile,
 }

@@ -4,7 +4,7 @@ use super::mode_condensed::Condensed;
 use super::mode_equations::{dynamic, ModeEquations};
 use super::mode_feed::Feed;
 use crate::solve::{norm, Curve};
-use faer::{ColRef, Mat, MatRef};
+use faer::Mat;
 use std::time::Instant;
 
 impl ModeEquations<'_> {
@@ -56,9 +56,10 @@ impl ModeEquations<'_> {
         for (own, points) in self.loads.iter().zip(self.model.points()) {
             if own.active {
                 let range = points.start * slots..points.end * slots;
-                let tangent = MatRef::from_row_major_slice(&own.tangent, range.len(), range.len());
-                let product = tangent * ColRef::from_slice(&moved[range.clone()]);
-                load[range].iter_mut().enumerate().for_each(|(i, q)| *q = product[i]);
+                let rows = own.tangent.chunks_exact(range.len());
+                for (q, row) in load[range.clone()].iter_mut().zip(rows) {
+                    *q = row.iter().zip(&moved[range.clone()]).map(|(t, u)| t * u).sum();
+                }
             }
         }
         load
@@ -121,7 +122,8 @@ impl Curve for ModeEquations<'_> {
         self.preconditioner = preconditioner;
         self.profile.linear_solve += start.elapsed();
         let solved = solved?;
-        self.products += solved.products;
+        self.profile.products += solved.products;
+        self.profile.factorisations += solved.factorisations;
         Some((solved.step, solved.sign))
     }
 

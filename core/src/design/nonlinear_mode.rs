@@ -52,7 +52,7 @@ pub fn nonlinear_mode(
     let end_amplitude = walk.last.map_or(f64::NAN, f64::exp);
     walk.fill_up();
     let half_wave = walk.equations().harmonics().half_wave();
-    let (part, products) = walk.truncation.effort();
+    let part = walk.truncation.effort();
     let mut profile = Profile { total: start.elapsed(), estimate: part.estimate, ..walk.profile };
     profile.add(&part);
     Ok(NonlinearMode {
@@ -62,7 +62,6 @@ pub fn nonlinear_mode(
         turns: walk.turns,
         end,
         end_amplitude,
-        products,
         profile,
     })
 }

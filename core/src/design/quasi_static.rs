@@ -71,7 +71,6 @@ pub(super) fn quasi_static_mode(
         turns: Vec::new(),
         end,
         end_amplitude: last,
-        products: 0,
         profile: Profile { total: start.elapsed(), ..Profile::default() },
     })
 }

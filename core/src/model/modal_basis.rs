@@ -38,6 +38,11 @@ impl Parts {
         })
     }
 
+    /// The matrix, if it is real.
+    pub(crate) fn as_real(&self) -> Option<MatRef<'_, f64>> {
+        self.imaginary.is_none().then(|| self.real.as_ref())
+    }
+
     /// The product with the amplitudes `a − i b`; a mean has no b.
     pub(crate) fn times(&self, series: MatRef<'_, f64>) -> Mat<f64> {
         let mut out = &self.real * series;
@@ -154,6 +159,12 @@ impl ModalBases {
     pub(crate) fn at(&self, harmonic: usize) -> &ModalBasis {
         let diameter = (harmonic * self.engine_order) % self.by_diameter.len();
         self.by_diameter[diameter].as_deref().unwrap_or(&self.first)
+    }
+
+    /// Displacements of the contacts, if all harmonics see the same real ones.
+    pub(crate) fn common(&self) -> Option<MatRef<'_, f64>> {
+        let shapes = self.first.contacts.as_real();
+        shapes.filter(|_| self.by_diameter.len() == 1)
     }
 }
 

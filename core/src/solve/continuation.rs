@@ -69,7 +69,7 @@ pub struct Continuation {
     pub jumps: usize,
     direction: Vec<f64>,
     /// Sign of the determinant of the equations bordered by the tangent in the direction of the
-    /// walk: it is the same all along a curve, around folds and past corners.
+    /// walk: it is the same all along a curve, around folds and past corners. 0 where it is not known.
     orientation: f64,
     step: f64,
     steps: Steps,
@@ -136,7 +136,7 @@ impl Continuation {
                     let turn = self.turn(curve, &point, &weights);
                     if let Some((bend, tangent, orientation)) = turn {
                         let straight = cosine.min(bend);
-                        let same = orientation == self.orientation;
+                        let same = orientation * self.orientation >= 0.0;
                         // What changes the orientation and does not bend is a bifurcation.
                         let passes =
                             if corner { same || straight > STRAIGHT } else { same && bend > BEND };
@@ -190,7 +190,11 @@ impl Continuation {
                 let Some((point, _)) = found else { continue };
                 let (cosine, distance) = self.compare(&point, unit, weights);
                 let turn = self.turn(curve, &point, weights);
-                let ahead = turn.as_ref().is_some_and(|(_, _, sign)| *sign == self.orientation);
+                // Without orientations a way back cannot be told from a corner.
+                let ahead = turn.as_ref().is_some_and(|(_, _, sign)| {
+                    let same = sign * self.orientation;
+                    same > 0.0 || (same == 0.0 && cosine > 0.0)
+                });
                 let lies_ahead = ahead && (distance - radius).abs() < 0.5 * radius;
                 if lies_ahead && best.as_ref().is_none_or(|(known, _)| cosine > *known) {
                     best = Some((cosine, point));

@@ -25,7 +25,7 @@ pub trait Curve {
     fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>);
 
     /// Solves the equations linearised at `z` with one more row, `border x = last of right`; tells the
-    /// sign of their determinant, too. Nothing where they are singular.
+    /// sign of their determinant, too, or 0 where it is not known. Nothing where they are singular.
     fn solve_bordered(
         &mut self,
         z: &[f64],

@@ -19,12 +19,14 @@ _WHY = {
     "returned": "it turned back to small amplitudes",
     "stalled": "no point ahead was found",
     "points": "as many points as allowed",
+    "evaluations": "steps became too short: contacts change what they do too often there",
     "interrupted": "interrupted",
 }
 _REMEDY = {
     "returned": "ask for smaller amplitudes",
     "stalled": "ask for smaller amplitudes, or try other harmonics",
     "points": "raise max_points",
+    "evaluations": "ask for smaller amplitudes, or try other harmonics",
     "interrupted": "run it again",
 }
 
@@ -145,8 +147,17 @@ def _assumptions(
             ),
             arrays.turns.size > 0
             and told("turns", _listed=", ".join(f"{one:.4g}" for one in arrays.turns[:6])),
-            end in _WHY
-            and told("mode-not-reached", amplitude=amplitude, _why=_WHY[end], _remedy=_REMEDY[end]),
+            end in _WHY and _ended(settings.method, end, amplitude),
             missed_tolerances(arrays.status, "amplitudes") if arrays.status.size else None,
         )
     )
+
+
+def _ended(method: str, end: str, amplitude: float) -> Diagnostic | None:
+    """Say where a branch ended before its largest amplitude, and why."""
+    if end == "stalled" and np.isnan(amplitude):
+        driven = method == "phase-resonance"
+        remedy = ", or for forces that drive it more than others" if driven else ""
+        return told("mode-not-reached/start", _driven=remedy)
+    why, remedy = _WHY[end], _REMEDY[end]
+    return told("mode-not-reached", amplitude=amplitude, _why=why, _remedy=remedy)

@@ -19,6 +19,8 @@ TEXTS = {
     "the mode is an internal resonance there, and other branches lie close by.",
     "turns": "The branch turns back in amplitude at {_listed}.",
     "mode-not-reached": "The branch ended at the amplitude {amplitude:.6g} ({_why}): {_remedy}.",
+    "mode-not-reached/start": "No motion near the linear mode was found at small amplitudes: ask "
+    "for a mode that stands apart from others{_driven}.",
     # flutter maps
     "wave-stability": "Limit cycles count as stable where the damping ratio rises with the "
     "amplitude: against changes of the amplitude of their own wave. Other waves beside them are "

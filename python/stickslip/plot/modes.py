@@ -38,7 +38,7 @@ def backbone(
         The axes of the frequency.
     """
     branches = several(NonlinearModes, results)
-    names = checked_labels(options["labels"], [f"mode {one.settings.mode}" for one in branches])
+    names = checked_labels(options["labels"], _names(branches))
     omega = style.omega_scale(options["omega_unit"], branches)
     made, ax, below = options["ax"] is None, options["ax"], None
     if made and options["damping"]:
@@ -73,13 +73,29 @@ def mode_damping(
         The axes.
     """
     branches = several(NonlinearModes, results)
-    names = checked_labels(options["labels"], [f"mode {one.settings.mode}" for one in branches])
+    names = checked_labels(options["labels"], _names(branches))
     made, ax = options["ax"] is None, style.new_axes(options["ax"])
     for one, name, colour in zip(branches, names, style.colours(len(branches)), strict=True):
         _damping(ax, one, colour, name)
     ax.set(xscale="log", xlabel=_AMPLITUDE, ylabel="damping ratio")
     style.finish(ax, made=made)
     return ax
+
+
+def _names(branches: Sequence[NonlinearModes]) -> list[str]:
+    """Return the modes by number, with the method and nodal diameter where these differ."""
+    names = [f"mode {one.settings.mode}" for one in branches]
+    if len({one.settings.method for one in branches}) > 1:
+        names = [
+            f"{name}, {one.settings.method}" for name, one in zip(names, branches, strict=True)
+        ]
+    if len({one.settings.nodal_diameter for one in branches}) > 1:
+        diameters = [one.settings.nodal_diameter for one in branches]
+        names = [
+            name if diameter is None else f"{name}, ND {diameter}"
+            for name, diameter in zip(names, diameters, strict=True)
+        ]
+    return names
 
 
 def _damping(ax: Axes, one: NonlinearModes, colour: Colour, name: str) -> None:
