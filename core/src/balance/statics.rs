@@ -230,13 +230,11 @@ impl<'a> Loading<'a> {
         let added = (share - from.share).max(0.0);
         level.u.iter_mut().zip(&self.stuck).for_each(|(u, stuck)| *u += added * stuck);
         let mut residual = vec![0.0; size];
-        let mut matrix = Mat::<f64>::zeros(size, size);
-        self.evaluate(from, &mut level, &mut residual, Some(&mut matrix));
+        let mut slopes = self.evaluate(from, &mut level, &mut residual);
         let mut before = norm(&residual);
         for _ in 0..ITERATIONS {
-            let mut newton = Mat::from_fn(size, 1, |i, _| -residual[i]);
-            matrix.partial_piv_lu().solve_in_place(&mut newton);
-            let length = newton.norm_l2();
+            let newton = self.direction(&slopes, &residual);
+            let length = norm(&newton);
             let scale = norm(&level.u) + norm(&self.stuck) + norm(&residual);
             if !length.is_finite() || length > FREE * scale {
                 return None;
@@ -245,9 +243,9 @@ impl<'a> Loading<'a> {
             let mut damping = 1.0;
             loop {
                 for (i, u) in level.u.iter_mut().enumerate() {
-                    *u = start[i] + damping * newton[(i, 0)];
+                    *u = start[i] + damping * newton[i];
                 }
-                self.evaluate(from, &mut level, &mut residual, Some(&mut matrix));
+                slopes = self.evaluate(from, &mut level, &mut residual);
                 let after = norm(&residual);
                 let solved = damping == 1.0 && length <= SOLVED * self.size(&level.u);
                 if solved || size == 0 {
@@ -263,17 +261,11 @@ impl<'a> Loading<'a> {
         (before <= 1e3 * SOLVED * self.size(&level.u)).then_some(level)
     }
 
-    /// `R(U) = U − s U^stuck − G Q(U)` of one step from a level, its Jacobian, and the states there.
-    fn evaluate(
-        &self,
-        from: &Level,
-        level: &mut Level,
-        residual: &mut [f64],
-        matrix: Option<&mut Mat<f64>>,
-    ) {
-        let size = residual.len();
+    /// `R(U) = U − s U^stuck − G Q(U)` of one step from a level, the states there, and the slopes of
+    /// the slip loads `dQ/dU`.
+    fn evaluate(&self, from: &Level, level: &mut Level, residual: &mut [f64]) -> Vec<Slope> {
         let stiffness = self.model.contact_stiffness();
-        let mut slopes = Mat::<f64>::zeros(size, size);
+        let mut slopes = Vec::new();
         let mut jacobian = ReturnMapJacobian::default();
         let laws = self.model.laws().iter().zip(self.model.points());
         for (index, (law, points)) in laws.enumerate() {
@@ -283,7 +275,7 @@ impl<'a> Loading<'a> {
             law.return_map(before, after, &mut level.states[index], force, Some(&mut jacobian));
             let (count, states) = (points.len(), law.state_size());
             for i in 0..count {
-                for j in 0..count {
+                let by = |j: usize| -> f64 {
                     let through: f64 = (0..states)
                         .map(|z| {
                             jacobian.force_by_state[i * states + z]
@@ -291,19 +283,47 @@ impl<'a> Loading<'a> {
                         })
                         .sum();
                     let (row, column) = (points.start + i, points.start + j);
-                    slopes[(row, column)] =
-                        stiffness[(row, column)] - through - jacobian.force_by_after[i * count + j];
+                    stiffness[(row, column)] - through - jacobian.force_by_after[i * count + j]
+                };
+                let by: Vec<f64> = (0..count).map(by).collect();
+                // What is not a number has to come to light.
+                if by.iter().any(|slope| *slope != 0.0) {
+                    slopes.push(Slope { row: points.start + i, first: points.start, by });
                 }
             }
         }
-        let q = slip_load(self.model, level);
+        residual.fill(0.0);
+        self.add_response(slip_load(self.model, level).into_iter().enumerate(), residual);
         for (i, residual) in residual.iter_mut().enumerate() {
-            let response: f64 = (0..size).map(|j| self.receptance[(i, j)] * q[j]).sum();
-            *residual = level.u[i] - self.base[i] - level.share * self.stuck[i] - response;
+            *residual = level.u[i] - self.base[i] - level.share * self.stuck[i] - *residual;
         }
-        if let Some(matrix) = matrix {
-            *matrix = Mat::<f64>::identity(size, size) - &self.receptance * slopes;
+        slopes
+    }
+
+    /// `out += G q` of single slip loads.
+    fn add_response(&self, slip_loads: impl Iterator<Item = (usize, f64)>, out: &mut [f64]) {
+        for (j, q) in slip_loads.filter(|(_, q)| *q != 0.0) {
+            let column = self.receptance.col(j).iter();
+            out.iter_mut().zip(column).for_each(|(out, g)| *out += g * q);
         }
+    }
+
+    /// Newton's direction `dU = −R + G dQ`. The slip loads with a slope alone are unknown, of which
+    /// `(1 − dQ/dU G) dQ = −dQ/dU R`.
+    fn direction(&self, slopes: &[Slope], residual: &[f64]) -> Vec<f64> {
+        let count = slopes.len();
+        let matrix = Mat::from_fn(count, count, |i, j| {
+            let column = self.receptance.col(slopes[j].row);
+            f64::from(u8::from(i == j)) - slopes[i].times(|k| column[k])
+        });
+        let mut loads = Mat::from_fn(count, 1, |i, _| -slopes[i].times(|k| residual[k]));
+        if count > 0 {
+            matrix.partial_piv_lu().solve_in_place(&mut loads);
+        }
+        let mut step: Vec<f64> = residual.iter().map(|r| -r).collect();
+        let loads = slopes.iter().enumerate().map(|(i, slope)| (slope.row, loads[(i, 0)]));
+        self.add_response(loads, &mut step);
+        step
     }
 
     /// Why no level follows: a body that has come free leaves the equations without a solution, and
@@ -311,10 +331,19 @@ impl<'a> Loading<'a> {
     fn failure(&self) -> RestStatus {
         let size = self.level.u.len();
         let (mut level, mut residual) = (self.level.clone(), vec![0.0; size]);
-        let mut matrix = Mat::<f64>::zeros(size, size);
         let ahead: Vec<f64> = self.stuck.iter().map(|u| SHORTEST * u).collect();
         level.u.iter_mut().zip(&ahead).for_each(|(u, by)| *u += by);
-        self.evaluate(&self.level, &mut level, &mut residual, Some(&mut matrix));
+        let mut matrix = Mat::<f64>::identity(size, size);
+        for slope in self.evaluate(&self.level, &mut level, &mut residual) {
+            let answer = self.receptance.col(slope.row);
+            for (j, by) in slope.by.iter().enumerate() {
+                matrix
+                    .col_mut(slope.first + j)
+                    .iter_mut()
+                    .zip(answer.iter())
+                    .for_each(|(entry, g)| *entry -= g * by);
+            }
+        }
         let singular = matrix.svd().is_ok_and(|svd| {
             let values = svd.S().column_vector();
             (0..size).any(|i| values[i] <= 1e-10 * values[0])
@@ -327,11 +356,28 @@ impl<'a> Loading<'a> {
     }
 }
 
+/// How a slip load answers the displacements of its contact.
+struct Slope {
+    row: usize,
+    /// Position of the first of those displacements, …
+    first: usize,
+    /// … and the slope by each [N/m].
+    by: Vec<f64>,
+}
+
+impl Slope {
+    fn times(&self, displacement: impl Fn(usize) -> f64) -> f64 {
+        self.by.iter().enumerate().map(|(j, by)| by * displacement(self.first + j)).sum()
+    }
+}
+
 /// `q = D u − f` at a level.
 pub(crate) fn slip_load(model: &Model, level: &Level) -> Vec<f64> {
-    let (stiffness, size) = (model.contact_stiffness(), level.u.len());
-    let stuck = |i: usize| (0..size).map(|j| stiffness[(i, j)] * level.u[j]).sum::<f64>();
-    (0..size).map(|i| stuck(i) - level.force[i]).collect()
+    let stiffness = model.contact_stiffness();
+    // A contact's stiffness couples its own points alone.
+    let points = model.points().iter().flat_map(|own| own.clone().map(move |i| (i, own)));
+    let stuck = points.map(|(i, own)| own.clone().map(|j| stiffness[(i, j)] * level.u[j]).sum());
+    stuck.zip(&level.force).map(|(stuck, force): (f64, _)| stuck - force).collect()
 }
 
 fn complex(values: &[f64]) -> Vec<c64> {
