@@ -28,7 +28,7 @@ const ASIDE: f64 = 1e-8;
 /// steps behind it start at its bandwidth.
 ///
 /// Where contact laws are not monotone the curve is followed by arclength, and its frequency may turn
-/// back; not that of so many contacts that receptances are not formed.
+/// back.
 ///
 /// # Errors
 /// As for a sweep over given frequencies; a range of no length.
@@ -41,8 +41,7 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
     }
     let direction = (to - from).signum();
     let longest = LONGEST * (to - from).abs();
-    // Along the curve the whole Jacobian is needed: it has no room for that of many contacts.
-    if !balance.model.is_monotone() && !balance.has_many_contacts() {
+    if !balance.model.is_monotone() {
         return sweep_branch(balance, (from, to));
     }
     let mut points = vec![Arc::new(balance.solve(from, None)?)];

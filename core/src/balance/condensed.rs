@@ -2,6 +2,7 @@
 
 use super::evaluation::Evaluated;
 use super::linear::{Factor, Linear};
+use super::modal_work::is_large;
 use super::solution::{Point, PointStatus};
 use super::unknowns::gather;
 use crate::contact::{ContactLaw, Motion, PointSummary, Residual, SlipLoad};
@@ -28,6 +29,8 @@ pub struct Condensed<'a> {
     pub(super) linear: Linear,
     /// Whether derivatives in ω are wanted.
     pub(super) slopes: bool,
+    /// Whether nothing corrects what is solved with products.
+    pub(super) fine: bool,
     pub(super) omega: f64,
     pub(super) stuck: Vec<f64>,
     /// Slip loads and tangents at the last unknowns whose tangents were evaluated.
@@ -59,6 +62,7 @@ impl<'a> Condensed<'a> {
         Self {
             linear: Linear::new(model.compliance(), table, slopes),
             slopes,
+            fine: slopes,
             loads: vec![SlipLoad::default(); model.laws().len()],
             values: vec![SlipLoad::default(); model.laws().len()],
             model,
@@ -109,6 +113,21 @@ impl<'a> Condensed<'a> {
     /// Takes dense receptances in any case, for methods that need the whole Jacobian.
     pub(super) fn densify(&mut self) {
         self.linear.densify(self.table, self.slopes);
+    }
+
+    /// The equations of a curve, with the frequency unknown: by dense receptances unless the whole
+    /// Jacobian is too large to be formed.
+    pub(super) fn of_curve(
+        model: Evaluated<'a>,
+        table: &'a SampleTable,
+        residual: Residual,
+    ) -> Self {
+        let mut equations = Self::new(model, table, residual, true);
+        equations.fine = false;
+        if !is_large(equations.model.compliance(), table.harmonics()) {
+            equations.densify();
+        }
+        equations
     }
 
     /// Displacements of the DOFs `observe` at every kept order, handed to

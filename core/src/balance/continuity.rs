@@ -151,8 +151,7 @@ struct Way<'a> {
 
 impl Way<'_> {
     fn equations(&self, omega: f64) -> Option<Condensed<'_>> {
-        let mut equations = Condensed::new(self.model.clone(), self.table, self.residual, true);
-        equations.densify();
+        let mut equations = Condensed::of_curve(self.model.clone(), self.table, self.residual);
         equations.set_omega(omega).ok()?;
         Some(equations)
     }

@@ -2,7 +2,6 @@
 
 use super::condensed::{Condensed, Path};
 use super::evaluation::{Evaluated, Evaluations};
-use super::modal_work::is_large;
 use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
 use super::settings::{resolving, Method, Resolution, Settings};
@@ -218,13 +217,6 @@ impl<'a> ForcedBalance<'a> {
         let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
         self.add_profile(&equations.profile);
         Ok(solved)
-    }
-
-    /// Whether the whole Jacobian is too large to be formed, at the least resolution that a point
-    /// begins with.
-    pub(super) fn has_many_contacts(&self) -> bool {
-        let harmonics = Harmonics::new(self.control.first().harmonics, self.half_wave);
-        is_large(self.model.compliance(), &harmonics)
     }
 
     /// Whether a homotopy leads to the solution: it does where there is one alone.

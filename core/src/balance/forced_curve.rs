@@ -93,8 +93,8 @@ impl<'a> ForcedCurve<'a> {
         if !(omega > 0.0 && omega.is_finite() && norm(u).is_finite()) {
             return None;
         }
-        let mut equations = Condensed::new(self.model.clone(), self.table, self.residual, true);
-        equations.densify();
+        let mut equations = Condensed::of_curve(self.model.clone(), self.table, self.residual);
+        equations.watch(self.interrupted);
         equations.set_omega(omega).ok()?;
         let mut residual = vec![0.0; u.len()];
         equations.residual(u, &mut residual);

@@ -13,6 +13,8 @@ use faer::c64;
 
 /// Changes of state of a contact per period: two stops, and slip in both directions.
 const USUAL_EVENTS: usize = 4;
+/// Operations of an orbit that nobody waits for, some minutes.
+const LONGEST_WAIT: f64 = 1e11;
 
 impl ForcedBalance<'_> {
     /// The point that ends the climb at a solution for which `more` harmonics would be too dear:
@@ -43,16 +45,15 @@ impl ForcedBalance<'_> {
         !self.control.only_harmonics_climb() || price.allows_homotopy(order)
     }
 
-    /// The exact orbit with harmonics up to `order` as a start, if it is affordable where harmonics
-    /// are chosen.
+    /// The exact orbit with harmonics up to `order` as a start, if it is affordable: where harmonics
+    /// are chosen, beside what they cost, and in any case for someone who waits.
     pub(super) fn orbit_to_start_from(&self, omega: f64, order: usize) -> Option<Point> {
         let contacts = self.model.compliance().contacts();
         let orbits = self.rescue?;
-        if self.control.only_harmonics_climb() {
-            let price = orbits.price(omega, USUAL_EVENTS * contacts, order)?;
-            if price > self.price(contacts).affordable() {
-                return None;
-            }
+        let price = orbits.price(omega, USUAL_EVENTS * contacts, order)?;
+        let chosen = self.control.only_harmonics_climb();
+        if price > LONGEST_WAIT || (chosen && price > self.price(contacts).affordable()) {
+            return None;
         }
         orbits.orbit(omega, order)
     }

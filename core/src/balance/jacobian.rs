@@ -12,6 +12,7 @@ use super::slip_jacobian::{Border, Loads, SlipJacobian};
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
+use crate::structure::{ContactModes, ModalOrders};
 use crate::timing::Profile;
 use faer::Mat;
 
@@ -76,13 +77,7 @@ impl Condensed<'_> {
         let harmonics = self.table.harmonics();
         let compliance = self.model.compliance();
         self.factor = match (&self.linear, compliance.ring()) {
-            (Linear::Modal(_), _) => {
-                let active: Vec<usize> = (self.loads.iter().zip(self.model.points()))
-                    .filter(|(load, _)| load.active)
-                    .flat_map(|(_, points)| points.clone())
-                    .collect();
-                Some(Factor::Krylov(KrylovNewton::new(compliance, &active)))
-            }
+            (Linear::Modal(_), _) => Some(Factor::Krylov(self.krylov_newton())),
             (Linear::Ring { orders, .. }, Some(ring)) => Some(Factor::Ring(RingNewton::new(
                 RingSeries::new(orders, harmonics),
                 ring.layout(),
@@ -100,19 +95,53 @@ impl Condensed<'_> {
     }
 
     /// Solves the equations linearised in the displacements and the frequency, with one more equation
-    /// whose coefficients are `row`, as `right` says. The sign is that of the determinant.
+    /// whose coefficients are `row`, as `right` says. The sign is that of the determinant, where there is a matrix.
     pub(super) fn solve_bordered(&mut self, row: &[f64], right: &[f64]) -> Option<(Vec<f64>, f64)> {
-        let Linear::Dense(receptances) = &self.linear else { return None };
         let start = std::time::Instant::now();
         let rate = self.frequency_rate();
         let border = Border { rate: &rate, row, omega: self.omega };
         let (harmonics, loads) = (self.table.harmonics(), self.tangents());
-        let factors = SlipJacobian::new(loads, receptances, harmonics, Some(&border));
-        let (step, sign) =
-            factors.solve_bordered(loads, |q, out| self.add_response(q, out), &border, right);
-        self.profile.factorisations += 1;
+        let (step, sign) = match &self.linear {
+            Linear::Dense(receptances) => {
+                let factors = SlipJacobian::new(loads, receptances, harmonics, Some(&border));
+                let answer = |q: &[f64], out: &mut [f64]| self.add_response(q, out);
+                let solved = factors.solve_bordered(loads, answer, &border, right);
+                self.profile.factorisations += 1;
+                solved
+            }
+            Linear::Modal(orders) => {
+                let modes = self.model.compliance().contact_modes()?;
+                let krylov = self.krylov_newton();
+                let (step, count) =
+                    krylov.solve_bordered(self.products(modes, orders), &border, right)?;
+                self.profile.products += count;
+                // The way ahead tells one direction of the curve from the other.
+                (step, 1.0)
+            }
+            Linear::Ring { .. } => return None,
+        };
         self.profile.linear_solve += start.elapsed();
         step.iter().all(|s| s.is_finite()).then_some((step, sign))
+    }
+
+    /// The contacts that yield, as products with the modes see them.
+    fn krylov_newton(&self) -> KrylovNewton {
+        let active: Vec<usize> = (self.loads.iter().zip(self.model.points()))
+            .filter(|(load, _)| load.active)
+            .flat_map(|(_, points)| points.clone())
+            .collect();
+        KrylovNewton::new(self.model.compliance(), &active)
+    }
+
+    fn products<'b>(&'b self, modes: &'b ContactModes, orders: &'b ModalOrders) -> Products<'b> {
+        Products {
+            modes,
+            orders,
+            loads: self.tangents(),
+            sizes: &self.sizes,
+            fine: self.fine,
+            interrupted: self.interrupted,
+        }
     }
 
     /// Subtracts `G ∂Q` of one contact.
@@ -225,14 +254,7 @@ impl System for Condensed<'_> {
             }
             (Some(Factor::Krylov(factor)), Linear::Modal(orders)) => {
                 let Some(modes) = self.model.compliance().contact_modes() else { return false };
-                let products = Products {
-                    modes,
-                    orders,
-                    loads: self.tangents(),
-                    sizes: &self.sizes,
-                    fine: self.slopes,
-                    interrupted: self.interrupted,
-                };
+                let products = self.products(modes, orders);
                 let Some(count) = factor.solve(products, rhs, step) else { return false };
                 self.profile.products += count;
             }

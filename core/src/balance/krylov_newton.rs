@@ -5,8 +5,8 @@
 //! products hardly depends on the number of contacts. Points are scaled by the size of their motion,
 //! as the error of the solution is judged.
 
-use super::slip_jacobian::Loads;
-use crate::solve::{gmres, KrylovSettings};
+use super::slip_jacobian::{Border, Loads};
+use crate::solve::{gmres, norm, KrylovSettings};
 use crate::structure::{Compliance, ContactModes, ModalOrders};
 use faer::{Mat, MatRef};
 
@@ -14,6 +14,8 @@ use faer::{Mat, MatRef};
 const FORCING: f64 = 1e-3;
 /// The same of equations whose direction nothing corrects.
 const FINE: f64 = 1e-11;
+/// The same of equations whose frequency is unknown: tangents follow from them, too.
+const BORDERED: f64 = 1e-5;
 /// Products after which a direction is taken as it is, …
 const MOST_PRODUCTS: usize = 400;
 /// … if it leaves no more than this.
@@ -63,18 +65,9 @@ impl KrylovNewton {
         rhs: &[f64],
         step: &mut [f64],
     ) -> Option<usize> {
-        let Products { modes, orders, loads: Loads { slots, .. }, .. } = products;
+        let Products { modes, loads: Loads { slots, .. }, .. } = products;
         let tolerance = if products.fine { FINE } else { FORCING };
         let mut load = vec![0.0; self.points.len() * slots];
-        // Modal coordinates of the motion that the tangents answer a step of the active points with.
-        let mut answered = |v: &[f64], tolerance: f64| -> Mat<f64> {
-            load.fill(0.0);
-            self.add_tangents(products.loads, v, &mut load);
-            let load = MatRef::from_column_major_slice(&load, slots, self.points.len());
-            let mut motion = ContactModes::excite(self.shapes.as_ref(), load);
-            modes.answer(orders, &mut motion, tolerance);
-            motion
-        };
         let sizes: Vec<f64> = self.points.iter().map(|&point| products.sizes[point]).collect();
         let scaled = |values: &mut [f64], scale: &dyn Fn(f64) -> f64| {
             for (own, size) in values.chunks_exact_mut(slots).zip(&sizes) {
@@ -87,7 +80,7 @@ impl KrylovNewton {
         let product = |v: &[f64], out: &mut [f64]| {
             moved.copy_from_slice(v);
             scaled(&mut moved, &|size| size);
-            let motion = answered(&moved, WITHIN * tolerance);
+            let motion = self.answered(products, &moved, WITHIN * tolerance, &mut load);
             let motion = ContactModes::displace(self.shapes.as_ref(), motion.as_ref());
             for (out, own) in out.chunks_exact_mut(slots).zip(motion.col_iter()) {
                 out.iter_mut().zip(own.iter()).for_each(|(out, u)| *out = *u);
@@ -107,7 +100,7 @@ impl KrylovNewton {
         // The others follow from step = rhs + G ∂Q step.
         step.copy_from_slice(rhs);
         if self.points.len() * slots < step.len() {
-            let motion = answered(&solution, WITHIN * tolerance);
+            let motion = self.answered(products, &solution, WITHIN * tolerance, &mut load);
             let motion = ContactModes::displace(modes.contacts(), motion.as_ref());
             for (step, own) in step.chunks_exact_mut(slots).zip(motion.col_iter()) {
                 step.iter_mut().zip(own.iter()).for_each(|(step, u)| *step += u);
@@ -117,6 +110,85 @@ impl KrylovNewton {
             step[point * slots..(point + 1) * slots].copy_from_slice(own);
         }
         Some(report.products)
+    }
+
+    /// `(dU, dω)` of the equations with an unknown frequency, `J dU − R' dω = r` and one row more,
+    /// and the number of products that they took; nothing if there is none, or the caller ends the
+    /// analysis. Columns and the row have the size of one there.
+    pub(super) fn solve_bordered(
+        &self,
+        products: Products<'_>,
+        border: &Border<'_>,
+        right: &[f64],
+    ) -> Option<(Vec<f64>, usize)> {
+        let Products { modes, loads: Loads { slots, .. }, .. } = products;
+        let count = border.rate.len();
+        let (size, mut load) = (self.points.len() * slots, vec![0.0; self.points.len() * slots]);
+        let sizes = self.points.iter().flat_map(|&point| vec![products.sizes[point]; slots]);
+        let sizes: Vec<f64> = sizes.collect();
+        let divided = |values: Vec<f64>| -> Vec<f64> {
+            values.iter().zip(&sizes).map(|(value, size)| value / size).collect()
+        };
+        // What does not depend on the motion follows from what does: dU = r + R' dω + G ∂Q dU.
+        let mut rest = border.row[..count].to_vec();
+        self.points.iter().for_each(|point| rest[point * slots..(point + 1) * slots].fill(0.0));
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut column = divided(self.of_points(border.rate, slots));
+        let unit = norm(&column).recip().min(border.omega);
+        column.iter_mut().for_each(|c| *c *= unit);
+        let mut row: Vec<f64> = self.of_points(&border.row[..count], slots);
+        row.iter_mut().zip(&sizes).for_each(|(row, size)| *row *= size);
+        row.push((border.row[count] + dot(&rest, border.rate)) * unit);
+        let weight = norm(&row).recip();
+        let mut rhs = divided(self.of_points(&right[..count], slots));
+        rhs.push(weight * (right[count] - dot(&rest, &right[..count])));
+        let mut moved = vec![0.0; size];
+        let product = |v: &[f64], out: &mut [f64]| {
+            moved.iter_mut().zip(v).zip(&sizes).for_each(|((m, v), size)| *m = v * size);
+            let motion = self.answered(products, &moved, WITHIN * BORDERED, &mut load);
+            let answer = series(&ContactModes::displace(modes.contacts(), motion.as_ref()));
+            let own = divided(self.of_points(&answer, slots));
+            let ahead = v[size];
+            for (((out, v), own), c) in out.iter_mut().zip(&v[..size]).zip(own).zip(&column) {
+                *out = v - own - c * ahead;
+            }
+            out[size] = weight * (dot(&row, v) + dot(&rest, &answer));
+            !products.interrupted.is_some_and(|ask| ask())
+        };
+        let mut solution = vec![0.0; size + 1];
+        let settings = KrylovSettings { tolerance: BORDERED, max_products: MOST_PRODUCTS };
+        let report = gmres(product, &rhs, &mut solution, settings);
+        if report.residual.is_nan() || report.residual > USEFUL {
+            return None;
+        }
+        let ahead = solution[size] * unit;
+        solution.iter_mut().zip(&sizes).for_each(|(x, size)| *x *= size);
+        let motion = self.answered(products, &solution[..size], WITHIN * BORDERED, &mut load);
+        let answer = series(&ContactModes::displace(modes.contacts(), motion.as_ref()));
+        let linear = right[..count].iter().zip(border.rate).map(|(r, rate)| r + ahead * rate);
+        let mut step: Vec<f64> =
+            linear.zip(answer).map(|(linear, answer)| linear + answer).collect();
+        for (own, &point) in solution.chunks_exact(slots).zip(&self.points) {
+            step[point * slots..(point + 1) * slots].copy_from_slice(own);
+        }
+        step.push(ahead);
+        Some((step, report.products))
+    }
+
+    /// Modal coordinates of the motion that the tangents answer a step of the active points with.
+    fn answered(
+        &self,
+        products: Products<'_>,
+        step: &[f64],
+        tolerance: f64,
+        load: &mut [f64],
+    ) -> Mat<f64> {
+        load.fill(0.0);
+        self.add_tangents(products.loads, step, load);
+        let load = MatRef::from_column_major_slice(load, products.loads.slots, self.points.len());
+        let mut motion = ContactModes::excite(self.shapes.as_ref(), load);
+        products.modes.answer(products.orders, &mut motion, tolerance);
+        motion
     }
 
     /// The series of the active points among those of all.
@@ -141,4 +213,9 @@ impl KrylovNewton {
         }
         debug_assert_eq!(first, self.points.len() * loads.slots);
     }
+}
+
+/// Series of all points, one after the other.
+fn series(motion: &Mat<f64>) -> Vec<f64> {
+    motion.col_iter().flat_map(|column| column.iter().copied()).collect()
 }

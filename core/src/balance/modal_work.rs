@@ -31,7 +31,7 @@ pub(super) fn suits(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool 
     dense > WORTH * PRODUCTS * product(modes, contacts, slots)
 }
 
-/// Whether the whole Jacobian is too large to be formed: a curve is then not followed by arclength.
+/// Whether the whole Jacobian is too large to be formed, along a curve too.
 pub(super) fn is_large(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool {
     suits(compliance, harmonics) && compliance.contacts() * harmonics.slots() > LARGEST_FORMED
 }

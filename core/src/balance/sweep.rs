@@ -34,7 +34,7 @@ pub(super) fn sweep_with<'a>(
         |balance, points, frequency| {
             let guess = predict(points, frequency);
             let mut point = solve(balance, frequency, guess.as_ref())?;
-            if let Some(last) = points.last().filter(|_| follows_branches(balance)) {
+            if let Some(last) = points.last().filter(|_| !balance.model.is_monotone()) {
                 balance.stay_on_branch(last, guess.as_ref(), &mut point)?;
             }
             Ok(Some(point).filter(|point| point.status != PointStatus::NotComputed))
@@ -88,12 +88,6 @@ pub(crate) fn check_bracket([low, guess, high]: [f64; 3]) -> Result<(), Error> {
         return Ok(());
     }
     Err(Error::value("peak: guess", guess, "must lie between its bounds"))
-}
-
-/// Whether points may lie on several branches, from one of which to another a sweep may jump, and a
-/// curve between them can be followed: it takes the whole Jacobian.
-fn follows_branches(balance: &ForcedBalance<'_>) -> bool {
-    !balance.model.is_monotone() && !balance.has_many_contacts()
 }
 
 pub(super) fn finish(

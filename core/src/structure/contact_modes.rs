@@ -212,7 +212,8 @@ impl ContactModes {
     pub(super) fn solved(&self, order: usize, omega: f64, forces: Mat<c64>) -> Mat<c64> {
         let rate = order as f64 * omega;
         let own = |j: usize| c64::new(self.omega_squared[j] - rate * rate, rate * self.damping[j]);
-        let Some(coupling) = &self.coupling else {
+        // Damping couples nothing at rest.
+        let Some(coupling) = self.coupling.as_ref().filter(|_| rate != 0.0) else {
             return Mat::from_fn(forces.nrows(), forces.ncols(), |i, j| forces[(i, j)] / own(i));
         };
         let whole = Mat::from_fn(self.modes(), self.modes(), |i, j| {

@@ -104,7 +104,11 @@ impl Compliance for InterfaceCompliance {
                 let size = (coordinates.nrows(), coordinates.ncols());
                 rows.transpose() * Mat::from_fn(size.0, size.1, |i, j| of(&coordinates[(i, j)]))
             };
-            let (re, im) = (part(|z| z.re), part(|z| z.im));
+            let re = part(|z| z.re);
+            if harmonic == 0 {
+                return Mat::from_fn(re.nrows(), re.ncols(), |i, j| c64::new(re[(i, j)], 0.0));
+            }
+            let im = part(|z| z.im);
             Mat::from_fn(re.nrows(), re.ncols(), |i, j| c64::new(re[(i, j)], im[(i, j)]))
         };
         store(at_contacts(&coordinates[0]).as_ref(), &mut out.contact);
