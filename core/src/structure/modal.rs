@@ -16,7 +16,8 @@ use super::restraint::restrain;
 use super::spectrum::{complex_modes, Spectrum};
 use super::{Compliance, DirectCompliance, Outline, Quantity, Receptance, Request, Structure};
 use crate::Error;
-use faer::{c64, Mat, MatRef};
+use faer::linalg::matmul::matmul;
+use faer::{c64, Accum, Mat, MatMut, MatRef, Par};
 use std::sync::Arc;
 
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
@@ -304,10 +305,14 @@ impl ModalCompliance {
         if !self.negative.is_empty() {
             out.by_ratio.resize(contacts * contacts, c64::new(0.0, 0.0));
         }
+        let by_products = contacts >= ContactModes::FEWEST && self.negative.is_empty();
+        if by_products {
+            self.multiply_modes(order, omega, out);
+        }
         for j in 0..self.right.ncols() {
             let (weight, slope) = self.spectrum.weight(j, order * omega);
             let slope = order * slope;
-            for column in 0..contacts {
+            for column in (0..contacts).filter(|_| !by_products) {
                 let left = self.contact_left[(column, j)];
                 let (value, change) = (weight * left, slope * left);
                 for row in 0..contacts {
@@ -331,6 +336,25 @@ impl ModalCompliance {
                     stuck[row] += response * slope;
                 }
             }
+        }
+    }
+
+    /// The sum for the pairs of many contacts, as a product of matrices.
+    fn multiply_modes(&self, order: f64, omega: f64, out: &mut Receptance) {
+        let (contacts, modes) = (self.contacts(), self.right.ncols());
+        let weights: Vec<[c64; 2]> = (0..modes)
+            .map(|j| {
+                let (weight, slope) = self.spectrum.weight(j, order * omega);
+                [weight, order * slope]
+            })
+            .collect();
+        let slope = out.slope.as_mut().map(|(contact, _)| contact);
+        for (which, sum) in [&mut out.contact].into_iter().chain(slope).enumerate() {
+            let left =
+                Mat::from_fn(modes, contacts, |j, i| self.contact_left[(i, j)] * weights[j][which]);
+            let sum = MatMut::from_column_major_slice_mut(sum, contacts, contacts);
+            let (right, one) = (self.contact_right.as_ref(), c64::new(1.0, 0.0));
+            matmul(sum, Accum::Replace, right, left.as_ref(), one, Par::Seq);
         }
     }
 }
