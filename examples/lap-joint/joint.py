@@ -4,8 +4,9 @@
 
 writes joint.inp, two plates that overlap, reads it as any other deck, pairs the nodes of the two
 faces, reduces the plates to the displacements between them and a few modes, presses them together,
-and bends the joint by rising forces. The matrices are those of CalculiX where it is installed;
-where it is not, the package's own, which are the same to twelve digits.
+bends the joint by rising forces, and shakes it around its first resonance. The matrices are those of
+CalculiX where it is installed; where it is not, the package's own, which are the same to twelve
+digits.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ STEEL = (210e9, 0.3, 7850.0)  # Pa, -, kg/m3
 CLAMPING = 4e3  # N, spread over the overlap from both sides
 FRICTION, K_T, K_N = 0.3, 2e12, 4e12  # -, N/m3, N/m3
 LEVELS = (200.0, 400.0, 800.0)  # N, across the plates in the middle of the overlap
+SHAKEN = 20.0  # N, the same way, at the frequencies of the curve
+CURVE = np.linspace(0.90, 1.02, 13)  # over the first natural frequency of the stuck joint
 CENTRE = np.array([LENGTH - OVERLAP / 2, WIDTH / 2])
 
 
@@ -136,7 +139,23 @@ def joint(size: int) -> tuple[ss.ContactInterface, ss.Structure, list[ss.Force]]
     )
 
 
-def main(size: int = 4, picture: str | None = None) -> dict[str, object]:
+def shaken(
+    plates: ss.Structure,
+    touching: ss.Coulomb,
+    bolt: list[ss.Force],
+    interface: ss.ContactInterface,
+    curve: np.ndarray = CURVE,
+) -> tuple[ss.ForcedResponse, np.ndarray]:
+    """Return the response under the bolt's load, and the area that slips at each frequency [m2]."""
+    model = ss.Model(plates, [touching], [*bolt, ss.Force("middle", SHAKEN)])
+    lowest = ss.natural_frequencies(model)[0]
+    response = ss.forced_response(
+        model, curve * lowest, harmonics=3, observe=["middle"], stability=False
+    )
+    return response, ss.slip_area(interface, response)
+
+
+def main(size: int = 4, picture: str | None = None, curve: np.ndarray = CURVE) -> dict[str, object]:
     """Return what the example's test asserts."""
     clock = time.perf_counter()
     interface, plates, bolt = joint(size)
@@ -157,6 +176,16 @@ def main(size: int = 4, picture: str | None = None) -> dict[str, object]:
         seen = ss.ContactMap.of(interface, bent)
         print(f"{level:5.0f} N: {bent.status}, {seen}; {time.perf_counter() - clock:.1f} s")
         found["slip"][level] = seen.slip_area
+    clock = time.perf_counter()
+    response, slips = shaken(plates, touching, bolt, interface, curve)
+    spent = time.perf_counter() - clock
+    amplitude = response.amplitude("middle")
+    print(f"{SHAKEN:.0f} N shaking, {len(curve)} frequencies in {spent:.1f} s:")
+    for omega, height, area, status in zip(
+        response.omega, amplitude, slips, response.status, strict=True
+    ):
+        print(f"{omega:8.1f} rad/s: {height:.4e} m, {area * 1e4:.2f} cm2 slip, {status}")
+    found |= {"status": response.status, "amplitude": amplitude, "shaken_slip": slips}
     if picture is not None:
         seen.plot(field="slip").figure.savefig(picture, dpi=150)
         seen.write_vtu(Path(picture).with_suffix(".vtu"))

@@ -95,10 +95,38 @@ def test_the_mode_of_the_study_moves_the_tip_most():
 
 def test_a_lap_joint_slips_from_a_deck(capsys):
     pytest.importorskip("skfem")
-    found = module(EXAMPLES / "lap-joint" / "joint.py", "joint").main(4)
+    example = module(EXAMPLES / "lap-joint" / "joint.py", "joint")
+    found = example.main(4, curve=np.array([0.93]))
     assert "37 pairs" in capsys.readouterr().out
     assert found["open"] == 0.0
     # the plates themselves, clamped at their ends, bear some 2 % of the 4 kN
     assert found["force"] == pytest.approx(3924.9, rel=1e-4)
     slips = [found["slip"][level] for level in (200.0, 400.0, 800.0)]
     np.testing.assert_allclose(slips, [4.0e-4, 5.737e-4, 6.579e-4], rtol=1e-3)
+    # the same by 128 samples: 2.75234e-5
+    assert found["amplitude"] == pytest.approx([2.75247e-5], rel=1e-4)
+
+
+@pytest.mark.slow
+def test_a_lap_joint_of_121_pairs_softens_around_its_resonance():
+    pytest.importorskip("skfem")
+    example = module(EXAMPLES / "lap-joint" / "joint.py", "joint")
+    interface, plates, bolt = example.joint(8)
+    laws = {
+        "friction": example.FRICTION,
+        "tangential_stiffness": example.K_T,
+        "normal_stiffness": example.K_N,
+    }
+    touching = interface.contact(**laws, relative=True)
+    curve = np.array([0.93, 0.95, 1.01])
+    response, slips = example.shaken(plates, touching, bolt, interface, curve)
+    assert list(response.status) == ["converged"] * 3
+    # by products with the modes, along the curve too
+    assert response.counters["products"] > 500
+    # by 128 samples 2.76196e-5, 4.11195e-5 and 6.69211e-5
+    assert response.amplitude("middle") == pytest.approx(
+        [2.76198e-5, 4.11210e-5, 6.69186e-5], rel=1e-4
+    )
+    opens = (response.open_fraction(0) > 0.0).mean(axis=1)
+    np.testing.assert_allclose(opens, [0.0, 0.0, 14 / 121], atol=1e-3)
+    assert 0.0 < slips[0] < slips[1] < slips[2] < interface.area

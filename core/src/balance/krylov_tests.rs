@@ -192,6 +192,44 @@ fn rates_with_frequency_and_directions_are_those_with_receptances() {
 }
 
 #[test]
+fn steps_with_an_unknown_frequency_are_those_of_the_bordered_matrix() {
+    let friction = model(coulomb(26, 2), Damping::Mass, 0.0).marched(64).unwrap();
+    let coupled = model(jenkins(100), Damping::Rayleigh, 0.0);
+    for (model, highest) in [(friction, 3), (coupled, 9)] {
+        let table = SampleTable::new(Harmonics::new(highest, false));
+        let steps: Vec<Vec<f64>> = [true, false]
+            .into_iter()
+            .map(|dense| {
+                let mut equations = Condensed::new(&model, &table, Residual::Centred, true);
+                equations.fine = false;
+                assert!(matches!(equations.linear, Linear::Modal(_)));
+                if dense {
+                    equations.densify();
+                }
+                equations.set_omega(9.0).unwrap();
+                let x = equations.stuck_response().to_vec();
+                let mut residual = vec![0.0; x.len()];
+                equations.residual(&x, &mut residual);
+                let size = crate::solve::norm(&x);
+                let row: Vec<f64> = (0..=x.len())
+                    .map(|i| (0.3 * i as f64).cos() / if i < x.len() { size } else { 9.0 })
+                    .collect();
+                residual.push(0.1);
+                let (step, _) = equations.solve_bordered(&row, &residual).unwrap();
+                assert_eq!(equations.profile.products > 0, !dense);
+                step
+            })
+            .collect();
+        let motion = steps[0].len() - 1;
+        let omega = [0, 1].map(|i: usize| steps[i][motion]);
+        let apart: Vec<f64> = steps[0].iter().zip(&steps[1]).map(|(a, b)| a - b).collect();
+        let worst = crate::solve::norm(&apart[..motion]) / crate::solve::norm(&steps[0][..motion]);
+        assert!(worst < 1e-4, "{highest}: {worst:e}");
+        assert!((omega[0] - omega[1]).abs() < 1e-4 * omega[0].abs(), "{highest}: {omega:?}");
+    }
+}
+
+#[test]
 fn a_direction_ends_with_the_analysis() {
     let model = model(jenkins(72), Damping::Mass, 0.0);
     let table = SampleTable::new(Harmonics::new(7, true));

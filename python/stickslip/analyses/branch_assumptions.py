@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.analyses.arguments import points_of
 from stickslip.analyses.texts import told
 from stickslip.model import Model
 from stickslip.results.arrays import STABILITY, Arrays
@@ -14,9 +13,6 @@ from stickslip.results.diagnostic import Diagnostic, present
 
 if TYPE_CHECKING:
     from stickslip import _core
-
-LARGEST_FORMED = 2000
-"""Unknowns of the largest Jacobian that the core forms where products would do."""
 
 _ENDS = {
     "returned": "branch-end/returned",
@@ -40,7 +36,6 @@ def branch_assumptions(
             unstable > 0 and told("unstable", points=unstable, _solved=int(arrays.solved.sum())),
             unresolved > 0 and told("stability-undecided/points", points=unresolved),
             _jumps(arrays),
-            _not_followed(model, arrays, solution),
             solution.end in _ENDS
             and told(
                 _ENDS[solution.end],
@@ -50,14 +45,6 @@ def branch_assumptions(
             ),
         )
     )
-
-
-def _not_followed(model: Model, arrays: Arrays, solution: _core.Solution) -> Diagnostic | None:
-    """Say that so many contacts are not followed around folds: their Jacobian is never formed."""
-    unknowns = points_of(model) * (2 * int(arrays.harmonics.max(initial=0)) + 1)
-    if not solution.counters.get("products") or unknowns <= LARGEST_FORMED:
-        return None
-    return told("branch-not-followed", unknowns=unknowns)
 
 
 def _jumps(arrays: Arrays) -> Diagnostic | None:

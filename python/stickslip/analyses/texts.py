@@ -135,9 +135,6 @@ TEXTS = {
     "percentiles let them lie anywhere; surrogates leave them out.",
     "truncation/samples": "The discarded harmonics could still change a number of a sample by up "
     "to {share:.1%}; keep more harmonics.",
-    "branch-not-followed": "The equations of the contacts have {unknowns} unknowns, too many to "
-    "follow the curve around folds: jumps to another branch were not looked for. Sweep in both "
-    "directions and compare.",
     # the model
     "static-traction": "A contact that never slips was taken to hold {_held} "
     "(residual={residual!r}, of effect at {points} of {_solved} points); residual_bounds gives "
