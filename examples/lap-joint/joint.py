@@ -4,8 +4,8 @@
 
 writes joint.inp, two plates that overlap, reads it as any other deck, pairs the nodes of the two
 faces, reduces the plates to the displacements between them and a few modes, presses them together,
-bends the joint by rising forces, and shakes it around its first resonance. The matrices are those of
-CalculiX where it is installed; where it is not, the package's own, which are the same to twelve
+bends the joint by rising forces, and shakes it around its first resonance. The matrices are those
+of CalculiX where it is installed; where it is not, the package's own, which are the same to twelve
 digits.
 """
 
