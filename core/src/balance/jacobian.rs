@@ -83,12 +83,14 @@ impl Condensed<'_> {
                     .collect();
                 Some(Factor::Krylov(KrylovNewton::new(compliance, &active)))
             }
-            (Linear::Ring { orders, .. }, Some(ring)) => Some(Factor::Ring(RingNewton::new(
-                RingSeries::new(orders, harmonics),
-                ring.layout(),
-                &self.loads,
-                self.model.points(),
-            ))),
+            (Linear::Ring { orders, .. }, Some(ring)) => {
+                Some(Factor::Ring(Box::new(RingNewton::new(
+                    RingSeries::new(orders, harmonics),
+                    ring.layout(),
+                    &self.loads,
+                    self.model.points(),
+                ))))
+            }
             (Linear::Dense(receptances), _) => Some(Factor::Dense(SlipJacobian::new(
                 self.tangents(),
                 receptances,
