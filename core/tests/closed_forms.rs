@@ -139,3 +139,23 @@ fn elements_without_friction_or_spring_carry_nothing() {
     let found = Describing::of_jenkins(3.0, f64::INFINITY, 1.0);
     assert_eq!(found.stiffness, c64::new(3.0, 0.0));
 }
+
+#[test]
+fn slip_begins_where_the_range_of_several_harmonics_reaches_its_limit() {
+    // 3rd harmonics that lower the crest, or raise it: amplitudes alone tell of the second.
+    let table = SampleTable::new(Harmonics::new(3, true));
+    for (third, crest) in [(-0.1, 0.9), (0.1, 1.1)] {
+        for (ratio, slips) in [(0.5, false), (1.0 - 1e-9, false), (1.0 + 1e-9, true)] {
+            let law = Jenkins::new(STIFFNESS, STIFFNESS * crest / ratio).unwrap();
+            let u = [1.0, 0.0, third, 0.0];
+            let mut load = SlipLoad::default();
+            law.slip_load(motion(&table, &u), true, &mut load);
+            assert_eq!(load.active, slips, "{third} {ratio}");
+            assert_eq!(load.value.iter().any(|q| *q != 0.0), slips);
+            assert_eq!((load.value.len(), load.tangent.len()), (4, 16));
+            let mut summary = [PointSummary::default()];
+            law.summary(motion(&table, &u), &mut summary);
+            assert_eq!(summary[0].slip_fraction > 0.0, slips);
+        }
+    }
+}

@@ -78,12 +78,14 @@ impl Condensed<'_> {
         let compliance = self.model.compliance();
         self.factor = match (&self.linear, compliance.ring()) {
             (Linear::Modal(_), _) => Some(Factor::Krylov(self.krylov_newton())),
-            (Linear::Ring { orders, .. }, Some(ring)) => Some(Factor::Ring(RingNewton::new(
-                RingSeries::new(orders, harmonics),
-                ring.layout(),
-                &self.loads,
-                self.model.points(),
-            ))),
+            (Linear::Ring { orders, .. }, Some(ring)) => {
+                Some(Factor::Ring(Box::new(RingNewton::new(
+                    RingSeries::new(orders, harmonics),
+                    ring.layout(),
+                    &self.loads,
+                    self.model.points(),
+                ))))
+            }
             (Linear::Dense(receptances), _) => Some(Factor::Dense(SlipJacobian::new(
                 self.tangents(),
                 receptances,

@@ -39,7 +39,7 @@ pub(super) enum Factor {
     /// None: products with the matrix serve.
     Krylov(KrylovNewton),
     /// Of all sectors of a ring.
-    Ring(RingNewton),
+    Ring(Box<RingNewton>),
 }
 
 impl Linear {

@@ -166,26 +166,22 @@ impl SampleTable {
         let (all, q) = (padded(self.quarter + 1), self.quarter / stride);
         // Even and odd orders apart: they reflect with opposite sign about π/2.
         let length = padded(q + 1);
-        let mut sums = vec![0.0; 4 * length];
-        let (even, odd) = sums.split_at_mut(2 * length);
-        let factors = |parity: usize| -> Vec<(usize, [f64; 2])> {
-            let orders = self.harmonics.oscillating().iter().enumerate();
-            let own = orders.filter(|(_, order)| **order % 2 == parity);
-            own.map(|(index, &order)| {
-                let slot = self.harmonics.offset() + 2 * index;
-                let (of_cos, of_sin) = of(order as f64, series[slot], series[slot + 1]);
-                (index * all, [of_cos, of_sin])
-            })
-            .collect()
-        };
-        for (parity, sums) in [(0, &mut *even), (1, &mut *odd)] {
+        let sums = |parity: usize| -> Vec<f64> {
+            let mut factors = Vec::with_capacity(self.harmonics.oscillating().len());
+            for (index, &order) in self.harmonics.oscillating().iter().enumerate() {
+                if order % 2 == parity {
+                    let slot = self.harmonics.offset() + 2 * index;
+                    let (of_cos, of_sin) = of(order as f64, series[slot], series[slot + 1]);
+                    factors.push((index * all, [of_cos, of_sin]));
+                }
+            }
+            let mut sums = vec![0.0; 2 * length];
             let (cosines, sines) = sums.split_at_mut(length);
-            let factors = factors(parity);
             if stride == 1 {
-                let sums = [cosines, sines];
                 let tables = [&self.cos[..], &self.sin];
-                pulp::Arch::new().dispatch(RowSums { tables, rows: &factors, sums });
-                continue;
+                let of_rows = RowSums { tables, rows: &factors, sums: [cosines, sines] };
+                pulp::Arch::new().dispatch(of_rows);
+                return sums;
             }
             for (first, factors) in factors {
                 for (sum, row, factor) in
@@ -195,11 +191,15 @@ impl SampleTable {
                     sum.iter_mut().zip(row).for_each(|(sum, value)| *sum += factor * value);
                 }
             }
-        }
-        let ([even_cos, even_sin], [odd_cos, odd_sin]) =
-            (halves(even, length), halves(odd, length));
+            sums
+        };
+        let odd = sums(1);
+        let [odd_cos, odd_sin] = halves(&odd, length);
         let half_wave = self.harmonics.half_wave();
-        let mut out = vec![0.0; if half_wave { 2 * q } else { 4 * q } + 1];
+        // Room for the seam.
+        let count = if half_wave { 2 * q } else { 4 * q } + 1;
+        let mut out = Vec::with_capacity(count + 2);
+        out.resize(count, 0.0);
         if half_wave {
             for i in 0..=q {
                 out[i] = odd_cos[i] + odd_sin[i];
@@ -207,6 +207,8 @@ impl SampleTable {
             }
             out[q] = odd_cos[q] + odd_sin[q];
         } else {
+            let even = sums(0);
+            let [even_cos, even_sin] = halves(&even, length);
             for i in 0..=q {
                 out[2 * q - i] = even_cos[i] - odd_cos[i] - even_sin[i] + odd_sin[i];
                 out[2 * q + i] = even_cos[i] - odd_cos[i] + even_sin[i] - odd_sin[i];

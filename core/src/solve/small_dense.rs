@@ -2,6 +2,60 @@
 //! started and on aligned memory than these blocks take.
 
 use super::kernels::{self, padded};
+use std::ops::{Deref, DerefMut};
+
+/// So many numbers need no memory of their own: those of a block of two rows, and of two beside each
+/// other. Rings that are coupled through one DOF have hundreds of them.
+const FEW: usize = 16;
+
+/// The numbers of a block.
+#[derive(Debug, Clone)]
+enum Values {
+    Few { count: usize, numbers: [f64; FEW] },
+    Many(Vec<f64>),
+}
+
+impl Values {
+    fn zeros(count: usize) -> Self {
+        if count <= FEW {
+            Self::Few { count, numbers: [0.0; FEW] }
+        } else {
+            Self::Many(vec![0.0; count])
+        }
+    }
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        Self::zeros(0)
+    }
+}
+
+impl Deref for Values {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        match self {
+            Self::Few { count, numbers } => &numbers[..*count],
+            Self::Many(numbers) => numbers,
+        }
+    }
+}
+
+impl DerefMut for Values {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        match self {
+            Self::Few { count, numbers } => &mut numbers[..*count],
+            Self::Many(numbers) => numbers,
+        }
+    }
+}
+
+impl PartialEq for Values {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
 
 /// A small matrix, row by row, each row padded with zeros to whole vectors.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -9,7 +63,7 @@ pub struct Block {
     rows: usize,
     columns: usize,
     stride: usize,
-    values: Vec<f64>,
+    values: Values,
 }
 
 impl Block {
@@ -17,7 +71,7 @@ impl Block {
     #[must_use]
     pub fn zeros(rows: usize, columns: usize) -> Self {
         let stride = padded(columns);
-        Self { rows, columns, stride, values: vec![0.0; rows * stride] }
+        Self { rows, columns, stride, values: Values::zeros(rows * stride) }
     }
 
     /// The identity.
@@ -34,12 +88,13 @@ impl Block {
     #[must_use]
     pub(super) fn beside(left: &Self, right: &Self) -> Self {
         let stride = left.stride + right.stride;
-        let mut values = Vec::with_capacity(left.rows * stride);
+        let mut both = Self::zeros(left.rows, stride);
         for i in 0..left.rows {
-            values.extend_from_slice(left.row(i));
-            values.extend_from_slice(right.row(i));
+            let (first, second) = both.row_mut(i).split_at_mut(left.stride);
+            first.copy_from_slice(left.row(i));
+            second.copy_from_slice(right.row(i));
         }
-        Self { rows: left.rows, columns: stride, stride, values }
+        both
     }
 
     /// Numbers per row, padding included.
@@ -79,7 +134,7 @@ impl Block {
 
     /// `self += other`.
     pub fn add(&mut self, other: &Self) {
-        self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a += b);
+        self.values.iter_mut().zip(&*other.values).for_each(|(a, b)| *a += b);
     }
 
     /// Adds the columns of `other` from `first` on, a whole number of vectors.

@@ -263,9 +263,13 @@ def mean_forces(series: Complex, stiffness: float, slip_force: float) -> Float:
     return bounds
 
 
+_SOLVED = np.zeros(256, dtype=bool)
+"""Whether a status of each code says that the equations hold."""
+_SOLVED[[one.code for one in Status if one.solved]] = True
+
+
 def _solved(status: Code) -> Bool:
-    codes = [one.code for one in Status if one.solved]
-    return constant(np.isin(status, codes))
+    return constant(_SOLVED[status])
 
 
 def constant(array: NDArray[Kind]) -> NDArray[Kind]:
