@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from stickslip.errors import ModelError
@@ -21,6 +22,9 @@ from stickslip.settings.entries import (
 )
 from stickslip.settings.ranges import Dofs, Frequencies
 from stickslip.settings.settings import Settings
+
+_ROUNDING = 100 * np.finfo(np.float64).eps
+"""Pivot, relative to the number of degrees of freedom, that counts as none."""
 
 
 class ObserveKeys(Settings):
@@ -54,6 +58,24 @@ class PointSettings(Settings):
     )
 
 
+def _rests_on_contacts(model: Model) -> bool:
+    """Whether a body would drift without its contacts, whose normal loads vary.
+
+    Centred tractions have no mean that could hold it: its mean position would be undetermined.
+    """
+    if not any("N" in contact.components for contact in model.contacts):
+        return False
+    *_, stiffness = model.matrices_at(0)
+    scale = np.sqrt(np.abs(np.diag(stiffness)))
+    if not scale.all():
+        return True
+    try:
+        pivots = np.diag(np.linalg.cholesky(stiffness / np.outer(scale, scale))).real ** 2
+    except np.linalg.LinAlgError:
+        return True
+    return bool(pivots.min() < _ROUNDING * len(pivots))
+
+
 class SteadySettings(PointSettings):
     """What a steady state leaves open."""
 
@@ -62,7 +84,8 @@ class SteadySettings(PointSettings):
         description="Force [N] that a contact holds at mid-range of its displacement if it never "
         'slips; the steady state alone does not determine it. "centred" is none, "from_rest" what '
         "is left of loads raised slowly from nothing. Default: centred, and from rest as soon as a "
-        "static load acts. See `ForcedResponse.residual_bounds`.",
+        "static load acts, or where contacts alone hold a body. See "
+        "`ForcedResponse.residual_bounds`.",
         examples=["from_rest", "10 N"],
     )
 
@@ -71,7 +94,8 @@ class SteadySettings(PointSettings):
         if self.residual is not None:
             return self
         static = any(force.harmonic == 0 and force.amplitude for force in model.forces)
-        return self.model_copy(update={"residual": "from_rest" if static else "centred"})
+        from_rest = static or _rests_on_contacts(model)
+        return self.model_copy(update={"residual": "from_rest" if from_rest else "centred"})
 
 
 class BoundsKey(SteadySettings):
@@ -83,7 +107,8 @@ class BoundsKey(SteadySettings):
         'slips; the steady state alone does not determine it. "centred" is none, "from_rest" what '
         'is left of loads raised slowly from nothing, "bounds" everything that Coulomb allows: '
         "`ForcedResponse.lower` and `upper`, beside the default's curve. Default: centred, and "
-        "from rest as soon as a static load acts. See `ForcedResponse.residual_bounds`.",
+        "from rest as soon as a static load acts, or where contacts alone hold a body. See "
+        "`ForcedResponse.residual_bounds`.",
         examples=["from_rest", "10 N", "bounds"],
     )
 
