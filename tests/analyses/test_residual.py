@@ -84,3 +84,23 @@ def test_what_is_assumed_moves_the_vibration(directions):
     ]
     for other in found[1:]:
         assert np.abs(other - found[0]).max() > 5e-3 * found[0].max()
+
+
+def test_a_body_that_contacts_alone_hold_begins_from_rest():
+    """Centred tractions have no mean that could hold it."""
+    pad = ss.Coulomb(
+        ["x", "z"],
+        normal=[0.0, 1.0],
+        friction=0.3,
+        tangential_stiffness=1e4,
+        normal_stiffness=2e4,
+        preload=10.0,
+    )
+    forces = [ss.Force("x", 1.0), ss.Force("z", 2.0, phase=1.0)]
+    for ground, expected in ((0.0, "from_rest"), (1.0, "centred")):
+        held = ss.Structure(np.eye(2), ground * np.eye(2), 4.0 * np.eye(2), ["x", "z"])
+        frf = ss.forced_response(ss.Model(held, [pad], forces), [60.0, 70.0], 5)
+        assert frf.settings.residual == expected
+        assert frf.converged.all()
+        exact = ss.exact_response(frf.model, frf.omega)
+        np.testing.assert_allclose(frf.amplitude("x"), exact.amplitude("x"), rtol=1e-6)
