@@ -97,7 +97,8 @@ impl Condensed<'_> {
     }
 
     /// Solves the equations linearised in the displacements and the frequency, with one more equation
-    /// whose coefficients are `row`, as `right` says. The sign is that of the determinant, where there is a matrix.
+    /// whose coefficients are `row`, as `right` says. The sign is that of the determinant, or 0 where no
+    /// matrix is formed.
     pub(super) fn solve_bordered(&mut self, row: &[f64], right: &[f64]) -> Option<(Vec<f64>, f64)> {
         let start = std::time::Instant::now();
         let rate = self.frequency_rate();
@@ -117,8 +118,7 @@ impl Condensed<'_> {
                 let (step, count) =
                     krylov.solve_bordered(self.products(modes, orders), &border, right)?;
                 self.profile.products += count;
-                // The way ahead tells one direction of the curve from the other.
-                (step, 1.0)
+                (step, 0.0)
             }
             Linear::Ring { .. } => return None,
         };
