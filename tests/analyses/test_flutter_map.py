@@ -94,6 +94,34 @@ def test_limit_cycles_of_the_dissertation():
         np.testing.assert_allclose([first.omega, last.omega], cycles.omega, rtol=1e-5)
         assert [first.stability, last.stability] == list(cycles.stability)
         assert found.fate(0) == "limit cycle, kick"
+        assert max(first.error, last.error) < 1e-5
+
+
+@pytest.mark.parametrize(("seed", "least"), [(1, 0.1), (4, 0.0), (33, 0.02)])
+def test_a_limit_cycle_knows_how_far_it_is_from_that_of_the_whole_equations(seed, least):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(3, 9))
+    disk = rough_disk(rng, n)
+    flow = ss.AerodynamicDamping(ratio=rng.uniform(-0.01, 0.002, n) * rng.choice([0.1, 1, 3]))
+    found, waves = ss.flutter_map(disk, flow, harmonics=9), ss.aerodynamic_waves(disk, flow)
+    errors = []
+    for wave in {one.diameter % n for one in found.cycles()}:
+        negative = waves.negative_damping(wave)
+        still = waves.disk_of(wave, ratio=0.0)
+        cycles = ss.limit_cycles(still, negative, ratio=[1.0], harmonics=9, stability=False)
+        errors += [one.error for one in found.cycles(wave)]
+        for which in ("bounding", "leaving"):
+            sizes = np.array([found.amplitude(dof, which)[wave] for dof in disk.structure.dofs])
+            if np.isfinite(sizes).all():
+                dof = disk.structure.dofs[sizes.argmax()]
+                off = np.abs(sizes.max() / cycles.amplitude(dof) - 1.0).min()
+                assert np.abs(np.array(errors) - off).min() < 1e-9
+    assert len(errors) == len(found.cycles()) > 0
+    assert least <= max(errors) < (0.01 if least == 0.0 else 0.3)
+    codes = {one.code for one in found.diagnostics}
+    assert ("cycles-differ" in codes) == (max(errors) > 0.01)
+    without = ss.flutter_map(disk, flow, harmonics=9, direct=False)
+    assert np.isnan([one.error for one in without.cycles()]).all()
 
 
 def test_a_kick_destabilises_a_disk_that_is_stable_at_rest():

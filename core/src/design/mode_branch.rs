@@ -2,7 +2,7 @@
 
 use super::mode_equations::ModeEquations;
 use super::mode_feed::Feed;
-use super::mode_harmonics::Truncation;
+use super::mode_harmonics::{fewest, Step, Truncation};
 use super::mode_point::ModePoint;
 use super::mode_settings::{Amplitudes, ModeEnd, ModeMethod, ModeSettings};
 use super::mode_start::{at_rest, linear_mode, Linear};
@@ -38,8 +38,6 @@ const SHORTER: f64 = 0.25;
 const BACK: f64 = 10.0;
 /// Most evaluations of the equations: so many per step, and so many more for a few hard places.
 const EVALUATIONS: [usize; 2] = [40, 1500];
-/// First harmonics that automatic ones try.
-const FEWEST: usize = 5;
 
 /// A branch on its way.
 pub(super) struct Walk<'a> {
@@ -62,7 +60,7 @@ impl<'a> Walk<'a> {
     ) -> Result<Self, Error> {
         let kept = match settings.harmonics {
             HarmonicChoice::Fixed(highest) => highest,
-            HarmonicChoice::Auto => FEWEST.min(settings.max_harmonics),
+            HarmonicChoice::Auto => fewest(settings),
         };
         Error::check_order("harmonics", kept, crate::balance::HIGHEST_ORDER)?;
         settings.residual.check()?;
@@ -141,9 +139,9 @@ impl<'a> Walk<'a> {
     pub(super) fn follow(&mut self, first: Vec<f64>) -> ModeEnd {
         let (low, high) = self.bounds();
         let whole = matches!(self.settings.amplitudes, Amplitudes::Range(..));
-        let first = self.truncation.refined(first, self.settings);
+        let (first, step) = self.truncation.refined(first, self.settings);
         if log(&first) >= low {
-            self.record(&first);
+            self.record(&first, step.as_ref());
         }
         self.last = Some(log(&first));
         let steps = Steps { longest: LONGEST[usize::from(!whole)], ..STEPS };
@@ -273,8 +271,11 @@ impl<'a> Walk<'a> {
     fn take(&mut self, z: Vec<f64>) {
         let size = self.equations().size();
         let z = self.equations().recast(&z, size);
-        let z = self.truncation.refined(z, self.settings);
-        self.record(&z);
+        let (z, step) = self.truncation.refined(z, self.settings);
+        self.record(&z, step.as_ref());
+        if let Some(step) = step {
+            self.truncation.ease(&step, self.settings);
+        }
     }
 
     /// Goes on in the harmonics that have been found necessary.
@@ -299,16 +300,16 @@ impl<'a> Walk<'a> {
         log(ahead) <= low || (after - before).abs() <= SEEN[0] * before.max(after).max(SEEN[1])
     }
 
-    fn record(&mut self, z: &[f64]) {
+    fn record(&mut self, z: &[f64], step: Option<&Step>) {
         let start = Instant::now();
         let equations = &mut self.truncation.equations;
         // What the equations were evaluated at last may be another point.
         let residual = norm(&equations.evaluate(z));
         let mut point = ModePoint::new(equations, &self.linear, z);
         point.response.residual = residual;
-        if let Some(step) = self.truncation.step(z) {
+        if let Some(step) = step {
             point.errors = step.relative();
-            point.response.error_estimate = self.truncation.changes(&point, &step);
+            point.response.error_estimate = self.truncation.changes(&point, step);
             let missed = step.error() > self.settings.tolerance;
             if missed && self.settings.harmonics == HarmonicChoice::Auto {
                 point.response.status = PointStatus::HarmonicsLimit;

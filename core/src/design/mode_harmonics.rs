@@ -10,8 +10,14 @@ use crate::timing::Profile;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// First harmonics that automatic ones try, at most.
+const FEWEST: usize = 5;
+
 /// Newton iterations in more harmonics.
 const ITERATIONS: usize = 20;
+
+/// Share of the tolerance below which an error lets the next point have fewer harmonics.
+const GENEROUS: f64 = 0.1;
 
 /// Relative residual of the linear equations of an error estimate.
 const ESTIMATE: f64 = 1e-2;
@@ -48,24 +54,36 @@ impl Step {
     }
 }
 
+/// First harmonics that automatic ones try.
+pub(super) fn fewest(settings: &ModeSettings) -> usize {
+    FEWEST.min(settings.max_harmonics)
+}
+
+/// The harmonics that they try after these.
+fn above(order: usize) -> usize {
+    order + 2 + order / 2
+}
+
 impl<'a> Truncation<'a> {
     pub(super) fn new(equations: ModeEquations<'a>) -> Self {
         Self { equations, finer: None, profile: Profile::default(), estimate: Duration::ZERO }
     }
 
-    /// A point in as many harmonics as the tolerance asks for.
-    pub(super) fn refined(&mut self, mut z: Vec<f64>, settings: &ModeSettings) -> Vec<f64> {
-        if settings.harmonics != HarmonicChoice::Auto {
-            return z;
-        }
+    /// A point in as many harmonics as the tolerance asks for, and what more could change.
+    pub(super) fn refined(
+        &mut self,
+        mut z: Vec<f64>,
+        settings: &ModeSettings,
+    ) -> (Vec<f64>, Option<Step>) {
         loop {
+            let step = self.step(&z);
             let kept = self.equations.harmonics().highest();
-            let enough = |step: Step| step.error() <= settings.tolerance;
-            if kept >= settings.max_harmonics || self.step(&z).is_some_and(enough) {
-                return z;
+            let enough = step.as_ref().is_some_and(|step| step.error() <= settings.tolerance);
+            let fixed = settings.harmonics != HarmonicChoice::Auto;
+            if fixed || enough || kept >= settings.max_harmonics {
+                return (z, step);
             }
-            let more = (kept + 2 + kept / 2).min(settings.max_harmonics);
-            let mut equations = self.in_harmonics(more);
+            let mut equations = self.in_harmonics(above(kept).min(settings.max_harmonics));
             let recast = equations.recast(&z, equations.size());
             equations.hold(&recast);
             let log = recast[recast.len() - 1];
@@ -73,9 +91,25 @@ impl<'a> Truncation<'a> {
             let Some((finer, _)) = found else {
                 // It stays in the harmonics that it has, and says so.
                 self.leave(&equations);
-                return z;
+                return (z, step);
             };
             z = finer;
+            let left = std::mem::replace(&mut self.equations, equations);
+            self.leave(&left);
+        }
+    }
+
+    /// Lets the next point have fewer harmonics, where those kept are far more than the tolerance
+    /// asks for.
+    pub(super) fn ease(&mut self, step: &Step, settings: &ModeSettings) {
+        let fixed = settings.harmonics != HarmonicChoice::Auto;
+        if fixed || step.error() > GENEROUS * settings.tolerance {
+            return;
+        }
+        let kept = self.equations.harmonics().highest();
+        let levels = std::iter::successors(Some(fewest(settings)), |order| Some(above(*order)));
+        if let Some(fewer) = levels.take_while(|order| *order < kept).last() {
+            let equations = self.in_harmonics(fewer);
             let left = std::mem::replace(&mut self.equations, equations);
             self.leave(&left);
         }

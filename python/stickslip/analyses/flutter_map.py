@@ -9,7 +9,7 @@ up to nothing, ``zeta(a) + zeta_aero(d, a) = 0``.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.analyses.run import Progress, Run, share
 from stickslip.analyses.texts import told
-from stickslip.analyses.wave_stability import wave_multiplier
+from stickslip.analyses.wave_stability import wave_cycles, wave_multiplier
 from stickslip.disk.aerodynamics import Aerodynamics
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.waves import AerodynamicWaves, aerodynamic_waves
@@ -28,13 +28,17 @@ from stickslip.results.nonlinear_modes import NonlinearModes
 from stickslip.settings.flutter import FlutterKeys, FlutterModeSettings, FlutterSettings
 from stickslip.settings.settings import configured
 
-_INSIDE = 8
-"""Amplitudes put between two between which a limit cycle lies, per round."""
-_ROUNDS = 2
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
+
+_ROUNDS = 8
+"""Times that the modes are computed where their damping seems to vanish."""
+_CLOSE = 0.003
+"""Relative distance of the amplitudes on both sides of one at which the damping vanishes."""
 _BELOW, _BEYOND = 0.5, 100.0
 """Where amplitudes begin and end by default, in those at which contacts begin to slip."""
-_HARMONICS = 15
-"""Harmonics of the limit cycles whose multipliers are computed, if they are chosen."""
+_DIFFERS = 0.01
+"""Error of the amplitude of a limit cycle that is named."""
 _FLAT = 1e-9
 """Slope of the damping, relative to its size, that decides nothing."""
 
@@ -89,8 +93,8 @@ def flutter_map(
     )
     n = disk.sectors
     rows: list[_Wave] = []
-    roots: list[tuple[int, _Wave, bool]] = []
-    decided: list[tuple[float, bool | None]] = []
+    cycles: list[_Cycle] = []
+    evaluations = 0
     interrupted = False
     with Run("flutter map", progress) as run:
         try:
@@ -99,14 +103,14 @@ def flutter_map(
                     part = share(run, diameter / n, (diameter + 1) / n)
                     wave = _Follower(waves, diameter, settings, part)
                     row = wave.at(amplitudes)
-                    found = wave.roots(row)
-                    known = [_multiplier(waves, settings, diameter, one) for one, _ in found]
+                    found = _compared(waves, settings, wave, wave.cycles(row))
                     rows.append(row)
-                    roots.extend((diameter, *one) for one in found)
-                    decided.extend(known)
+                    cycles.extend(found)
+                    evaluations += wave.evaluations
         except KeyboardInterrupt:
             interrupted = True
-        arrays = _arrays(waves, amplitudes, rows, roots, decided if settings.multipliers else None)
+        arrays = _arrays(waves, amplitudes, rows, cycles)
+        off = arrays.cycle_error[arrays.cycle_error > _DIFFERS]
         lost = int((~np.isfinite(arrays.omega[: len(rows)])).sum())
         undamped = _unheld(arrays, len(rows))
         notes = present(
@@ -115,6 +119,8 @@ def flutter_map(
                 lost > 0 and told("waves-missing", points=lost, total=len(rows) * amplitudes.size),
                 undamped > 0
                 and told("waves-unheld", waves=undamped, largest=float(amplitudes[-1])),
+                off.size > 0
+                and told("cycles-differ", cycles=off.size, least=_DIFFERS, largest=off.max()),
             )
         )
         result = FlutterMap(
@@ -124,7 +130,7 @@ def flutter_map(
             arrays=arrays,
             interrupted=interrupted,
             timings={},
-            counters={"evaluations": sum(row.evaluations for row in rows)},
+            counters={"evaluations": evaluations},
             diagnostics=notes,
         )
         return run.ended(result, f"{len(rows)} of {n} waves")
@@ -139,11 +145,42 @@ class _Wave(NamedTuple):
     flow_ratio: NDArray[np.float64]
     participation: NDArray[np.float64]
     displacement: NDArray[np.float64]
-    evaluations: int
 
     @property
     def ratio(self) -> NDArray[np.float64]:
         return self.disk_ratio + self.flow_ratio
+
+    def with_amplitudes(self, other: _Wave) -> _Wave:
+        """Return the wave at the amplitudes of both."""
+        order = np.argsort(np.concatenate([self.amplitude, other.amplitude]))
+        return _Wave(*(np.concatenate(pair)[order] for pair in zip(self, other, strict=True)))
+
+    def over_amplitude(self, values: NDArray[np.float64]) -> PchipInterpolator:
+        """Return values, shape (A, ...), over ln a, where the mode is known."""
+        from scipy.interpolate import PchipInterpolator
+
+        known = np.isfinite(self.ratio)
+        return PchipInterpolator(np.log(self.amplitude[known]), values[known])
+
+    def undamped(self) -> NDArray[np.float64]:
+        """Return the amplitudes at which disk and flow together damp nothing, rising."""
+        if np.isfinite(self.ratio).sum() < 2:
+            return np.empty(0)
+        found = self.over_amplitude(self.ratio).roots(extrapolate=False)
+        return np.exp(np.unique(found[np.isfinite(found)]))
+
+
+class _Cycle(NamedTuple):
+    """A limit cycle of a wave."""
+
+    diameter: int
+    amplitude: float
+    omega: float
+    slope: float
+    displacement: NDArray[np.float64]
+    stable: bool | None
+    multiplier: float = np.nan
+    error: float = np.nan
 
 
 class _Follower:
@@ -159,6 +196,9 @@ class _Follower:
         self.disk, self.forces, self.diameter = waves.disk, waves.forces, diameter
         self.rest = float(waves.omega[diameter])
         self.settings, self.progress = settings, progress
+        self.evaluations = 0
+        self.harmonics = 1
+        """Highest harmonic of the mode at the amplitudes it was computed at last."""
 
     def at(self, amplitudes: NDArray[np.float64]) -> _Wave:
         """Return the wave at amplitudes; not-a-number where its mode was not reached."""
@@ -176,6 +216,8 @@ class _Follower:
         )
         if self.progress is not None:
             self.progress(1.0)
+        self.evaluations += int(mode.counters.get("evaluations", 0))
+        self.harmonics = int(mode.harmonics.max())
         return self._in_flow(mode)
 
     def _in_flow(self, mode: NonlinearModes) -> _Wave:
@@ -201,9 +243,8 @@ class _Follower:
             own = mode.viscous_ratio * slower + mode.friction_ratio * slower**2
             share = first / (square * inertia)
         sizes = [mode.displacement_amplitude(dof) for dof in self.disk.structure.dofs]
-        work = int(mode.counters.get("evaluations", 0))
         amplitude = np.asarray(mode.amplitude)
-        return _Wave(amplitude, omega, own, flow, share, np.stack(sizes, axis=1), work)
+        return _Wave(amplitude, omega, own, flow, share, np.stack(sizes, axis=1))
 
     def _fed(self, order: int, place: int) -> complex:
         """Return L of a harmonic, its imaginary part as a damping does the work of a period.
@@ -214,52 +255,54 @@ class _Follower:
         met = [k for k in range(1, 2 * n, 2) if k * self.diameter % n == place]
         return complex(force.real, force.imag * order**2 / met[0] if met else 0.0)
 
-    def roots(self, row: _Wave) -> list[tuple[_Wave, bool]]:
-        """Return the limit cycles, by rising amplitude, and whether the damping rises there."""
-        brackets = _brackets(row)
+    def cycles(self, row: _Wave) -> list[_Cycle]:
+        """Return the limit cycles by rising amplitude, from the wave at amplitudes around them."""
         for _ in range(_ROUNDS):
-            if not brackets:
-                return []
-            inside = np.unique(
-                np.concatenate([np.geomspace(low, high, _INSIDE + 2) for low, high in brackets])
-            )
-            row = self.at(inside)
-            brackets = _brackets(row)
-        return [(_between(row, low, high), bool(rising)) for low, high, rising in _signed(row)]
+            guesses = row.undamped()
+            after = np.searchsorted(row.amplitude, guesses)
+            low, high = row.amplitude[after - 1], row.amplitude[after]
+            wide = high > (1.0 + _CLOSE) ** 2 * low
+            if not wide.any():
+                break
+            around = guesses[wide, np.newaxis] * (1.0 + _CLOSE) ** np.arange(-1.0, 2.0)
+            # At a kink of the damping guesses creep; the middle halves the way.
+            middle = np.sqrt(low[wide] * high[wide])
+            row = row.with_amplitudes(self.at(np.unique(np.append(around, middle))))
+        found = row.undamped()
+        if not found.size:
+            return []
+        logs = np.log(found)
+        slopes = row.over_amplitude(row.ratio)(logs, 1)
+        sizes = row.over_amplitude(row.displacement)(logs)
+        omega = row.over_amplitude(row.omega)(logs)
+        stable = [None if abs(x) <= _FLAT else x > 0.0 for x in slopes.tolist()]
+        columns = found.tolist(), omega.tolist(), slopes.tolist(), sizes, stable
+        return [_Cycle(self.diameter, *one) for one in zip(*columns, strict=True)]
 
 
-def _signed(row: _Wave) -> list[tuple[float, float, bool]]:
-    """Return the amplitudes between which the damping changes its sign, and whether it rises."""
-    known = np.flatnonzero(np.isfinite(row.ratio))
-    a, ratio = row.amplitude[known], row.ratio[known]
-    changes = np.flatnonzero((ratio[:-1] < 0.0) != (ratio[1:] < 0.0))
-    return [(a[i], a[i + 1], bool(ratio[i] < 0.0)) for i in changes.tolist()]
-
-
-def _brackets(row: _Wave) -> list[tuple[float, float]]:
-    return [(low, high) for low, high, _ in _signed(row)]
-
-
-def _between(row: _Wave, low: float, high: float) -> _Wave:
-    """Return the wave where the damping between two amplitudes is zero, on the line of both."""
-    first, last = (int(np.flatnonzero(row.amplitude == one)[0]) for one in (low, high))
-    ends = row.ratio[first], row.ratio[last]
-    part = ends[0] / (ends[0] - ends[1])
-    slope = (ends[1] - ends[0]) / np.log(high / low)
-
-    def mixed(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.asarray((1.0 - part) * values[first] + part * values[last])
-
-    amplitude = np.exp((1.0 - part) * np.log(low) + part * np.log(high))
-    return _Wave(
-        np.asarray(amplitude),
-        mixed(row.omega),
-        mixed(row.disk_ratio),
-        np.asarray(slope),
-        mixed(row.participation),
-        mixed(row.displacement),
-        0,
-    )
+def _compared(
+    waves: AerodynamicWaves, settings: FlutterKeys, wave: _Follower, cycles: list[_Cycle]
+) -> list[_Cycle]:
+    """Return limit cycles with what the whole equations say of them, in as many harmonics."""
+    if not cycles or not (settings.direct or settings.multipliers):
+        return cycles
+    branch = wave_cycles(waves, wave.diameter, wave.harmonics, settings.mode)
+    if settings.multipliers:
+        cycles = [one._replace(stable=None) for one in cycles]
+    if branch is None or not branch.omega.size:
+        return cycles
+    found = []
+    for one in cycles:
+        largest = int(np.argmax(one.displacement))
+        sizes = branch.amplitude(waves.disk.structure.dofs[largest])
+        index = int(np.argmin(np.abs(np.log(sizes / one.displacement[largest]))))
+        error = abs(float(one.displacement[largest] / sizes[index]) - 1.0)
+        checked = one._replace(error=error)
+        if settings.multipliers:
+            multiplier, stable = wave_multiplier(waves, wave.diameter, branch, index)
+            checked = checked._replace(multiplier=multiplier, stable=stable)
+        found.append(checked)
+    return found
 
 
 def _amplitudes(waves: AerodynamicWaves, settings: FlutterKeys) -> NDArray[np.float64]:
@@ -299,8 +342,7 @@ def _arrays(
     waves: AerodynamicWaves,
     amplitudes: NDArray[np.float64],
     rows: list[_Wave],
-    roots: list[tuple[int, _Wave, bool]],
-    decided: list[tuple[float, bool | None]] | None,
+    cycles: list[_Cycle],
 ) -> FlutterArrays:
     n, size = waves.disk.sectors, len(waves.disk.structure)
 
@@ -311,19 +353,8 @@ def _arrays(
         return values
 
     rank = np.argsort(np.argsort(waves.ratio, kind="stable"))
-    placed = sorted(
-        range(len(roots)), key=lambda i: (rank[roots[i][0]], float(roots[i][1].amplitude))
-    )
-    roots = [roots[i] for i in placed]
-    slopes = np.array([float(one.flow_ratio) for _, one, _ in roots])
-    if decided is None:
-        sizes = np.full(len(roots), np.nan)
-        truths = [None if abs(x) <= _FLAT else x > 0.0 for x in slopes.tolist()]
-    else:
-        sizes = np.array([decided[i][0] for i in placed], dtype=np.float64)
-        truths = [decided[i][1] for i in placed]
+    cycles = sorted(cycles, key=lambda one: (rank[one.diameter], one.amplitude))
     names = {None: "not decided", False: "unstable", True: "stable"}
-    states = [STATES.index(names[one]) for one in truths]
     at_rest = 1.0 / waves.omega**2
     moved = np.array(
         [abs(np.vdot(waves.forces.directions[d], waves.shapes[d])) ** 2 for d in range(n)]
@@ -342,25 +373,14 @@ def _arrays(
         rest_aerodynamic_ratio=waves.aerodynamic_ratio,
         rest_ratio=waves.ratio,
         coefficient=waves.forces.coefficients * moved,
-        cycle_wave=np.array([d for d, _, _ in roots], dtype=np.int64),
-        cycle_amplitude=np.array([float(one.amplitude) for _, one, _ in roots]),
-        cycle_omega=np.array([float(one.omega) for _, one, _ in roots]),
-        cycle_slope=slopes,
-        cycle_multiplier=sizes,
-        cycle_state=np.array(states, dtype=np.int64),
-        cycle_displacement=np.array([one.displacement for _, one, _ in roots]).reshape(-1, size),
-    )
-
-
-def _multiplier(
-    waves: AerodynamicWaves, settings: FlutterKeys, diameter: int, cycle: _Wave
-) -> tuple[float, bool | None]:
-    if not settings.multipliers:
-        return np.nan, None
-    largest = int(np.argmax(cycle.displacement))
-    dof, size = waves.disk.structure.dofs[largest], float(cycle.displacement[largest])
-    return wave_multiplier(
-        waves, diameter, size, dof, settings.fixed_harmonics or _HARMONICS, settings.mode
+        cycle_wave=np.array([one.diameter for one in cycles], dtype=np.int64),
+        cycle_amplitude=np.array([one.amplitude for one in cycles]),
+        cycle_omega=np.array([one.omega for one in cycles]),
+        cycle_slope=np.array([one.slope for one in cycles]),
+        cycle_multiplier=np.array([one.multiplier for one in cycles]),
+        cycle_state=np.array([STATES.index(names[one.stable]) for one in cycles], dtype=np.int64),
+        cycle_error=np.array([one.error for one in cycles]),
+        cycle_displacement=np.array([one.displacement for one in cycles]).reshape(-1, size),
     )
 
 

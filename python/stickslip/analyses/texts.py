@@ -31,6 +31,9 @@ TEXTS = {
     "limit cycles there are missing: give amplitudes closer to those around.",
     "waves-unheld": "{waves} waves still grow at the largest amplitude, {largest:.6g} m kg^(1/2): "
     "from there nothing holds them as far as was looked.",
+    "cycles-differ": "Of {cycles} limit cycles the amplitude differs by more than {least:.0%} from "
+    "the solution of the whole equations, by {largest:.1%} at most: one mode does not tell them; "
+    "`ss.limit_cycles` of the wave does.",
     # the method
     "harmonics": "All harmonics from 0 to {most} were solved for{_chosen}.",
     "harmonics/odd": "Only the odd harmonics up to {most} were solved for{_chosen}: the forces and "

@@ -14,6 +14,7 @@ from stickslip.analyses.limit_cycles import limit_cycles
 from stickslip.disk.wave_ring import Rotation, wave_ring
 from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
+from stickslip.results.limit_cycles import LimitCycles
 
 _ACCURATE = 1e-4
 """Accuracy of the largest multiplier."""
@@ -21,17 +22,15 @@ _CLEAR = 3.0
 """Distance of multipliers from the unit circle that decides, in that of the trivial one from 1."""
 
 
-def wave_multiplier(
-    waves: AerodynamicWaves, diameter: int, amplitude: float, dof: str, harmonics: int, mode: int
-) -> tuple[float, bool | None]:
-    """Return the largest multiplier but the trivial one, and whether the limit cycle is stable.
+def wave_cycles(
+    waves: AerodynamicWaves, diameter: int, harmonics: int, mode: int
+) -> LimitCycles | None:
+    """Return the limit cycles of a wave by the whole equations, or nothing where none is found.
 
-    The cycle is that of `stickslip.limit_cycles` whose amplitude of a dof is next to the given one.
-    Not-a-number and None where it is not found, or its multipliers do not tell.
+    Nothing too where phases within a sector leave the aerodynamic stiffness no matrix of one.
     """
-    disk = waves.disk
     try:
-        branch = limit_cycles(
+        return limit_cycles(
             waves.disk_of(diameter, ratio=0.0),
             waves.negative_damping(diameter),
             ratio=[1.0],
@@ -40,10 +39,17 @@ def wave_multiplier(
             stability=False,
         )
     except ModelError:
-        return np.nan, None
-    if not branch.omega.size:
-        return np.nan, None
-    index = int(np.argmin(np.abs(np.log(branch.amplitude(dof) / amplitude))))
+        return None
+
+
+def wave_multiplier(
+    waves: AerodynamicWaves, diameter: int, branch: LimitCycles, index: int
+) -> tuple[float, bool | None]:
+    """Return the largest multiplier of a limit cycle but the trivial one, and whether it is stable.
+
+    None where its multipliers do not tell.
+    """
+    disk = waves.disk
     omega = float(branch.omega[index])
     n = disk.sectors
     turn = np.exp(2j * np.pi * diameter / n * np.arange(branch.arrays.displacement.shape[1]))

@@ -46,6 +46,8 @@ class WaveCycle(NamedTuple):
     """"stable", "unstable" or "not decided": by the multipliers, or without by the slope."""
     multiplier: float
     """Largest modulus of the Floquet multipliers but the trivial 1; not-a-number if unknown."""
+    error: float
+    """Of the amplitude, relative to the solution of the whole equations; not-a-number without."""
 
 
 class FlutterArrays(Columns):
@@ -88,6 +90,13 @@ class FlutterArrays(Columns):
     cycle_state: Int = column("cycle", "1", "stability, by multipliers or that slope", codes=STATES)
     cycle_multiplier: Float = column(
         "cycle", "1", "largest modulus of multipliers but the trivial 1", least=0.0
+    )
+    cycle_error: Float = column(
+        "cycle",
+        "1",
+        "error of the amplitude, relative to the solution of the whole equations",
+        least=0.0,
+        absent=lambda data: np.full(data.sizes["cycle"], np.nan),
     )
     cycle_displacement: Float = column(
         "cycle dof", "m", "half peak-to-peak amplitude of a displacement"
@@ -168,6 +177,7 @@ class FlutterMap(ColumnResult):
                 float(arrays.cycle_slope[i]),
                 STATES[int(arrays.cycle_state[i])],
                 float(arrays.cycle_multiplier[i]),
+                float(arrays.cycle_error[i]),
             )
             for i in chosen
         )

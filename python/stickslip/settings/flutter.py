@@ -25,6 +25,11 @@ class FlutterModeSettings(HarmonicSettings):
         "of all sectors, against all waves. Default: by the slope of the damping over the "
         "amplitude, against the own wave alone.",
     )
+    direct: Flag = Field(
+        default=True,
+        description="Solve the whole equations for the limit cycles as well, and say how far those "
+        "of the nonlinear modes are from them.",
+    )
     max_harmonics: Count = Field(default=63, description="Highest harmonic that may be kept.")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
+from math import isnan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,7 +30,7 @@ class FlutterView(View[FlutterMap]):
     def headings(self, dofs: Dofs, length_unit: str) -> list[str]:
         """Return the headings of the numbers, among them one for every DOF."""
         shown = (f"{dof} [{length_unit}]" for dof in dofs)
-        return ["damping ratio", "of it flow", "rad/s", *shown]
+        return ["damping ratio", "of it flow", "rad/s", *shown, "error"]
 
     def rows(self, result: FlutterMap, dofs: Dofs, length: float) -> Rows:
         """Return the rows, by rising amplitude in a wave."""
@@ -41,9 +42,18 @@ class FlutterView(View[FlutterMap]):
             for index, one in zip(found.tolist(), result.cycles(wave), strict=True):
                 sizes = arrays.cycle_displacement[index, columns] / length
                 answer = STATES[one.stability].answer
-                yield name, *rest, f"{one.omega:#.8g}", *(f"{x:.6e}" for x in sizes), answer, fate
+                shown = *(f"{x:.6e}" for x in sizes), "" if isnan(one.error) else f"{one.error:.1e}"
+                yield name, *rest, f"{one.omega:#.8g}", *shown, answer, fate
             if not found.size:
-                yield name, *rest, f"{arrays.rest_omega[wave]:#.8g}", *("" for _ in dofs), "", fate
+                yield (
+                    name,
+                    *rest,
+                    f"{arrays.rest_omega[wave]:#.8g}",
+                    *("" for _ in dofs),
+                    "",
+                    "",
+                    fate,
+                )
 
     def about(self, result: FlutterMap) -> list[Row]:
         """Say which mode it is, and what becomes of its waves."""
