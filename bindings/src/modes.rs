@@ -42,6 +42,8 @@ fn branch<'py>(
         ModeEnd::Interrupted => "interrupted",
     };
     columns.tell("end", (end, found.end_amplitude))?;
+    let met = found.met.map(|(at, met)| (at, met.order, met.frequency, met.share));
+    columns.tell("met", met)?;
     columns.tell("half_wave", found.half_wave)?;
     columns.tell("interrupted", found.end == ModeEnd::Interrupted)?;
     columns.effort(&found.profile, ("points", found.points.len()))?;

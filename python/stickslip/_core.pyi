@@ -252,6 +252,7 @@ def sensitivity(
 class NonlinearMode:
     columns: dict[str, NDArray[Any]]
     end: tuple[str, float]
+    met: tuple[float, int, float, float] | None
     half_wave: bool
     interrupted: bool
     timings: dict[str, float]

@@ -269,6 +269,21 @@ def test_a_branch_that_ends_says_why():
     assert "No motion near the linear mode" in str(lost.diagnostics)
 
 
+def test_an_internal_resonance_between_the_amplitudes_is_named():
+    for seed in (29, 53, 146):
+        model, mode = jointed(np.random.default_rng([11, seed]))
+        keys = {"mode": mode, "harmonics": 5}
+        branch = ss.nonlinear_modes(model, amplitude=np.geomspace(1e-6, 1e-2, 5), **keys)
+        (told,) = [one for one in branch.diagnostics if one.code == "internal-resonance"]
+        assert not branch.arrays.resonance_order.any()
+        at = told.data["amplitude"]
+        there = ss.nonlinear_modes(model, amplitude=[1e-6, at], **keys)
+        assert there.arrays.resonance_order[1] == told.data["order"]
+        assert there.arrays.resonance_share[1] == pytest.approx(told.data["share"], rel=0.01)
+    quiet = ss.nonlinear_modes(one_mass(JENKINS), amplitude=[1e-4, 1e-2])
+    assert "internal-resonance" not in {one.code for one in quiet.diagnostics}
+
+
 def bar(count):
     """Return a clamped bar on Jenkins elements of all slip forces."""
     step = 1.0 / count

@@ -3,7 +3,7 @@
 use super::mode_equations::ModeEquations;
 use super::mode_feed::Feed;
 use super::mode_harmonics::{fewest, Step, Truncation};
-use super::mode_point::ModePoint;
+use super::mode_point::{Interaction, ModePoint};
 use super::mode_settings::{Amplitudes, ModeEnd, ModeMethod, ModeSettings};
 use super::mode_start::{at_rest, linear_mode, Linear};
 use crate::balance::{HarmonicChoice, PointStatus, Progress};
@@ -46,6 +46,8 @@ pub(super) struct Walk<'a> {
     pub(super) linear: Linear,
     pub(super) points: Vec<ModePoint>,
     pub(super) turns: Vec<f64>,
+    /// The strongest internal resonance on the way, and its ln a.
+    pub(super) met: Option<(f64, Interaction)>,
     /// ln a of the last point of the branch.
     pub(super) last: Option<f64>,
     pub(super) profile: Profile,
@@ -89,6 +91,7 @@ impl<'a> Walk<'a> {
             linear,
             points: Vec::new(),
             turns: Vec::new(),
+            met: None,
             last: None,
             profile: Profile::default(),
         })
@@ -185,6 +188,7 @@ impl<'a> Walk<'a> {
                 self.turns.push(from.exp());
             }
             self.last = Some(log(&walk.point));
+            self.meet(&walk.point);
             let known = walk.point.len();
             self.pass(&before.point, &walk.point);
             if self.equations().size() == known {
@@ -192,6 +196,16 @@ impl<'a> Walk<'a> {
             } else {
                 self.recast(&mut walk, &before.point);
             }
+        }
+    }
+
+    /// Remembers the strongest internal resonance within what is wanted.
+    fn meet(&mut self, z: &[f64]) {
+        let (at, (low, high)) = (log(z), self.bounds());
+        let found = Interaction::largest(&self.truncation.equations, z);
+        let Some(found) = found.filter(|_| at >= low && at <= high) else { return };
+        if self.met.is_none_or(|(_, known)| found.share > known.share) {
+            self.met = Some((at, found));
         }
     }
 

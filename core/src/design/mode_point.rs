@@ -25,7 +25,7 @@ impl Interaction {
     pub const SHARE: f64 = 0.1;
 
     /// The largest one at a point, if there is any.
-    fn largest(equations: &ModeEquations<'_>, z: &[f64]) -> Option<Self> {
+    pub(super) fn largest(equations: &ModeEquations<'_>, z: &[f64]) -> Option<Self> {
         let [omega, ..] = equations.scalars(z);
         let mut found: Option<Self> = None;
         for order in equations.harmonics().oscillating().iter().copied().filter(|k| *k > 1) {

@@ -1,6 +1,6 @@
 //! What is asked of a nonlinear mode, and what it gives.
 
-use super::mode_point::ModePoint;
+use super::mode_point::{Interaction, ModePoint};
 use crate::balance::HarmonicChoice;
 use crate::contact::Residual;
 use crate::timing::Profile;
@@ -74,6 +74,8 @@ pub struct NonlinearMode {
     pub half_wave: bool,
     /// Amplitudes at which the branch turns.
     pub turns: Vec<f64>,
+    /// The strongest internal resonance on the way between the points, and its amplitude.
+    pub met: Option<(f64, Interaction)>,
     /// How it ended, …
     pub end: ModeEnd,
     /// … and at which amplitude.

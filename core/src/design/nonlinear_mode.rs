@@ -60,6 +60,7 @@ pub fn nonlinear_mode(
         linear: [walk.linear.omega, walk.linear.damping / (2.0 * walk.linear.omega)],
         half_wave,
         turns: walk.turns,
+        met: walk.met.map(|(log, met)| (log.exp(), met)),
         end,
         end_amplitude,
         profile,

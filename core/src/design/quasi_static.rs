@@ -69,6 +69,7 @@ pub(super) fn quasi_static_mode(
         linear,
         half_wave: false,
         turns: Vec::new(),
+        met: None,
         end,
         end_amplitude: last,
         profile: Profile { total: start.elapsed(), ..Profile::default() },

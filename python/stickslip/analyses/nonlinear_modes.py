@@ -145,11 +145,23 @@ def _assumptions(
                 share=float(arrays.resonance_share[worst]),
                 _first=float(arrays.amplitude[met[0]]),
             ),
+            solution.met is not None and not met.size and _between(*solution.met),
             arrays.turns.size > 0
             and told("turns", _listed=", ".join(f"{one:.4g}" for one in arrays.turns[:6])),
             end in _WHY and _ended(settings.method, end, amplitude),
             missed_tolerances(arrays.status, "amplitudes") if arrays.status.size else None,
         )
+    )
+
+
+def _between(amplitude: float, order: int, frequency: float, share: float) -> Diagnostic:
+    """Name an internal resonance that the branch has passed between the amplitudes asked for."""
+    return told(
+        "internal-resonance/between",
+        amplitude=amplitude,
+        order=order,
+        frequency=frequency,
+        share=share,
     )
 
 

@@ -17,6 +17,9 @@ TEXTS = {
     "internal-resonance": "At {points} of the amplitudes, from {_first:.4g} on, harmonic {order} "
     "meets the stuck natural frequency of {frequency:.6g} rad/s with {share:.0%} of the amplitude: "
     "the mode is an internal resonance there, and other branches lie close by.",
+    "internal-resonance/between": "Between the amplitudes asked for, at {amplitude:.4g}, harmonic "
+    "{order} meets the stuck natural frequency of {frequency:.6g} rad/s with {share:.0%} of the "
+    "amplitude: the mode is an internal resonance there, and other branches lie close by.",
     "turns": "The branch turns back in amplitude at {_listed}.",
     "mode-not-reached": "The branch ended at the amplitude {amplitude:.6g} ({_why}): {_remedy}.",
     "mode-not-reached/start": "No motion near the linear mode was found at small amplitudes: ask "
