@@ -276,10 +276,11 @@ def test_an_internal_resonance_between_the_amplitudes_is_named():
         branch = ss.nonlinear_modes(model, amplitude=np.geomspace(1e-6, 1e-2, 5), **keys)
         (told,) = [one for one in branch.diagnostics if one.code == "internal-resonance"]
         assert not branch.arrays.resonance_order.any()
-        at = told.data["amplitude"]
-        there = ss.nonlinear_modes(model, amplitude=[1e-6, at], **keys)
-        assert there.arrays.resonance_order[1] == told.data["order"]
-        assert there.arrays.resonance_share[1] == pytest.approx(told.data["share"], rel=0.01)
+        whole = ss.nonlinear_modes(model, amplitude=(1e-6, 1e-2), **keys)
+        strongest = np.nanargmax(whole.arrays.resonance_share)
+        assert whole.arrays.resonance_order[strongest] == told.data["order"]
+        assert whole.amplitude[strongest] == pytest.approx(told.data["amplitude"], rel=0.2)
+        assert whole.arrays.resonance_share[strongest] > 0.9 * told.data["share"]
     quiet = ss.nonlinear_modes(one_mass(JENKINS), amplitude=[1e-4, 1e-2])
     assert "internal-resonance" not in {one.code for one in quiet.diagnostics}
 
