@@ -107,7 +107,9 @@ from stickslip.results.result import Result
 from stickslip.results.static_response import StaticResponse
 from stickslip.results.store import load as load
 from stickslip.results.sweep import Sweep as Sweep
+from stickslip.results.synthesis import SynthesizedPeaks as SynthesizedPeaks
 from stickslip.results.synthesis import SynthesizedResponse as SynthesizedResponse
+from stickslip.results.synthesized_cycles import SynthesizedCycles as SynthesizedCycles
 from stickslip.results.transient import Transient as Transient
 from stickslip.results.uncertainty import Uncertainty as Uncertainty
 from stickslip.settings.quantities import Backbone as Backbone
@@ -214,6 +216,7 @@ def flutter_map(
     max_harmonics: int = 63,
     mode: int = 0,
     multipliers: bool = False,
+    direct: bool = True,
     amplitude: ArrayLike | tuple[float, float] | None = None,
     points: int = 41,
     progress: Progress = None,

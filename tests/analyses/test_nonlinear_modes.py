@@ -361,25 +361,6 @@ def test_decaying_vibration_has_the_same_frequency_and_damping():
     assert decay == pytest.approx(np.interp(log, known, mode.damping_ratio), rel=1e-2)
 
 
-@pytest.mark.parametrize("size", [0.05, 0.5, 2.0])
-def test_synthesised_peaks_are_those_of_direct_computation(size):
-    force = ss.Force("x", size)
-    mode = ss.nonlinear_modes(chain(), mode=0, amplitude=(1e-6, 3e-2))
-    direct = ss.forced_response(chain(force), omega=(120.0, 190.0), tolerance=1e-4).peak("y")
-    near = np.linspace(0.97, 1.03, 1201) * direct.omega
-    response = mode.forced_response(force, near)
-    heights = response.amplitude("y")
-    top = int(np.nanargmax(heights))
-    ratio = np.interp(
-        np.log(response.modal_amplitude[top]), np.log(mode.amplitude), mode.damping_ratio
-    )
-    error = abs(heights[top] / direct.amplitude - 1.0)
-    assert ratio < 0.03
-    assert error < 0.01
-    assert response.omega[top] == pytest.approx(direct.omega, rel=3e-3)
-    assert response.error_indicator[top] > error
-
-
 def test_limit_cycles_are_where_the_damping_vanishes():
     negative = ss.Rayleigh(mass=-1.0)
     model = one_mass(JENKINS)

@@ -9,15 +9,24 @@ from typing import Any, ClassVar, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.checks import choice, whole_number
+from stickslip.checks import MatrixLike, choice, whole_number
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
+from stickslip.model.damping import DampingLaw
+from stickslip.model.destabilised import negative_matrix
 from stickslip.model.force import Force
 from stickslip.results.arrays import Float, Int, Measure, amplitude_of, constant
 from stickslip.results.fields import Shown
 from stickslip.results.mode_arrays import ModeArrays
 from stickslip.results.periodic import PeriodicMotions
-from stickslip.results.synthesis import SynthesizedResponse, force_vector, synthesized
+from stickslip.results.synthesis import (
+    SynthesizedPeaks,
+    SynthesizedResponse,
+    force_vector,
+    synthesized,
+    synthesized_peaks,
+)
+from stickslip.results.synthesized_cycles import SynthesizedCycles, synthesized_cycles
 from stickslip.settings.modes import ModeSettings
 from stickslip.settings.ranges import numbers, positive
 
@@ -114,14 +123,94 @@ class NonlinearModes(PeriodicMotions):
         Krack (2015), Comput. Struct. 154, 59, section 4; Krack, Panning-von Scheidt and Wallaschek
         (2013).
         """
-        if self.model.travels:
-            raise ModelError(
-                "forced_response: a sector of a travelling wave; compute it with "
-                "stickslip.forced_response"
-            )
+        self._require_rest("forced_response")
         driven = force_vector(self, forces)
         given = numbers(omega, "give finite frequencies above 0 rad/s", positive)
         return synthesized(self, driven, given)
+
+    def peaks(self, forces: Force | Sequence[Force], level: ArrayLike) -> SynthesizedPeaks:
+        """Return the peaks of the responses to multiples of forces that this mode alone gives.
+
+        Of several peaks at one level that of the largest amplitude.
+
+        Parameters
+        ----------
+        forces : Force or sequence of Force
+            As of `forced_response`.
+        level : array_like, shape (n,)
+            Factors on the forces.
+
+        Raises
+        ------
+        ModelError
+            As `forced_response` does.
+        """
+        self._require_rest("peaks")
+        given = numbers(level, "give finite levels above 0", positive)
+        return synthesized_peaks(self, force_vector(self, forces), given, damper=False)
+
+    def damper_curve(self, forces: Force | Sequence[Force], factor: ArrayLike) -> SynthesizedPeaks:
+        """Return peaks along a factor on all slip forces that this mode alone gives.
+
+        Displacements grow with forces and slip forces alike, so that a factor on the slip forces is
+        one on the level of the forces, and on the displacements.
+
+        Parameters
+        ----------
+        forces : Force or sequence of Force
+            As of `forced_response`.
+        factor : array_like, shape (n,)
+            Factors on all slip forces.
+
+        Raises
+        ------
+        ModelError
+            As `forced_response` does; under static loads, and of contacts with other forces than
+            springs and constant friction, which do not grow alike.
+        """
+        self._require_rest("damper_curve")
+        loaded = any(one.harmonic == 0 and one.amplitude for one in self.model.forces)
+        if loaded or self.model.problem.laws_not_monotone or not self._slip_forces_scale:
+            raise ModelError(
+                "damper_curve: displacements do not grow with the slip forces alone, because of "
+                "static loads, or of contacts that open or harden; use ss.damper_curve"
+            )
+        given = numbers(factor, "give finite factors above 0", positive)
+        return synthesized_peaks(self, force_vector(self, forces), given, damper=True)
+
+    def limit_cycles(
+        self, negative_damping: MatrixLike | DampingLaw, ratio: ArrayLike
+    ) -> SynthesizedCycles:
+        """Return the limit cycles under the damping C + r C_neg that this mode alone gives.
+
+        Parameters
+        ----------
+        negative_damping : array_like, shape (N, N), or damping law
+            C_neg [kg/s], as of `stickslip.limit_cycles`.
+        ratio : array_like, shape (n,)
+            Factors r.
+
+        Raises
+        ------
+        ModelError
+            If the matrix does not fit, the branch turns, or the model travels: there
+            `stickslip.flutter_map` does it for all waves.
+        """
+        self._require_rest("limit_cycles")
+        negative = negative_matrix(negative_damping, self.model.structure)
+        given = numbers(ratio, "give finite ratios above 0", positive)
+        return synthesized_cycles(self, np.asarray(negative), given)
+
+    @property
+    def _slip_forces_scale(self) -> bool:
+        return all(contact.slips for contact in self.model.contacts)
+
+    def _require_rest(self, method: str) -> None:
+        """Refuse a sector, which has no motion of its own."""
+        if self.model.travels:
+            raise ModelError(
+                f"{method}: a sector of a travelling wave; compute it with stickslip.{method}"
+            )
 
     def direct_peaks(self, dof: str, measure: Measure = "half_range") -> tuple[Float, Float]:
         """Return frequency and amplitude of the true maxima at the force levels of phase resonance.

@@ -13,36 +13,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol, get_args
+from typing import get_args
 
 import numpy as np
 
 from stickslip.checks import choice, unknown
 from stickslip.errors import ModelError
-from stickslip.model import Model
 from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
-from stickslip.results.mode_arrays import ModeArrays
-from stickslip.settings.modes import ModeSettings
-
-if TYPE_CHECKING:
-    from scipy.interpolate import PchipInterpolator
-
-_FINE = 4000
-"""Amplitudes between which solutions are bracketed."""
-_STILL = 1e-9
-"""Contact displacement, relative to the largest one, that says nothing about a stiffness."""
-
-
-class Mode(Protocol):
-    """What is asked of a nonlinear mode: a `NonlinearModes`."""
-
-    @property
-    def model(self) -> Model: ...  # noqa: D102
-    @property
-    def settings(self) -> ModeSettings: ...  # noqa: D102
-    @property
-    def arrays(self) -> ModeArrays: ...  # noqa: D102
-    def _column(self, dof: str) -> int: ...
+from stickslip.results.mode_shapes import Mode, ModeShapes, left_out
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,73 +64,45 @@ class SynthesizedResponse:
         return constant(amplitude_of(self.coefficients(dof), measure))
 
     @cached_property
-    def _shapes(self) -> _Shapes:
-        return _Shapes(self.mode)
+    def _shapes(self) -> ModeShapes:
+        return ModeShapes(self.mode)
 
 
-class _Shapes:
-    """A nonlinear mode between its amplitudes, interpolated in their logarithm."""
+@dataclass(frozen=True, eq=False)
+class SynthesizedPeaks(SynthesizedResponse):
+    """Peaks of forced responses of a single nonlinear mode, along a factor.
 
-    def __init__(self, mode: Mode) -> None:
-        from scipy.interpolate import PchipInterpolator
+    Attributes
+    ----------
+    omega : ndarray of float64, shape (n,)
+        Frequencies of the peaks of the mode [rad/s].
+    modal_amplitude : ndarray of float64, shape (n,)
+        Amplitude on the branch of the mode [m kg^(1/2)]; not-a-number where it was not computed
+        that far.
+    error_indicator : ndarray of float64, shape (n,)
+        As of a `SynthesizedResponse`. Above 0.01 compute the peaks directly.
+    factor : ndarray of float64, shape (n,)
+        Factors on the forces, or on all slip forces.
+    """
 
-        arrays = mode.arrays
-        known = np.flatnonzero(np.isfinite(arrays.omega))
-        rising = known[np.r_[True, np.diff(arrays.amplitude[known]) > 0.0]] if known.size else known
-        if rising.size < known.size or known.size < 2:
-            raise ModelError(
-                "forced_response: the mode needs two amplitudes and more, and a branch that does "
-                f"not turn; it has {known.size} with {arrays.turns.size} turns; compute it over "
-                "another range"
-            )
-        log = np.log(arrays.amplitude[known])
-        self.low, self.high = log[0], log[-1]
-        factor = np.ones((known.size, arrays.displacement.shape[1], 1))
-        factor[:, 1:] = arrays.amplitude[known, None, None]
+    factor: Float
+    _size: Float
 
-        def between(values: Float) -> PchipInterpolator:
-            return PchipInterpolator(log, values, axis=0)
-
-        self._omega, self._damping = (
-            between(arrays.omega[known]),
-            between(arrays.damping_ratio[known]),
+    def __repr__(self) -> str:
+        return (
+            f"SynthesizedPeaks({self.omega.size} factors of mode {self.mode.settings.mode}, error "
+            f"up to {np.nanmax(self.error_indicator):.2g})"
         )
-        self._series = [
-            (between(of.real), between(of.imag))
-            for of in (
-                arrays.displacement[known] / factor,
-                arrays.contact_displacement[known] / factor,
-                arrays.contact_force[known] / factor,
-            )
-        ]
 
-    def scalars(self, amplitude: Float) -> tuple[Float, Float]:
-        """Return frequency and damping ratio; below the least amplitude those there."""
-        log = self._log(amplitude)
-        return self._omega(log), self._damping(log)
-
-    def displacement(self, amplitude: Float) -> Complex:
-        """Return the harmonics of all DOFs, shape (n, H+1, N)."""
-        return self._at(0, amplitude)
-
-    def contacts(self, amplitude: Float) -> tuple[Complex, Complex]:
-        """Return the harmonics of contact displacements and forces."""
-        return self._at(1, amplitude), self._at(2, amplitude)
-
-    def _log(self, amplitude: Float) -> Float:
-        return np.clip(np.log(amplitude), self.low, self.high)
-
-    def _at(self, which: int, amplitude: Float) -> Complex:
-        real, imaginary = (part(self._log(amplitude)) for part in self._series[which])
-        series = real + 1j * imaginary
-        series[:, 1:] *= amplitude[:, None, None]
-        return series
+    def coefficients(self, dof: str) -> Complex:
+        """Return the harmonics of a displacement, shape (n, H+1) [m]."""
+        return constant(super().coefficients(dof) * self._size[:, np.newaxis])
 
 
 def synthesized(mode: Mode, force: Complex, omega: Float) -> SynthesizedResponse:
     """Return the response of a mode to the fundamental of forces on its DOFs, shape (N,) [N]."""
-    shapes = _Shapes(mode)
-    grid = np.exp(np.linspace(shapes.low, shapes.high, _FINE))
+    shapes = ModeShapes(mode)
+    grid = shapes.grid
     natural, damping = shapes.scalars(grid)
     work = shapes.displacement(grid)[:, 1].conj() @ force / grid
     found = np.full(omega.size, np.nan)
@@ -169,77 +119,66 @@ def synthesized(mode: Mode, force: Complex, omega: Float) -> SynthesizedResponse
             found[index] = grid[at] * (grid[at + 1] / grid[at]) ** share
         else:
             found[index] = grid[0] * np.abs(work[0]) / (excess[0] + np.abs(work[0]))
-    reached = np.isfinite(found)
-    natural, damping = (np.full(omega.size, np.nan) for _ in range(2))
-    work, turn = (np.full(omega.size, np.nan, np.complex128) for _ in range(2))
-    natural[reached], damping[reached] = shapes.scalars(found[reached])
-    response = natural**2 - omega**2 + 2j * damping * natural * omega
-    fundamental = shapes.displacement(found[reached])[:, 1]
-    work[reached] = fundamental.conj() @ force / found[reached]
-    turn[reached] = np.exp(1j * np.angle(work[reached] / response[reached]))
-    indicator = _indicator(mode, shapes, force, omega, found, turn)
+    turn, indicator = _turned(mode, shapes, np.tile(force, (omega.size, 1)), omega, found)
     arrays = (constant(np.array(one)) for one in (omega, found, indicator, turn))
     return SynthesizedResponse(mode, *arrays)
 
 
-def _indicator(
-    mode: Mode,
-    shapes: _Shapes,
-    force: Complex,
-    omega: Float,
-    amplitude: Float,
-    turn: Complex,
-) -> Float:
-    """Return the displacements that the residual of the full equations stands for.
+def synthesized_peaks(
+    mode: Mode, force: Complex, factor: Float, *, damper: bool
+) -> SynthesizedPeaks:
+    """Return the peaks of the responses of a mode, shape (n,), to multiples of forces.
 
-    Contacts answer as they do in the mode, by their complex stiffness of the fundamental, so that
-    the mode itself is an exact solution; across the mode the residual moves the other modes, and
-    along it the amplitude.
+    Or, of a `damper`, to the forces with all slip forces multiplied: displacements grow with both
+    alike.
     """
-    from scipy.linalg import block_diag
+    shapes = ModeShapes(mode)
+    level = 1.0 / factor if damper else factor
+    grid = shapes.grid
+    natural, damping = shapes.scalars(grid)
+    work = np.abs(shapes.displacement(grid)[:, 1].conj() @ force) / grid
+    # Where the two sides of the curve of a level meet.
+    needed = 2.0 * damping * np.sqrt(1.0 - damping**2) * natural**2 * grid / work
+    found = np.full(level.size, np.nan)
+    for index, one in enumerate(level.tolist()):
+        met = np.flatnonzero((needed[:-1] < one) & (needed[1:] >= one))
+        if met.size and needed[-1] >= one:
+            at = met[-1]
+            share = (one - needed[at]) / (needed[at + 1] - needed[at])
+            found[index] = grid[at] * (grid[at + 1] / grid[at]) ** share
+        elif needed.min() >= one:
+            found[index] = grid[0] * one / needed[0]
+    natural, damping = (np.full(level.size, np.nan) for _ in range(2))
+    reached = np.isfinite(found)
+    natural[reached], damping[reached] = shapes.scalars(found[reached])
+    omega = natural * np.sqrt(1.0 - 2.0 * damping**2)
+    turn, indicator = _turned(mode, shapes, np.outer(level, force), omega, found)
+    size = factor if damper else np.ones(factor.size)
+    arrays = (constant(np.array(one)) for one in (omega, found, indicator, turn, factor, size))
+    return SynthesizedPeaks(mode, *arrays)
 
-    structure = mode.model.structure
-    rows = np.vstack([contact.rows(structure) for contact in mode.model.contacts])
-    stuck = block_diag(*(contact.stuck_stiffness for contact in mode.model.contacts))
-    mass, damping = structure.mass, structure.damping
-    natural, ratio = shapes.scalars(amplitude)
-    series, (relative, forces) = shapes.displacement(amplitude), shapes.contacts(amplitude)
-    found = np.full(omega.size, np.nan)
-    size = len(structure)
-    for n in np.flatnonzero(np.isfinite(amplitude)):
-        own, one, a = natural[n], omega[n], amplitude[n]
-        error = 0.0
-        for k in range(1, series.shape[1]):
-            x = series[n, k] * turn[n] ** k
-            if not np.abs(x).max() > 0.0:
-                continue
-            inertia = mass @ x
-            rest = k**2 * (own**2 - one**2) * inertia + 1j * k * (one - own) * (damping @ x)
-            rest += 2j * k * ratio[n] * own**2 * inertia
-            held = stuck.astype(np.complex128)
-            if k == 1:
-                rest -= force
-                u, f = relative[n, 1], forces[n, 1]
-                moves = np.abs(u) > _STILL * np.abs(u).max()
-                # Forces of one point that depend on several displacements are put on its own.
-                held[moves] = 0.0
-                held[moves, moves] = f[moves] / u[moves]
-            dynamic = structure.stiffness + rows.T @ held @ rows
-            dynamic = dynamic - (k * one) ** 2 * mass + 1j * k * one * damping
-            if k > 1:
-                change = np.linalg.solve(dynamic, -rest)
-            else:
-                border = inertia / a
-                bordered = np.zeros((size + 1, size + 1), np.complex128)
-                bordered[:size, :size] = dynamic
-                bordered[:size, size], bordered[size, :size] = border, border.conj()
-                solution = np.linalg.solve(bordered, np.r_[-rest, 0.0])
-                change = solution[:size]
-                driving = abs(np.vdot(series[n, 1], force)) / a
-                error += abs(solution[size]) / driving
-            error += float(np.sqrt(np.abs(np.vdot(change, mass @ change)))) / a
-        found[n] = error
-    return found
+
+def _turned(
+    mode: Mode, shapes: ModeShapes, force: Complex, omega: Float, amplitude: Float
+) -> tuple[Complex, Float]:
+    """Return the phase against forces, shape (n, N), as a factor, and the error indicator.
+
+    Along the mode the residual counts against the work of the forces.
+    """
+    reached = np.isfinite(amplitude)
+    work, turn = (np.full(omega.size, np.nan, np.complex128) for _ in range(2))
+    natural, damping = shapes.scalars(amplitude[reached])
+    one = omega[reached]
+    response = natural**2 - one**2 + 2j * damping * natural * one
+    fundamental = shapes.displacement(amplitude[reached])[:, 1]
+    work[reached] = (fundamental.conj() * force[reached]).sum(axis=1) / amplitude[reached]
+    turn[reached] = np.exp(1j * np.angle(work[reached] / response))
+
+    def acting(n: int, order: int, _: Complex) -> Complex:
+        return -force[n] if order == 1 else np.zeros_like(force[n])
+
+    moved, along = left_out(mode, amplitude, omega, turn, acting)
+    return turn, moved + along / np.abs(work) + shapes.damping_error(amplitude)
 
 
 def force_vector(mode: Mode, given: object) -> Complex:

@@ -1,0 +1,135 @@
+"""Responses, peaks and limit cycles that a nonlinear mode alone gives, against direct ones."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+
+def chain(seed):
+    """Return a random chain on Jenkins elements, and the names of its DOFs."""
+    rng = np.random.default_rng([5, seed])
+    size = int(rng.integers(1, 5))
+    springs = 10.0 ** rng.uniform(3.5, 4.5, size + 1)
+    stiffness = np.diag(springs[:-1] + springs[1:])
+    stiffness -= np.diag(springs[1:-1], 1) + np.diag(springs[1:-1], -1)
+    dofs = [f"d{place}" for place in range(size)]
+    damping = ss.ModalDamping(rng.choice([0.001, 0.003, 0.01]))
+    structure = ss.Structure(np.diag(rng.uniform(0.3, 2.0, size)), stiffness, damping, dofs)
+    contacts = []
+    for _ in range(int(rng.integers(1, 4))):
+        pair = size > 1 and rng.random() < 0.5
+        ends = rng.choice(dofs, 2, replace=False) if pair else [rng.choice(dofs)]
+        keys = {
+            "stiffness": 10.0 ** rng.uniform(2.5, 4.2),
+            "slip_force": 10.0 ** rng.uniform(-0.5, 0.5),
+        }
+        contacts.append(ss.Jenkins(*map(str, ends), **keys))
+    return ss.Model(structure, contacts), dofs
+
+
+def three_masses(force=None):
+    structure = ss.Structure(
+        mass=np.diag([1.0, 0.5, 0.3]),
+        stiffness=[[3e4, -1e4, 0.0], [-1e4, 2.5e4, -5e3], [0.0, -5e3, 2e4]],
+        damping=ss.ModalDamping(0.003),
+        dofs=["x", "y", "z"],
+    )
+    contacts = [
+        ss.Jenkins("x", stiffness=4e3, slip_force=1.0),
+        ss.Jenkins("y", "z", stiffness=2e3, slip_force=0.7),
+    ]
+    return ss.Model(structure, contacts=contacts, forces=[] if force is None else [force])
+
+
+@pytest.mark.parametrize("size", [0.05, 0.5, 2.0])
+def test_synthesised_peaks_are_those_of_direct_computation(size):
+    force = ss.Force("x", size)
+    mode = ss.nonlinear_modes(three_masses(), mode=0, amplitude=(1e-6, 3e-2))
+    direct = ss.forced_response(three_masses(force), omega=(120.0, 190.0), tolerance=1e-4).peak("y")
+    near = np.linspace(0.97, 1.03, 1201) * direct.omega
+    response = mode.forced_response(force, near)
+    heights = response.amplitude("y")
+    top = int(np.nanargmax(heights))
+    ratio = np.interp(
+        np.log(response.modal_amplitude[top]), np.log(mode.amplitude), mode.damping_ratio
+    )
+    error = abs(heights[top] / direct.amplitude - 1.0)
+    assert ratio < 0.03
+    assert error < 0.01
+    assert response.omega[top] == pytest.approx(direct.omega, rel=3e-3)
+    assert response.error_indicator[top] > error
+
+
+@pytest.mark.parametrize("seed", [0, 1, *range(3, 12)])
+def test_damper_curves_of_one_mode_are_right_or_say_that_they_are_not(seed):
+    model, dofs = chain(seed)
+    mode = ss.nonlinear_modes(model, amplitude=(1e-6, 0.3), harmonics=9)
+    force, dof = ss.Force(dofs[-1], 1.0), dofs[seed % len(dofs)]
+    factors = np.geomspace(0.02, 20.0, 5)
+    curve = mode.damper_curve(force, factors)
+    loose = ss.natural_frequencies(model, slipping=range(len(model.contacts)))[0]
+    driven, span = (
+        ss.Model(model.structure, model.contacts, [force]),
+        (0.9 * loose, 1.05 * mode.linear_omega),
+    )
+    compared = 0
+    for factor, height, said in zip(
+        factors, curve.amplitude(dof), curve.error_indicator, strict=True
+    ):
+        peak = ss.forced_response(driven.scaled(slip_force=factor), span, harmonics=9).peak(dof)
+        if np.isfinite(height) and not peak.at_edge:
+            compared += 1
+            assert abs(height / peak.amplitude - 1.0) < 0.01 or said > 0.01
+    assert compared > 1
+    levels = mode.peaks(force, 1.0 / factors)
+    np.testing.assert_allclose(curve.amplitude(dof), factors * levels.amplitude(dof), rtol=1e-12)
+    np.testing.assert_allclose(curve.omega, levels.omega, rtol=1e-12)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 4, 5, 8, 14])
+def test_limit_cycles_of_one_mode_are_right_or_say_that_they_are_not(seed):
+    model, dofs = chain(seed)
+    mode = ss.nonlinear_modes(model, amplitude=(1e-6, 0.3), harmonics=9)
+    rng = np.random.default_rng(seed)
+    negative = np.diag(-rng.uniform(0.0, 2.0, len(dofs))) if seed % 2 else ss.Rayleigh(mass=-1.0)
+    whole = ss.limit_cycles(model, negative, harmonics=9, stability=False)
+    ratios = np.linspace(max(whole.ratio[0], 0.02), whole.ratio.max(), 5)[1:-1]
+    found = mode.limit_cycles(negative, ratios)
+    direct = ss.limit_cycles(model, negative, ratio=ratios, harmonics=9, stability=False)
+    assert set(found.ratio) == set(ratios)
+    for ratio, height, stable, said in zip(
+        found.ratio, found.amplitude(dofs[0]), found.stable, found.error_indicator, strict=True
+    ):
+        same = np.isclose(direct.ratio, ratio, rtol=1e-9)
+        off = height / direct.amplitude(dofs[0])[same] - 1.0
+        nearest = np.abs(off).argmin()
+        assert abs(off[nearest]) < 0.01 or said > 0.01
+        if said < 0.01:
+            assert stable == (np.array(direct.branch)[same][nearest] == "sticking")
+
+
+def test_what_does_not_scale_is_refused():
+    model, dofs = chain(0)
+    keys = {"amplitude": [1e-5, 1e-4], "harmonics": 3}
+    force = ss.Force(dofs[0], 1.0)
+    loaded = ss.Model(model.structure, model.contacts, [ss.Force(dofs[0], 2.0, harmonic=0)])
+    with pytest.raises(ss.ModelError, match="static loads"):
+        ss.nonlinear_modes(loaded, **keys).damper_curve(force, [1.0])
+    stiff = ss.Model(model.structure, [*model.contacts, ss.Cubic(dofs[0], stiffness=1e6)])
+    mode = ss.nonlinear_modes(stiff, **keys)
+    with pytest.raises(ss.ModelError, match="harden"):
+        mode.damper_curve(force, [1.0])
+    assert np.isfinite(mode.peaks(force, [1e-4]).amplitude(dofs[0])).all()
+    turning, dofs = chain(2)
+    mode = ss.nonlinear_modes(turning, amplitude=(1e-6, 0.3), harmonics=9)
+    with pytest.raises(ss.ModelError, match="does not turn; it has .* 2 turns"):
+        mode.peaks(ss.Force(dofs[0], 1.0), [1.0])
+
+
+def test_levels_are_positive():
+    model, dofs = chain(0)
+    mode = ss.nonlinear_modes(model, amplitude=[1e-5, 1e-4], harmonics=3)
+    force = ss.Force(dofs[0], 1.0)
+    with pytest.raises(ss.ModelError, match="level"):
+        mode.peaks(force, [-1.0])
