@@ -123,7 +123,7 @@ def test_what_does_not_scale_is_refused():
     assert np.isfinite(mode.peaks(force, [1e-4]).amplitude(dofs[0])).all()
     turning, dofs = chain(2)
     mode = ss.nonlinear_modes(turning, amplitude=(1e-6, 0.3), harmonics=9)
-    with pytest.raises(ss.ModelError, match="does not turn; it has .* 2 turns"):
+    with pytest.raises(ss.ModelError, match=r"does not turn; it has .* 2 turns"):
         mode.peaks(ss.Force(dofs[0], 1.0), [1.0])
 
 
